@@ -11,6 +11,7 @@ use sceneloom::generation::model::lidar::LidarNet;
 use sceneloom::generation::model::{Heard, OccModels, fine_vae};
 use sceneloom::generation::params::Precision;
 use sceneloom::generation::pipeline::OccPipeline;
+use sceneloom::generation::place::to_graph::to_graph;
 use sceneloom::generation::placement::diffuse::place_with;
 use sceneloom::generation::refine::decode_refined;
 use sceneloom::generation::region::Region;
@@ -21,8 +22,7 @@ use sceneloom::generation::sensors::learned::{Drops, rig_sweep};
 use sceneloom::generation::sensors::march::{MarchOptions, MarchScene};
 use sceneloom::generation::sensors::{cloud::GaussianCloud, lidar, splat};
 use sceneloom::generation::solver::SolverKind;
-use sceneloom::generation::text;
-use sceneloom::generation::text::to_graph::to_graph;
+use sceneloom::generation::words::describe::described;
 use sceneloom::generation::world::voxelize::{Vertical, complete};
 use sceneloom::generation::world::{World, template, traffic};
 use sceneloom::scene::{Class, Frame, Scene, SensorRig};
@@ -203,9 +203,10 @@ fn splats_and_shapes() {
 #[test]
 fn layout_diffusion() {
     let net = LayoutNet::bundled().expect("the shipped weights");
-    let reading =
-        text::read("a bus ahead, five moving cars near it, three cones to the right, two pedestrians");
-    let graph = to_graph(&reading.description, 1).graph;
+    let description = described(
+        "add 1 bus ( ahead ego ) and 5 moving car ( near the bus ) and 3 cone ( right ego ) and 2 person",
+    );
+    let graph = to_graph(&description.expect("valid"), 1).graph;
     let layout = template::layout("intersection", 4).expect("a template");
     same_bits("layout diffusion", || {
         let (boxes, _) =

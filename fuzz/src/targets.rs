@@ -20,16 +20,19 @@ use sceneloom::generation::model::lidar::LidarNet;
 use sceneloom::generation::model::occ_dit::OccDit;
 use sceneloom::generation::model::occ_vae::OccVae;
 use sceneloom::generation::model::text::TextEncoder;
+use sceneloom::generation::place::lanes::LaneMap;
+use sceneloom::generation::place::rules::place_with;
+use sceneloom::generation::place::to_graph::to_graph;
 use sceneloom::generation::placement::memory::{Bank, RoadRef};
 use sceneloom::generation::sensors::appearance::{TimeOfDay, Weather};
 use sceneloom::generation::sensors::lidar::Rays;
 use sceneloom::generation::sensors::project::View;
 use sceneloom::generation::solver::SolverKind;
-use sceneloom::generation::text::lanes::LaneMap;
-use sceneloom::generation::text::place::place_with;
-use sceneloom::generation::text::to_graph::to_graph;
 use sceneloom::generation::trade::Stops;
 use sceneloom::generation::weights::{WeightFile, WeightsError};
+use sceneloom::generation::words::describe::describe;
+use sceneloom::generation::words::hear::hear;
+use sceneloom::generation::words::reader::Mode;
 use sceneloom::generation::world::{template, traffic};
 use sceneloom::scene::graph::SceneGraph;
 use sceneloom::scene::grid::NOT_PAINTED;
@@ -434,20 +437,21 @@ pub fn weight_file(bytes: &[u8]) {
 /// Words that become a scene.
 pub fn prompt(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
-    let reading = sceneloom::generation::text::read(&text);
-    let ends = reading
-        .phrases
+    let heard = hear(&text, Mode::Prompt).expect("the shipped weights");
+    let acts = heard.reading.acts.iter().filter_map(|a| a.span);
+    let words = heard
+        .missing
         .iter()
-        .map(|p| p.span)
-        .chain(reading.not_understood.iter().map(|u| u.span));
-    for span in ends {
+        .map(|m| m.span)
+        .chain(heard.mended.iter().map(|m| m.span));
+    for span in acts.chain(words) {
         assert!(span.start <= span.end && span.end <= text.len());
         assert!(
             text.get(span.start..span.end).is_some(),
             "{span:?} parts a letter"
         );
     }
-    let graphed = to_graph(&reading.description, 1);
+    let graphed = to_graph(&describe(&heard.reading).description, 1);
     assert_eq!(graphed.graph.problem(), None);
     if let Err(error) = app_text::read(&text) {
         one_line(error);
@@ -466,8 +470,9 @@ fn street() -> &'static BevLayout {
 /// Words that change a scene.
 pub fn text_edit(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
-    let reading = app_text::read_edit(&text, start(), 1);
-    let edits: Vec<Edit> = reading.edits.iter().flat_map(app_text::edits).collect();
+    let edits: Vec<Edit> = app_text::read_edit(&text, start(), 1)
+        .expect("the shipped weights")
+        .edits();
     let mut document = Document::new(start().clone());
     if let Err(error) = document.apply_all("Words", &edits) {
         one_line(error);

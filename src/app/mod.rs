@@ -18,7 +18,7 @@ mod damage;
 pub mod dock;
 mod dock_ui;
 mod drawing;
-mod enrich;
+mod endpoint;
 mod execute;
 pub mod export;
 mod exporting;

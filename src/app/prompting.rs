@@ -12,17 +12,17 @@ use std::time::Instant;
 use serde::Serialize;
 
 use diffused::diffuse_and_mend;
-pub use filling::{Remembered, recall, remembered_phrases};
+pub use filling::{Remembered, recall};
 use filling::{fill_in, memory};
 
 use super::memory::layout_of;
 use crate::generation::model::layout::net::LayoutNet;
+use crate::generation::place::description::Description;
+use crate::generation::place::road::{self, Chosen};
+use crate::generation::place::rules::{Placement, place_with};
+use crate::generation::place::to_graph::{Graphed, node_of, to_graph};
 use crate::generation::placement::diffuse::{self, PlacementReport};
 use crate::generation::placement::memory::RoadRef;
-use crate::generation::text::description::Description;
-use crate::generation::text::place::{Placement, place_with};
-use crate::generation::text::road::{self, Chosen};
-use crate::generation::text::to_graph::{Graphed, to_graph};
 use crate::scene::graph::{LaneRole, Locked, NodeKind};
 use crate::scene::{BevLayout, BoxId, SceneBox};
 
@@ -187,7 +187,7 @@ pub fn lay_out_graph(
             for (k, b) in boxes.values().enumerate() {
                 graphed.graph.nodes.push(crate::scene::graph::Node {
                     id: first + k as u32,
-                    kind: crate::generation::text::edit::node_of(b.class),
+                    kind: node_of(b.class),
                     locked: Some(Locked::Box(*b)),
                 });
             }
@@ -353,18 +353,18 @@ fn road_under(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::text::description::TimeOfDay;
-    use crate::generation::text::read;
+    use crate::generation::place::description::TimeOfDay;
+    use crate::generation::words::describe::described;
     use crate::scene::Class;
 
     #[test]
     fn a_kept_road_stays_and_objects_are_placed_on_it() {
-        let first = lay_out("", &read("highway").description, 3, &How::default());
+        let first = lay_out("", &described("road highway").expect("valid"), 3, &How::default());
         let how = How {
             keep: Keep::Road(Arc::new(first.road.layout.clone())),
             ..How::default()
         };
-        let again = lay_out("", &read("two cars ahead").description, 4, &how);
+        let again = lay_out("", &described("add 2 car ( ahead ego )").expect("valid"), 4, &how);
         assert_eq!(again.road.layout, first.road.layout);
         assert_eq!(again.placement.boxes.len(), 2);
     }
@@ -373,7 +373,7 @@ mod tests {
     fn kept_objects_stay_and_a_road_is_laid_under_them() {
         let first = lay_out(
             "",
-            &read("three cars ahead, an oncoming bus").description,
+            &described("add 3 car ( ahead ego ) and 1 bus ( oncoming ego )").expect("valid"),
             3,
             &How::default(),
         );
@@ -382,7 +382,7 @@ mod tests {
             keep: Keep::Objects(Arc::new(boxes.clone())),
             ..How::default()
         };
-        let again = lay_out("", &read("a straight road").description, 9, &how);
+        let again = lay_out("", &described("road straight").expect("valid"), 9, &how);
         for b in boxes.values() {
             assert!(
                 again
@@ -398,21 +398,19 @@ mod tests {
 
     #[test]
     fn memory_adds_only_what_was_left_open() {
-        let said = read("two parked cars, no people, at night");
+        let said = described("add 2 parked car ; no person ; time night").expect("valid");
         let how = How {
             memory: true,
             ..How::default()
         };
-        let laid = lay_out("two parked cars, no people, at night", &said.description, 5, &how);
+        let laid = lay_out("two parked cars, no people, at night", &said, 5, &how);
         let count = |c: Class| laid.placement.boxes.iter().filter(|b| b.class == c).count();
         assert_eq!((count(Class::Car), count(Class::Pedestrian)), (2, 0));
         assert_eq!(laid.description.time_of_day, Some(TimeOfDay::Night));
         let found = laid.remembered.expect("memory was used");
         assert!(!found.scenes.is_empty());
-        assert_eq!(
-            remembered_phrases(&laid.description).is_empty(),
-            !found.filled.iter().any(|f| f.contains(" x "))
-        );
+        let added = laid.description.foreground.len() > said.foreground.len();
+        assert_eq!(added, found.filled.iter().any(|f| f.contains(" x ")));
     }
 
     #[test]
@@ -421,25 +419,24 @@ mod tests {
             placer: Placer::Diffusion,
             ..How::default()
         };
-        let said = read("three cars ahead of me, a bus behind me");
-        let laid = lay_out("", &said.description, 2, &how);
+        let said = described("add 3 car ( ahead ego ) and 1 bus ( behind ego )").expect("valid");
+        let laid = lay_out("", &said, 2, &how);
         assert_eq!(laid.placement.boxes.len(), 4, "{:?}", laid.notes);
         let diffused = laid.diffused.expect("by diffusion");
         assert_eq!(diffused.report.steps, diffuse::STEPS);
-        let again = lay_out("", &said.description, 2, &how);
+        let again = lay_out("", &said, 2, &how);
         assert_eq!(laid.placement, again.placement);
     }
 
     #[test]
     fn names_and_colours_survive_the_network() {
-        let prompt =
-            "three red cars parked on the left, two white vans parked on the right, a school bus ahead of me";
+        let prompt = "add 3 parked red car ( on left_roadside ) and 2 parked white van ( on right_roadside ) and 1 school_bus ( ahead ego )";
         let names = |placer| {
             let how = How {
                 placer,
                 ..How::default()
             };
-            let laid = lay_out(prompt, &read(prompt).description, 2, &how);
+            let laid = lay_out(prompt, &described(prompt).expect("valid"), 2, &how);
             let mut labels: Vec<String> = laid
                 .placement
                 .boxes

@@ -6,10 +6,15 @@ use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
 use crate::editor::{Edit, Shape};
-use crate::generation::text::description::{Became, Description, Phrase, Reading, Road};
-use crate::generation::text::edit::{EditReading, OpenScene, TextEdit};
-use crate::generation::text::{self};
-use crate::generation::words_background::edits::{OpenBackground, ThingEdit};
+use crate::generation::place::description::{Description, Road};
+use crate::generation::words::answer::answer;
+use crate::generation::words::carry_out::carry_out;
+use crate::generation::words::describe::{Described, describe};
+use crate::generation::words::hear::{Heard, hear};
+use crate::generation::words::reader::Mode;
+use crate::generation::words::stage::{OpenScene, Outcome};
+use crate::generation::words::text_edit::TextEdit;
+use crate::generation::words_background::edits::{OpenBackground, ThingEdit, ThingReading};
 use crate::generation::words_background::wishes::scenery;
 use crate::generation::words_background::{self, NearTo, take};
 use crate::generation::world::World;
@@ -23,20 +28,95 @@ pub struct Made {
     pub laid: Laid,
 }
 
-/// Reads a prompt; an error in one line if there is nothing in it that could become a scene.
-pub fn read(prompt: &str) -> anyhow::Result<Reading> {
+/// What a prompt says of a new scene.
+#[derive(Clone, Debug)]
+pub struct Prompted {
+    /// Who read it, and what is doubtful; its reading may have been changed by hand since.
+    pub heard: Heard,
+    /// What a scene is made of.
+    pub described: Described,
+    /// Clauses about buildings, trees and the like, in their own words.
+    pub background: Vec<(String, Option<NearTo>)>,
+}
+
+impl Prompted {
+    /// Reads no words: a description of these values.
+    pub fn new(heard: Heard, background: Vec<(String, Option<NearTo>)>) -> Self {
+        let mut described = describe(&heard.reading);
+        let d = &mut described.description;
+        for (words, near) in &background {
+            // Where a crossing or a junction is spoken of, the road has one.
+            match near {
+                Some(NearTo::Crossing) => d.road.crossing = !d.road.no_crossing,
+                Some(NearTo::Junction) if d.road.kind.is_none() => d.road.kind = Some(Road::Intersection),
+                _ => {}
+            }
+            let comma = if d.summary.is_empty() { "" } else { "; " };
+            d.summary.push_str(&format!("{comma}{words}"));
+            d.background.push(words.clone());
+        }
+        Self {
+            heard,
+            described,
+            background,
+        }
+    }
+
+    /// The answer in a sentence.
+    pub fn answer(&self) -> String {
+        let mut text = answer(&self.heard.reading, None, &self.heard.missing);
+        if self.heard.reading.acts.is_empty() {
+            text.clear();
+        }
+        if !self.background.is_empty() {
+            let words: Vec<&str> = self.background.iter().map(|b| b.0.as_str()).collect();
+            text = format!("{text} Beside the road: {}.", words.join("; "));
+        }
+        text.trim().to_owned()
+    }
+
+    /// What the reader should know of it, one line each.
+    pub fn doubts(&self) -> Vec<String> {
+        doubts(&self.heard)
+    }
+}
+
+/// What is doubtful about how a text was read, one line each.
+pub fn doubts(heard: &Heard) -> Vec<String> {
+    use crate::generation::words::answer::sentence;
+    let mut out = Vec::new();
+    let unsure = heard.unsure.iter().filter_map(|i| heard.reading.acts.get(*i));
+    let unsure: Vec<String> = unsure.map(|a| sentence(&a.what)).collect();
+    if !unsure.is_empty() {
+        out.push(format!("not sure of: {}", unsure.join("; ")));
+    }
+    if let Some(other) = &heard.other {
+        out.push(format!("it may also mean: {}", answer(other, None, &[])));
+    }
+    out
+}
+
+/// Reads a prompt for a new scene; an error in one line if there is nothing in it that could become one.
+pub fn read(prompt: &str) -> anyhow::Result<Prompted> {
     if prompt.trim().is_empty() {
         bail!(
             "the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\""
         );
     }
-    let reading = read_all(prompt);
-    if reading.description.is_empty() {
-        let some: Vec<&str> = reading
-            .not_understood
+    let taken = take(prompt, false);
+    let heard = hear(&taken.rest, Mode::Prompt)?;
+    let background = taken
+        .said
+        .iter()
+        .map(|s| (s.span.of(prompt).to_owned(), s.place.near));
+    let prompted = Prompted::new(heard, background.collect());
+    if prompted.described.description.is_empty() {
+        let some: Vec<&str> = prompted
+            .heard
+            .missing
             .iter()
             .take(4)
-            .map(|u| u.text.as_str())
+            .map(|m| m.words.as_str())
             .collect();
         let what = if some.is_empty() {
             String::new()
@@ -45,37 +125,7 @@ pub fn read(prompt: &str) -> anyhow::Result<Reading> {
         };
         bail!("nothing in the prompt names a part of a driving scene{what}; prompts are read in English");
     }
-    Ok(reading)
-}
-
-/// What is said of the background first, then all else.
-fn read_all(prompt: &str) -> Reading {
-    let taken = take(prompt, false);
-    let mut reading = text::read(&taken.rest);
-    let description = &mut reading.description;
-    for said in &taken.said {
-        let words = said.span.of(prompt).to_owned();
-        let phrase = Phrase {
-            span: said.span,
-            text: words.clone(),
-            became: Became::Background(description.background.len()),
-            meaning: format!("beside the road: {words}"),
-        };
-        // Where a crossing or a junction is spoken of, the road has one.
-        match said.place.near {
-            Some(NearTo::Crossing) => description.road.crossing = !description.road.no_crossing,
-            Some(NearTo::Junction) if description.road.kind.is_none() => {
-                description.road.kind = Some(Road::Intersection);
-            }
-            _ => {}
-        }
-        let comma = if description.summary.is_empty() { "" } else { "; " };
-        description.summary.push_str(&format!("{comma}{words}"));
-        description.background.push(words);
-        reading.phrases.push(phrase);
-    }
-    reading.phrases.sort_by_key(|p| p.span.start);
-    reading
+    Ok(prompted)
 }
 
 /// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as
@@ -102,9 +152,56 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     Made { scene, laid }
 }
 
-/// Reads words as edits of a scene: of its background, and of all else; see
-/// [`read_edit`](crate::generation::text::edit::read_edit).
-pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> EditReading {
+/// What a text changes in a scene.
+#[derive(Clone, Debug)]
+pub struct Edited {
+    /// Who read it, and what is doubtful.
+    pub heard: Heard,
+    /// What came of it: changes, questions, remarks.
+    pub outcome: Outcome,
+    /// The same of the background.
+    pub things: ThingReading,
+}
+
+impl Edited {
+    /// All edits, in order: those of the background after those of boxes and map.
+    pub fn edits(&self) -> Vec<Edit> {
+        let things = self.things.edits.iter().map(thing_edit);
+        self.outcome.edits.iter().flat_map(edits).chain(things).collect()
+    }
+
+    /// True if something must be answered first.
+    pub fn asks(&self) -> bool {
+        !(self.outcome.questions.is_empty() && self.things.questions.is_empty())
+    }
+
+    /// The answer in a sentence.
+    pub fn answer(&self) -> String {
+        let mut parts = Vec::new();
+        let read = !self.heard.reading.acts.is_empty() || !self.heard.missing.is_empty();
+        let alone =
+            self.things.done.is_empty() && self.things.cannot.is_empty() && self.things.questions.is_empty();
+        if read || alone {
+            parts.push(answer(
+                &self.heard.reading,
+                Some(&self.outcome),
+                &self.heard.missing,
+            ));
+        }
+        if !self.things.done.is_empty() {
+            parts.push(format!("Beside the road: {}.", self.things.done.join("; ")));
+        }
+        parts.extend(self.things.cannot.iter().map(|c| format!("Not done: {c}.")));
+        parts.join(" ")
+    }
+}
+
+/// Reads words as edits of a scene: of its background, and of all else.
+///
+/// # Errors
+///
+/// If the bundled weights are damaged.
+pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edited> {
     let frame = scene.frame();
     let open = OpenBackground {
         things: &scene.background,
@@ -112,11 +209,20 @@ pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> EditReading {
         layout: &frame.layout,
         boxes: &frame.boxes,
     };
-    let mut reading = words_background::edits::read_edit(prompt, &open, seed, |rest| {
-        crate::generation::text::edit::read_edit(rest, &open_scene(scene), seed)
-    });
-    put_on_ground(&mut reading.edits, frame);
-    reading
+    let things = words_background::edits::read_edit(prompt, &open, seed);
+    let heard = hear(&things.rest, Mode::Edit)?;
+    Ok(edited(heard, things, scene, seed))
+}
+
+/// Carries out a reading that is known.
+pub fn edited(heard: Heard, things: ThingReading, scene: &Scene, seed: u64) -> Edited {
+    let mut outcome = carry_out(&heard.reading, &open_scene(scene), seed);
+    put_on_ground(&mut outcome.edits, scene.frame());
+    Edited {
+        heard,
+        outcome,
+        things,
+    }
 }
 
 /// Words place things on level ground: what they add stands on the ground of the frame, what they move keeps its height
@@ -139,12 +245,6 @@ fn put_on_ground(edits: &mut [TextEdit], frame: &Frame) {
             _ => {}
         }
     }
-}
-
-/// All edits of a reading: those of the background after those of boxes and map.
-pub fn all_edits(reading: &EditReading) -> Vec<Edit> {
-    let things = reading.things.iter().map(thing_edit);
-    reading.edits.iter().flat_map(edits).chain(things).collect()
 }
 
 fn thing_edit(edit: &ThingEdit) -> Edit {
@@ -233,9 +333,9 @@ pub fn shortfalls(made: &Laid) -> Vec<String> {
         let beyond = (o.count.n as usize).saturating_sub(nodes.len());
         if let Some(why) = left.first() {
             let placed = nodes.len() - left.len();
-            out.push(format!("{}: {placed} of {} placed: {why}", o.noun, o.count.n));
+            out.push(format!("{}: {placed} of {} placed: {why}", o.called(), o.count.n));
         } else if beyond > 0 {
-            out.push(format!("{}: {} of {} placed", o.noun, nodes.len(), o.count.n));
+            out.push(format!("{}: {} of {} placed", o.called(), nodes.len(), o.count.n));
         }
     }
     for (i, o) in description.foreground.iter().enumerate() {
@@ -247,7 +347,7 @@ pub fn shortfalls(made: &Laid) -> Vec<String> {
         if let Some(d) = far {
             out.push(format!(
                 "{}: {d:.0} m lies outside the scene, which reaches 40 m from the ego vehicle",
-                o.noun
+                o.called()
             ));
         }
         let nodes = &made.graphed.nodes[i];
@@ -263,7 +363,7 @@ pub fn shortfalls(made: &Laid) -> Vec<String> {
         if !names.is_empty() {
             out.push(format!(
                 "{}: could not be met: {}",
-                o.noun,
+                o.called(),
                 names.join(", ").replace('_', " ")
             ));
         }
@@ -283,9 +383,8 @@ mod tests {
     /// What words add or move on a grade stands on its ground.
     #[test]
     fn words_know_the_ground() {
-        let description = read("a parked car 12 m ahead, a bus 25 m ahead")
-            .expect("a scene")
-            .description;
+        let prompted = read("a parked car 12 m ahead, a bus 25 m ahead").expect("a scene");
+        let description = prompted.described.description;
         let mut scene = make("", &description, 3, &How::default()).scene;
         let frame = Arc::make_mut(&mut scene.frames[0]);
         frame.layout.relief = Relief::from_fn(|p| 0.06 * p.x);
@@ -299,8 +398,9 @@ mod tests {
             "add a truck 18 m ahead; move the bus 5 m back; replace the car with a van",
             &scene,
             1,
-        );
-        let edits = all_edits(&reading);
+        )
+        .expect("weights");
+        let edits = reading.edits();
         assert!(edits.len() >= 3, "{reading:?}");
         let mut document = Document::new(scene);
         document.apply_all("Words", &edits).expect("sound edits");

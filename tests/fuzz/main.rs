@@ -309,9 +309,10 @@ fn memory_banks() {
 
 #[test]
 fn scene_graphs() {
-    let reading =
-        sceneloom::generation::text::read("two parked cars left of a bus, a pedestrian crosses 12 m ahead");
-    let graph = sceneloom::generation::text::to_graph::to_graph(&reading.description, 1).graph;
+    let description = sceneloom::generation::words::describe::described(
+        "add 2 parked car ( left 1 bus ) and 1 person ( crossing road ) ( ahead ego 12m )",
+    );
+    let graph = sceneloom::generation::place::to_graph::to_graph(&description.expect("valid"), 1).graph;
     plain(
         "graph",
         vec![serde_json::to_vec(&graph).expect("plain data")],

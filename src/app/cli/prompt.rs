@@ -7,15 +7,22 @@ use serde_json::json;
 
 use super::new::class_counts;
 use super::{Common, Outcome, Stop, output};
+use crate::app::endpoint::{self, Endpoint};
+use crate::app::open;
 use crate::app::prompting::{How, Keep, Placer};
-use crate::app::{enrich, open, text};
+use crate::app::text::{self, Prompted, doubts};
 use crate::editor::Document;
 use crate::formats::project;
+use crate::generation::words::hear::{Heard, against};
+use crate::generation::words::notation;
+use crate::generation::words::reader::Mode;
+use crate::generation::words::stage::Candidate;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Prompt {
     /// What the scene should hold, or what should change in it.
+    #[arg(required_unless_present = "schema", default_value = "")]
     text: String,
     /// Scene to edit; without one a new scene is made.
     #[arg(long, value_name = "S.loom")]
@@ -24,8 +31,14 @@ pub struct Prompt {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Scene to write.
-    #[arg(short, long, value_name = "S.loom")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "S.loom", required_unless_present_any = ["reading", "schema"])]
+    output: Option<PathBuf>,
+    /// Print what the text asks for, as values and as a line of notation, and write nothing.
+    #[arg(long)]
+    reading: bool,
+    /// Print the JSON Schema of readings, and read nothing.
+    #[arg(long)]
+    schema: bool,
     /// Who places the objects.
     #[arg(long, value_enum, default_value_t)]
     placer: Placer,
@@ -41,7 +54,7 @@ pub struct Prompt {
     /// With --base: make a new scene that keeps the road of it, or its objects, instead of editing it.
     #[arg(long, value_name = "WHAT", value_parser = ["road", "objects"], requires = "base")]
     keep: Option<String>,
-    /// Language model that fills in what the prompt leaves open: an OpenAI-compatible server, http:// only.
+    /// Language model that reads the text, instead of the readers of this program: an OpenAI-compatible server, http:// only.
     #[arg(long, value_name = "URL", requires = "model")]
     endpoint: Option<String>,
     /// Its model.
@@ -56,19 +69,66 @@ pub struct Prompt {
 
 impl Prompt {
     pub(super) fn run(self) -> Outcome {
+        if self.schema {
+            println!("{:#}", endpoint::schema());
+            return Ok(());
+        }
         match self.base.clone() {
             Some(base) if self.keep.is_none() => self.edit(&base),
             _ => self.make(),
         }
     }
 
+    /// What the language model reads, if one is named; what the program reads stands beside it.
+    fn by_endpoint(
+        &self,
+        heard: Option<&Heard>,
+        mode: Mode,
+        scene: Option<&crate::scene::Scene>,
+    ) -> anyhow::Result<Option<Heard>> {
+        let (Some(url), Some(model)) = (&self.endpoint, &self.model) else {
+            return Ok(None);
+        };
+        let endpoint = Endpoint {
+            url: url.clone(),
+            model: model.clone(),
+            timeout: std::time::Duration::try_from_secs_f64(self.timeout_s).context("--timeout-s")?,
+        };
+        let reading = endpoint::read(&endpoint, &self.text, mode, scene)?;
+        Ok(Some(against(reading, heard, mode)))
+    }
+
+    /// Prints a reading.
+    fn print(&self, heard: &Heard) -> Outcome {
+        let report = json!({
+            "reading": heard.reading,
+            "notation": notation::write(&heard.reading),
+            "by": heard.by,
+            "other": heard.other,
+            "unsure": heard.unsure,
+            "missing": heard.missing,
+            "mended": heard.mended,
+        });
+        output::report(&self.common, &report, || {
+            let mut lines = vec![notation::write(&heard.reading)];
+            lines.push(serde_json::to_string_pretty(&heard.reading).unwrap_or_default());
+            lines.extend(doubts(heard).into_iter().map(|d| format!("note: {d}")));
+            lines.join("\n")
+        });
+        Ok(())
+    }
+
     fn make(self) -> Outcome {
-        let mut reading = text::read(&self.text)?;
-        if let (Some(endpoint), Some(model)) = (&self.endpoint, &self.model) {
-            let timeout = std::time::Duration::try_from_secs_f64(self.timeout_s).context("--timeout-s")?;
-            let notes = enrich::enrich(&mut reading.description, &self.text, endpoint, model, timeout)?;
-            reading.notes.extend(notes);
+        let own = text::read(&self.text);
+        let heard = own.as_ref().ok().map(|p| &p.heard);
+        let mut prompted = match self.by_endpoint(heard, Mode::Prompt, None)? {
+            Some(heard) => Prompted::new(heard, own.map(|p| p.background).unwrap_or_default()),
+            None => own?,
+        };
+        if self.reading {
+            return self.print(&prompted.heard);
         }
+        let output = self.output.clone().context("-o is missing")?;
         let how = How {
             placer: self.placer,
             memory: self.memory && !self.no_memory,
@@ -77,9 +137,18 @@ impl Prompt {
             keep: self.kept()?,
             ..How::default()
         };
-        let made = text::make(&self.text, &reading.description, self.seed, &how);
+        let description = std::mem::take(&mut prompted.described.description);
+        let made = text::make(&self.text, &description, self.seed, &how);
         let shortfalls = text::shortfalls(&made.laid);
-        project::save(&self.output, &made.scene)?;
+        project::save(&output, &made.scene)?;
+        let remarks: Vec<String> = prompted
+            .described
+            .remarks
+            .iter()
+            .map(|r| r.1.to_string())
+            .collect();
+        let notes: Vec<String> = doubts(&prompted.heard).into_iter().chain(remarks).collect();
+        let answer = prompted.answer();
         let frame = made.scene.frame();
         let report = json!({
             "description": made.laid.description,
@@ -87,9 +156,12 @@ impl Prompt {
             "placer": self.placer,
             "memory": made.laid.remembered,
             "diffusion": made.laid.diffused,
-            "phrases": reading.phrases,
-            "not_understood": reading.not_understood,
-            "notes": reading.notes.iter().chain(&made.laid.notes).collect::<Vec<_>>(),
+            "reading": prompted.heard.reading,
+            "notation": notation::write(&prompted.heard.reading),
+            "read_by": prompted.heard.by,
+            "answer": answer,
+            "not_understood": prompted.heard.missing,
+            "notes": notes.iter().chain(&made.laid.notes).collect::<Vec<_>>(),
             "shortfalls": shortfalls,
             "template": made.laid.road.template,
             "layout_s": made.laid.wall_s,
@@ -97,19 +169,14 @@ impl Prompt {
             "occupied_voxels": frame.occupancy.count_set(),
             "classes": class_counts(&made.scene),
             "seed": self.seed,
-            "file": self.output,
+            "file": output,
         });
         output::report(&self.common, &report, || {
             let mut lines = vec![format!(
-                "{}: {} boxes; {}",
-                self.output.display(),
-                frame.boxes.len(),
-                reading.description.summary
+                "{}: {} boxes. {answer}",
+                output.display(),
+                frame.boxes.len()
             )];
-            lines.extend(reading.not_understood.iter().map(|u| match &u.why {
-                Some(why) => format!("not understood: {:?} ({why})", u.text),
-                None => format!("not understood: {:?}", u.text),
-            }));
             if let Some(found) = &made.laid.remembered {
                 let best = found.scenes.first().map_or("", |s| s.0.as_str());
                 lines.push(format!(
@@ -123,13 +190,7 @@ impl Prompt {
                     d.report.diffusion_s, d.mean_move_m, d.most_move_m, d.by_rules
                 ));
             }
-            lines.extend(
-                reading
-                    .notes
-                    .iter()
-                    .chain(&made.laid.notes)
-                    .map(|n| format!("note: {n}")),
-            );
+            lines.extend(notes.iter().chain(&made.laid.notes).map(|n| format!("note: {n}")));
             lines.extend(shortfalls.iter().map(|n| format!("short: {n}")));
             lines.join("\n")
         });
@@ -159,68 +220,78 @@ impl Prompt {
             )
             .into());
         }
-        if self.endpoint.is_some() {
-            return Err(
-                anyhow::anyhow!("--endpoint fills in new scenes; edits by text do not use it").into(),
-            );
-        }
         let scene = open::scene(base)?;
-        let reading = text::read_edit(&self.text, &scene, self.seed);
-        let edits = text::all_edits(&reading);
+        let mut edited = text::read_edit(&self.text, &scene, self.seed)?;
+        if let Some(heard) = self.by_endpoint(Some(&edited.heard), Mode::Edit, Some(&scene))? {
+            edited = text::edited(heard, edited.things, &scene, self.seed);
+        }
+        if self.reading {
+            return self.print(&edited.heard);
+        }
+        let output = self.output.clone().context("-o is missing")?;
+        let edits = edited.edits();
         let mut document = Document::new(scene);
         document
             .apply_all("Edit by text", &edits)
             .context("edit by text")?;
-        let asked: Vec<String> = reading.questions.iter().map(|q| q.text.clone()).collect();
+        let questions = &edited.outcome.questions;
+        let asked: Vec<&str> = questions
+            .iter()
+            .map(|q| q.text.as_str())
+            .chain(edited.things.questions.iter().map(|q| q.text.as_str()))
+            .collect();
+        // With an open question nothing is written: the answer may change what the rest means.
+        let write = asked.is_empty() && !edits.is_empty();
+        let remarks: Vec<String> = edited.outcome.remarks.iter().map(|r| r.1.to_string()).collect();
+        let (notes, answer) = (doubts(&edited.heard), edited.answer());
         let report = json!({
             "edits": edits,
-            "questions": reading.questions,
-            "phrases": reading.phrases,
-            "not_understood": reading.not_understood,
-            "notes": reading.notes,
+            "answer": answer,
+            "questions": questions,
+            "thing_questions": edited.things.questions,
+            "reading": edited.heard.reading,
+            "notation": notation::write(&edited.heard.reading),
+            "read_by": edited.heard.by,
+            "not_understood": edited.heard.missing,
+            "notes": notes,
+            "remarks": edited.outcome.remarks.iter().map(|r| &r.1).collect::<Vec<_>>(),
             "boxes": document.scene().frame().boxes.len(),
             "things": document.scene().background.len(),
             "prompt": *document.scene().prompt,
             "seed": self.seed,
-            "file": if asked.is_empty() && !edits.is_empty() { Some(&self.output) } else { None },
+            "file": write.then_some(&output),
         });
-        // With an open question nothing is written: the answer may change what the rest means.
-        let write = asked.is_empty() && !edits.is_empty();
         if write {
-            project::save(&self.output, document.scene())?;
+            project::save(&output, document.scene())?;
         }
         output::report(&self.common, &report, || {
-            let mut lines: Vec<String> = reading
-                .phrases
-                .iter()
-                .map(|p| format!("{:?}: {}", p.text, p.meaning))
-                .collect();
-            for q in &reading.questions {
+            let mut lines = vec![answer.clone()];
+            for q in questions {
+                lines.push(q.text.clone());
+                let one = |c: &Candidate| format!("  #{} {}: {}", c.id.0, c.class.replace('_', " "), c.place);
+                lines.extend(q.candidates.iter().map(one));
+            }
+            for q in &edited.things.questions {
                 lines.push(q.text.clone());
                 lines.extend(
                     q.candidates
                         .iter()
-                        .map(|c| format!("  {} {}: {}", c.says(), c.class.replace('_', " "), c.place)),
+                        .map(|c| format!("  {}: {}", c.answer, c.place)),
                 );
             }
-            lines.extend(reading.not_understood.iter().map(|u| match &u.why {
-                Some(why) => format!("not understood: {:?} ({why})", u.text),
-                None => format!("not understood: {:?}", u.text),
-            }));
-            lines.extend(reading.notes.iter().map(|n| format!("note: {n}")));
+            lines.extend(notes.iter().map(|n| format!("note: {n}")));
             lines.join("\n")
         });
         if !asked.is_empty() {
             return Err(Stop::Short(format!(
                 "{} Name one, such as \"{}\"",
                 asked.join(" "),
-                first_answer(&reading)
+                first_answer(&edited)
             )));
         }
         if edits.is_empty() {
-            let unread = reading.not_understood.iter().find_map(|u| u.why.clone());
-            let why = (reading.notes.first().cloned())
-                .or(unread)
+            let why = (remarks.first().cloned())
+                .or(edited.things.cannot.first().cloned())
                 .unwrap_or_else(|| "nothing in the text changes the scene".into());
             return Err(Stop::Short(format!("nothing was changed: {why}")));
         }
@@ -228,10 +299,18 @@ impl Prompt {
     }
 }
 
-fn first_answer(reading: &crate::generation::text::edit::EditReading) -> String {
-    reading
+fn first_answer(edited: &text::Edited) -> String {
+    let thing = || {
+        let q = edited.things.questions.first()?;
+        q.candidates.first().map(|c| c.answer.clone())
+    };
+    let boxes = edited
+        .outcome
         .questions
         .first()
-        .and_then(|q| q.candidates.first())
-        .map_or_else(|| "#1".into(), |c| c.says())
+        .and_then(|q| q.candidates.first());
+    boxes
+        .map(|c| format!("#{}", c.id.0))
+        .or_else(thing)
+        .unwrap_or_else(|| "#1".into())
 }

@@ -1,4 +1,4 @@
-//! The prompt: words that become a scene or change the one at hand, each phrase as a chip that says what it became.
+//! The prompt: words that become a scene or change the one at hand; each part that was read is a chip.
 
 use egui::accesskit::Role;
 use egui::text::{CCursor, CCursorRange};
@@ -6,14 +6,15 @@ use egui::text_edit::TextEditState;
 use egui::{Key, Modifiers, Ui, WidgetInfo, vec2};
 
 use super::completion::Completion;
-use super::phrases;
+use super::heard::{self, Both};
 use super::prompt_plan::{Plan, Told};
 use crate::app::command::Command;
 use crate::app::icons::section;
-use crate::app::text;
+use crate::app::text::doubts;
 use crate::app::theme;
-use crate::generation::text::description::{Became, Phrase, Reading, TimeOfDay, Unread, Weather};
-use crate::generation::text::edit::{EditReading, Question};
+use crate::generation::place::description::{TimeOfDay, Weather};
+use crate::generation::words::answer::{sentence, thing};
+use crate::generation::words::reading::What;
 use crate::scene::Scene;
 
 /// Prompts kept.
@@ -34,14 +35,16 @@ pub struct PromptPane {
     seed: u64,
     history: Vec<String>,
     back: usize, // steps back in the history; 0 is what is typed
-    read: Option<(String, Result<Reading, String>)>,
-    questions: Vec<Question>,
+    read: Option<Both>,
+    /// What came of the words that were carried out last, and what must be answered first.
+    done: Option<String>,
+    asks: bool,
+    /// Enter was pressed on words that describe a scene: which of the two is meant?
+    offers: bool,
     notes: Vec<String>,
     wants_focus: bool,
     offered: Option<Completion>,
     is_sent: bool, // and not changed since
-    /// The words carried out last as a change of the scene.
-    changed_by: String,
     plan: Plan,
 }
 
@@ -67,8 +70,8 @@ impl PromptPane {
             .auto_shrink(false)
             .show(ui, |ui| {
                 self.field(ui, scene, commands);
-                self.chips(ui, scene, commands);
                 self.answers(ui, scene, commands);
+                self.chips(ui, scene, commands);
                 self.beyond_words(ui, scene, commands);
                 if self.prompt.is_empty() {
                     self.recent(ui);
@@ -117,7 +120,8 @@ impl PromptPane {
             field.request_focus();
         }
         if field.changed() {
-            (self.back, self.questions) = (0, Vec::new());
+            self.back = 0;
+            (self.done, self.asks, self.offers) = (None, false, false);
             self.notes.clear();
             self.is_sent = false;
         }
@@ -140,15 +144,44 @@ impl PromptPane {
             });
         }
         self.completions(ui);
-        ui.horizontal(|ui| {
-            let some = !self.prompt.trim().is_empty();
-            let button = egui::Button::new("Change this scene").fill(theme::accent_fill());
-            let hint = "Enter: “remove the parked car”, “add two cones ahead”, “make it night”";
-            change |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
-            let button = egui::Button::new("New scene");
-            let hint = "Ctrl+Enter: road, objects and style are made from the words";
-            make |= ui.add_enabled(some, button).on_hover_text(hint).clicked();
-        });
+        self.listen(scene);
+        if change && !self.offers && self.read.as_ref().is_some_and(Both::is_described) {
+            // (a whole scene was described: which is meant is asked once, with what each would do)
+            (self.offers, change) = (true, false);
+        }
+        let some = !self.prompt.trim().is_empty();
+        let preview = |ui: &mut Ui, name: &str, hint: &str, first: bool, says: Option<String>| {
+            let mut button = egui::Button::new(name);
+            if first {
+                button = button.fill(theme::accent_fill());
+            }
+            let clicked = ui.add_enabled(some, button).on_hover_text(hint).clicked();
+            if let Some(says) = says.filter(|_| self.offers) {
+                ui.label(egui::RichText::new(says).small().color(theme::text_weak()));
+            }
+            clicked
+        };
+        let (changes, makes) = match &self.read {
+            Some(read) if some => (
+                read.edited.as_ref().map(|e| e.answer()).ok(),
+                read.prompted.as_ref().map(|p| p.answer()).ok(),
+            ),
+            _ => (None, None),
+        };
+        let hints = [
+            "Enter: “remove the parked car”, “add two cones ahead”, “make it night”",
+            "Ctrl+Enter: road, objects and style are made from the words",
+        ];
+        if self.offers {
+            ui.label("A scene is described. Enter again changes this one, Ctrl+Enter makes a new one.");
+            change |= preview(ui, "Change this scene", hints[0], true, changes);
+            make |= preview(ui, "New scene", hints[1], false, makes);
+        } else {
+            ui.horizontal(|ui| {
+                change |= preview(ui, "Change this scene", hints[0], true, None);
+                make |= preview(ui, "New scene", hints[1], false, None);
+            });
+        }
         // In one flow: what they take is missed by the history and the examples below.
         ui.horizontal_wrapped(|ui| {
             let some = !self.prompt.trim().is_empty();
@@ -167,6 +200,7 @@ impl PromptPane {
             self.plan.switches(ui);
         });
         if change || make {
+            self.offers = false;
             self.sent(ui.ctx());
         }
         if change {
@@ -177,26 +211,44 @@ impl PromptPane {
         }
     }
 
+    /// Reads what is typed, if it is not read yet.
+    fn listen(&mut self, scene: &Scene) {
+        if self.prompt.trim().is_empty() {
+            self.read = None;
+            return;
+        }
+        match &mut self.read {
+            Some(read) if read.text == self.prompt => {
+                // (what was carried out is not carried out again for a preview)
+                if !self.is_sent {
+                    read.follow(scene, self.seed);
+                }
+            }
+            _ => self.read = Some(Both::of(&self.prompt, scene, self.seed)),
+        }
+    }
+
     fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
-        match text::read(&self.prompt) {
-            Ok(reading) => {
-                let ask = self.plan.ask(&self.prompt, &reading.description, seed, scene);
+        match self.read.as_ref().map(|r| &r.prompted) {
+            Some(Ok(prompted)) => {
+                let ask = self
+                    .plan
+                    .ask(&self.prompt, &prompted.described.description, seed, scene);
+                self.done = Some(prompted.answer());
                 self.plan.makes(&self.prompt, seed);
                 commands.push(Command::NewFromPrompt(Box::new(ask)));
             }
-            Err(error) => self.notes = vec![format!("{error:#}")],
+            Some(Err(error)) => self.notes = vec![error.clone()],
+            None => {}
         }
     }
 
     /// Variants, how the last scene came about, and the scene graph.
     fn beyond_words(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
-        let Some((_, Ok(reading))) = &self.read else {
+        let Some(Ok(prompted)) = self.read.as_ref().map(|r| &r.prompted) else {
             return;
         };
-        if self.prompt.trim().is_empty() {
-            return;
-        }
-        let read = reading.description.clone();
+        let read = prompted.described.description.clone();
         let ask = self.plan.ask(&self.prompt, &read, self.seed, scene);
         self.plan.recalled(ui, &ask);
         let chosen = self.plan.variants(ui, &ask);
@@ -279,34 +331,22 @@ impl PromptPane {
     /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
     fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
         self.remember();
-        self.changed_by.clone_from(&self.prompt);
-        let reading = text::read_edit(&self.prompt, scene, self.seed);
-        let edits = text::all_edits(&reading);
-        // "The trees near the junction" ask for no other road.
-        let no_things = reading.things.is_empty();
-        let EditReading {
-            questions,
-            not_understood,
-            notes,
-            ..
-        } = reading;
-        self.notes = notes;
-        self.notes.extend(not_understood.iter().map(unread));
-        let road = text::read(&self.prompt)
-            .ok()
-            .filter(|_| no_things)
-            .and_then(|r| r.description.road.kind);
-        if let Some(road) = road {
-            let name = format!("{road:?}").to_lowercase();
-            self.notes.push(format!(
-                "The road stays as it is: “New scene” makes the road: {name}."
-            ));
+        self.listen(scene);
+        if let Some(read) = &mut self.read {
+            read.follow(scene, self.seed);
         }
-        self.questions = questions;
-        if edits.is_empty() && self.questions.is_empty() && self.notes.is_empty() {
-            self.notes.push("The words name no change of this scene.".into());
-        }
-        if !edits.is_empty() && self.questions.is_empty() {
+        let edited = match self.read.as_ref().map(|r| &r.edited) {
+            Some(Ok(edited)) => edited,
+            Some(Err(error)) => {
+                self.notes = vec![error.clone()];
+                return;
+            }
+            None => return,
+        };
+        let edits = edited.edits();
+        (self.done, self.asks) = (Some(edited.answer()), edited.asks());
+        self.notes = doubts(&edited.heard);
+        if !edits.is_empty() && !self.asks {
             commands.push(Command::ApplyWords(self.prompt.clone(), edits));
         }
     }
@@ -331,97 +371,154 @@ impl PromptPane {
         }
     }
 
-    /// Each phrase with what it became: to be changed, locked, re-rolled or taken out.
+    /// Each part of what was read: to be changed, locked, re-rolled or taken out. Of a change that was carried out nothing is
+    /// left to change.
     fn chips(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
-        if self.prompt.trim().is_empty() {
+        let Some(both) = &self.read else { return };
+        if self.is_sent && self.done.is_some() && !self.plan.made_of(&self.prompt) {
             return;
         }
-        if self.read.as_ref().is_none_or(|(of, _)| *of != self.prompt) {
-            let reading = text::read(&self.prompt).map_err(|error| format!("{error:#}"));
-            self.read = Some((self.prompt.clone(), reading));
-        }
-        let Some((_, Ok(reading))) = &self.read else {
-            return;
-        };
-        let (mut gone, mut other, mut number) = (None, None, None);
-        let read = &reading.description;
-        self.plan.follow(&self.prompt);
-        let plan = &mut self.plan;
+        let as_change = !both.is_described() && !self.plan.made_of(&self.prompt) && both.is_change();
+        let (mut gone, mut number, mut other) = (None, None, None);
         ui.add_space(4.0);
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
-            let mut shown = std::collections::BTreeSet::new();
-            for phrase in &reading.phrases {
-                // What says something of two objects is one phrase all the same.
-                if !shown.insert((phrase.span.start, phrase.span.end)) {
-                    continue;
+        if as_change {
+            let Ok(edited) = &both.edited else { return };
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+                for (i, act) in edited.heard.reading.acts.iter().enumerate() {
+                    if chip(ui, &sentence(&act.what)) {
+                        gone = Some((i, None));
+                    }
                 }
-                super::chip::make_room(ui, &phrase.text);
-                match phrase.became {
-                    Became::Object(i) => {
-                        if let Some(n) = plan.object_menu(ui, i, &phrase.text, scene, read, commands) {
-                            number = phrases::with_number(&self.prompt, phrase, &read.foreground[i].noun, n);
+            });
+            self.say_doubts(ui, &edited.heard);
+        } else {
+            let Ok(prompted) = &both.prompted else { return };
+            self.plan.follow(&self.prompt);
+            let (plan, described) = (&mut self.plan, &prompted.described);
+            ui.horizontal_wrapped(|ui| {
+                ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
+                for (i, act) in prompted.heard.reading.acts.iter().enumerate() {
+                    match &act.what {
+                        What::Add { things } => {
+                            for (k, t) in things.iter().enumerate() {
+                                let text = thing(t);
+                                let objects: Vec<usize> = (0..described.from.len())
+                                    .filter(|o| described.from[*o] == (i, k))
+                                    .collect();
+                                super::chip::make_room(ui, &text);
+                                let read = &described.description;
+                                if let Some(n) = plan.object_menu(ui, &objects, &text, scene, read, commands)
+                                {
+                                    number = Some((i, k, n));
+                                }
+                                if chip_end(ui, &text) {
+                                    gone = Some((i, Some(k)));
+                                }
+                            }
                         }
+                        What::Time { what } => {
+                            let names = TimeOfDay::ALL.iter().map(|t| (t.name(), What::Time { what: *t }));
+                            style_menu(ui, what.name(), names, i, &mut other);
+                            gone = gone.or(chip_end(ui, what.name()).then_some((i, None)));
+                        }
+                        What::Weather { what } => {
+                            let names = Weather::ALL
+                                .iter()
+                                .map(|t| (t.name(), What::Weather { what: *t }));
+                            style_menu(ui, what.name(), names, i, &mut other);
+                            gone = gone.or(chip_end(ui, what.name()).then_some((i, None)));
+                        }
+                        what => gone = gone.or(chip(ui, &sentence(what)).then_some((i, None))),
                     }
-                    Became::Time => {
-                        style_menu(ui, phrase, TimeOfDay::ALL.iter().map(|t| t.name()), &mut other)
-                    }
-                    Became::Weather => {
-                        style_menu(ui, phrase, Weather::ALL.iter().map(|w| w.name()), &mut other)
-                    }
-                    _ => {}
                 }
-                if chip(ui, phrase) {
-                    gone = Some(phrase.clone());
+                for (words, _) in &prompted.background {
+                    ui.label(egui::RichText::new(words).small().color(theme::text_weak()));
                 }
-            }
-        });
-        // Carried out as a change, they were read another way, and `notes` says what of it was not understood.
-        if self.changed_by != self.prompt {
-            for unread_part in &reading.not_understood {
-                warn(ui, &unread(unread_part));
-            }
-            for note in &reading.notes {
-                ui.label(egui::RichText::new(note).small().color(theme::text_weak()));
+            });
+            self.say_doubts(ui, &prompted.heard);
+        }
+        let Some(both) = &mut self.read else { return };
+        if let Some((act, k)) = gone {
+            match as_change {
+                true => both.set_edit(scene, |r| heard::take_out(r, act, k)),
+                false => both.set_prompt(|r| heard::take_out(r, act, k)),
             }
         }
-        if let Some(prompt) = number {
-            self.prompt = prompt;
+        if let Some((act, k, n)) = number {
+            both.set_prompt(|r| heard::set_number(r, act, k, n));
         }
-        if let Some((phrase, word)) = other {
-            self.prompt = self.prompt.replacen(&phrase.text, word, 1);
-        }
-        if let Some(phrase) = gone {
-            self.prompt = phrases::without(&self.prompt, &phrase);
+        if let Some((act, what)) = other {
+            both.set_prompt(|r| r.acts[act].what = what);
         }
     }
 
+    /// What of the words is doubtful or not in the reading; not again after they were carried out.
+    fn say_doubts(&self, ui: &mut Ui, heard: &crate::generation::words::hear::Heard) {
+        if self.done.is_some() {
+            return;
+        }
+        for m in &heard.missing {
+            let why = match m.why {
+                crate::generation::words::account::Why::Unknown => "Not understood",
+                crate::generation::words::account::Why::NotCarriedOut => "No effect",
+            };
+            warn(ui, &format!("{why}: “{}”", m.words));
+        }
+        for doubt in doubts(heard) {
+            ui.label(egui::RichText::new(doubt).small().color(theme::text_weak()));
+        }
+    }
+
+    /// What came of the words, in a sentence; what must be answered first.
     fn answers(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        if let Some(done) = &self.done {
+            ui.add(egui::Label::new(egui::RichText::new(done).color(theme::text())).wrap());
+        }
         for note in &self.notes {
             warn(ui, note);
         }
-        let mut chosen = None;
-        for question in &self.questions {
+        if !self.asks {
+            return;
+        }
+        let Some(Ok(edited)) = self.read.as_ref().map(|r| &r.edited) else {
+            return;
+        };
+        let (mut chosen, mut said) = (None, None);
+        for question in &edited.outcome.questions {
             section(ui, &question.text);
             for candidate in &question.candidates {
                 let id = candidate.id;
                 let text = format!(
-                    "{} {}   {}",
+                    "{} #{}   {}",
                     candidate.class.replace('_', " "),
-                    candidate.says(),
+                    id.0,
                     candidate.place
                 );
                 let button = egui::Button::new(text).min_size(vec2(ui.available_width(), theme::ROW));
                 let response = ui.add(button);
-                if response.hovered() && candidate.answer.is_none() && scene.frame().boxes.contains_key(&id) {
+                if response.hovered() && scene.frame().boxes.contains_key(&id) {
                     commands.push(Command::Select(Some(id)));
                 }
                 if response.clicked() {
-                    chosen = Some((question.phrase.clone(), candidate.says()));
+                    chosen = Some((question.act, question.thing.clone(), id));
                 }
             }
         }
-        if let Some((phrase, answer)) = chosen {
+        for question in &edited.things.questions {
+            section(ui, &question.text);
+            for candidate in &question.candidates {
+                let text = format!("{} {}   {}", candidate.class, candidate.answer, candidate.place);
+                let button = egui::Button::new(text).min_size(vec2(ui.available_width(), theme::ROW));
+                if ui.add(button).clicked() {
+                    said = Some((question.phrase.clone(), candidate.answer.clone()));
+                }
+            }
+        }
+        if let (Some((act, asked, id)), Some(read)) = (chosen, &mut self.read) {
+            read.set_edit(scene, |r| heard::answer(r, act, &asked, id));
+            self.change(scene, commands);
+        } else if let Some((phrase, answer)) = said {
             self.prompt = self.prompt.replacen(&phrase, &answer, 1);
             self.change(scene, commands);
         }
@@ -440,45 +537,42 @@ impl PromptPane {
     }
 }
 
-/// A chip whose words may be others of their kind.
+/// A chip whose value may be another of its kind.
 fn style_menu(
     ui: &mut Ui,
-    phrase: &Phrase,
-    names: impl Iterator<Item = &'static str>,
-    other: &mut Option<(Phrase, &'static str)>,
+    text: &str,
+    names: impl Iterator<Item = (&'static str, What)>,
+    act: usize,
+    other: &mut Option<(usize, What)>,
 ) {
-    let response = super::chip::menu(ui, &phrase.text, |ui| {
-        for name in names {
+    super::chip::make_room(ui, text);
+    let response = super::chip::menu(ui, text, |ui| {
+        for (name, what) in names {
             if ui.button(name).clicked() {
-                *other = Some((phrase.clone(), name));
+                *other = Some((act, what));
                 ui.close();
             }
         }
     });
-    let label = format!("Change {}", phrase.text);
+    let label = format!("Change {text}");
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
 }
 
-fn chip(ui: &mut Ui, phrase: &Phrase) -> bool {
-    let has_menu = matches!(phrase.became, Became::Object(_) | Became::Time | Became::Weather);
-    let response = match has_menu {
-        true => super::chip::end(ui),
-        false => super::chip::plain(ui, &phrase.text),
-    };
-    let label = format!("Take out {}", phrase.text);
+fn chip(ui: &mut Ui, text: &str) -> bool {
+    super::chip::make_room(ui, text);
+    taken_out(super::chip::plain(ui, text), text)
+}
+
+fn chip_end(ui: &mut Ui, text: &str) -> bool {
+    taken_out(super::chip::end(ui), text)
+}
+
+fn taken_out(response: egui::Response, text: &str) -> bool {
+    let label = format!("Take out {text}");
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
-    response
-        .on_hover_text(format!("{}\nA click takes it out.", phrase.meaning))
-        .clicked()
+    response.on_hover_text("A click takes it out").clicked()
 }
 
 fn warn(ui: &mut Ui, text: &str) {
     ui.label(egui::RichText::new(text).color(theme::warn()));
-}
-
-fn unread(part: &Unread) -> String {
-    match &part.why {
-        Some(why) => format!("Not understood: “{}” ({why})", part.text),
-        None => format!("Not understood: “{}”", part.text),
-    }
 }

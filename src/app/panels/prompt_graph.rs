@@ -5,7 +5,7 @@ use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::icons::section;
 use crate::app::theme;
-use crate::generation::text::to_graph::Graphed;
+use crate::generation::place::to_graph::Graphed;
 use crate::scene::Class;
 use crate::scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
 
@@ -197,7 +197,7 @@ pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u3
             .for_each(|list| list.retain(|n| *n != id));
     }
     if ui.button("Add object").clicked() {
-        let node = crate::generation::text::edit::node_of(Class::Car);
+        let node = crate::generation::place::to_graph::node_of(Class::Car);
         graphed.graph.add(node);
     }
     rolled
@@ -268,13 +268,15 @@ fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], w
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::text::read;
-    use crate::generation::text::to_graph::to_graph;
+    use crate::generation::place::to_graph::to_graph;
+    use crate::generation::words::describe::described;
 
     #[test]
     fn objects_of_one_relation_share_a_line() {
-        let read = read("five cones block my lane, a bus waits at the crossing, two parked cars");
-        let rows = rows(&to_graph(&read.description, 1).graph);
+        let read =
+            described("add 5 cone ( blocking ego_lane ) and 1 bus ( waiting crossing ) and 2 parked car")
+                .expect("valid");
+        let rows = rows(&to_graph(&read, 1).graph);
         let cones = rows.iter().filter(|r| r.objects == [(Class::TrafficCone, 5)]);
         assert_eq!(cones.map(|r| r.to.as_str()).collect::<Vec<_>>(), ["ego lane"]);
         assert!(

@@ -14,8 +14,8 @@ use crate::app::command::Command;
 use crate::app::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
 use crate::app::theme;
 use crate::editor::Edit;
-use crate::generation::text::description::Description;
-use crate::generation::text::to_graph::{Graphed, to_graph};
+use crate::generation::place::description::Description;
+use crate::generation::place::to_graph::{Graphed, to_graph};
 
 use crate::scene::{BoxId, Scene, SceneBox};
 
@@ -170,6 +170,11 @@ impl Plan {
         }
     }
 
+    /// True if the last scene from words was made of these.
+    pub fn made_of(&self, prompt: &str) -> bool {
+        self.made.as_ref().is_some_and(|(of, _)| of == prompt)
+    }
+
     /// Notes that a scene is made of these words.
     pub fn makes(&mut self, prompt: &str, seed: u64) {
         self.made = Some((prompt.to_string(), seed));
@@ -223,16 +228,26 @@ impl Plan {
     pub fn object_menu(
         &mut self,
         ui: &mut Ui,
-        index: usize,
+        objects: &[usize],
         text: &str,
         scene: &Scene,
         read: &Description,
         commands: &mut Vec<Command>,
     ) -> Option<u32> {
         let prompt = self.prompt.clone();
-        let count = read.foreground.get(index)?.count.n;
+        // (the first is what was named; others are what it is placed by, or more of it in a row)
+        let first = *objects.first()?;
+        let class = read.foreground.get(first)?.class;
+        let alike = objects
+            .iter()
+            .filter_map(|i| read.foreground.get(*i))
+            .filter(|o| o.class == class);
+        let count = match read.foreground.get(first)?.count.n {
+            1 => alike.map(|o| o.count.n).sum(),
+            n => n,
+        };
         let mut wanted = None;
-        let locked = self.locked.contains(&index);
+        let locked = self.locked.contains(&first);
         let mut shown = text.to_string();
         if locked {
             shown = format!("{shown} (locked)");
@@ -255,17 +270,19 @@ impl Plan {
                 .on_hover_text(said)
                 .changed()
             {
-                if lock {
-                    self.locked.insert(index);
-                } else {
-                    self.locked.remove(&index);
+                for i in objects {
+                    if lock {
+                        self.locked.insert(*i);
+                    } else {
+                        self.locked.remove(i);
+                    }
                 }
             }
             let again = ui
                 .add_enabled(here && !locked, egui::Button::new("Re-roll these"))
                 .on_hover_text("Other places for these; all else stays");
             if again.clicked() {
-                commands.extend(self.roll(&[index], scene, read));
+                commands.extend(self.roll(objects, scene, read));
                 ui.close();
             }
             if !here {

@@ -111,12 +111,17 @@ impl Recall {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::text::read;
+    use crate::generation::words::describe::described;
 
     #[test]
     fn words_recall_a_scene_with_its_road_and_objects() {
         let words = "a busy junction downtown at night";
-        let found = recall(words, &read(words).description, 1).expect("the bank that ships");
+        let found = recall(
+            words,
+            &described("road intersection ; env downtown ; density busy ; time night").expect("valid"),
+            1,
+        )
+        .expect("the bank that ships");
         let shown = Recalled::of(&found).expect("a road that can be made again");
         assert!((0.0..=1.0).contains(&shown.similarity) && shown.text == found.scenes[0].0);
         assert!(!shown.layout.polylines.is_empty() && !shown.boxes.is_empty());

@@ -4,7 +4,7 @@ use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, pos2};
 use glam::DVec2;
 
 use crate::app::theme;
-use crate::generation::text::holds::ego;
+use crate::generation::place::holds::ego;
 use crate::scene::{BevLayout, PolylineKind, SceneBox};
 
 /// Metres that the shorter side of a map shows, a little more than the grid is wide.

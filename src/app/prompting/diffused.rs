@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Diffused;
 use crate::generation::model::layout::net::LayoutNet;
+use crate::generation::place::lanes::LaneMap;
+use crate::generation::place::road;
+use crate::generation::place::rules::{Placement, broken, place_with};
+use crate::generation::place::to_graph::Graphed;
 use crate::generation::placement::diffuse::{PlacementError, STEPS, place_with as place_by_network};
-use crate::generation::text::lanes::LaneMap;
-use crate::generation::text::place::{Placement, broken, place_with};
-use crate::generation::text::road;
-use crate::generation::text::to_graph::Graphed;
 use crate::scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
 use crate::scene::{BevLayout, SceneBox};
 

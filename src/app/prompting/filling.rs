@@ -7,15 +7,13 @@ use serde::Serialize;
 
 use super::How;
 use crate::app::memory::own_scenes;
+use crate::generation::place::description::{
+    Count, Description, Environment, ObjectSpec, TimeOfDay, Weather,
+};
 use crate::generation::placement::facts::{self, RoadKind};
 use crate::generation::placement::memory::{Entry, Memory, Open, RoadRef};
-use crate::generation::text::description::{
-    Became, Count, Description, Environment, ObjectSpec, Phrase, TimeOfDay, Weather,
-};
-use crate::generation::text::lexicon::{Sense, look_up};
-use crate::generation::text::tokens::Span;
-use crate::scene::Class;
 use crate::scene::graph::ObjectState;
+use crate::scene::{BoxLabel, Class};
 
 /// Most objects that memory adds.
 const MOST_REMEMBERED: usize = 14;
@@ -52,14 +50,6 @@ pub(super) fn fill_in(
 ) -> Option<(Remembered, RoadRef)> {
     let mut counts: BTreeMap<Class, usize> = BTreeMap::new();
     for o in &d.foreground {
-        // "seven vehicles" counts every class that the word may mean.
-        let all: &[Class] = match look_up(&o.noun) {
-            Some(Sense::Noun(noun, _)) => noun.classes,
-            _ => &[],
-        };
-        all.iter().chain([&o.class]).for_each(|c| {
-            counts.entry(*c).or_insert(0);
-        });
         *counts.entry(o.class).or_insert(0) += o.count.n as usize;
     }
     for class in d.absent.iter().flat_map(|a| &a.classes) {
@@ -96,26 +86,7 @@ pub(super) fn fill_in(
         filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
     }
     // A prompt that says how busy it is, or that this is all, leaves nothing of that open.
-    let said = prompt.to_lowercase();
-    let closed = [
-        "only",
-        "nothing but",
-        "nothing else",
-        "no one else",
-        "alone",
-        "just",
-        "exactly",
-        "lone",
-        "empty",
-        "deserted",
-    ]
-    .iter()
-    .any(|w| said.contains(w));
-    let mut room = if d.density.is_some() || closed {
-        0
-    } else {
-        MOST_REMEMBERED
-    };
+    let mut room = if d.density.is_some() { 0 } else { MOST_REMEMBERED };
     for (class, by_state) in &proposal.counts {
         for (n, state) in
             by_state
@@ -131,15 +102,12 @@ pub(super) fn fill_in(
             filled.push(format!("{n} x {} ({word})", class.label()));
             d.foreground.push(ObjectSpec {
                 class: *class,
-                noun: class.label(),
                 count: Count::exactly(n as u32),
                 state: Some(state),
                 size: None,
-                color: None,
-                attributes: vec!["from memory".into()],
+                label: BoxLabel::default(),
                 size_m: None,
                 relations: Vec::new(),
-                span: Span { start: 0, end: 0 },
             });
         }
     }
@@ -164,22 +132,6 @@ pub fn recall(prompt: &str, description: &Description, seed: u64) -> Option<Reme
     let (memory, _) = memory(&How::default()).ok()?;
     let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed)?;
     Some(found)
-}
-
-/// Chips for what memory put in.
-pub fn remembered_phrases(d: &Description) -> Vec<Phrase> {
-    let from_memory = |o: &ObjectSpec| o.attributes.iter().any(|a| a == "from memory");
-    d.foreground
-        .iter()
-        .enumerate()
-        .filter(|(_, o)| from_memory(o))
-        .map(|(i, o)| Phrase {
-            span: o.span,
-            text: format!("{} {}", o.count.n, o.noun),
-            became: Became::Object(i),
-            meaning: "from memory".into(),
-        })
-        .collect()
 }
 
 fn environment(e: Environment) -> facts::Environment {

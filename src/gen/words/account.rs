@@ -31,12 +31,41 @@ pub struct Missing {
 
 /// Words by which numbers are worked out: their numbers need not stand in the reading.
 const ARITHMETIC: [&str; 30] = [
-    "half", "twice", "double", "triple", "halve", "quadruple", "many", "more", "fewer", "less", "each", "total", "altogether",
-    "second", "third", "other", "rest", "both", "apiece", "every", "per", "another", "left", "remain", "remaining", "times", "first",
-    "fourth", "dozen", "couple",
+    "half",
+    "twice",
+    "double",
+    "triple",
+    "halve",
+    "quadruple",
+    "many",
+    "more",
+    "fewer",
+    "less",
+    "each",
+    "total",
+    "altogether",
+    "second",
+    "third",
+    "other",
+    "rest",
+    "both",
+    "apiece",
+    "every",
+    "per",
+    "another",
+    "left",
+    "remain",
+    "remaining",
+    "times",
+    "first",
+    "fourth",
+    "dozen",
+    "couple",
 ];
 /// What follows them is what is not meant.
-const NOT: [&str; 10] = ["not", "no", "than", "from", "isnt", "wasnt", "of", "was", "were", "instead"];
+const NOT: [&str; 10] = [
+    "not", "no", "than", "from", "isnt", "wasnt", "of", "was", "were", "instead",
+];
 
 /// The words of a text that its reading does not hold.
 pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Speller) -> Vec<Missing> {
@@ -48,7 +77,11 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
     while i < tokens.len() {
         let t = &tokens[i];
         let mut end = i + 1;
-        while end < tokens.len() && !t.senses.is_empty() && tokens[end].senses == t.senses && t.value.is_none() {
+        while end < tokens.len()
+            && !t.senses.is_empty()
+            && tokens[end].senses == t.senses
+            && t.value.is_none()
+        {
             end += 1;
         }
         let before = i.checked_sub(1).map_or("", |k| tokens[k].text.as_str());
@@ -58,7 +91,10 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             (!there && !small && !NOT.contains(&before) && t.text != "hundred").then_some(Why::NotCarriedOut)
         } else if !t.senses.is_empty() {
             let there = t.senses.iter().any(|s| sense_is_said(s.kind, s.symbol, &said));
-            let looks = t.senses.iter().all(|s| !matches!(s.kind, "place" | "ego" | "road" | "group" | "env" | "density"));
+            let looks = t
+                .senses
+                .iter()
+                .all(|s| !matches!(s.kind, "place" | "ego" | "road" | "group" | "env" | "density"));
             (!there && looks && !NOT.contains(&before)).then_some(Why::NotCarriedOut)
         } else if !side_is_said(t, before, &said) {
             Some(Why::NotCarriedOut)
@@ -82,7 +118,11 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
 fn number_is_said(v: f64, is_length: bool, said: &[&str]) -> bool {
     said.iter().any(|s| {
         let length = s.strip_suffix('m').and_then(|n| n.parse::<f64>().ok());
-        let plain = s.trim_start_matches('#').parse::<f64>().ok().filter(|_| !is_length);
+        let plain = s
+            .trim_start_matches('#')
+            .parse::<f64>()
+            .ok()
+            .filter(|_| !is_length);
         length.or(plain).is_some_and(|n| (n - v).abs() < 0.06 + 1e-3 * v)
     })
 }
@@ -97,7 +137,8 @@ fn sense_is_said(kind: &str, symbol: &str, said: &[&str]) -> bool {
         "noun" => {
             let Some(noun) = Noun::of(symbol) else { return true };
             said.iter().filter_map(|s| Noun::of(s)).any(|n| {
-                matches!(n, Noun::It | Noun::One | Noun::Thing) || n.classes().iter().any(|c| noun.classes().contains(c))
+                matches!(n, Noun::It | Noun::One | Noun::Thing)
+                    || n.classes().iter().any(|c| noun.classes().contains(c))
             })
         }
         // ("the colour of the bus", "no more rain")
@@ -112,6 +153,13 @@ fn sense_is_said(kind: &str, symbol: &str, said: &[&str]) -> bool {
 fn side_is_said(t: &Token, before: &str, said: &[&str]) -> bool {
     let side = t.text.as_str();
     let is_side = matches!(side, "left" | "right");
-    let of = matches!(before, "the" | "my" | "our" | "to" | "on" | "its" | "your" | "his" | "far");
-    !is_side || !of || said.iter().any(|s| s.contains(side) || matches!(*s, "other_side" | "other_lane" | "like"))
+    let of = matches!(
+        before,
+        "the" | "my" | "our" | "to" | "on" | "its" | "your" | "his" | "far"
+    );
+    !is_side
+        || !of
+        || said
+            .iter()
+            .any(|s| s.contains(side) || matches!(*s, "other_side" | "other_lane" | "like"))
 }

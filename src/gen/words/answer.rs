@@ -3,8 +3,8 @@
 use super::account::{Missing, Why};
 use super::nouns::Noun;
 use super::reading::{
-    Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading, Relation, Thing, Turn, Way,
-    What,
+    Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading, Relation,
+    Thing, Turn, Way, What,
 };
 use super::resolve::plural;
 use super::stage::Outcome;
@@ -23,8 +23,12 @@ pub fn answer(reading: &Reading, outcome: Option<&Outcome>, missing: &[Missing])
             continue;
         };
         let nothing = outcome.done.get(i).is_none_or(|d| d.is_nothing());
-        let remarks: Vec<String> =
-            outcome.remarks.iter().filter(|(a, _)| *a == i).map(|(_, r)| r.to_string()).collect();
+        let remarks: Vec<String> = outcome
+            .remarks
+            .iter()
+            .filter(|(a, _)| *a == i)
+            .map(|(_, r)| r.to_string())
+            .collect();
         let asked = outcome.questions.iter().find(|q| q.act == i);
         parts.push(match (asked, nothing) {
             (Some(q), _) => q.text.clone(),
@@ -66,7 +70,13 @@ pub fn sentence(what: &What) -> String {
         What::No { who } => {
             let who: Vec<String> = who
                 .iter()
-                .map(|t| if t.other { format!("other {}", many(t)) } else { many(t) })
+                .map(|t| {
+                    if t.other {
+                        format!("other {}", many(t))
+                    } else {
+                        many(t)
+                    }
+                })
                 .collect();
             format!("no {}", join(&who, "or"))
         }
@@ -183,7 +193,12 @@ pub fn thing(t: &Thing) -> String {
     let pick = match (t.pick, t.nth) {
         (Some(p), _) => format!("{} ", p.name()),
         (_, Some(0)) => "last ".into(),
-        (_, Some(n)) => format!("{} ", ["first", "second", "third", "fourth", "fifth"].get(n as usize - 1).unwrap_or(&"next")),
+        (_, Some(n)) => format!(
+            "{} ",
+            ["first", "second", "third", "fourth", "fifth"]
+                .get(n as usize - 1)
+                .unwrap_or(&"next")
+        ),
         _ => String::new(),
     };
     let words = match t.quantity {
@@ -202,9 +217,12 @@ pub fn thing(t: &Thing) -> String {
 
 fn number(n: u32) -> String {
     const WORDS: [&str; 13] = [
-        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
+        "twelve",
     ];
-    WORDS.get(n as usize).map_or_else(|| n.to_string(), |w| (*w).to_string())
+    WORDS
+        .get(n as usize)
+        .map_or_else(|| n.to_string(), |w| (*w).to_string())
 }
 
 fn at_places(places: &[Place]) -> String {
@@ -258,7 +276,14 @@ fn place(p: &Place) -> String {
 
 fn preposition(to: &Anchor) -> &'static str {
     match to {
-        Anchor::Lane(LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming | LaneRole::Cross | LaneRole::Carpark)
+        Anchor::Lane(
+            LaneRole::Ego
+            | LaneRole::Left
+            | LaneRole::Right
+            | LaneRole::Oncoming
+            | LaneRole::Cross
+            | LaneRole::Carpark,
+        )
         | Anchor::OtherLane
         | Anchor::Junction => "in",
         Anchor::Lane(LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside) => "at",
@@ -331,13 +356,20 @@ fn turned(turn: &Turn) -> String {
 
 fn looks(look: &Look) -> String {
     let mut out: Vec<String> = Vec::new();
-    out.extend(look.size.map(|s| if s == SizeHint::Large { "larger" } else { "smaller" }.to_string()));
+    out.extend(
+        look.size
+            .map(|s| if s == SizeHint::Large { "larger" } else { "smaller" }.to_string()),
+    );
     out.extend(look.state.map(|s| match s {
         ObjectState::Moving => "move".to_string(),
         ObjectState::Parked => "park".into(),
         ObjectState::Waiting => "stand still".into(),
     }));
     out.extend(look.paint.map(|p| p.name().to_string()));
-    out.extend(look.paint_of.as_ref().map(|t| format!("the colour of {}", thing(t))));
+    out.extend(
+        look.paint_of
+            .as_ref()
+            .map(|t| format!("the colour of {}", thing(t))),
+    );
     out.join(" and ")
 }

@@ -23,7 +23,9 @@ pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
     let mut acts: Vec<Act> = Vec::new();
     for what in out {
         match (acts.last_mut().map(|a| &mut a.what), what) {
-            (Some(What::Add { things }), What::Add { things: more }) if mode == Mode::Prompt => things.extend(more),
+            (Some(What::Add { things }), What::Add { things: more }) if mode == Mode::Prompt => {
+                things.extend(more)
+            }
             (_, what) => acts.push(what.into()),
         }
     }
@@ -54,7 +56,9 @@ fn rank(what: &What, mode: Mode) -> u8 {
 
 fn sort_what(what: &mut What) {
     match what {
-        What::Add { things: a } | What::No { who: a } | What::Remove { who: a } | What::Keep { who: a } => sort_all(a),
+        What::Add { things: a } | What::No { who: a } | What::Remove { who: a } | What::Keep { who: a } => {
+            sort_all(a)
+        }
         What::Leave { who: a } | What::Set { who: a, .. } | What::Count { who: a, .. } => sort_all(a),
         What::Replace { who, things } => {
             sort_all(who);

@@ -4,17 +4,29 @@ use super::nouns::Noun;
 use super::plan::Plan;
 use super::reading::{Feature, LaneSide, Quantity, Reading, Thing, What};
 use super::remark::Remark;
-use crate::generation::text::description::{Absent, Anchor, Count, Density, Description, Road};
+use crate::generation::place::description::{Absent, Anchor, Count, Density, Description, Road};
 use crate::scene::graph::LaneRole;
 
-/// The description of a new scene, and what of the reading it cannot hold.
-pub fn describe(reading: &Reading) -> (Description, Vec<(usize, Remark)>) {
+/// A description and where it comes from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Described {
+    /// The description.
+    pub description: Description,
+    /// What of the reading it cannot hold, by act.
+    pub remarks: Vec<(usize, Remark)>,
+    /// Of each object of the foreground: the act and the thing of it that named it.
+    pub from: Vec<(usize, usize)>,
+}
+
+/// The description of a new scene.
+pub fn describe(reading: &Reading) -> Described {
     let mut d = Description::default();
     let mut plan = Plan::default();
     let mut remarks = Vec::new();
     let mut nobody = super::plan::Nowhere;
     let mut alone = false;
     for (i, act) in reading.acts.iter().enumerate() {
+        plan.at = (i, 0);
         match &act.what {
             What::Add { things } => plan.add(things, &mut nobody),
             What::Time { what } => d.time_of_day = Some(*what),
@@ -55,7 +67,6 @@ pub fn describe(reading: &Reading) -> (Description, Vec<(usize, Remark)>) {
                         d.absent.push(Absent {
                             classes: t.noun.classes().to_vec(),
                             state: t.state,
-                            span: super::plan::nowhere(),
                         });
                     }
                 }
@@ -72,7 +83,7 @@ pub fn describe(reading: &Reading) -> (Description, Vec<(usize, Remark)>) {
                         s.state = look.state.or(s.state);
                         s.size = look.size.or(s.size);
                         if let Some(p) = look.paint {
-                            s.color = Some(p.name().into());
+                            s.label.paint = Some(p);
                         }
                     }
                 }
@@ -121,6 +132,7 @@ pub fn describe(reading: &Reading) -> (Description, Vec<(usize, Remark)>) {
             }
         }
     }
+    let from = plan.from;
     d.foreground = plan.specs;
     if alone && d.density.is_none() {
         d.density = Some(Density::Empty);
@@ -152,7 +164,20 @@ pub fn describe(reading: &Reading) -> (Description, Vec<(usize, Remark)>) {
         d.road.kind = Some(Road::Intersection);
     }
     d.summarise();
-    (d, remarks)
+    Described {
+        description: d,
+        remarks,
+        from,
+    }
+}
+
+/// The description of a line of notation.
+///
+/// # Errors
+///
+/// If it is none.
+pub fn described(line: &str) -> Result<Description, super::notation::NotationError> {
+    Ok(describe(&super::notation::parse(line)?).description)
 }
 
 /// Things that were named as if they were there, as new ones.
@@ -173,7 +198,7 @@ fn as_new(t: &Thing) -> Thing {
 /// Specs that a thing means.
 fn matching(plan: &Plan, t: &Thing) -> Vec<usize> {
     let paint = |k: &usize| match t.paint {
-        Some(super::reading::PaintWish::Is(p)) => plan.specs[*k].color.as_deref() == Some(p.name()),
+        Some(super::reading::PaintWish::Is(p)) => plan.specs[*k].label.paint == Some(p),
         _ => true,
     };
     let kind = |k: &usize| t.noun.classes().contains(&plan.specs[*k].class);

@@ -24,6 +24,10 @@ pub enum By {
     Grammar,
     /// The learned reader.
     Learned,
+    /// A language model behind an endpoint.
+    Endpoint,
+    /// The user, by hand.
+    Hand,
 }
 
 /// A typing error that was mended.
@@ -69,19 +73,20 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
     let said = learned.read(text, mode);
     let plain = grammar::read(&said.tokens, mode);
-    let same = |a: &Reading, b: &Reading| notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode));
+    let same = |a: &Reading, b: &Reading| {
+        notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
+    };
     let agree = plain.is_whole() && same(&plain.reading, &said.reading);
     let (by, reading, other) = match (agree, plain.is_whole()) {
         (true, _) => (By::Both, said.reading, None),
-        // (the network is the better one wherever it is sure)
-        (false, true) if confidence(&said.reading) < UNSURE || said.reading.acts.is_empty() => {
-            (By::Grammar, plain.reading, Some(said.reading))
-        }
-        (false, true) => (By::Learned, said.reading, Some(plain.reading)),
+        // (what the grammar reads to the last word is plain English)
+        (false, true) => (By::Grammar, plain.reading, Some(said.reading)),
         (false, false) => (By::Learned, said.reading, None),
     };
     let unsure = match by {
-        By::Learned => (0..reading.acts.len()).filter(|i| reading.acts[*i].confidence < UNSURE).collect(),
+        By::Learned => (0..reading.acts.len())
+            .filter(|i| reading.acts[*i].confidence < UNSURE)
+            .collect(),
         _ => Vec::new(),
     };
     let mended = said.tokens.iter().filter_map(|t| {
@@ -100,6 +105,20 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     })
 }
 
-fn confidence(reading: &Reading) -> f64 {
-    reading.acts.iter().map(|a| a.confidence).fold(1.0, f64::min)
+/// A reading from elsewhere, beside what the readers of this program heard.
+pub fn against(reading: Reading, own: Option<&Heard>, mode: Mode) -> Heard {
+    let same = |a: &Reading, b: &Reading| {
+        notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
+    };
+    let other = own
+        .map(|h| h.reading.clone())
+        .filter(|o| !o.acts.is_empty() && !same(o, &reading));
+    Heard {
+        reading,
+        by: By::Endpoint,
+        other,
+        unsure: Vec::new(),
+        missing: Vec::new(),
+        mended: own.map(|h| h.mended.clone()).unwrap_or_default(),
+    }
 }

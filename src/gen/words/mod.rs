@@ -19,4 +19,5 @@ pub mod reading;
 pub mod remark;
 mod resolve;
 pub mod stage;
+pub mod text_edit;
 pub mod tokens;

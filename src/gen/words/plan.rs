@@ -4,13 +4,11 @@
 use super::nouns::Noun;
 use super::reading::{Anchor as Said, PaintWish, Place, Quantity, Relation, Thing};
 use super::resolve::kind_of;
-use super::tokens::Span;
-use crate::generation::text::description::{Anchor, Count, ObjectSpec, Stated};
+use crate::generation::place::description::{Anchor, Count, ObjectSpec, Stated};
+use crate::generation::place::to_graph::MOST_OF_ONE;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
-use crate::scene::{Class, SceneBox};
+use crate::scene::{BoxLabel, Class, SceneBox};
 
-/// Most things of one kind.
-pub const MOST_OF_ONE: u32 = 400;
 /// Most kinds of things of one reading.
 const MOST_SPECS: usize = 200;
 
@@ -43,6 +41,10 @@ pub(super) struct Plan {
     pub(super) held: Vec<Option<Vec<SceneBox>>>,
     /// What was named in each.
     pub(super) named: Vec<Thing>,
+    /// The act and the thing of it that each was named by.
+    pub(super) from: Vec<(usize, usize)>,
+    /// Those of what is put in now.
+    pub(super) at: (usize, usize),
     /// Something asked back.
     pub(super) asked: bool,
     /// What is behind a driver follows it, if it can.
@@ -52,13 +54,14 @@ pub(super) struct Plan {
 impl Plan {
     /// Puts new things in, with what they are placed by.
     pub(super) fn add(&mut self, things: &[Thing], site: &mut dyn Site) {
-        let first = self.specs.len();
         let mut own = Vec::new();
-        for t in things {
+        for (k, t) in things.iter().enumerate() {
+            self.at.1 = k;
             own.push(self.thing(t, true, site, 0));
         }
         for (k, t) in things.iter().enumerate() {
             let Some(i) = own[k] else { continue };
+            self.at.1 = k;
             let mate = own
                 .iter()
                 .enumerate()
@@ -66,7 +69,6 @@ impl Plan {
                 .and_then(|(_, o)| *o);
             self.group(i, t, mate.filter(|_| own.len() == 2));
         }
-        debug_assert!(self.specs.len() >= first);
     }
 
     fn thing(&mut self, t: &Thing, new: bool, site: &mut dyn Site, depth: u8) -> Option<usize> {
@@ -76,6 +78,7 @@ impl Plan {
         let i = self.specs.len();
         self.specs.push(spec_of(t));
         self.held.push(None);
+        self.from.push(self.at);
         self.named.push(t.clone());
         if new {
             for p in &t.places {
@@ -168,7 +171,6 @@ impl Plan {
             anchor,
             and,
             distance_m,
-            span: nowhere(),
         };
         if !self.specs[i].relations.contains(&stated) {
             self.specs[i].relations.push(stated);
@@ -298,6 +300,7 @@ impl Plan {
             });
             self.specs.push(next);
             self.held.push(None);
+            self.from.push(self.at);
             self.named.push(self.named[i].clone());
             let k = self.specs.len() - 1;
             self.state(k, relation, Anchor::Object(before), None, None);
@@ -314,11 +317,6 @@ fn is_kerb(role: LaneRole) -> bool {
         role,
         LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside
     )
-}
-
-/// No words of the text.
-pub(super) fn nowhere() -> Span {
-    Span { start: 0, end: 0 }
 }
 
 /// How many things a number means.
@@ -344,21 +342,22 @@ fn spec_of(t: &Thing) -> ObjectSpec {
     };
     ObjectSpec {
         class: noun.classes()[0],
-        noun: if noun.is_plain() {
-            noun.classes()[0].label()
-        } else {
-            noun.words()
-        },
         count: count_of(t.quantity),
         state: t.state,
         size: t.size,
-        color: match t.paint {
-            Some(PaintWish::Is(p)) => Some(p.name().into()),
-            _ => None,
-        },
-        attributes: Vec::new(),
+        label: label_of(t),
         size_m: noun.size_m(),
         relations: Vec::new(),
-        span: nowhere(),
+    }
+}
+
+/// The name and paint that a thing gives a box.
+pub(super) fn label_of(t: &Thing) -> BoxLabel {
+    BoxLabel {
+        name: t.noun.label(),
+        paint: match t.paint {
+            Some(PaintWish::Is(p)) => Some(p),
+            _ => None,
+        },
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::named::named;
 use super::nouns::Noun;
 use super::tokens::Span;
-use crate::generation::text::description::{Density, Environment, Road, TimeOfDay, Weather};
+use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
 use crate::scene::Paint;
 use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
 

@@ -7,9 +7,9 @@ use serde::Serialize;
 
 use super::nouns::Noun;
 use super::remark::Remark;
-use crate::generation::text::edit::TextEdit;
-use crate::generation::text::holds::{in_role, overlap_m, role_of};
-use crate::generation::text::lanes::LaneMap;
+use crate::generation::place::holds::{in_role, overlap_m, role_of};
+use crate::generation::place::lanes::LaneMap;
+use crate::generation::words::text_edit::TextEdit;
 use crate::scene::graph::{LaneRole, ObjectState};
 use crate::scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 
@@ -180,7 +180,7 @@ impl<'a> Stage<'a> {
 
     /// The box, or the same a few metres along its course, where it hits nothing.
     pub(super) fn clear_of_others(&self, b: SceneBox) -> Option<SceneBox> {
-        let ego = crate::generation::text::holds::ego();
+        let ego = crate::generation::place::holds::ego();
         let hits = |n: &SceneBox| {
             let other = |o: &SceneBox| o.id != b.id && overlap_m(n, o, 0.2) > 0.0;
             self.boxes.values().any(other) || overlap_m(n, &ego, 0.2) > 0.0

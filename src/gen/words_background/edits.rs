@@ -9,9 +9,6 @@ use super::place::Ground;
 use super::targets::{Meant, targets};
 use super::wishes::{forms, name};
 use super::{Amount, Said, Taken, Verb, What, take};
-use crate::generation::text::description::{Became, Phrase, Unread};
-use crate::generation::text::edit::{EditReading, Question};
-use crate::generation::text::select::Candidate;
 use crate::scene::Form;
 use crate::scene::background::STOREY_M;
 use crate::scene::{Background, BevLayout, BoxId, Class, Pose, SceneBox, ThingId};
@@ -52,6 +49,43 @@ pub enum ThingEdit {
     },
 }
 
+/// A thing that a question names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ThingCandidate {
+    /// Its kind.
+    pub class: &'static str,
+    /// Where it stands, in words.
+    pub place: String,
+    /// The words that name it alone; they replace those that were asked about.
+    pub answer: String,
+}
+
+/// Things that fit where one was meant.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ThingQuestion {
+    /// `tree: 3 fit, which one?`
+    pub text: String,
+    /// The words that named it, as they stand in the text.
+    pub phrase: String,
+    /// The things that fit.
+    pub candidates: Vec<ThingCandidate>,
+}
+
+/// What a text says of the background.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ThingReading {
+    /// Changes, in order.
+    pub edits: Vec<ThingEdit>,
+    /// What must be answered first.
+    pub questions: Vec<ThingQuestion>,
+    /// What was done, one line each.
+    pub done: Vec<String>,
+    /// What could not be done, with the words, one line each.
+    pub cannot: Vec<String>,
+    /// The text with spaces for what was taken; empty if nothing is left to read.
+    pub rest: String,
+}
+
 /// An open scene, as far as edits of its background need it.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenBackground<'a> {
@@ -65,49 +99,38 @@ pub struct OpenBackground<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
 }
 
-/// Takes what a text says of the background, and fills it into the reading that `read_rest` makes of the rest.
-pub fn read_edit(
-    text: &str,
-    open: &OpenBackground<'_>,
-    seed: u64,
-    read_rest: impl FnOnce(&str) -> EditReading,
-) -> EditReading {
+/// Takes what a text says of the background, and leaves the rest.
+pub fn read_edit(text: &str, open: &OpenBackground<'_>, seed: u64) -> ThingReading {
     let Taken { mut said, rest } = take(text, true);
     // "Fence" and "guard rail" name barriers too, which are boxes.
     let has_barriers = open.boxes.values().any(|b| b.class == Class::Barrier);
     let is_barrier = |s: &Said| has_barriers && super::read::may_be_barrier(s);
     if said.is_empty() || said.iter().any(is_barrier) {
-        return read_rest(text);
+        return ThingReading {
+            rest: text.to_owned(),
+            ..ThingReading::default()
+        };
     }
-    let mut out = match rest.chars().any(char::is_alphanumeric) {
-        true => read_rest(&rest),
-        false => EditReading::default(),
-    };
+    let mut out = ThingReading::default();
+    if rest.chars().any(char::is_alphanumeric) {
+        out.rest = rest;
+    }
     let mut now = open.things.in_frame(&open.world_from_ego.inverse());
     now = now.iter().filter(|t| in_grid(&t.form)).cloned().collect();
     for (i, s) in said.drain(..).enumerate() {
         let ground = Ground::new(open.layout, open.boxes, &now);
-        let words = s.span.of(text).to_owned();
+        let words = s.span.of(text);
         match carry_out(&s, &now, ground, seed.wrapping_add(i as u64)) {
             Ok((edit, meaning)) => {
                 apply(&mut now, &edit, open.things);
-                out.phrases.push(Phrase {
-                    span: s.span,
-                    text: words,
-                    became: Became::Command(i),
-                    meaning,
-                });
-                out.things.extend(in_world(edit, &open.world_from_ego));
+                out.done.push(meaning);
+                out.edits.extend(in_world(edit, &open.world_from_ego));
             }
-            Err(Stopped::Asked(question)) => out.questions.push(Question {
+            Err(Stopped::Asked(question)) => out.questions.push(ThingQuestion {
                 phrase: s.target.of(text).to_owned(),
                 ..question
             }),
-            Err(Stopped::Cannot(why)) => out.not_understood.push(Unread {
-                span: s.span,
-                text: words,
-                why: Some(why),
-            }),
+            Err(Stopped::Cannot(why)) => out.cannot.push(format!("\u{201c}{words}\u{201d}: {why}")),
         }
     }
     out
@@ -119,7 +142,7 @@ fn in_grid(form: &Form) -> bool {
 }
 
 enum Stopped {
-    Asked(Question),
+    Asked(ThingQuestion),
     Cannot(String),
 }
 
@@ -162,16 +185,11 @@ fn carry_out(
         Meant::These(ids) => ids,
         Meant::Ask(list) => {
             let class = now.get(list[0].0).map_or("thing", |t| t.form.name());
-            let candidates: Vec<Candidate> = list
+            let candidates: Vec<ThingCandidate> = list
                 .into_iter()
-                .map(|(id, place, answer)| Candidate {
-                    id: BoxId(id.0),
-                    class,
-                    place,
-                    answer: Some(answer),
-                })
+                .map(|(_, place, answer)| ThingCandidate { class, place, answer })
                 .collect();
-            return Err(Stopped::Asked(Question {
+            return Err(Stopped::Asked(ThingQuestion {
                 text: format!("{called}: {} fit, which one?", candidates.len()),
                 phrase: String::new(),
                 candidates,

@@ -1,5 +1,5 @@
 //! Sentences about what stands beside the road, as typed values. A clause is taken only if every word of it is known
-//! here and it names a thing of the background; everything else is left to the reader of [`text`](super::text).
+//! here and it names a thing of the background; everything else is left to the readers of [`words`](super::words).
 
 pub mod edits;
 mod lexicon;
@@ -8,11 +8,12 @@ mod read;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod tokens;
 pub mod wishes;
 
-use super::text::tokens::Span;
 pub use lexicon::{Verb, What};
 pub use read::take;
+pub use tokens::Span;
 
 /// A side of the ego's road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Words to typed clauses: parts a text, and reads each part that is about the background.
 
 use super::lexicon::{Word, lookup};
+use super::tokens::{Span, Token, TokenKind, tokens};
 use super::{Amount, NearTo, Said, SideOf, Taken, Verb, What, Where};
-use crate::generation::text::tokens::{Span, Token, TokenKind, tokens};
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::PostKind;
 

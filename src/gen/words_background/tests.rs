@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::edits::{OpenBackground, ThingEdit, read_edit};
+use super::edits::{OpenBackground, ThingEdit, ThingReading, read_edit};
 use super::*;
-use crate::generation::text::edit::EditReading;
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
 use crate::scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind, Pose, ThingId};
@@ -283,7 +282,7 @@ fn scene() -> (Background, BevLayout) {
     (things, layout)
 }
 
-fn edit_in(text: &str, world_from_ego: Pose) -> EditReading {
+fn edit_in(text: &str, world_from_ego: Pose) -> ThingReading {
     let (things, layout) = scene();
     let things = things.in_frame(&world_from_ego);
     let boxes = BTreeMap::new();
@@ -293,16 +292,18 @@ fn edit_in(text: &str, world_from_ego: Pose) -> EditReading {
         layout: &layout,
         boxes: &boxes,
     };
-    read_edit(text, &open, 3, |rest| panic!("{rest:?} was left over"))
+    let reading = read_edit(text, &open, 3);
+    assert!(reading.rest.is_empty(), "{:?} was left over", reading.rest);
+    reading
 }
 
-fn edit(text: &str) -> EditReading {
+fn edit(text: &str) -> ThingReading {
     edit_in(text, Pose::IDENTITY)
 }
 
 fn removed(text: &str) -> Vec<u32> {
     let reading = edit(text);
-    let ids = reading.things.iter().flat_map(|e| match e {
+    let ids = reading.edits.iter().flat_map(|e| match e {
         ThingEdit::Remove { ids } => ids.iter().map(|id| id.0).collect(),
         _ => Vec::new(),
     });
@@ -322,7 +323,7 @@ fn targets_are_what_the_words_name() {
     assert_eq!(removed("remove the hedge"), [10]);
     assert_eq!(removed("remove the trees behind us on the right"), [6]);
     assert_eq!(removed("remove the hedge and the building on the left"), [7, 10]);
-    let raised = |text: &str| edit(text).things;
+    let raised = |text: &str| edit(text).edits;
     let house = vec![ThingId(7)];
     let by = |by_m| {
         vec![ThingEdit::Raise {
@@ -340,19 +341,19 @@ fn targets_are_what_the_words_name() {
 #[test]
 fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
     let reading = edit("raise the building on the right by two storeys");
-    assert!(reading.things.is_empty());
+    assert!(reading.edits.is_empty());
     let [question] = &reading.questions[..] else {
         panic!("{reading:?}")
     };
     assert_eq!(question.candidates.len(), 2);
     let answered = "raise the building on the right by two storeys".replacen(
         &question.phrase,
-        &question.candidates[0].says(),
+        &question.candidates[0].answer,
         1,
     );
     assert_eq!(answered, "raise thing #8 by two storeys");
     assert_eq!(
-        edit(&answered).things,
+        edit(&answered).edits,
         [ThingEdit::Raise {
             ids: vec![ThingId(8)],
             by_m: 6.0
@@ -361,9 +362,9 @@ fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
     let text = "make the building on the right three storeys taller";
     let question = &edit(text).questions[0];
     assert_eq!(question.phrase, "the building on the right");
-    let answered = text.replacen(&question.phrase, &question.candidates[1].says(), 1);
+    let answered = text.replacen(&question.phrase, &question.candidates[1].answer, 1);
     assert_eq!(
-        edit(&answered).things,
+        edit(&answered).edits,
         [ThingEdit::Raise {
             ids: vec![ThingId(9)],
             by_m: 9.0
@@ -378,13 +379,10 @@ fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
     ] {
         let reading = edit(text);
         assert!(
-            reading.things.is_empty() && reading.questions.is_empty(),
+            reading.edits.is_empty() && reading.questions.is_empty(),
             "{text}: {reading:?}"
         );
-        assert!(
-            reading.not_understood.iter().all(|u| u.why.is_some()) && reading.not_understood.len() == 1,
-            "{text}"
-        );
+        assert!(reading.cannot.len() == 1, "{text}");
     }
 }
 
@@ -394,7 +392,7 @@ fn new_things_stand_where_they_were_wanted() {
     let other = Pose::planar(300.0, -120.0, 1.2);
     for pose in [Pose::IDENTITY, other] {
         let forms = |text: &str| -> Vec<Form> {
-            let all = edit_in(text, pose).things.into_iter().flat_map(|e| match e {
+            let all = edit_in(text, pose).edits.into_iter().flat_map(|e| match e {
                 ThingEdit::Add { forms } => forms,
                 _ => Vec::new(),
             });
@@ -473,7 +471,7 @@ fn the_sentences_of_the_other_reader_are_left_alone() {
 #[test]
 fn descriptions_become_scenery() {
     use super::wishes::scenery;
-    use crate::generation::text::description::Description;
+    use crate::generation::place::description::Description;
     use crate::generation::world::template;
     let said = |list: &[&str]| Description {
         background: list.iter().map(|s| (*s).to_owned()).collect(),

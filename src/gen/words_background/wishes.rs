@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::place::Ground;
 use super::targets::{Meant, is, targets};
 use super::{Amount, Said, SideOf, Verb, What, take};
-use crate::generation::text::description::{Description, Environment, Road};
+use crate::generation::place::description::{Description, Environment, Road};
 use crate::generation::world::draw::Draw;
 use crate::generation::world::scenery::{Setting, Side, Style, background_of};
 use crate::scene::background::{Building, Line, Post, PostKind, STOREY_M, Shrubs, Tree, TreeKind};

@@ -15,9 +15,7 @@ use crate::app::prompting::{How, Laid, lay_out};
 use crate::app::text;
 use crate::editor::Document;
 use crate::generation::metrics::stats::median;
-use crate::generation::text::description::Description;
-use crate::generation::text::edit::read_edit;
-use crate::generation::text::read;
+use crate::generation::place::description::Description;
 use crate::generation::words::carry_out::carry_out;
 use crate::generation::words::describe::describe;
 use crate::generation::words::grammar;
@@ -178,9 +176,11 @@ fn mean(values: &[f64]) -> f64 {
     }
 }
 
+/// The scene that the program makes of a prompt.
 pub(super) fn place(prompt: &str, seed: u64, how: &How) -> (Scene, Laid) {
     let started = Instant::now();
-    place_description(prompt, &read(prompt).description, started, seed, how)
+    let reading = hear(prompt, Mode::Prompt).map(|h| h.reading).unwrap_or_default();
+    place_description(prompt, &describe(&reading).description, started, seed, how)
 }
 
 fn place_description(
@@ -202,15 +202,6 @@ fn place_description(
     );
     scene.prompt = laid.description.style().into();
     (scene, laid)
-}
-
-/// What was said of a prompt and of the scene that it became.
-fn told_of(prompt: &str, laid: &Laid) -> Told {
-    let (reading, short) = (read(prompt), text::shortfalls(laid));
-    Told {
-        spoke: !(reading.notes.is_empty() && reading.not_understood.is_empty() && short.is_empty()),
-        details: json!({ "notes": reading.notes, "not_understood": reading.not_understood, "shortfalls": short }),
-    }
 }
 
 /// Each box in a few words: class, where its centre is (m), which way it looks (deg), how fast it is (m/s).
@@ -320,17 +311,15 @@ impl Tally {
 /// Who reads the sentences.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Who {
-    /// The program as it is.
+    /// Both readers, as in the program.
     #[default]
-    Program,
+    Both,
     /// Nobody: the readings that stand beside the sentences are carried out.
     Given,
     /// The learned reader alone.
     Learned,
     /// The grammar alone: what it does not read to the last word it does not read.
     Grammar,
-    /// Both readers.
-    Both,
 }
 
 /// A reading with whether anything is said about how it was read.
@@ -341,16 +330,19 @@ struct Read {
 }
 
 impl Who {
-    /// The reading of a case; `None`: the program reads.
-    fn reading(self, case: &Case) -> anyhow::Result<Option<Read>> {
-        let mode = if case.base.is_some() { Mode::Edit } else { Mode::Prompt };
+    /// The reading of a case.
+    fn reading(self, case: &Case) -> anyhow::Result<Read> {
+        let mode = if case.base.is_some() {
+            Mode::Edit
+        } else {
+            Mode::Prompt
+        };
         let plainly = |reading| Read {
             reading,
             doubts: Value::Null,
             spoke: false,
         };
         let reading = match self {
-            Self::Program => return Ok(None),
             Self::Given => {
                 let line = case.reading.as_ref();
                 let line = line.with_context(|| format!("no reading stands beside {:?}", case.text))?;
@@ -376,16 +368,17 @@ impl Who {
                 }
             }
         };
-        Ok(Some(reading))
+        Ok(reading)
     }
 }
 
-/// A prompt by the reading that stands beside it: what its carrying out alone is worth.
-fn given_prompt(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
+/// Makes and judges a prompt.
+fn made(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
     let started = Instant::now();
     let (reading, doubts) = (&read.reading, &read.doubts);
-    let (description, remarks) = describe(reading);
-    let (scene, laid) = place_description(&case.text, &description, started, seed, how);
+    let described = describe(reading);
+    let remarks = &described.remarks;
+    let (scene, laid) = place_description(&case.text, &described.description, started, seed, how);
     let short = text::shortfalls(&laid);
     let told = || Told {
         spoke: read.spoke || !(remarks.is_empty() && short.is_empty()),
@@ -394,8 +387,8 @@ fn given_prompt(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &Ho
     tally.add(case, &scene, laid.wall_s, Vec::new(), told);
 }
 
-/// The same of an edit.
-fn given_edit(
+/// Carries out and judges an edit.
+fn changed(
     tally: &mut Tally,
     case: &Case,
     base: &str,
@@ -449,46 +442,11 @@ impl Eval {
         for (i, case) in cases.iter().enumerate() {
             progress.at("layout", i, cases.len());
             let seed = TEST_SEED + case.line;
-            if let Some(reading) = self.reader.reading(case)? {
-                match &case.base {
-                    None => given_prompt(&mut prompts, case, &reading, seed, &how),
-                    Some(base) => given_edit(&mut edits, case, base, &reading, seed, &how)?,
-                }
-                continue;
+            let reading = self.reader.reading(case)?;
+            match &case.base {
+                None => made(&mut prompts, case, &reading, seed, &how),
+                Some(base) => changed(&mut edits, case, base, &reading, seed, &how)?,
             }
-            let Some(base) = &case.base else {
-                let (scene, laid) = place(&case.text, seed, &how);
-                prompts.add(case, &scene, laid.wall_s, Vec::new(), || {
-                    told_of(&case.text, &laid)
-                });
-                continue;
-            };
-            let (scene, _) = place(base, seed, &how);
-            let started = Instant::now();
-            let reading = read_edit(&case.text, &text::open_scene(&scene), seed);
-            let wall_s = started.elapsed().as_secs_f64();
-            let asked = reading.questions.first().map(|q| q.candidates.len());
-            let mut wrong = Vec::new();
-            if case.asks.is_some() || asked.is_some() {
-                let good = asked == case.asks;
-                edits.asks.push(f64::from(u8::from(good)));
-                if !good {
-                    wrong.push(format!("asked {asked:?}, expected {:?}", case.asks));
-                }
-            }
-            let list: Vec<_> = reading.edits.iter().flat_map(text::edits).collect();
-            let before = in_short(&scene);
-            let mut document = Document::new(scene);
-            document
-                .apply_all("Edit by text", &list)
-                .with_context(|| format!("{:?}", case.text))?;
-            let silent =
-                reading.notes.is_empty() && reading.not_understood.is_empty() && reading.questions.is_empty();
-            let told = || Told {
-                spoke: !silent,
-                details: json!({ "before": before, "phrases": reading.phrases, "notes": reading.notes, "not_understood": reading.not_understood, "questions": reading.questions }),
-            };
-            edits.add(case, document.scene(), wall_s, wrong, told);
         }
         let both = |f: fn(&Tally) -> f64| f(&prompts).min(f(&edits));
         let bars: Vec<Bar> = vec![

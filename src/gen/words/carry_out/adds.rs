@@ -2,18 +2,18 @@
 
 use glam::DVec3;
 
-use super::super::plan::{Plan, Site};
+use super::super::plan::{Plan, Site, label_of};
 use super::super::reading::{Quantity, Relation, Thing};
 use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
-use crate::generation::text::description::{Anchor, Count, Description, ObjectSpec, Stated};
-use crate::generation::text::edit::TextEdit;
-use crate::generation::text::holds::{Target, holds, role_of};
-use crate::generation::text::place::{Placement, place_from};
-use crate::generation::text::to_graph::to_graph;
+use crate::generation::place::description::{Anchor, Count, Description, ObjectSpec, Stated};
+use crate::generation::place::holds::{Target, holds, role_of};
+use crate::generation::place::rules::{Placement, place_from};
+use crate::generation::place::to_graph::to_graph;
+use crate::generation::words::text_edit::TextEdit;
 use crate::scene::graph::{LaneRole, Locked, ObjectState, RelationKind};
-use crate::scene::{BoxId, BoxLabel, Class, Paint, SceneBox};
+use crate::scene::{BoxId, BoxLabel, Class, SceneBox};
 
 /// Where a plan puts things.
 pub(super) struct Arranged {
@@ -248,7 +248,6 @@ impl Stage<'_> {
             anchor,
             and: None,
             distance_m: None,
-            span: super::super::plan::nowhere(),
         };
         let crosses = |id: &BoxId| {
             let on = |b| holds(&self.map, RelationKind::On, b, &Target::Crossing, None, None);
@@ -332,28 +331,13 @@ impl Stage<'_> {
     pub(super) fn as_spec(&self, b: &SceneBox) -> ObjectSpec {
         ObjectSpec {
             class: b.class,
-            noun: b.class.label(),
             count: Count::exactly(1),
             state: None,
             size: None,
-            color: None,
-            attributes: Vec::new(),
+            label: BoxLabel::default(),
             size_m: Some(b.size_m.to_array()),
             relations: Vec::new(),
-            span: super::super::plan::nowhere(),
         }
-    }
-}
-
-/// The name and paint that a thing gives a box.
-pub(super) fn label_of(t: &Thing) -> BoxLabel {
-    let paint: Option<Paint> = match t.paint {
-        Some(super::super::reading::PaintWish::Is(p)) => Some(p),
-        _ => None,
-    };
-    BoxLabel {
-        name: t.noun.label(),
-        paint,
     }
 }
 

@@ -7,8 +7,8 @@ use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
 use super::adds::in_place_of;
-use crate::generation::text::edit::TextEdit;
-use crate::generation::text::holds::overlap_m;
+use crate::generation::place::holds::overlap_m;
+use crate::generation::words::text_edit::TextEdit;
 use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
 use crate::scene::{BoxId, BoxLabel, SceneBox};
 

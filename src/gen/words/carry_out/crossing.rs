@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::super::reading::{Anchor, Destination, Feature, Place, Reading, Relation, Thing, Turn, What};
 use super::super::remark::Remark;
 use super::super::stage::Stage;
-use crate::generation::text::edit::TextEdit;
-use crate::generation::text::holds::overlap_m;
-use crate::generation::text::lanes::LaneMap;
+use crate::generation::place::holds::overlap_m;
+use crate::generation::place::lanes::LaneMap;
+use crate::generation::words::text_edit::TextEdit;
 use crate::scene::raster::draw_polyline;
 use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Polyline, PolylineKind, SceneBox};
 

@@ -4,13 +4,15 @@ mod adds;
 mod changes;
 mod crossing;
 mod moves;
+#[cfg(test)]
+mod tests;
 
 use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
 use super::remark::Remark;
 use super::resolve::{Spare, words_of};
 use super::stage::{OpenScene, Outcome, Stage};
-use crate::generation::text::description::{Description, TimeOfDay, Weather};
-use crate::generation::text::edit::TextEdit;
+use crate::generation::place::description::{Description, TimeOfDay, Weather};
+use crate::generation::words::text_edit::TextEdit;
 use crate::scene::{BoxId, SceneBox};
 
 /// Most acts that are carried out.
@@ -224,7 +226,7 @@ impl Stage<'_> {
     fn conditions(&mut self, time: Option<TimeOfDay>, weather: Option<Weather>) {
         let words: Vec<String> = self.prompt.split(',').map(|w| w.trim().to_owned()).collect();
         let has = |name: &str| words.iter().any(|w| w == name);
-        use crate::generation::text::description::Environment;
+        use crate::generation::place::description::Environment;
         let d = Description {
             time_of_day: time.or(TimeOfDay::ALL.iter().copied().find(|t| has(t.name()))),
             weather: weather.or(Weather::ALL.iter().copied().find(|t| has(t.name()))),

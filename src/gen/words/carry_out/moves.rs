@@ -3,15 +3,15 @@
 
 use glam::DVec2;
 
-use super::super::plan::{Plan, nowhere};
+use super::super::plan::Plan;
 use super::super::reading::{Anchor as Said, Destination, Place, Relation, Thing, Way};
 use super::super::remark::Remark;
 use super::super::resolve::{Spare, kind_of};
 use super::super::stage::Stage;
-use crate::generation::text::description::{Anchor, ObjectSpec, Stated};
-use crate::generation::text::edit::TextEdit;
-use crate::generation::text::holds::{ego, overlap_m, role_of};
-use crate::generation::text::place::stands;
+use crate::generation::place::description::{Anchor, ObjectSpec, Stated};
+use crate::generation::place::holds::{ego, overlap_m, role_of};
+use crate::generation::place::rules::stands;
+use crate::generation::words::text_edit::TextEdit;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 use crate::scene::{BevLayer, BoxId, Class, SceneBox};
 
@@ -371,7 +371,6 @@ impl Stage<'_> {
                 anchor,
                 and,
                 distance_m,
-                span: nowhere(),
             });
         };
         for place in places {
@@ -477,7 +476,6 @@ impl Stage<'_> {
             anchor: Anchor::Lane(role),
             and: None,
             distance_m: None,
-            span: nowhere(),
         };
         // Turned against the traffic it belongs to another lane; else the lane stays.
         let sideways = spec.relations.iter().any(|r| match r.relation {
@@ -528,7 +526,6 @@ impl Stage<'_> {
                 anchor: Anchor::Ego,
                 and: None,
                 distance_m: None,
-                span: nowhere(),
             });
             out.push(kept);
         }

@@ -8,7 +8,7 @@ use super::super::reading::{
 };
 use super::Grammar;
 use super::things::state_of;
-use crate::generation::text::description::{Density, Environment, Road, TimeOfDay, Weather};
+use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
 use crate::scene::graph::ObjectState;
 
 type Found = Option<(What, usize)>;
@@ -117,13 +117,20 @@ impl Grammar<'_> {
             match t.quantity {
                 Quantity::N(_) | Quantity::Range(..) | Quantity::Some | Quantity::Many => {}
                 // (a bare plural in a new scene is some)
-                Quantity::All if prompt && self.after("all", i).is_none() && self.after("the", i).is_none() => {
+                Quantity::All
+                    if prompt && self.after("all", i).is_none() && self.after("the", i).is_none() =>
+                {
                     t.quantity = Quantity::Some;
                 }
                 Quantity::Unsaid if prompt => t.quantity = Quantity::N(1),
                 _ => return None,
             }
-            if t.other || t.pick.is_some() || !t.except.is_empty() || t.noun == Noun::It || t.noun == Noun::One {
+            if t.other
+                || t.pick.is_some()
+                || !t.except.is_empty()
+                || t.noun == Noun::It
+                || t.noun == Noun::One
+            {
                 return None;
             }
         }
@@ -168,15 +175,32 @@ impl Grammar<'_> {
 
     fn verb(&self, verb: &str, i: usize) -> Vec<Found> {
         let who = |places: bool| self.list(i, places);
-        let there = |list: &[Thing]| list.iter().all(|t| t.quantity != Quantity::Unsaid && !matches!(t.quantity, Quantity::Some | Quantity::Many));
+        let there = |list: &[Thing]| {
+            list.iter().all(|t| {
+                t.quantity != Quantity::Unsaid && !matches!(t.quantity, Quantity::Some | Quantity::Many)
+            })
+        };
         match verb {
             "add" => vec![self.new(i)],
-            "remove" => vec![who(true).filter(|w| there(&w.0)).map(|(who, end)| {
-                (What::Remove { who }, self.after("gone", end).unwrap_or(end))
-            })],
-            "keep" => vec![who(true).filter(|w| there(&w.0)).map(|(who, end)| (What::Keep { who }, end))],
+            "remove" => vec![
+                who(true)
+                    .filter(|w| there(&w.0))
+                    .map(|(who, end)| (What::Remove { who }, self.after("gone", end).unwrap_or(end))),
+            ],
+            "keep" => vec![
+                who(true)
+                    .filter(|w| there(&w.0))
+                    .map(|(who, end)| (What::Keep { who }, end)),
+            ],
             "leave" => vec![who(true).filter(|w| there(&w.0)).map(|(who, end)| {
-                let tail = ["as it is", "as they are", "alone", "where it is", "where they are", "there"];
+                let tail = [
+                    "as it is",
+                    "as they are",
+                    "alone",
+                    "where it is",
+                    "where they are",
+                    "there",
+                ];
                 let end = tail.iter().find_map(|t| self.exactly(t, end)).unwrap_or(end);
                 (What::Leave { who }, end)
             })],
@@ -186,7 +210,10 @@ impl Grammar<'_> {
             "set" => vec![self.painted(i, false), self.painted(i, true)],
             "park" => vec![self.parked(i)],
             "stop" => vec![who(true).filter(|w| there(&w.0)).map(|(who, end)| {
-                let look = Look { state: Some(ObjectState::Waiting), ..Look::default() };
+                let look = Look {
+                    state: Some(ObjectState::Waiting),
+                    ..Look::default()
+                };
                 (What::Set { who, look }, end)
             })],
             "swap" => vec![self.swapped(i)],
@@ -249,7 +276,11 @@ impl Grammar<'_> {
                 return Some((Destination::By { way, metres }, end));
             }
         }
-        let start = if self.word(i) == "to" && self.place(i).is_none() { i + 1 } else { i };
+        let start = if self.word(i) == "to" && self.place(i).is_none() {
+            i + 1
+        } else {
+            i
+        };
         let (mut places, mut end) = (Vec::new(), start);
         while let Some((place, next)) = self.place(end) {
             places.push(place);
@@ -260,7 +291,11 @@ impl Grammar<'_> {
 
     fn moved(&self, i: usize, places: bool) -> Found {
         let (who, end) = self.list(i, places)?;
-        if !who.iter().all(|t| t.quantity.is_definite() || t.noun == Noun::It || matches!(t.quantity, Quantity::N(_)) && t.pick.is_some()) {
+        if !who.iter().all(|t| {
+            t.quantity.is_definite()
+                || t.noun == Noun::It
+                || matches!(t.quantity, Quantity::N(_)) && t.pick.is_some()
+        }) {
             return None;
         }
         let (to, end) = self.destination(end)?;
@@ -284,15 +319,30 @@ impl Grammar<'_> {
 
     fn look(&self, i: usize) -> Option<(Look, usize)> {
         if let Some((paint, end)) = self.paint(i) {
-            return Some((Look { paint: Some(paint), ..Look::default() }, end));
+            return Some((
+                Look {
+                    paint: Some(paint),
+                    ..Look::default()
+                },
+                end,
+            ));
         }
         let (state, end) = self.symbol("state", i)?;
-        Some((Look { state: state_of(state), ..Look::default() }, end))
+        Some((
+            Look {
+                state: state_of(state),
+                ..Look::default()
+            },
+            end,
+        ))
     }
 
     fn painted(&self, i: usize, places: bool) -> Found {
         let (who, end) = self.list(i, places)?;
-        if !who.iter().all(|t| t.quantity.is_definite() || t.noun == Noun::It || matches!(t.quantity, Quantity::N(_))) {
+        if !who
+            .iter()
+            .all(|t| t.quantity.is_definite() || t.noun == Noun::It || matches!(t.quantity, Quantity::N(_)))
+        {
             return None;
         }
         let end = if self.word(end) == "in" { end + 1 } else { end };
@@ -304,14 +354,27 @@ impl Grammar<'_> {
         let (who, end) = self.list(i, false)?;
         if who.iter().all(|t| t.quantity.is_definite() || t.noun == Noun::It) {
             if let Some((Destination::To(places), end)) = self.destination(end) {
-                return Some((What::Move { who, to: Destination::To(places) }, end));
+                return Some((
+                    What::Move {
+                        who,
+                        to: Destination::To(places),
+                    },
+                    end,
+                ));
             }
-            let look = Look { state: Some(ObjectState::Parked), ..Look::default() };
+            let look = Look {
+                state: Some(ObjectState::Parked),
+                ..Look::default()
+            };
             return self.is_end(end).then_some((What::Set { who, look }, end));
         }
         let (what, end) = self.new(i)?;
-        let What::Add { mut things } = what else { return None };
-        things.iter_mut().for_each(|t| t.state = Some(ObjectState::Parked));
+        let What::Add { mut things } = what else {
+            return None;
+        };
+        things
+            .iter_mut()
+            .for_each(|t| t.state = Some(ObjectState::Parked));
         Some((What::Add { things }, end))
     }
 
@@ -338,8 +401,14 @@ impl Grammar<'_> {
     fn statement(&self, i: usize) -> Found {
         let mut best: Found = None;
         for places in [false, true] {
-            let Some((who, end)) = self.list(i, places) else { continue };
-            let there = |t: &Thing| t.quantity.is_definite() || matches!(t.noun, Noun::It | Noun::One) || matches!(t.quantity, Quantity::N(_)) && self.word(i + 1) == "of";
+            let Some((who, end)) = self.list(i, places) else {
+                continue;
+            };
+            let there = |t: &Thing| {
+                t.quantity.is_definite()
+                    || matches!(t.noun, Noun::It | Noun::One)
+                    || matches!(t.quantity, Quantity::N(_)) && self.word(i + 1) == "of"
+            };
             if !who.iter().all(there) {
                 continue;
             }
@@ -364,21 +433,38 @@ impl Grammar<'_> {
         let is = self.after("becomes", end);
         let at = is.unwrap_or(end);
         if let Some((look, end)) = self.look(at).filter(|(_, e)| self.is_end(*e)) {
-            out.push((What::Set { who: who.clone(), look }, end));
+            out.push((
+                What::Set {
+                    who: who.clone(),
+                    look,
+                },
+                end,
+            ));
         }
         if let Some((to, end)) = self.destination(at).filter(|(_, e)| self.is_end(*e)) {
             let to = match to {
                 // ("the bus is on the right": it goes there)
-                Destination::By { way: Way::Left, metres: None } => Destination::To(vec![ego_side(Relation::Left)]),
-                Destination::By { way: Way::Right, metres: None } => Destination::To(vec![ego_side(Relation::Right)]),
-                Destination::By { way: Way::Forward, metres: None } => Destination::To(vec![ego_side(Relation::Ahead)]),
+                Destination::By {
+                    way: Way::Left,
+                    metres: None,
+                } => Destination::To(vec![ego_side(Relation::Left)]),
+                Destination::By {
+                    way: Way::Right,
+                    metres: None,
+                } => Destination::To(vec![ego_side(Relation::Right)]),
+                Destination::By {
+                    way: Way::Forward,
+                    metres: None,
+                } => Destination::To(vec![ego_side(Relation::Ahead)]),
                 to => to,
             };
             out.push((What::Move { who: who.clone(), to }, end));
         }
         if is.is_some()
             && let Some((things, end)) = self.list(at, false).filter(|(_, e)| self.is_end(*e))
-            && things.iter().all(|t| matches!(t.quantity, Quantity::N(_)) && !t.other)
+            && things
+                .iter()
+                .all(|t| matches!(t.quantity, Quantity::N(_)) && !t.other)
         {
             out.push((What::Replace { who, things }, end));
         }

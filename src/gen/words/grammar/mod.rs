@@ -115,7 +115,10 @@ impl Grammar<'_> {
     }
 
     fn separators(&self, mut i: usize) -> usize {
-        while matches!(self.word(i), "," | "and" | "then" | "but" | "&" | "+" | "plus" | "while" | "-" | "–" | "(" | ")") {
+        while matches!(
+            self.word(i),
+            "," | "and" | "then" | "but" | "&" | "+" | "plus" | "while" | "-" | "–" | "(" | ")"
+        ) {
             i += 1;
         }
         i

@@ -2,8 +2,8 @@
 
 use super::super::lexicon::Lexicon;
 use super::super::notation::anchor_of;
-use super::super::reading::{Anchor, Place, Relation};
 use super::super::reading::Quantity;
+use super::super::reading::{Anchor, Place, Relation};
 use super::Grammar;
 use crate::scene::graph::LaneRole;
 
@@ -52,7 +52,13 @@ impl Grammar<'_> {
                 None if at.is_some() => end,
                 None => return None,
             };
-            return Some((Place { metres: Some(metres), ..to_ego(Relation::At) }, end));
+            return Some((
+                Place {
+                    metres: Some(metres),
+                    ..to_ego(Relation::At)
+                },
+                end,
+            ));
         }
         let (mut place, end) = self.plain_place(i)?;
         // "ahead of me at 20 m", "behind the bus, 5 m away"
@@ -69,7 +75,10 @@ impl Grammar<'_> {
     }
 
     fn plain_place(&self, i: usize) -> Option<(Place, usize)> {
-        let by_relation = self.table.all_at("rel", self.tokens, i).find_map(|(name, end)| self.related(name, end));
+        let by_relation = self
+            .table
+            .all_at("rel", self.tokens, i)
+            .find_map(|(name, end)| self.related(name, end));
         let by_ego = self.table.all_at("ego", self.tokens, i).find_map(|(name, end)| {
             let relation = Relation::of(name)?;
             // ("left" alone is a side only where nothing follows that it could be of)
@@ -106,25 +115,46 @@ impl Grammar<'_> {
                 Anchor::Crossing => {
                     return match relation {
                         Relation::On | Relation::Crossing => Some((
-                            Place { relation: Relation::On, to: Some(anchor), and: None, metres: None },
+                            Place {
+                                relation: Relation::On,
+                                to: Some(anchor),
+                                and: None,
+                                metres: None,
+                            },
                             end,
                         )),
                         _ => place(anchor, end),
                     };
                 }
                 Anchor::Junction => true,
-                Anchor::Lane(LaneRole::Road) => matches!(relation, Relation::On | Relation::Crossing | Relation::Blocking),
-                _ => matches!(relation, Relation::On | Relation::Blocking | Relation::Near | Relation::NextTo),
+                Anchor::Lane(LaneRole::Road) => {
+                    matches!(relation, Relation::On | Relation::Crossing | Relation::Blocking)
+                }
+                _ => matches!(
+                    relation,
+                    Relation::On | Relation::Blocking | Relation::Near | Relation::NextTo
+                ),
             };
-            return if fits && !crossing { place(anchor, end) } else { None };
+            return if fits && !crossing {
+                place(anchor, end)
+            } else {
+                None
+            };
         }
-        if crossing || matches!(relation, Relation::On | Relation::Blocking | Relation::Crossing | Relation::Waiting) {
+        if crossing
+            || matches!(
+                relation,
+                Relation::On | Relation::Blocking | Relation::Crossing | Relation::Waiting
+            )
+        {
             return None;
         }
         if let Some(end) = self.ego(end) {
             return place(Anchor::Ego, end);
         }
-        if self.after("each_other", end).is_some() && matches!(relation, Relation::Facing | Relation::Near | Relation::NextTo) {
+        if self.after("each_other", end).is_some()
+            && matches!(relation, Relation::Facing | Relation::Near | Relation::NextTo)
+        {
             let end = self.after("each_other", end)?;
             return place(Anchor::EachOther, end);
         }
@@ -135,19 +165,35 @@ impl Grammar<'_> {
     fn between(&self, i: usize) -> Option<(Place, usize)> {
         let one = |i: usize| match self.ego(i) {
             Some(end) => Some((Anchor::Ego, end)),
-            None => self.thing(i, false).map(|(t, end)| (Anchor::Thing(Box::new(t)), end)),
+            None => self
+                .thing(i, false)
+                .map(|(t, end)| (Anchor::Thing(Box::new(t)), end)),
         };
         let (first, end) = one(i)?;
-        let second = if self.word(end) == "and" { one(end + 1) } else { None };
+        let second = if self.word(end) == "and" {
+            one(end + 1)
+        } else {
+            None
+        };
         let place = |to, and, end| {
-            let place = Place { relation: Relation::Between, to: Some(to), and, metres: None };
+            let place = Place {
+                relation: Relation::Between,
+                to: Some(to),
+                and,
+                metres: None,
+            };
             Some((place, end))
         };
         match (first, second) {
             (first, Some((second, end))) => place(first, Some(second), end),
             (Anchor::Thing(t), None) => {
-                let several = matches!(t.quantity, Quantity::TheN(n) | Quantity::N(n) if n > 1) || t.quantity == Quantity::All;
-                if several { place(Anchor::Thing(t), None, end) } else { None }
+                let several = matches!(t.quantity, Quantity::TheN(n) | Quantity::N(n) if n > 1)
+                    || t.quantity == Quantity::All;
+                if several {
+                    place(Anchor::Thing(t), None, end)
+                } else {
+                    None
+                }
             }
             _ => None,
         }

@@ -16,8 +16,14 @@ pub(super) struct Table {
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let mut kinds: HashMap<&str, HashMap<&str, &str>> = HashMap::new();
     let text = include_str!("../../../../assets/words/grammar.txt");
-    for (key, phrases) in text.lines().filter(|l| !l.starts_with('#')).filter_map(|l| l.split_once(": ")) {
-        let Some((kind, symbol)) = key.split_once(' ') else { continue };
+    for (key, phrases) in text
+        .lines()
+        .filter(|l| !l.starts_with('#'))
+        .filter_map(|l| l.split_once(": "))
+    {
+        let Some((kind, symbol)) = key.split_once(' ') else {
+            continue;
+        };
         let of = kinds.entry(kind).or_default();
         for phrase in phrases.split(", ") {
             of.entry(phrase).or_insert(symbol);

@@ -45,6 +45,11 @@ impl Grammar<'_> {
             let quantity = if many { Quantity::All } else { Quantity::The };
             return Some((Thing::new(Noun::It).with(quantity), end));
         }
+        if let ("#", Some(n)) = (self.word(i), self.tokens.get(i + 1).and_then(|t| t.value)) {
+            let mut t = Thing::new(Noun::Thing).with(Quantity::The);
+            t.id = Some(n as u32);
+            return Some((t, i + 2));
+        }
         let (mut t, i) = self.before_noun(i)?;
         let (noun, many, mut i) = self.noun(i, &t)?;
         t.noun = noun;
@@ -69,14 +74,21 @@ impl Grammar<'_> {
         let mut t = Thing::new(Noun::Thing);
         let number = |i: usize| {
             let token = self.tokens.get(i)?;
-            let v = token.value.filter(|v| !token.is_length && v.fract() == 0.0 && (0.0..1e6).contains(v))?;
+            let v = token
+                .value
+                .filter(|v| !token.is_length && v.fract() == 0.0 && (0.0..1e6).contains(v))?;
             Some(v as u32)
         };
         // "two to four", "3-5", "between three and five"
         let range = |i: usize| {
-            let from = if self.word(i) == "between" || self.word(i) == "from" { i + 1 } else { i };
+            let from = if self.word(i) == "between" || self.word(i) == "from" {
+                i + 1
+            } else {
+                i
+            };
             let a = number(from)?;
-            let joint = matches!(self.word(from + 1), "to" | "-" | "–" | "or") || from > i && self.word(from + 1) == "and";
+            let joint = matches!(self.word(from + 1), "to" | "-" | "–" | "or")
+                || from > i && self.word(from + 1) == "and";
             let b = number(from + 2).filter(|b| joint && *b > a)?;
             Some((a, b, from + 3))
         };
@@ -144,7 +156,11 @@ impl Grammar<'_> {
                 i += 1;
             }
             if let Some((size, end)) = self.symbol("size", i).filter(|_| t.size.is_none()) {
-                t.size = Some(if size == "large" { SizeHint::Large } else { SizeHint::Small });
+                t.size = Some(if size == "large" {
+                    SizeHint::Large
+                } else {
+                    SizeHint::Small
+                });
                 i = end;
             } else if let Some((state, end)) = self.symbol("state", i).filter(|_| t.state.is_none()) {
                 t.state = state_of(state);
@@ -153,7 +169,8 @@ impl Grammar<'_> {
                 t.paint = Some(PaintWish::Is(paint));
                 i = end;
             } else if self.word(i) == "oncoming" && self.noun(i + 1, &t).is_some() {
-                t.places.push(super::places::to_ego(super::super::reading::Relation::Oncoming));
+                t.places
+                    .push(super::places::to_ego(super::super::reading::Relation::Oncoming));
                 i += 1;
             } else {
                 return Some((t, i));
@@ -202,9 +219,14 @@ impl Grammar<'_> {
             {
                 t.except = not;
                 i = end;
-            } else if self.word(i) == "," && self.place(i + 1).is_some() && self.thing(i + 1, false).is_none() {
+            } else if self.word(i) == "," && self.place(i + 1).is_some() && self.thing(i + 1, false).is_none()
+            {
                 i += 1;
-            } else if self.word(i) == "and" && !t.places.is_empty() && self.place(i + 1).is_some() && self.thing(i + 1, false).is_none() {
+            } else if self.word(i) == "and"
+                && !t.places.is_empty()
+                && self.place(i + 1).is_some()
+                && self.thing(i + 1, false).is_none()
+            {
                 i += 1;
             } else {
                 return i;

@@ -6,7 +6,7 @@ use super::super::reading::{
     Relation, Thing, Turn, Way, What,
 };
 use super::{SIZES, STATES, anchors, paint, plain};
-use crate::generation::text::description::{Density, Environment, Road, TimeOfDay, Weather};
+use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
 use crate::scene::graph::{ObjectState, SizeHint};
 
 /// Why a line is no reading.

@@ -1,0 +1,236 @@
+//! What was typed, as it was read both ways: as a change of the scene at hand and as a new scene. Chips change the reading
+//! itself, not the words.
+
+use crate::app::text::{self, Edited, Prompted};
+use crate::generation::words::hear::{By, Heard};
+use crate::generation::words::reading::{Quantity, Reading, Thing, What};
+use crate::scene::{BoxId, Scene, SceneRev};
+
+/// Both readings of a text.
+pub struct Both {
+    /// The text.
+    pub text: String,
+    /// As a new scene; an error in one line.
+    pub prompted: Result<Prompted, String>,
+    /// As a change, with what it would do to the scene of this revision.
+    pub edited: Result<Edited, String>,
+    rev: SceneRev,
+    seed: u64,
+}
+
+impl Both {
+    /// Reads a text both ways.
+    pub fn of(text: &str, scene: &Scene, seed: u64) -> Self {
+        let line = |e: anyhow::Error| format!("{e:#}");
+        Self {
+            prompted: text::read(text).map_err(line),
+            edited: text::read_edit(text, scene, seed).map_err(line),
+            text: text.to_owned(),
+            rev: scene.rev,
+            seed,
+        }
+    }
+
+    /// Carries the change out anew where the scene or the seed is another one.
+    pub fn follow(&mut self, scene: &Scene, seed: u64) {
+        if (scene.rev, seed) == (self.rev, self.seed) {
+            return;
+        }
+        (self.rev, self.seed) = (scene.rev, seed);
+        let text = self.text.clone();
+        let again = match std::mem::replace(&mut self.edited, Err(String::new())) {
+            // (changed by hand: what was changed stays)
+            Ok(e) if e.heard.by == By::Hand => Ok(text::edited(e.heard, e.things, scene, seed)),
+            _ => text::read_edit(&text, scene, seed).map_err(|e| format!("{e:#}")),
+        };
+        self.edited = again;
+    }
+
+    /// True if the words describe a whole scene rather than a change: a road, or light and things.
+    pub fn is_described(&self) -> bool {
+        let Ok(p) = &self.prompted else { return false };
+        let acts = || p.heard.reading.acts.iter().map(|a| &a.what);
+        let road = acts().any(|w| matches!(w, What::Road { .. }));
+        let light =
+            acts().any(|w| matches!(w, What::Time { .. } | What::Weather { .. } | What::Density { .. }));
+        let things = acts().any(|w| matches!(w, What::Add { .. }));
+        let changes = self.edited.as_ref().is_ok_and(|e| {
+            let acts = e.heard.reading.acts.iter().map(|a| &a.what);
+            acts.into_iter().any(|w| {
+                !matches!(
+                    w,
+                    What::Add { .. }
+                        | What::Time { .. }
+                        | What::Weather { .. }
+                        | What::Has { .. }
+                        | What::No { .. }
+                        | What::Road { .. }
+                )
+            })
+        });
+        things && (road || light) && !changes
+    }
+
+    /// True if the words are rather a change of what is there than a scene of their own.
+    pub fn is_change(&self) -> bool {
+        let sure = |acts: &[crate::generation::words::reading::Act]| {
+            acts.iter().map(|a| a.confidence).fold(1.0, f64::min)
+        };
+        match (&self.prompted, &self.edited) {
+            (Err(_), _) => true,
+            (_, Err(_)) => false,
+            (Ok(p), Ok(e)) => {
+                let adds =
+                    |w: &What| matches!(w, What::Add { .. } | What::Time { .. } | What::Weather { .. });
+                let changes = e.heard.reading.acts.iter().any(|a| !adds(&a.what));
+                changes && sure(&e.heard.reading.acts) >= 0.5 * sure(&p.heard.reading.acts)
+            }
+        }
+    }
+
+    /// Another reading of the new scene.
+    pub fn set_prompt(&mut self, change: impl FnOnce(&mut Reading)) {
+        if let Ok(p) = &self.prompted {
+            let heard = by_hand(&p.heard, change);
+            self.prompted = Ok(Prompted::new(heard, p.background.clone()));
+        }
+    }
+
+    /// Another reading of the change.
+    pub fn set_edit(&mut self, scene: &Scene, change: impl FnOnce(&mut Reading)) {
+        if let Ok(e) = &self.edited {
+            let heard = by_hand(&e.heard, change);
+            self.edited = Ok(text::edited(heard, e.things.clone(), scene, self.seed));
+        }
+    }
+}
+
+fn by_hand(heard: &Heard, change: impl FnOnce(&mut Reading)) -> Heard {
+    let mut heard = heard.clone();
+    change(&mut heard.reading);
+    heard.by = By::Hand;
+    heard.other = None;
+    heard.unsure.clear();
+    heard
+}
+
+/// The reading with an act less, or with one thing of an act less.
+pub fn take_out(reading: &mut Reading, act: usize, thing: Option<usize>) {
+    let Some(a) = reading.acts.get_mut(act) else {
+        return;
+    };
+    if let (Some(k), What::Add { things } | What::No { who: things }) = (thing, &mut a.what)
+        && things.len() > 1
+    {
+        if k < things.len() {
+            things.remove(k);
+        }
+        return;
+    }
+    reading.acts.remove(act);
+}
+
+/// Another number of a thing that is added.
+pub fn set_number(reading: &mut Reading, act: usize, thing: usize, n: u32) {
+    if n == 0 {
+        take_out(reading, act, Some(thing));
+        return;
+    }
+    if let Some(What::Add { things }) = reading.acts.get_mut(act).map(|a| &mut a.what)
+        && let Some(t) = things.get_mut(thing)
+    {
+        t.quantity = Quantity::N(n);
+    }
+}
+
+/// Says which box is meant where several fit: `asked` is the thing in notation.
+pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
+    use crate::generation::words::notation;
+    let Some(a) = reading.acts.get_mut(act) else {
+        return;
+    };
+    let mut done = false;
+    each_thing(&mut a.what, &mut |t| {
+        if !done && notation::thing(t) == asked {
+            t.id = Some(id.0);
+            (t.quantity, t.pick, t.nth, t.other) = (Quantity::The, None, None, false);
+            t.places.clear();
+            done = true;
+        }
+    });
+}
+
+/// Calls `f` with every thing of an act, anchors included.
+fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
+    use crate::generation::words::reading::{Anchor, Destination, Place, Turn};
+    fn places(list: &mut [Place], f: &mut dyn FnMut(&mut Thing)) {
+        for p in list {
+            for anchor in [p.to.as_mut(), p.and.as_mut()].into_iter().flatten() {
+                if let Anchor::Thing(t) = anchor {
+                    one(t, f);
+                }
+            }
+        }
+    }
+    fn one(t: &mut Thing, f: &mut dyn FnMut(&mut Thing)) {
+        f(t);
+        places(&mut t.places, f);
+        t.except.iter_mut().for_each(|e| one(e, f));
+    }
+    match what {
+        What::Add { things: a }
+        | What::No { who: a }
+        | What::Remove { who: a }
+        | What::Keep { who: a }
+        | What::Leave { who: a }
+        | What::Count { who: a, .. } => a.iter_mut().for_each(|t| one(t, f)),
+        What::Replace { who, things } => who.iter_mut().chain(things).for_each(|t| one(t, f)),
+        What::Move { who, to } => {
+            who.iter_mut().for_each(|t| one(t, f));
+            if let Destination::To(list) = to {
+                places(list, f);
+            }
+        }
+        What::Turn { who, turn } => {
+            who.iter_mut().for_each(|t| one(t, f));
+            if let Turn::To(list) = turn {
+                places(list, f);
+            }
+        }
+        What::Set { who, look } => {
+            who.iter_mut().for_each(|t| one(t, f));
+            if let Some(t) = &mut look.paint_of {
+                one(t, f);
+            }
+        }
+        What::Swap { one: a, other: b } => {
+            one(a, f);
+            one(b, f);
+        }
+        What::Has { places: list, .. } => places(list, f),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::words::notation::{parse, write};
+
+    #[test]
+    fn chips_and_answers_change_the_reading() {
+        let mut r = parse("add 2 car and 1 bus ( behind the truck ) ; time night").expect("valid");
+        set_number(&mut r, 0, 0, 5);
+        answer(&mut r, 0, "the truck", BoxId(7));
+        assert_eq!(
+            write(&r),
+            "add 5 car and 1 bus ( behind the truck #7 ) ; time night"
+        );
+        take_out(&mut r, 0, Some(0));
+        take_out(&mut r, 1, None);
+        assert_eq!(write(&r), "add 1 bus ( behind the truck #7 )");
+        set_number(&mut r, 0, 0, 0);
+        assert!(r.acts.is_empty());
+        take_out(&mut r, 3, Some(1));
+    }
+}

@@ -1,0 +1,279 @@
+//! What a prompt says about a scene: X-Scene's fields (arXiv 2506.13558, appendix B) as plain data.
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
+use crate::scene::{BoxLabel, Class};
+
+macro_rules! named {
+    ($(#[$doc:meta])* $name:ident { $($variant:ident = $text:literal),+ $(,)? }) => {
+        $(#[$doc])*
+        #[expect(missing_docs, reason = "the names say it")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+        pub enum $name { $(#[serde(rename = $text)] $variant),+ }
+        impl $name {
+            /// Name as in files.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $text),+ }
+            }
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+        }
+    };
+}
+
+named!(
+    /// When.
+    TimeOfDay { Dawn = "dawn", Day = "day", Dusk = "dusk", Night = "night" }
+);
+named!(
+    /// Under which sky; the names are those that pictures are made under.
+    Weather { Clear = "clear", Overcast = "overcast", Rain = "rain", Snow = "snow", Fog = "fog", Sandstorm = "sandstorm" }
+);
+named!(
+    /// Among what.
+    Environment {
+        Downtown = "downtown", Urban = "urban", Suburban = "suburban", Residential = "residential", Rural = "rural",
+        Highway = "highway", Industrial = "industrial", Nature = "nature",
+    }
+);
+named!(
+    /// Kind of road: the templates of procedural worlds.
+    Road {
+        Straight = "straight", Curve = "curve", TJunction = "t-junction", Intersection = "intersection",
+        Roundabout = "roundabout", Highway = "highway", Parking = "parking", Suburb = "suburb",
+    }
+);
+named!(
+    /// How much is going on beside what is named.
+    Density { Empty = "empty", Light = "light", Busy = "busy", Jam = "jam" }
+);
+
+/// How many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Count {
+    /// Least number that fits what was said.
+    pub min: u32,
+    /// Number that is placed.
+    pub n: u32,
+    /// Largest number that fits what was said.
+    pub max: u32,
+}
+
+impl Count {
+    /// Exactly `n`.
+    pub fn exactly(n: u32) -> Self {
+        Self { min: n, n, max: n }
+    }
+    /// About `n`.
+    pub fn about(min: u32, n: u32, max: u32) -> Self {
+        Self { min, n, max }
+    }
+    /// True if one number was named.
+    pub fn is_exact(self) -> bool {
+        self.min == self.max
+    }
+}
+
+/// What a place is described by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Anchor {
+    /// The ego vehicle.
+    Ego,
+    /// Another object of the description, by index.
+    Object(usize),
+    /// A lane or strip.
+    Lane(LaneRole),
+    /// A pedestrian crossing.
+    Crossing,
+    /// A junction.
+    Junction,
+}
+
+/// One relation that was said.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stated {
+    /// Which.
+    pub relation: RelationKind,
+    /// To what.
+    pub anchor: Anchor,
+    /// The second one of `between`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub and: Option<Anchor>,
+    /// Distance, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance_m: Option<f64>,
+}
+
+/// Objects of one kind that were named together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectSpec {
+    /// Their class.
+    pub class: Class,
+    /// How many.
+    pub count: Count,
+    /// What they do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state: Option<ObjectState>,
+    /// Larger or smaller than usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<SizeHint>,
+    /// What they are called and how they are painted.
+    #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
+    pub label: BoxLabel,
+    /// Length, width and height of this kind, m, where it differs from its class.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size_m: Option<[f64; 3]>,
+    /// Where they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub relations: Vec<Stated>,
+}
+
+impl ObjectSpec {
+    /// One of them in words: `red taxi`.
+    pub fn called(&self) -> String {
+        self.label.called(&self.class.label())
+    }
+}
+
+/// A class (or only those of it that are parked or moving) that must not occur.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Absent {
+    /// The classes.
+    pub classes: Vec<Class>,
+    /// Only those that do this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub state: Option<ObjectState>,
+}
+
+/// What the road must have.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RoadWish {
+    /// Kind of road.
+    pub kind: Option<Road>,
+    /// Lanes in both directions together, or of the ego's direction if `one_way`.
+    pub lanes: Option<u32>,
+    /// Traffic in the ego's direction only.
+    pub one_way: bool,
+    /// Narrower than usual.
+    pub narrow: bool,
+    /// Wider than usual.
+    pub wide: bool,
+    /// A pedestrian crossing.
+    pub crossing: bool,
+    /// Sidewalks.
+    pub sidewalk: bool,
+    /// No pedestrian crossing.
+    pub no_crossing: bool,
+    /// No sidewalks.
+    pub no_sidewalk: bool,
+    /// The lane that the ego vehicle drives in among those of its direction: left, right, or `Ego` for the middle.
+    pub own_lane: Option<LaneRole>,
+}
+
+/// A structured description of a scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Description {
+    /// When.
+    pub time_of_day: Option<TimeOfDay>,
+    /// Under which sky.
+    pub weather: Option<Weather>,
+    /// Among what.
+    pub environment: Option<Environment>,
+    /// The objects.
+    pub foreground: Vec<ObjectSpec>,
+    /// What must not occur.
+    pub absent: Vec<Absent>,
+    /// Buildings, trees and the like.
+    pub background: Vec<String>,
+    /// How much else is going on.
+    pub density: Option<Density>,
+    /// The road.
+    pub road: RoadWish,
+    /// The statements about places, in words.
+    pub layout: Vec<String>,
+    /// One sentence.
+    #[serde(rename = "abstract")]
+    pub summary: String,
+}
+
+impl Description {
+    /// Text for [`Scene::prompt`](crate::scene::Scene): time, weather and surroundings.
+    pub fn style(&self) -> String {
+        let words = [
+            self.time_of_day.map(TimeOfDay::name),
+            self.weather.map(Weather::name),
+            self.environment.map(Environment::name),
+        ];
+        words.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// True if nothing was said that changes a scene.
+    pub fn is_empty(&self) -> bool {
+        let empty = Description {
+            summary: self.summary.clone(),
+            ..Self::default()
+        };
+        *self == empty
+    }
+
+    /// Fills `layout` and `summary` from the rest.
+    pub fn summarise(&mut self) {
+        let name = |a: &Anchor| match a {
+            Anchor::Ego => "ego".to_string(),
+            Anchor::Object(i) => self
+                .foreground
+                .get(*i)
+                .map_or("object".into(), |o| format!("{} ({i})", o.called())),
+            Anchor::Lane(role) => serde_json::to_value(role)
+                .ok()
+                .and_then(|v| v.as_str().map(|s| s.replace('_', " ")))
+                .map_or("lane".into(), |s| {
+                    if s.contains("side") || s == "road" || s == "carpark" {
+                        s
+                    } else {
+                        format!("{s} lane")
+                    }
+                }),
+            Anchor::Crossing => "crossing".into(),
+            Anchor::Junction => "junction".into(),
+        };
+        let mut lines = Vec::new();
+        for (i, o) in self.foreground.iter().enumerate() {
+            for r in &o.relations {
+                let far = r.distance_m.map_or(String::new(), |d| format!(", {d:.1} m"));
+                let and = r
+                    .and
+                    .as_ref()
+                    .map_or(String::new(), |a| format!(" and {}", name(a)));
+                let relation = r.relation.name().replace('_', " ");
+                lines.push(format!(
+                    "{} ({i}) {relation} {}{and}{far}",
+                    o.called(),
+                    name(&r.anchor)
+                ));
+            }
+        }
+        let mut parts: Vec<String> = Vec::new();
+        parts.extend(self.road.kind.map(|r| r.name().to_string()));
+        parts.extend(self.density.map(|d| d.name().to_string()));
+        let style = self.style();
+        parts.extend((!style.is_empty()).then_some(style));
+        for o in &self.foreground {
+            parts.push(format!("{} x {}", o.count.n, o.called()));
+        }
+        for a in &self.absent {
+            let names: Vec<String> = a.classes.iter().map(|c| c.label()).collect();
+            parts.push(format!("no {}", names.join(", no ")));
+        }
+        self.layout = lines;
+        self.summary = parts.join("; ");
+    }
+}

@@ -1,0 +1,12 @@
+//! From a description to boxes on a map by rules: scene graph, road, and the best free place for every object.
+
+pub mod description;
+pub mod holds;
+pub mod lanes;
+pub mod road;
+pub mod rules;
+mod spots;
+mod spots_strips;
+#[cfg(test)]
+mod tests;
+pub mod to_graph;

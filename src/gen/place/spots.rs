@@ -1,0 +1,480 @@
+//! Places that an object of a class may take: along lanes, at their edge, on sidewalks, crossings and car parks, and
+//! around what it was said to stand by.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DVec2, DVec3};
+
+use super::holds::{Target, course};
+use super::lanes::{LaneMap, REACH_M};
+use super::rules::{is_roadside, stands};
+use crate::generation::world::draw::Draw;
+use crate::scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
+use crate::scene::{BevLayer, Class};
+
+/// A place to try.
+#[derive(Clone, Copy, Debug)]
+pub struct Spot {
+    /// Centre, m.
+    pub p: DVec2,
+    /// Heading.
+    pub yaw_rad: f64,
+    /// How unusual it is, in the unit of the placer's cost.
+    pub cost: f64,
+    /// What stands here stands still.
+    pub still: bool,
+    /// What is here moves.
+    pub moves: bool,
+    /// People may be on the road here.
+    pub on_road: bool,
+    /// Any ground will do.
+    pub anywhere: bool,
+}
+
+pub(super) struct Gather<'a, 'b> {
+    pub(super) map: &'a LaneMap<'a>,
+    pub(super) size_m: DVec3,
+    pub(super) draw: &'b mut Draw,
+    pub(super) out: Vec<Spot>,
+    pub(super) base: Spot,
+    against: bool,               // it comes towards the ego
+    with: bool,                  // it goes the ego's way
+    own_way: bool,               // traffic of the ego's direction is meant
+    pub(super) either_way: bool, // how it faces was said: what is parked may face against the traffic
+}
+
+/// Places for an object with what was said of it (targets that are placed already).
+pub fn spots(
+    map: &LaneMap<'_>,
+    o: &ObjectNode,
+    size_m: DVec3,
+    stated: &[(Edge, Option<Target>)],
+    draw: &mut Draw,
+) -> Vec<Spot> {
+    let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
+    let lane_role = stated.iter().find_map(|(e, t)| match t {
+        Some(Target::Lane(role))
+            if matches!(
+                e.relation,
+                RelationKind::On
+                    | RelationKind::ParkedOn
+                    | RelationKind::Crossing
+                    | RelationKind::Blocking
+                    | RelationKind::Across
+            ) =>
+        {
+            Some((e.relation, *role))
+        }
+        _ => None,
+    });
+    let still =
+        o.state.is_some_and(|s| s != ObjectState::Moving) || stated.iter().any(|(e, _)| stands(e.relation));
+    let moves = o.state == Some(ObjectState::Moving) || said(RelationKind::Crossing);
+    let mut g = Gather {
+        map,
+        size_m,
+        draw,
+        out: Vec::new(),
+        base: Spot {
+            p: DVec2::ZERO,
+            yaw_rad: 0.0,
+            cost: 0.0,
+            still,
+            moves: moves && !still,
+            on_road: false,
+            anywhere: false,
+        },
+        // (who looks at the ego vehicle from ahead in its own lane stands against the traffic)
+        against: said(RelationKind::OppositeDirection)
+            || said(RelationKind::Facing) && said(RelationKind::InFrontOf),
+        with: said(RelationKind::SameDirection),
+        either_way: [
+            RelationKind::Facing,
+            RelationKind::FacingAway,
+            RelationKind::OppositeDirection,
+            RelationKind::SameDirection,
+        ]
+        .into_iter()
+        .any(said),
+        own_way: (said(RelationKind::InFrontOf)
+            || said(RelationKind::Behind)
+            || said(RelationKind::Blocking))
+            && !said(RelationKind::OppositeDirection)
+            && !said(RelationKind::Facing),
+    };
+    let thing = stated.iter().find_map(|(e, t)| match t {
+        Some(Target::Thing(b)) => Some((e, *b)),
+        _ => None,
+    });
+    let near_thing = stated.iter().any(|(e, t)| {
+        matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX)
+            && !matches!(
+                e.relation,
+                RelationKind::FarFrom | RelationKind::Facing | RelationKind::FacingAway
+            )
+    });
+    match o.class {
+        Class::Pedestrian => {
+            let crossing = said(RelationKind::Crossing)
+                || stated
+                    .iter()
+                    .any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
+            match lane_role {
+                _ if crossing => g.crossing_people(),
+                Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role))
+                    if !is_walk(role) =>
+                {
+                    g.base.on_road = true;
+                    g.lanes(role, true);
+                }
+                _ => g.walks(),
+            }
+            let on_junction = |(e, t): &(Edge, Option<Target>)| {
+                matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On
+            };
+            if stated.iter().any(on_junction) {
+                g.amid_junction();
+            }
+            if (near_thing || thing.is_some()) && !crossing {
+                g.base.anywhere = near_thing;
+                g.base.on_road = true;
+                g.base.cost += 1.5;
+                g.around(stated);
+                g.base.cost -= 1.5;
+            }
+            if g.out.is_empty() {
+                // No sidewalk here: the verge will do.
+                g.base.anywhere = true;
+                g.verge();
+            }
+        }
+        Class::TrafficCone | Class::Barrier => {
+            g.base.still = true;
+            g.base.moves = false;
+            match lane_role {
+                Some((
+                    RelationKind::Blocking | RelationKind::On | RelationKind::ParkedOn | RelationKind::Across,
+                    role,
+                )) if !is_walk(role) && !is_roadside(role) && role != LaneRole::Carpark => {
+                    g.across_lane(role, o.class);
+                }
+                Some((_, role)) if is_walk(role) => {
+                    g.base.anywhere = true;
+                    g.walks();
+                }
+                Some((_, role)) => g.edge(role),
+                None => {
+                    if said(RelationKind::Blocking) {
+                        g.across_lane(LaneRole::Ego, o.class);
+                    } else {
+                        g.edge(LaneRole::Roadside);
+                        g.base.cost = 0.8;
+                        g.across_lane(LaneRole::Road, o.class);
+                        g.base.cost = 0.0;
+                    }
+                }
+            }
+            if near_thing || g.out.is_empty() {
+                g.base.anywhere = true;
+                g.around(stated);
+            }
+        }
+        _ => g.vehicle(o, lane_role, stated, near_thing),
+    }
+    let mut out = g.out;
+    // The named way to look.
+    for (e, t) in stated {
+        let toward = match e.relation {
+            RelationKind::Facing => 0.0,
+            RelationKind::FacingAway => PI,
+            _ => continue,
+        };
+        let Some(Target::Thing(b)) = t else {
+            continue;
+        };
+        if o.class == Class::Pedestrian {
+            let at = if b.id.0 == u32::MAX {
+                DVec2::ZERO
+            } else {
+                b.center_m.truncate()
+            };
+            out.iter_mut()
+                .for_each(|s| s.yaw_rad = (at - s.p).to_angle() + toward);
+        }
+    }
+    out.retain(|s| s.p.abs().max_element() < REACH_M);
+    out
+}
+
+fn is_walk(role: LaneRole) -> bool {
+    matches!(
+        role,
+        LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
+    )
+}
+
+impl Gather<'_, '_> {
+    pub(super) fn push(&mut self, p: DVec2, yaw_rad: f64) {
+        self.out.push(Spot {
+            p,
+            yaw_rad,
+            ..self.base
+        });
+    }
+
+    fn vehicle(
+        &mut self,
+        o: &ObjectNode,
+        lane_role: Option<(RelationKind, LaneRole)>,
+        stated: &[(Edge, Option<Target>)],
+        near_thing: bool,
+    ) {
+        let parked =
+            o.state == Some(ObjectState::Parked) || lane_role.is_some_and(|r| r.0 == RelationKind::ParkedOn);
+        let two_wheels = matches!(o.class, Class::Bicycle | Class::Motorcycle);
+        let across =
+            lane_role.is_some_and(|(r, _)| matches!(r, RelationKind::Crossing | RelationKind::Across));
+        match lane_role {
+            Some((_, LaneRole::Carpark)) => self.carpark(),
+            Some((_, role)) if is_roadside(role) => self.edge(role),
+            Some((_, role)) if is_walk(role) && o.class == Class::Bicycle => self.walks(),
+            // Left on the sidewalk, along the road.
+            Some((relation, role)) if is_walk(role) => {
+                (self.base.still, self.base.moves, self.base.anywhere) = (true, false, true);
+                let map = self.map;
+                self.cells(BevLayer::Walkway.bit(), 2, |p| {
+                    map.nearest(p).map_or(0.0, |l| l.dir.to_angle())
+                });
+                self.base.anywhere = false;
+                if relation == RelationKind::ParkedOn {
+                    self.edge(LaneRole::Roadside); // half on it will do
+                }
+            }
+            Some((_, role)) if across => {
+                self.crosswise(role);
+                self.lanes(LaneRole::Cross, false);
+            }
+            Some((RelationKind::ParkedOn, role)) => {
+                self.lanes(role, false);
+                self.edge(LaneRole::Roadside);
+            }
+            Some((relation, role)) => {
+                self.lanes(role, false);
+                if relation == RelationKind::Blocking {
+                    // A bus across the road blocks it too.
+                    self.base.cost += 1.0;
+                    self.crosswise(role);
+                    self.base.cost -= 1.0;
+                }
+            }
+            None if parked => {
+                // (where there are parking spaces they are used first)
+                let lot = self.map.layout.count(BevLayer::CarparkArea) > 200;
+                let (edge, spaces) = if lot { (0.8, 0.0) } else { (0.0, 0.4) };
+                self.base.cost += edge;
+                self.edge(LaneRole::Roadside);
+                self.base.cost += spaces - edge;
+                self.carpark();
+                self.base.cost += 0.4 - spaces;
+                if stated
+                    .iter()
+                    .any(|(e, _)| !matches!(e.relation, RelationKind::ParkedOn | RelationKind::On))
+                {
+                    self.base.cost += 1.6;
+                    self.lanes(LaneRole::Road, false);
+                    self.base.cost -= 1.6;
+                }
+                self.base.cost -= 0.4;
+            }
+            None => {
+                self.lanes(LaneRole::Road, false);
+                if two_wheels || o.state == Some(ObjectState::Waiting) || o.state.is_none() {
+                    self.base.cost += 1.5;
+                    self.edge(LaneRole::Roadside);
+                    self.base.cost -= 1.5;
+                }
+            }
+        }
+        if stated.iter().any(|(e, _)| e.relation == RelationKind::WaitingAt) {
+            self.lanes(LaneRole::Road, false);
+            self.keep_out_of_junctions();
+        }
+        let measured = stated.iter().any(|(e, _)| {
+            e.distance_m.is_some()
+                && matches!(
+                    e.relation,
+                    RelationKind::LeftOf | RelationKind::RightOf | RelationKind::Near
+                )
+        });
+        if (near_thing || measured && self.base.still) && (parked || two_wheels || self.base.still) {
+            self.base.cost += 2.0;
+            self.around(stated);
+            self.base.cost -= 2.0;
+        }
+    }
+
+    /// Who waits does so where nobody crosses: in no junction, on no stripes.
+    fn keep_out_of_junctions(&mut self) {
+        const NEAR_M: f64 = 4.5;
+        let half_m = self.size_m.x / 2.0;
+        for s in &mut self.out {
+            let along = DVec2::from_angle(s.yaw_rad);
+            let stripes = |t: f64| {
+                self.map
+                    .has(BevLayer::PedCrossing.bit(), s.p + along * (half_m * t))
+            };
+            if [-1.0, -0.5, 0.0, 0.5, 1.0].into_iter().any(stripes) {
+                s.cost += 4.0;
+            }
+            let in_the_way = self
+                .map
+                .points
+                .iter()
+                .any(|l| l.p.distance_squared(s.p) < NEAR_M * NEAR_M && l.dir.dot(along).abs() < 0.7);
+            s.cost += if in_the_way { 4.0 } else { 0.0 };
+        }
+    }
+
+    /// Along lanes, in their direction.
+    fn lanes(&mut self, role: LaneRole, people: bool) {
+        let from = self.out.len();
+        self.lanes_of(role, people);
+        if self.own_way {
+            // "ahead" and "behind" mean our side of the road unless more was said.
+            for s in &mut self.out[from..] {
+                s.cost += if s.yaw_rad.cos() < -0.3 { 4.0 } else { 0.0 };
+            }
+        }
+    }
+
+    fn lanes_of(&mut self, role: LaneRole, people: bool) {
+        let roadwide = matches!(role, LaneRole::Road);
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            if !roadwide && l.role != role {
+                continue;
+            }
+            // Traffic keeps to its lane; the ego's is kept free where nothing else was said.
+            let extra = if roadwide && l.role == LaneRole::Ego && l.p.length() < 9.0 {
+                1.5
+            } else {
+                0.0
+            };
+            let across = self.draw.range(-0.25, 0.25);
+            let wrong_way = self.against
+                && matches!(l.role, LaneRole::Ego | LaneRole::Left | LaneRole::Right)
+                && l.role == role
+                // overtaking
+                || self.with && l.role == LaneRole::Oncoming && role == LaneRole::Oncoming;
+            let yaw = l.dir.to_angle()
+                + if wrong_way { PI } else { 0.0 }
+                + if people {
+                    self.draw.range(-PI, PI)
+                } else {
+                    self.draw.range(-0.02, 0.02)
+                };
+            let old = self.base.cost;
+            self.base.cost += extra;
+            self.push(l.p + l.dir.perp() * across, yaw);
+            if people {
+                for off in [-1.2, 1.2] {
+                    self.push(l.p + l.dir.perp() * off, yaw);
+                }
+            }
+            self.base.cost = old;
+        }
+        if matches!(role, LaneRole::Road) && self.map.points.is_empty() {
+            self.cells(BevLayer::DrivableArea.bit(), 2, |_| 0.0);
+        }
+    }
+
+    fn crossing_people(&mut self) {
+        self.base.on_road = true;
+        // On a crossing if there is one, else right across the road.
+        for outline in &self.map.crossings {
+            let mid = outline.iter().sum::<DVec2>() / outline.len() as f64;
+            let long = outline
+                .iter()
+                .zip(outline.iter().cycle().skip(1))
+                .map(|(a, b)| *b - *a)
+                .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))
+                .unwrap_or(DVec2::Y);
+            let axis = long.normalize_or(DVec2::Y);
+            for k in -6..=6 {
+                for w in [-0.9, 0.0, 0.9] {
+                    let p = mid + axis * (long.length() / 2.0 * f64::from(k) / 7.0) + axis.perp() * w;
+                    for turn in [0.0, PI] {
+                        self.push(p, axis.to_angle() + turn);
+                    }
+                }
+            }
+        }
+        let old = self.base.cost;
+        self.base.cost += 1.0;
+        for i in 0..self.map.points.len() {
+            let l = self.map.points[i];
+            for turn in [FRAC_PI_2, -FRAC_PI_2] {
+                for off in [-1.3, 0.0, 1.3] {
+                    self.push(l.p + l.dir.perp() * off, l.dir.to_angle() + turn);
+                }
+            }
+        }
+        self.base.cost = old;
+    }
+
+    /// Around the things that were named.
+    fn around(&mut self, stated: &[(Edge, Option<Target>)]) {
+        for (e, t) in stated {
+            let Some(Target::Thing(b)) = t else {
+                continue;
+            };
+            let center = b.center_m.truncate();
+            let axis = course(b);
+            let half = b.size_m / 2.0;
+            let own = self.size_m / 2.0;
+            let yaw =
+                if b.class == Class::Pedestrian || matches!(b.class, Class::TrafficCone | Class::Barrier) {
+                    self.map.nearest(center).map_or(0.0, |l| l.dir.to_angle())
+                } else {
+                    axis.to_angle()
+                };
+            for along in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] {
+                for extra in [0.6, 1.2, 2.0, 3.0, 4.5] {
+                    let (fx, fy) = (half.x + own.x + extra, half.y + own.y + extra);
+                    for p in [
+                        center + axis * fx + axis.perp() * along * 0.5,
+                        center - axis * fx + axis.perp() * along * 0.5,
+                        center + axis.perp() * fy + axis * along,
+                        center - axis.perp() * fy + axis * along,
+                    ] {
+                        self.push(p, yaw);
+                    }
+                }
+            }
+            if let (RelationKind::Between, Some(other)) = (e.relation, e.and) {
+                let _ = other;
+            }
+            if let Some(d) = e.distance_m {
+                let origin = if b.id.0 == u32::MAX { DVec2::ZERO } else { center };
+                for k in 0..48 {
+                    let turn = DVec2::from_angle(f64::from(k) * PI / 24.0);
+                    self.push(origin + turn * d.min(80.0), yaw);
+                }
+            }
+        }
+        let things: Vec<DVec2> = stated
+            .iter()
+            .filter(|(e, _)| e.relation == RelationKind::Between)
+            .filter_map(|(_, t)| match t {
+                Some(Target::Thing(b)) => Some(b.center_m.truncate()),
+                _ => None,
+            })
+            .collect();
+        if let Some(a) = things.first() {
+            for k in 0..80 {
+                let turn = DVec2::from_angle(f64::from(k) * PI / 8.0);
+                self.push(*a + turn * (1.0 + f64::from(k) * 0.3), 0.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Readings on a scene: who is meant, what is asked back, what stays.
+
+use std::collections::BTreeMap;
+
+use super::super::describe::described;
+use super::super::notation::parse;
+use super::super::remark::Remark;
+use super::super::stage::{OpenScene, Outcome};
+use super::super::text_edit::TextEdit;
+use super::carry_out;
+use crate::generation::place::road;
+use crate::generation::place::rules::place_with;
+use crate::generation::place::to_graph::to_graph;
+use crate::scene::{BevLayout, BoxId, Class, Paint, SceneBox};
+
+struct Base {
+    layout: BevLayout,
+    boxes: BTreeMap<BoxId, SceneBox>,
+}
+
+impl Base {
+    fn new(line: &str) -> Self {
+        let d = described(line).expect("a reading");
+        let g = to_graph(&d, 1);
+        let chosen = road::choose(&d, &g.graph, 1);
+        let p = place_with(&g.graph, &chosen.layout, 1, &g.sizes_m, &[]);
+        Self {
+            layout: chosen.layout,
+            boxes: p.boxes.iter().map(|b| (b.id, *b)).collect(),
+        }
+    }
+
+    fn edit(&self, line: &str) -> Outcome {
+        let scene = OpenScene {
+            boxes: &self.boxes,
+            layout: &self.layout,
+            prompt: "day",
+        };
+        carry_out(&parse(line).unwrap_or_else(|e| panic!("{line}: {e}")), &scene, 1)
+    }
+
+    fn of(&self, class: Class) -> Vec<BoxId> {
+        self.boxes
+            .values()
+            .filter(|b| b.class == class)
+            .map(|b| b.id)
+            .collect()
+    }
+}
+
+#[test]
+fn edits_hit_what_they_name() {
+    let base = Base::new("add 1 bus ( ahead ego 15m ) and 3 parked car and 2 person ( on sidewalk )");
+    let bus = base.of(Class::Bus)[0];
+    assert_eq!(base.edit("remove the bus").edits, [TextEdit::Remove { id: bus }]);
+    assert_eq!(base.edit("remove all parked car").edits.len(), 3);
+    assert_eq!(base.edit("count car to 1").edits.len(), 2);
+    assert_eq!(base.edit("no person").edits.len(), 2);
+    assert_eq!(base.edit("add 2 cone ( ahead the bus )").edits.len(), 2);
+    assert_eq!(base.edit("keep the bus").edits.len(), 5);
+    assert_eq!(
+        base.edit("remove all car ( except the nearest one )").edits.len(),
+        2
+    );
+    assert_eq!(base.edit("count person times 2").edits.len(), 2);
+    let asked = base.edit("remove the parked car");
+    assert!(asked.edits.is_empty());
+    assert_eq!(asked.questions[0].text, "3 parked cars: which?");
+    assert_eq!(asked.questions[0].candidates.len(), 3);
+    let old = base.boxes[&bus];
+    match base.edit("move the bus by left 3m").edits.as_slice() {
+        [TextEdit::Move { id, center_m, .. }] => {
+            assert_eq!(*id, bus);
+            assert!((center_m.y - old.center_m.y - 3.0).abs() < 1e-9);
+        }
+        other => panic!("{other:?}"),
+    }
+    match base.edit("turn the bus left 90deg").edits.as_slice() {
+        [TextEdit::Move { yaw_rad, .. }] => {
+            assert!((yaw_rad - old.yaw_rad - 90f64.to_radians()).abs() < 1e-9)
+        }
+        other => panic!("{other:?}"),
+    }
+    match base.edit("replace the bus with 1 truck").edits.as_slice() {
+        [TextEdit::Replace { object, .. }] => assert_eq!(object.class, Class::Truck),
+        other => panic!("{other:?}"),
+    }
+    let prompt = "night, rain".to_owned();
+    let style = base.edit("time night ; weather rain").edits;
+    assert_eq!(style.last(), Some(&TextEdit::Style { prompt }));
+    match base.edit("set the bus red").edits.as_slice() {
+        [TextEdit::Label { id, label }] => assert_eq!((*id, label.paint), (bus, Some(Paint::Red))),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn the_second_act_sees_what_the_first_left() {
+    let base = Base::new("add 1 bus ( ahead ego 15m ) and 2 person ( on sidewalk )");
+    let done = base.edit("remove the bus ; add 1 truck ( there )");
+    let stood = base.boxes[&base.of(Class::Bus)[0]].center_m;
+    match done.edits.as_slice() {
+        [TextEdit::Remove { .. }, TextEdit::Add { object }] => {
+            assert!(object.center_m.truncate().distance(stood.truncate()) < 3.0);
+        }
+        other => panic!("{other:?}"),
+    }
+    let done = base.edit("add 1 red car ( ahead ego 30m ) ; set it blue");
+    assert!(
+        matches!(done.edits.as_slice(), [TextEdit::Add { .. }, TextEdit::Label { label, .. }] if label.paint == Some(Paint::Blue))
+    );
+}
+
+#[test]
+fn what_cannot_be_done_is_remarked_and_changes_nothing() {
+    let base = Base::new("add 1 bus ( ahead ego 15m )");
+    let missing = base.edit("remove the trailer");
+    assert!(missing.edits.is_empty());
+    assert_eq!(
+        missing.remarks[0].1,
+        Remark::Nobody {
+            what: "trailer".into()
+        }
+    );
+    let outside = base.edit("move the bus by left 1000000000m");
+    assert!(outside.edits.is_empty() && matches!(outside.remarks[0].1, Remark::Outside { .. }));
+    assert!(matches!(
+        base.edit("road highway").remarks[0].1,
+        Remark::NotInEdits { .. }
+    ));
+    assert!(matches!(base.edit("time day").remarks[0].1, Remark::Already));
+    for line in [
+        "add 4000000000 car",
+        "move the bus by nearer 1000000m",
+        "turn the bus left 999999999999deg",
+        "count bus times 1000000",
+        "swap the bus and the bus",
+        "remove half bus",
+        "move it to ( there )",
+        "replace all it with 3 bus",
+        "set the bus paint_of the bus",
+        "move the bus to ( between the bus and the bus )",
+        "keep all thing ( except all thing )",
+    ] {
+        let done = base.edit(line);
+        let sound = |b: &SceneBox| b.problem().is_none();
+        for e in &done.edits {
+            if let TextEdit::Add { object } | TextEdit::Replace { object, .. } = e {
+                assert!(sound(object), "{line}: {object:?}");
+            }
+        }
+    }
+}
