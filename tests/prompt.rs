@@ -31,12 +31,12 @@ fn scenes_and_edits_from_words() {
         String::from_utf8_lossy(&made.stderr)
     );
     let made = report(&made);
-    for key in ["description", "graph", "phrases", "not_understood"] {
+    for key in ["description", "graph", "reading", "answer", "not_understood"] {
         assert!(!made[key].is_null(), "{key}: {made}");
     }
     assert_eq!(made["boxes"], 8);
     assert_eq!(made["description"]["weather"], "rain");
-    assert_eq!(made["not_understood"][0]["text"], "glorp");
+    assert_eq!(made["not_understood"][0]["words"], "glorp");
     assert!(made["occupied_voxels"].as_u64() > Some(30_000));
     sceneloom(&["prompt", text, "--seed", "3", "--json", "-o", &b]);
     assert_eq!(

@@ -19,7 +19,11 @@ impl SceneloomApp {
     /// cameras show pictures where time or weather changed: classes and depths do not know them.
     pub(super) fn apply_words(&mut self, words: &str, edits: &[Edit]) {
         let before = self.document.settled_scene().clone();
-        self.apply(step_name(words), edits);
+        let mut edits = edits.to_vec();
+        edits.push(Edit::KeepWords {
+            words: words.to_owned(),
+        });
+        self.apply(step_name(words), &edits);
         let after = self.document.settled_scene();
         self.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
         let changed = changed_boxes(before.frame(), after.frame());
@@ -42,6 +46,7 @@ impl SceneloomApp {
         let make = move || {
             let mut made = super::text::made(ask.lay_out(), ask.seed);
             told.tell(&made.laid);
+            made.scene.words = std::sync::Arc::new(vec![ask.prompt.clone()]);
             let summary = &ask.description.summary;
             made.scene.name = summary.chars().take(48).collect::<String>().into();
             Ok(made.scene)

@@ -150,8 +150,14 @@ fn checked(content: &str) -> anyhow::Result<Reading> {
     }
     // (what the notation cannot say, such as a number that is none, no reader says)
     let line = notation::write(&reading);
-    notation::parse(&line).map_err(|e| anyhow::anyhow!("{e}"))?;
-    Ok(reading)
+    if line.len() > notation::LONGEST {
+        bail!(
+            "{} letters of notation, expected at most {}",
+            line.len(),
+            notation::LONGEST
+        );
+    }
+    notation::parse(&line).map_err(|e| anyhow::anyhow!("{e}"))
 }
 
 #[cfg(test)]

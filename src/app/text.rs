@@ -64,7 +64,8 @@ impl Prompted {
 
     /// The answer in a sentence.
     pub fn answer(&self) -> String {
-        let mut text = answer(&self.heard.reading, None, &self.heard.missing);
+        let remarks = &self.described.remarks;
+        let mut text = answer(&self.heard.reading, None, remarks, &self.heard.missing);
         if self.heard.reading.acts.is_empty() {
             text.clear();
         }
@@ -91,7 +92,7 @@ pub fn doubts(heard: &Heard) -> Vec<String> {
         out.push(format!("not sure of: {}", unsure.join("; ")));
     }
     if let Some(other) = &heard.other {
-        out.push(format!("it may also mean: {}", answer(other, None, &[])));
+        out.push(format!("it may also mean: {}", answer(other, None, &[], &[])));
     }
     out
 }
@@ -185,6 +186,7 @@ impl Edited {
             parts.push(answer(
                 &self.heard.reading,
                 Some(&self.outcome),
+                &self.outcome.remarks,
                 &self.heard.missing,
             ));
         }

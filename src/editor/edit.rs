@@ -17,6 +17,10 @@ use super::checks::waive;
 use super::shape::at_least;
 use super::{immediate, junction, things};
 
+/// Texts of words that a scene keeps, and letters of each.
+const MOST_WORDS: usize = 200;
+const LONGEST_WORDS: usize = 2000;
+
 /// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -178,6 +182,11 @@ pub enum Edit {
         /// The text; empty means none.
         prompt: String,
     },
+    /// Notes words that were typed to change the scene.
+    KeepWords {
+        /// The words.
+        words: String,
+    },
     /// Replaces the sensors of the vehicle. No voxel changes.
     SetRig {
         /// The new ones.
@@ -291,6 +300,13 @@ impl Edit {
                     scene.rev = crate::scene::SceneRev::fresh();
                     scene.prompt = prompt.as_str().into();
                 }
+            }
+            Self::KeepWords { words } => {
+                scene.rev = crate::scene::SceneRev::fresh();
+                let kept = Arc::make_mut(&mut scene.words);
+                kept.push(words.chars().take(LONGEST_WORDS).collect());
+                let over = kept.len().saturating_sub(MOST_WORDS);
+                kept.drain(..over);
             }
             Self::SetRig { rig } => {
                 if let Some(problem) = rig.problem() {
@@ -476,6 +492,7 @@ impl Edit {
             Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
             // These concern the scene, see `apply`.
             Self::SetPrompt { .. }
+            | Self::KeepWords { .. }
             | Self::SetRig { .. }
             | Self::ClearScenery { .. }
             | Self::AddThings { .. }

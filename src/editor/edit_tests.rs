@@ -113,6 +113,7 @@ fn json_forms_are_those_of_the_command_line() {
         json!({"unlock_voxels": {"cells": [[1, 2, 3]]}}),
         json!({"clear_paint": {}}),
         json!({"set_prompt": {"prompt": ""}}),
+        json!({"keep_words": {"words": "remove the bus"}}),
     ] {
         let edit = parse(form.clone()).expect("a documented form");
         assert_eq!(serde_json::to_value(&edit).expect("plain data"), form);

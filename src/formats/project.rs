@@ -3,7 +3,7 @@
 //! | entry | holds |
 //! |---|---|
 //! | `manifest.json` | `format`, `version`, `frames` |
-//! | `scene.json` | all but the grids: name, prompt, seed, rig, background, and of each frame time, pose, boxes, polylines |
+//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background, and of each frame time, pose, boxes, polylines |
 //! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
 //! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, 40,000 little-endian numbers in m; only if it is not flat |
 //! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
@@ -66,6 +66,8 @@ struct AnyManifest {
 struct SceneHeader {
     name: Arc<str>,
     prompt: Arc<str>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    words: Vec<String>,
     seed: u64,
     current: usize,
     rig: Arc<SensorRig>,
@@ -158,6 +160,7 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
     let header = SceneHeader {
         name: scene.name.clone(),
         prompt: scene.prompt.clone(),
+        words: scene.words.to_vec(),
         seed: scene.seed,
         current: scene.current,
         rig: scene.rig.clone(),
@@ -286,6 +289,7 @@ fn read<R: Read + Seek>(reader: R) -> Result<Scene, ProjectError> {
         rev: SceneRev::fresh(),
         name: header.name,
         prompt: header.prompt,
+        words: Arc::new(header.words),
         rig: header.rig,
         background: Arc::new(background),
         frames,

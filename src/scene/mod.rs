@@ -137,6 +137,8 @@ pub struct Scene {
     pub name: Arc<str>,
     /// Free text that describes style (time of day, weather); empty when none.
     pub prompt: Arc<str>,
+    /// What was typed to make it and to change it, in order.
+    pub words: Arc<Vec<String>>,
     /// Cameras and LiDARs.
     pub rig: Arc<SensorRig>,
     /// What stands beside the roads, in the world frame of the clip; all frames see it.
@@ -156,6 +158,7 @@ impl Scene {
             rev: SceneRev::fresh(),
             name: name.into(),
             prompt: "".into(),
+            words: Arc::default(),
             rig,
             background: Arc::default(),
             frames: vec![Arc::new(frame)],

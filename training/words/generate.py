@@ -151,7 +151,8 @@ def thing_words(s, t, anchor=False, bare=False, who=False):
     if bare:
         return core
     if "id" in t:
-        return f"#{t['id']}" if s.r.random() < 0.5 else f"{noun} #{t['id']}"
+        said = f"#{t['id']}" if t["noun"] == "thing" else f"{noun} #{t['id']}"
+        return said if t["noun"] == "thing" else s.pick(["the ", ""]) + said
     if "pick" in t:
         pick = s.pick({"nearest": ["nearest", "closest"], "farthest": ["farthest", "furthest", "most distant"], "leftmost": ["leftmost"], "rightmost": ["rightmost"], "frontmost": ["foremost", "frontmost"], "rearmost": ["rearmost", "hindmost"], "largest": ["largest", "biggest"], "smallest": ["smallest"]}[t["pick"]])
         text = f"the {pick} {s.number(n) + ' ' if isinstance(n, int) and n > 1 else ''}{core}"
@@ -297,6 +298,8 @@ def who(r, many=0.35, plain=False):
     """Something that is there."""
     t = {}
     q = r.random()
+    if q > 0.97:
+        return {"the": True, "noun": r.choice(COMMON) if r.random() < 0.5 else "thing", "id": r.randint(1, 40)}
     noun = r.choice(COMMON) if r.random() < 0.86 else r.choice([n for n in NOUNS if n not in ("one",)])
     if q < 0.05 and not plain:
         return {"the": True, "noun": "it"} if r.random() < 0.7 else {"n": "all", "noun": "it"}

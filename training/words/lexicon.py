@@ -125,6 +125,8 @@ class Speller:
         if self.known(w):
             return None
         if w not in self.memory:
+            if len(self.memory) > 20000:
+                self.memory.clear()
             best = None
             for n in (len(w), len(w) + 1, len(w) - 1):
                 for c in self.by_length.get(n, []):

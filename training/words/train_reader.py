@@ -9,6 +9,8 @@ from collections import Counter
 from pathlib import Path
 
 import torch
+import torch.distributed as dist
+import torch.multiprocessing as mp
 
 import canonical
 import generate
@@ -169,23 +171,44 @@ def validate(model, data, records, show=0):
     return right / max(1, len(items))
 
 
+def averaged(model):
+    """Gradients of all workers, averaged in place."""
+    flat = torch.cat([w.grad.reshape(-1) for w in model.parameters()])
+    dist.all_reduce(flat)
+    flat /= dist.get_world_size()
+    at = 0
+    for w in model.parameters():
+        w.grad.copy_(flat[at : at + w.numel()].view_as(w))
+        at += w.numel()
+
+
 def main():
     p = argparse.ArgumentParser()
     p.add_argument("out", type=Path)
     p.add_argument("--minutes", type=float, default=60)
-    p.add_argument("--batch", type=int, default=64)
+    p.add_argument("--batch", type=int, default=128)
     p.add_argument("--rate", type=float, default=1e-3)
     p.add_argument("--width", type=int, default=224)
     p.add_argument("--seed", type=int, default=1)
-    p.add_argument("--threads", type=int, default=2)
+    p.add_argument("--workers", type=int, default=1, help="processes of one thread each; one process has two")
     p.add_argument("--generated", type=float, default=0.45)
     p.add_argument("--sentences", type=Path, default=HERE / "readings")
     p.add_argument("--hold-out", default="", help="files of the sentences that are not learned, by name, with commas")
     p.add_argument("--share", type=float, default=1.0, help="share of the sentences that is learned, for learning curves")
     p.add_argument("--resume", action="store_true")
     a = p.parse_args()
+    if a.workers > 1:
+        mp.spawn(work, (a,), a.workers)
+    else:
+        work(0, a)
+
+
+def work(rank, a):
+    """One of the workers; the first one validates and saves."""
     torch.manual_seed(a.seed)
-    torch.set_num_threads(a.threads)
+    torch.set_num_threads(1 if a.workers > 1 else 2)
+    if a.workers > 1:
+        dist.init_process_group("gloo", f"tcp://127.0.0.1:{29500 + a.seed}", rank=rank, world_size=a.workers)
     held = [n for n in a.hold_out.split(",") if n]
     train, test = [], {}
     for path in sorted(a.sentences.glob("*.jsonl")):
@@ -200,7 +223,7 @@ def main():
     a.out.mkdir(parents=True, exist_ok=True)
     last = a.out / "last.pt"
     state = torch.load(last, weights_only=False) if a.resume and last.exists() else None
-    data = Data(train, a.seed + (state["step"] if state else 0), a.generated, state["words"] if state else None)
+    data = Data(train, a.seed + 1000003 * rank + (state["step"] if state else 0), a.generated, state["words"] if state else None)
     model = Reader(Config(len(data.words) + 3, a.width))
     opt = torch.optim.AdamW(model.parameters(), lr=a.rate, betas=(0.9, 0.98), weight_decay=0.01)
     step, seen, spent = 0, 0, 0.0
@@ -208,41 +231,60 @@ def main():
         model.load_state_dict(state["model"])
         opt.load_state_dict(state["opt"])
         step, seen, spent = state["step"], state["seen"], state["spent"]
-    print(f"{len(train)} sentences, {len(data.words)} words, {sum(w.numel() for w in model.parameters()):,} weights", flush=True)
+    if rank == 0:
+        print(f"{len(train)} sentences, {len(data.words)} words, {sum(w.numel() for w in model.parameters()):,} weights", flush=True)
     began, mean, saved = time.time(), 0.0, time.time()
     budget = a.minutes * 60
-    while time.time() - began < budget:
+    over = False
+    while not over:
+        # (all workers go by the clock of the first, or their weights would part)
+        clock = torch.tensor([(spent + time.time() - began) / (spent + budget)], dtype=torch.float64)
+        if a.workers > 1:
+            dist.broadcast(clock, 0)
         pool = []
         while len(pool) < a.batch * 8:
             item = data.item(data.record())
             if item:
                 pool.append(item)
         pool.sort(key=lambda i: len(i[0][0]) + len(i[1]))
+        # (the same order of lengths on all workers: none waits for another)
         batches = [pool[k : k + a.batch] for k in range(0, len(pool), a.batch)]
-        data.r.shuffle(batches)
+        random.Random(step).shuffle(batches)
         for items in batches:
             x, said, wanted = batch(items)
-            progress = (spent + time.time() - began) / (spent + budget)
-            rate = a.rate * min(1.0, (step + 1) / 400) * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * min(1.0, progress))))
+            rate = a.rate * min(1.0, (step + 1) / 400) * (0.02 + 0.98 * 0.5 * (1 + math.cos(math.pi * min(1.0, clock.item()))))
             for g in opt.param_groups:
                 g["lr"] = rate
-            logp = model(x, said)
+            with torch.autocast("cpu", dtype=torch.bfloat16):
+                logp = model(x, said).float()
             keep = wanted >= 0
             loss = -logp.gather(2, wanted.clamp(min=0)[..., None])[..., 0][keep].mean() - 0.02 * logp[keep].mean()
             opt.zero_grad()
             loss.backward()
+            if a.workers > 1:
+                averaged(model)
             torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)
             opt.step()
             step += 1
-            seen += len(items)
+            seen += len(items) * a.workers
             mean = loss.item() if step == 1 else 0.98 * mean + 0.02 * loss.item()
-            if step % 100 == 0:
+            if step % 100 == 0 and rank == 0:
                 print(f"step {step} seen {seen} loss {mean:.4f} {seen / (spent + time.time() - began):.0f}/s", flush=True)
-        if time.time() - saved > 600 or time.time() - began >= budget:
-            saved = time.time()
+        # (all workers stop together)
+        flags = torch.tensor([float(time.time() - began >= budget), float(time.time() - saved > 600)])
+        if a.workers > 1:
+            dist.broadcast(flags, 0)
+        over = flags[0] > 0
+        if (over or flags[1] > 0) and rank == 0:
             shares = {n: round(validate(model, data, t), 3) for n, t in test.items()}
             print(f"step {step} seen {seen} right {shares}", flush=True)
             torch.save({"model": model.state_dict(), "opt": opt.state_dict(), "words": data.words, "step": step, "seen": seen, "spent": spent + time.time() - began, "config": vars(model.c)}, last)
+        if over or flags[1] > 0:
+            saved = time.time()
+            if a.workers > 1:
+                dist.barrier()
+    if rank > 0:
+        return
     for n, t in test.items():
         print(n, validate(model, data, t, show=40 if n != "generated" else 0))
 

@@ -5,18 +5,23 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use serde_json::json;
 
+use super::generate::{full_params, models, run_and_adopt};
 use super::new::class_counts;
+use super::progress::Progress;
 use super::{Common, Outcome, Stop, output};
 use crate::app::endpoint::{self, Endpoint};
 use crate::app::open;
 use crate::app::prompting::{How, Keep, Placer};
 use crate::app::text::{self, Prompted, doubts};
-use crate::editor::Document;
+use crate::editor::{Document, Edit};
 use crate::formats::project;
+use crate::generation::job::GenParams;
+use crate::generation::pipeline::OccPipeline;
 use crate::generation::words::hear::{Heard, against};
 use crate::generation::words::notation;
 use crate::generation::words::reader::Mode;
 use crate::generation::words::stage::Candidate;
+use crate::scene::Scene;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -33,6 +38,9 @@ pub struct Prompt {
     /// Scene to write.
     #[arg(short, long, value_name = "S.loom", required_unless_present_any = ["reading", "schema"])]
     output: Option<PathBuf>,
+    /// Let the networks generate the occupancy: all of a new scene, and of an edited one what the edits touch.
+    #[arg(long)]
+    generate: bool,
     /// Print what the text asks for, as values and as a line of notation, and write nothing.
     #[arg(long)]
     reading: bool,
@@ -84,7 +92,7 @@ impl Prompt {
         &self,
         heard: Option<&Heard>,
         mode: Mode,
-        scene: Option<&crate::scene::Scene>,
+        scene: Option<&Scene>,
     ) -> anyhow::Result<Option<Heard>> {
         let (Some(url), Some(model)) = (&self.endpoint, &self.model) else {
             return Ok(None);
@@ -95,7 +103,23 @@ impl Prompt {
             timeout: std::time::Duration::try_from_secs_f64(self.timeout_s).context("--timeout-s")?,
         };
         let reading = endpoint::read(&endpoint, &self.text, mode, scene)?;
-        Ok(Some(against(reading, heard, mode)))
+        Ok(Some(against(&self.text, reading, heard, mode)?))
+    }
+
+    /// The occupancy of a document's scene by the networks, and how it went.
+    fn generated(
+        &self,
+        mut document: Document,
+        params: GenParams,
+    ) -> anyhow::Result<(Scene, serde_json::Value)> {
+        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let params = GenParams {
+            seed: self.seed,
+            ..params
+        };
+        let result = run_and_adopt(&mut document, &mut pipeline, params, &Progress::new(&self.common))?;
+        let report = json!({ "network_calls": result.report.network_calls, "wall_s": result.report.wall_s });
+        Ok((Scene::clone(document.scene()), report))
     }
 
     /// Prints a reading.
@@ -138,7 +162,15 @@ impl Prompt {
             ..How::default()
         };
         let description = std::mem::take(&mut prompted.described.description);
-        let made = text::make(&self.text, &description, self.seed, &how);
+        let mut made = text::make(&self.text, &description, self.seed, &how);
+        made.scene.words = std::sync::Arc::new(vec![self.text.clone()]);
+        let generated = if self.generate {
+            let (scene, report) = self.generated(Document::new(made.scene), full_params())?;
+            made.scene = scene;
+            Some(report)
+        } else {
+            None
+        };
         let shortfalls = text::shortfalls(&made.laid);
         project::save(&output, &made.scene)?;
         let remarks: Vec<String> = prompted
@@ -168,6 +200,7 @@ impl Prompt {
             "boxes": frame.boxes.len(),
             "occupied_voxels": frame.occupancy.count_set(),
             "classes": class_counts(&made.scene),
+            "generated": generated,
             "seed": self.seed,
             "file": output,
         });
@@ -231,9 +264,11 @@ impl Prompt {
         let output = self.output.clone().context("-o is missing")?;
         let edits = edited.edits();
         let mut document = Document::new(scene);
-        document
-            .apply_all("Edit by text", &edits)
-            .context("edit by text")?;
+        if !edits.is_empty() {
+            let words = self.text.clone();
+            let all = [edits.as_slice(), &[Edit::KeepWords { words }]].concat();
+            document.apply_all("Edit by text", &all).context("edit by text")?;
+        }
         let questions = &edited.outcome.questions;
         let asked: Vec<&str> = questions
             .iter()
@@ -242,6 +277,11 @@ impl Prompt {
             .collect();
         // With an open question nothing is written: the answer may change what the rest means.
         let write = asked.is_empty() && !edits.is_empty();
+        let (mut scene, mut generated) = (document.scene().clone(), None);
+        if self.generate && write {
+            let (made, report) = self.generated(document, GenParams::default())?;
+            (scene, generated) = (std::sync::Arc::new(made), Some(report));
+        }
         let remarks: Vec<String> = edited.outcome.remarks.iter().map(|r| r.1.to_string()).collect();
         let (notes, answer) = (doubts(&edited.heard), edited.answer());
         let report = json!({
@@ -255,14 +295,15 @@ impl Prompt {
             "not_understood": edited.heard.missing,
             "notes": notes,
             "remarks": edited.outcome.remarks.iter().map(|r| &r.1).collect::<Vec<_>>(),
-            "boxes": document.scene().frame().boxes.len(),
-            "things": document.scene().background.len(),
-            "prompt": *document.scene().prompt,
+            "boxes": scene.frame().boxes.len(),
+            "things": scene.background.len(),
+            "prompt": *scene.prompt,
+            "generated": generated,
             "seed": self.seed,
             "file": write.then_some(&output),
         });
         if write {
-            project::save(&output, document.scene())?;
+            project::save(&output, &scene)?;
         }
         output::report(&self.common, &report, || {
             let mut lines = vec![answer.clone()];

@@ -3,6 +3,7 @@
 
 use crate::app::text::{self, Edited, Prompted};
 use crate::generation::words::hear::{By, Heard};
+use crate::generation::words::notation;
 use crate::generation::words::reading::{Quantity, Reading, Thing, What};
 use crate::scene::{BoxId, Scene, SceneRev};
 
@@ -31,19 +32,21 @@ impl Both {
         }
     }
 
-    /// Carries the change out anew where the scene or the seed is another one.
-    pub fn follow(&mut self, scene: &Scene, seed: u64) {
+    /// Carries the change out anew where the scene or the seed is another one; true if it was.
+    pub fn follow(&mut self, scene: &Scene, seed: u64) -> bool {
         if (scene.rev, seed) == (self.rev, self.seed) {
-            return;
+            return false;
         }
         (self.rev, self.seed) = (scene.rev, seed);
-        let text = self.text.clone();
-        let again = match std::mem::replace(&mut self.edited, Err(String::new())) {
-            // (changed by hand: what was changed stays)
-            Ok(e) if e.heard.by == By::Hand => Ok(text::edited(e.heard, e.things, scene, seed)),
-            _ => text::read_edit(&text, scene, seed).map_err(|e| format!("{e:#}")),
+        let again = text::read_edit(&self.text, scene, seed);
+        self.edited = match (again, &self.edited) {
+            // (changed by hand: what was changed stays, but boxes of another scene are not meant)
+            (Ok(new), Ok(old)) if old.heard.by == By::Hand && !names_boxes(&old.heard.reading) => {
+                Ok(text::edited(old.heard.clone(), new.things, scene, seed))
+            }
+            (again, _) => again.map_err(|e| format!("{e:#}")),
         };
-        self.edited = again;
+        true
     }
 
     /// True if the words describe a whole scene rather than a change: a road, or light and things.
@@ -65,26 +68,34 @@ impl Both {
                         | What::Has { .. }
                         | What::No { .. }
                         | What::Road { .. }
+                        | What::Density { .. }
+                        | What::Env { .. }
+                        | What::Lanes { .. }
+                        | What::OneWay
+                        | What::Narrow
+                        | What::Wide
+                        | What::OwnLane { .. }
                 )
             })
         });
         things && (road || light) && !changes
     }
 
-    /// True if the words are rather a change of what is there than a scene of their own.
-    pub fn is_change(&self) -> bool {
-        let sure = |acts: &[crate::generation::words::reading::Act]| {
-            acts.iter().map(|a| a.confidence).fold(1.0, f64::min)
-        };
-        match (&self.prompted, &self.edited) {
-            (Err(_), _) => true,
-            (_, Err(_)) => false,
-            (Ok(p), Ok(e)) => {
-                let adds =
-                    |w: &What| matches!(w, What::Add { .. } | What::Time { .. } | What::Weather { .. });
-                let changes = e.heard.reading.acts.iter().any(|a| !adds(&a.what));
-                changes && sure(&e.heard.reading.acts) >= 0.5 * sure(&p.heard.reading.acts)
-            }
+    /// Takes what the other reader says of the new scene.
+    pub fn take_other_prompt(&mut self) {
+        if let Ok(p) = &self.prompted
+            && let Some(other) = p.heard.other.clone()
+        {
+            self.set_prompt(|r| *r = other);
+        }
+    }
+
+    /// The same of the change.
+    pub fn take_other_edit(&mut self, scene: &Scene) {
+        if let Ok(e) = &self.edited
+            && let Some(other) = e.heard.other.clone()
+        {
+            self.set_edit(scene, |r| *r = other);
         }
     }
 
@@ -143,21 +154,58 @@ pub fn set_number(reading: &mut Reading, act: usize, thing: usize, n: u32) {
     }
 }
 
-/// Says which box is meant where several fit: `asked` is the thing in notation.
+/// Says which box is meant where several fit: `asked` is the thing in notation. Of two that are meant one is named and the
+/// other is still asked for.
 pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
-    use crate::generation::words::notation;
     let Some(a) = reading.acts.get_mut(act) else {
         return;
     };
+    if let What::Remove { who }
+    | What::Keep { who }
+    | What::Leave { who }
+    | What::Set { who, .. }
+    | What::Move { who, .. }
+    | What::Turn { who, .. }
+    | What::Replace { who, .. } = &mut a.what
+        && let Some(k) = who.iter().position(|t| notation::thing(t) == asked)
+        && let Quantity::TheN(n) = who[k].quantity
+        && n > 1
+    {
+        let mut rest = who[k].clone();
+        rest.quantity = if n == 2 {
+            Quantity::The
+        } else {
+            Quantity::TheN(n - 1)
+        };
+        named(&mut who[k], id);
+        rest.except.push(who[k].clone());
+        who.insert(k + 1, rest);
+        return;
+    }
     let mut done = false;
     each_thing(&mut a.what, &mut |t| {
         if !done && notation::thing(t) == asked {
-            t.id = Some(id.0);
-            (t.quantity, t.pick, t.nth, t.other) = (Quantity::The, None, None, false);
-            t.places.clear();
+            named(t, id);
             done = true;
         }
     });
+}
+
+/// This box and no other.
+fn named(t: &mut Thing, id: BoxId) {
+    t.id = Some(id.0);
+    (t.quantity, t.pick, t.nth, t.other) = (Quantity::The, None, None, false);
+    t.places.clear();
+    t.except.clear();
+}
+
+/// True if a reading names boxes by their numbers.
+fn names_boxes(reading: &Reading) -> bool {
+    let mut found = false;
+    for act in &mut reading.clone().acts {
+        each_thing(&mut act.what, &mut |t| found |= t.id.is_some());
+    }
+    found
 }
 
 /// Calls `f` with every thing of an act, anchors included.
@@ -232,5 +280,8 @@ mod tests {
         set_number(&mut r, 0, 0, 0);
         assert!(r.acts.is_empty());
         take_out(&mut r, 3, Some(1));
+        let mut r = parse("remove the 2 car").expect("valid");
+        answer(&mut r, 0, "the 2 car", BoxId(3));
+        assert_eq!(write(&r), "remove the car #3 and the car ( except the car #3 )");
     }
 }

@@ -13,7 +13,9 @@ use crate::app::icons::section;
 use crate::app::text::doubts;
 use crate::app::theme;
 use crate::generation::place::description::{TimeOfDay, Weather};
-use crate::generation::words::answer::{sentence, thing};
+use crate::generation::words::account::Why;
+use crate::generation::words::answer::{answer, sentence, thing};
+use crate::generation::words::hear::Heard;
 use crate::generation::words::reading::What;
 use crate::scene::Scene;
 
@@ -35,6 +37,7 @@ pub struct PromptPane {
     seed: u64,
     history: Vec<String>,
     back: usize, // steps back in the history; 0 is what is typed
+    draft: String,
     read: Option<Both>,
     /// What came of the words that were carried out last, and what must be answered first.
     done: Option<String>,
@@ -121,9 +124,7 @@ impl PromptPane {
         }
         if field.changed() {
             self.back = 0;
-            (self.done, self.asks, self.offers) = (None, false, false);
-            self.notes.clear();
-            self.is_sent = false;
+            self.touched();
         }
         let (mut make, mut change) = (false, false);
         if field.has_focus() {
@@ -149,39 +150,9 @@ impl PromptPane {
             // (a whole scene was described: which is meant is asked once, with what each would do)
             (self.offers, change) = (true, false);
         }
-        let some = !self.prompt.trim().is_empty();
-        let preview = |ui: &mut Ui, name: &str, hint: &str, first: bool, says: Option<String>| {
-            let mut button = egui::Button::new(name);
-            if first {
-                button = button.fill(theme::accent_fill());
-            }
-            let clicked = ui.add_enabled(some, button).on_hover_text(hint).clicked();
-            if let Some(says) = says.filter(|_| self.offers) {
-                ui.label(egui::RichText::new(says).small().color(theme::text_weak()));
-            }
-            clicked
-        };
-        let (changes, makes) = match &self.read {
-            Some(read) if some => (
-                read.edited.as_ref().map(|e| e.answer()).ok(),
-                read.prompted.as_ref().map(|p| p.answer()).ok(),
-            ),
-            _ => (None, None),
-        };
-        let hints = [
-            "Enter: “remove the parked car”, “add two cones ahead”, “make it night”",
-            "Ctrl+Enter: road, objects and style are made from the words",
-        ];
-        if self.offers {
-            ui.label("A scene is described. Enter again changes this one, Ctrl+Enter makes a new one.");
-            change |= preview(ui, "Change this scene", hints[0], true, changes);
-            make |= preview(ui, "New scene", hints[1], false, makes);
-        } else {
-            ui.horizontal(|ui| {
-                change |= preview(ui, "Change this scene", hints[0], true, None);
-                make |= preview(ui, "New scene", hints[1], false, None);
-            });
-        }
+        let (changes, makes) = self.choices(ui);
+        change |= changes;
+        make |= makes;
         // In one flow: what they take is missed by the history and the examples below.
         ui.horizontal_wrapped(|ui| {
             let some = !self.prompt.trim().is_empty();
@@ -211,6 +182,50 @@ impl PromptPane {
         }
     }
 
+    /// The words are others now: nothing that came of those before holds.
+    fn touched(&mut self) {
+        (self.done, self.asks, self.offers, self.is_sent) = (None, false, false, false);
+        self.notes.clear();
+    }
+
+    /// The two things that words can do; where they describe a scene, with what each would do. Which was clicked.
+    fn choices(&self, ui: &mut Ui) -> (bool, bool) {
+        let some = !self.prompt.trim().is_empty();
+        let button = |ui: &mut Ui, name: &str, hint: &str, first: bool| {
+            let mut button = egui::Button::new(name);
+            if first {
+                button = button.fill(theme::accent_fill());
+            }
+            ui.add_enabled(some, button).on_hover_text(hint).clicked()
+        };
+        let hints = [
+            "Enter: “remove the parked car”, “add two cones ahead”, “make it night”",
+            "Ctrl+Enter: road, objects and style are made from the words",
+        ];
+        if !self.offers {
+            let row = ui.horizontal(|ui| {
+                let change = button(ui, "Change this scene", hints[0], true);
+                (change, button(ui, "New scene", hints[1], false))
+            });
+            return row.inner;
+        }
+        let read = self.read.as_ref();
+        let says = |ui: &mut Ui, text: Option<String>| {
+            if let Some(text) = text {
+                ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+            }
+        };
+        ui.label("A scene is described. Enter again changes this one, Ctrl+Enter makes a new one.");
+        let change = button(ui, "Change this scene", hints[0], true);
+        says(ui, read.and_then(|r| r.edited.as_ref().ok()).map(|e| e.answer()));
+        let make = button(ui, "New scene", hints[1], false);
+        says(
+            ui,
+            read.and_then(|r| r.prompted.as_ref().ok()).map(|p| p.answer()),
+        );
+        (change, make)
+    }
+
     /// Reads what is typed, if it is not read yet.
     fn listen(&mut self, scene: &Scene) {
         if self.prompt.trim().is_empty() {
@@ -235,6 +250,7 @@ impl PromptPane {
                     .plan
                     .ask(&self.prompt, &prompted.described.description, seed, scene);
                 self.done = Some(prompted.answer());
+                (self.asks, self.notes) = (false, doubts(&prompted.heard));
                 self.plan.makes(&self.prompt, seed);
                 commands.push(Command::NewFromPrompt(Box::new(ask)));
             }
@@ -307,6 +323,7 @@ impl PromptPane {
             return;
         };
         let caret = offered.take(&mut self.prompt, end);
+        self.touched();
         let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
         let at = CCursor::new(egui::text::CharIndex(caret));
         state.cursor.set_char_range(Some(CCursorRange::one(at)));
@@ -348,6 +365,8 @@ impl PromptPane {
         self.notes = doubts(&edited.heard);
         if !edits.is_empty() && !self.asks {
             commands.push(Command::ApplyWords(self.prompt.clone(), edits));
+            // (carried out again, the words are read again)
+            self.read = None;
         }
     }
 
@@ -363,11 +382,15 @@ impl PromptPane {
     fn recall(&mut self, step: i32) {
         let back = (self.back as i64 + i64::from(step)).clamp(0, self.history.len() as i64) as usize;
         if back != self.back {
+            if self.back == 0 {
+                self.draft.clone_from(&self.prompt);
+            }
             self.back = back;
             self.prompt = match back {
-                0 => String::new(),
+                0 => self.draft.clone(),
                 n => self.history[self.history.len() - n].clone(),
             };
+            self.touched();
         }
     }
 
@@ -378,20 +401,28 @@ impl PromptPane {
         if self.is_sent && self.done.is_some() && !self.plan.made_of(&self.prompt) {
             return;
         }
-        let as_change = !both.is_described() && !self.plan.made_of(&self.prompt) && both.is_change();
+        // (chips are of what Enter would do)
+        let as_change = !both.is_described() && !self.plan.made_of(&self.prompt) && both.edited.is_ok();
         let (mut gone, mut number, mut other) = (None, None, None);
+        let takes_other;
         ui.add_space(4.0);
         if as_change {
             let Ok(edited) = &both.edited else { return };
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
                 for (i, act) in edited.heard.reading.acts.iter().enumerate() {
-                    if chip(ui, &sentence(&act.what)) {
-                        gone = Some((i, None));
+                    match &act.what {
+                        What::Add { things } if things.len() > 1 => {
+                            for (k, t) in things.iter().enumerate() {
+                                gone =
+                                    gone.or(chip(ui, &format!("adds {}", thing(t))).then_some((i, Some(k))));
+                            }
+                        }
+                        what => gone = gone.or(chip(ui, &sentence(what)).then_some((i, None))),
                     }
                 }
             });
-            self.say_doubts(ui, &edited.heard);
+            takes_other = self.say_doubts(ui, &edited.heard);
         } else {
             let Ok(prompted) = &both.prompted else { return };
             self.plan.follow(&self.prompt);
@@ -436,9 +467,14 @@ impl PromptPane {
                     ui.label(egui::RichText::new(words).small().color(theme::text_weak()));
                 }
             });
-            self.say_doubts(ui, &prompted.heard);
+            takes_other = self.say_doubts(ui, &prompted.heard);
         }
         let Some(both) = &mut self.read else { return };
+        match (takes_other, as_change) {
+            (true, true) => both.take_other_edit(scene),
+            (true, false) => both.take_other_prompt(),
+            _ => {}
+        }
         if let Some((act, k)) = gone {
             match as_change {
                 true => both.set_edit(scene, |r| heard::take_out(r, act, k)),
@@ -453,21 +489,36 @@ impl PromptPane {
         }
     }
 
-    /// What of the words is doubtful or not in the reading; not again after they were carried out.
-    fn say_doubts(&self, ui: &mut Ui, heard: &crate::generation::words::hear::Heard) {
+    /// What of the words is doubtful or not in the reading; not again after they were carried out. True if what the other
+    /// reader says is taken.
+    fn say_doubts(&self, ui: &mut Ui, heard: &Heard) -> bool {
         if self.done.is_some() {
-            return;
+            return false;
         }
         for m in &heard.missing {
             let why = match m.why {
-                crate::generation::words::account::Why::Unknown => "Not understood",
-                crate::generation::words::account::Why::NotCarriedOut => "No effect",
+                Why::Unknown => "Not understood",
+                Why::NotCarriedOut => "No effect",
+                Why::TooLong => "Too long, not read",
             };
             warn(ui, &format!("{why}: “{}”", m.words));
         }
-        for doubt in doubts(heard) {
-            ui.label(egui::RichText::new(doubt).small().color(theme::text_weak()));
+        for m in &heard.mended {
+            let typed = m.span.of(&self.prompt);
+            let text = format!("“{typed}” is read as “{}”", m.to);
+            ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         }
+        if !heard.unsure.is_empty() {
+            let text = "Not sure that this is what was meant";
+            ui.label(egui::RichText::new(text).small().color(theme::warn()));
+        }
+        let Some(other) = &heard.other else { return false };
+        let text = format!("It may also mean: {}", answer(other, None, &[], &[]));
+        let text = egui::RichText::new(text).small().color(theme::text());
+        let button = egui::Button::new(text).wrap().fill(theme::field());
+        ui.add(button)
+            .on_hover_text("A click takes this reading")
+            .clicked()
     }
 
     /// What came of the words, in a sentence; what must be answered first.
@@ -480,6 +531,13 @@ impl PromptPane {
         }
         if !self.asks {
             return;
+        }
+        // (of another scene other boxes are meant)
+        if let Some(read) = &mut self.read
+            && read.follow(scene, self.seed)
+            && let Ok(edited) = &read.edited
+        {
+            (self.asks, self.done) = (edited.asks(), Some(edited.answer()));
         }
         let Some(Ok(edited)) = self.read.as_ref().map(|r| &r.edited) else {
             return;

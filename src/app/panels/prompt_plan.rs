@@ -257,7 +257,7 @@ impl Plan {
             ui.horizontal(|ui| {
                 ui.label("Number");
                 let mut n = count;
-                let drag = ui.add(egui::DragValue::new(&mut n).range(0..=60));
+                let drag = ui.add(egui::DragValue::new(&mut n).range(0..=count.max(60)));
                 drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, format!("Number of {text}")));
                 if n != count {
                     wanted = Some(n);

@@ -65,15 +65,12 @@ pub(super) fn fill_in(
     };
     let proposal = memory.fill_in(&open, seed)?;
     let mut filled = Vec::new();
-    if d.time_of_day.is_none() {
-        d.time_of_day = Some(if proposal.night {
-            TimeOfDay::Night
-        } else {
-            TimeOfDay::Day
-        });
-        filled.push(format!("time: {}", d.time_of_day.map_or("", TimeOfDay::name)));
+    if let (None, Some(night)) = (d.time_of_day, proposal.night) {
+        let time = if night { TimeOfDay::Night } else { TimeOfDay::Day };
+        d.time_of_day = Some(time);
+        filled.push(format!("time: {}", time.name()));
     }
-    if d.weather.is_none() {
+    if let (None, Some(weather)) = (d.weather, proposal.weather) {
         d.weather = [
             Weather::Clear,
             Weather::Overcast,
@@ -81,7 +78,7 @@ pub(super) fn fill_in(
             Weather::Snow,
             Weather::Fog,
         ]
-        .get(proposal.weather)
+        .get(weather)
         .copied();
         filled.extend(d.weather.map(|w| format!("weather: {}", w.name())));
     }

@@ -167,6 +167,9 @@ pub struct RoadWish {
     pub wide: bool,
     /// A pedestrian crossing.
     pub crossing: bool,
+    /// How far ahead it is, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossing_m: Option<f64>,
     /// Sidewalks.
     pub sidewalk: bool,
     /// No pedestrian crossing.

@@ -222,6 +222,13 @@ fn judge(
             .crossing()
             .is_some_and(|c| c.iter().all(|p| p.x > 4.0 && p.abs().max_element() < 38.0));
         lack(ahead, "crossing ahead");
+        if let Some(m) = d.road.crossing_m {
+            let near = map.crossings.iter().any(|c| {
+                let middle = c.iter().sum::<glam::DVec2>() / c.len().max(1) as f64;
+                map.course(middle).is_some_and(|at| (at.0 - m).abs() < 4.0)
+            });
+            lack(near, &format!("crossing {m:.0} m ahead"));
+        }
     }
     if junction {
         lack(map.junction.is_some(), "junction");

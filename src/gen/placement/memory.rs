@@ -227,10 +227,10 @@ pub struct Proposal {
     pub road_kind: RoadKind,
     /// Surroundings, the stated or the retrieved ones.
     pub environment: Environment,
-    /// Night, stated or retrieved.
-    pub night: bool,
-    /// Weather, stated or retrieved.
-    pub weather: usize,
+    /// Night, stated or that of most retrieved scenes; `None` where they do not agree.
+    pub night: Option<bool>,
+    /// Weather, in the same way.
+    pub weather: Option<usize>,
     /// Usual counts (moving, parked, waiting) of classes that were not counted: medians over the retrieved scenes.
     pub counts: BTreeMap<Class, [usize; 3]>,
 }
@@ -312,6 +312,14 @@ impl Memory {
             .iter()
             .map(|r| ((r.score - best) / SHARPNESS).exp())
             .collect();
+        let agreed = |says: &dyn Fn(&Facts) -> usize| -> Option<usize> {
+            let of = |r: &Retrieved| says(&self.entries[r.entry].facts);
+            let first = of(from.first()?);
+            let with = from.iter().filter(|r| of(r) == first).count();
+            (4 * with >= 3 * from.len()).then_some(first)
+        };
+        let night = agreed(&|f| usize::from(f.night)).map(|n| n == 1);
+        let weather = agreed(&|f| f.weather);
         let chosen = &self.entries[from[Draw::new(seed, "retrieval").weighted(&weights)].entry];
         let mut counts = BTreeMap::new();
         for class in Class::OBJECTS
@@ -351,8 +359,8 @@ impl Memory {
             road,
             road_kind,
             environment: open.environment.unwrap_or(chosen.facts.environment),
-            night: open.night.unwrap_or(chosen.facts.night),
-            weather: open.weather.unwrap_or(chosen.facts.weather),
+            night: open.night.or(night),
+            weather: open.weather.or(weather),
             counts,
         })
     }

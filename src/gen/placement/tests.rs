@@ -267,7 +267,7 @@ fn memory_fills_in_what_is_left_open() {
     };
     let proposal = memory.fill_in(&open, 3).expect("entries");
     assert_eq!(memory.fill_in(&open, 3), Some(proposal.clone()));
-    assert!(proposal.night && !proposal.counts.contains_key(&Class::Bus));
+    assert!(proposal.night == Some(true) && !proposal.counts.contains_key(&Class::Bus));
     for text in ["", "🚌🚌🚌", &"very long ".repeat(2000), "zwei Busse im Regen"] {
         let open = Open {
             text: text.into(),

@@ -6,7 +6,7 @@ use super::grammar;
 use super::notation;
 use super::nouns::Noun;
 use super::reading::Reading;
-use super::tokens::{Span, Speller, Token};
+use super::tokens::{Span, Speller, Token, number_word};
 
 /// A word that the reading does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -16,6 +16,8 @@ pub enum Why {
     Unknown,
     /// It is understood, and nothing of it is carried out.
     NotCarriedOut,
+    /// It lies beyond the longest text that is read.
+    TooLong,
 }
 
 /// Where, and why.
@@ -29,8 +31,8 @@ pub struct Missing {
     pub why: Why,
 }
 
-/// Words by which numbers are worked out: their numbers need not stand in the reading.
-const ARITHMETIC: [&str; 30] = [
+/// Words by which numbers are worked out: numbers this near to them need not stand in the reading.
+const ARITHMETIC: [&str; 27] = [
     "half",
     "twice",
     "double",
@@ -53,15 +55,14 @@ const ARITHMETIC: [&str; 30] = [
     "every",
     "per",
     "another",
-    "left",
     "remain",
     "remaining",
     "times",
-    "first",
-    "fourth",
     "dozen",
     "couple",
 ];
+/// So many tokens away.
+const NEAR: usize = 5;
 /// What follows them is what is not meant.
 const NOT: [&str; 10] = [
     "not", "no", "than", "from", "isnt", "wasnt", "of", "was", "were", "instead",
@@ -72,7 +73,6 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
     let line = notation::write(reading);
     let said: Vec<&str> = line.split(' ').collect();
     let mut out: Vec<Missing> = Vec::new();
-    let works_out = tokens.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
     let mut i = 0;
     while i < tokens.len() {
         let t = &tokens[i];
@@ -87,6 +87,8 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
         let before = i.checked_sub(1).map_or("", |k| tokens[k].text.as_str());
         let why = if let Some(v) = t.value {
             let there = number_is_said(v, t.is_length, &said);
+            let around = &tokens[i.saturating_sub(NEAR)..tokens.len().min(i + NEAR + 1)];
+            let works_out = around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
             let small = !t.is_length && (v <= 1.0 || works_out);
             (!there && !small && !NOT.contains(&before) && t.text != "hundred").then_some(Why::NotCarriedOut)
         } else if !t.senses.is_empty() {
@@ -98,9 +100,14 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             (!there && looks && !NOT.contains(&before)).then_some(Why::NotCarriedOut)
         } else if !side_is_said(t, before, &said) {
             Some(Why::NotCarriedOut)
+        } else if let Some(n) = grammar::cannot(&tokens[i..]) {
+            end = i + n;
+            Some(Why::NotCarriedOut)
         } else {
             let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
-            (word && !speller.knows(&t.text) && !grammar::knows(&t.text)).then_some(Why::Unknown)
+            let known =
+                speller.is_common(&t.text) || grammar::knows(&t.text) || number_word(&t.text).is_some();
+            (word && !known).then_some(Why::Unknown)
         };
         if let Some(why) = why {
             let span = t.span.to(tokens[end - 1].span);

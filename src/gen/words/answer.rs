@@ -6,6 +6,7 @@ use super::reading::{
     Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading, Relation,
     Thing, Turn, Way, What,
 };
+use super::remark::Remark;
 use super::resolve::plural;
 use super::stage::Outcome;
 use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
@@ -13,30 +14,34 @@ use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
 /// Longest list of words that are named as having no effect.
 const MOST_WORDS: usize = 6;
 
-/// What a reading does, in a sentence; `outcome` tells what of it came about, in a scene that was there.
-pub fn answer(reading: &Reading, outcome: Option<&Outcome>, missing: &[Missing]) -> String {
+/// What a reading does, in a sentence. `outcome` tells what of it came about in a scene that was there; `remarks` what could not
+/// be done as it was said, by act.
+pub fn answer(
+    reading: &Reading,
+    outcome: Option<&Outcome>,
+    remarks: &[(usize, Remark)],
+    missing: &[Missing],
+) -> String {
+    let asks = outcome.is_some_and(|o| !o.questions.is_empty());
     let mut parts: Vec<String> = Vec::new();
     for (i, act) in reading.acts.iter().enumerate() {
         let said = sentence(&act.what);
-        let Some(outcome) = outcome else {
-            parts.push(said);
-            continue;
-        };
-        let nothing = outcome.done.get(i).is_none_or(|d| d.is_nothing());
-        let remarks: Vec<String> = outcome
-            .remarks
+        let why: Vec<String> = remarks
             .iter()
             .filter(|(a, _)| *a == i)
             .map(|(_, r)| r.to_string())
             .collect();
-        let asked = outcome.questions.iter().find(|q| q.act == i);
-        parts.push(match (asked, nothing) {
+        let why = why.join("; ");
+        let asked = outcome.and_then(|o| o.questions.iter().find(|q| q.act == i));
+        let changes = !matches!(act.what, What::Leave { .. });
+        let nothing = changes && outcome.is_some_and(|o| o.done.get(i).is_none_or(|d| d.is_nothing()));
+        parts.push(match (asked, why.is_empty()) {
             (Some(q), _) => q.text.clone(),
-            (None, true) if !matches!(act.what, What::Leave { .. }) => {
-                format!("not done: {said} ({})", remarks.join("; "))
-            }
-            (None, _) if remarks.is_empty() => said,
-            (None, _) => format!("{said} ({})", remarks.join("; ")),
+            (None, false) if nothing => format!("not done: {said} ({why})"),
+            (None, true) if nothing => format!("not done: {said}"),
+            (None, _) if asks && changes => format!("then: {said}"),
+            (None, true) => said,
+            (None, false) => format!("{said} ({why})"),
         });
     }
     if parts.is_empty() {
@@ -54,6 +59,9 @@ pub fn answer(reading: &Reading, outcome: Option<&Outcome>, missing: &[Missing])
     if !unknown.is_empty() {
         let was = if unknown.len() == 1 { "was" } else { "were" };
         parts.push(format!("{} {was} not understood", unknown.join(", ")));
+    }
+    if missing.iter().any(|m| m.why == Why::TooLong) {
+        parts.push("the text is too long: its end was not read".into());
     }
     let text = parts.join("; ");
     let mut letters = text.chars();
@@ -335,7 +343,7 @@ fn destination(to: &Destination) -> String {
         }
         Destination::Lanes(n) => {
             let side = if *n > 0 { "left" } else { "right" };
-            match n.abs() {
+            match n.unsigned_abs() {
                 1 => format!("one lane to the {side}"),
                 n => format!("{n} lanes to the {side}"),
             }

@@ -1,9 +1,14 @@
 //! A reading as the description of a new scene.
 
+use super::notation::{self, NotationError};
 use super::nouns::Noun;
-use super::plan::Plan;
-use super::reading::{Feature, LaneSide, Quantity, Reading, Thing, What};
+use super::plan::{Nowhere, Plan};
+use super::reading::{
+    Amount, Anchor as Said, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading,
+    Relation, Thing, Turn, What,
+};
 use super::remark::Remark;
+use super::resolve::words_of;
 use crate::generation::place::description::{Absent, Anchor, Count, Density, Description, Road};
 use crate::scene::graph::LaneRole;
 
@@ -18,28 +23,67 @@ pub struct Described {
     pub from: Vec<(usize, usize)>,
 }
 
+/// The description of a line of notation.
+///
+/// # Errors
+///
+/// If it is none.
+pub fn described(line: &str) -> Result<Description, NotationError> {
+    Ok(describe(&notation::parse(line)?).description)
+}
+
 /// The description of a new scene.
 pub fn describe(reading: &Reading) -> Described {
-    let mut d = Description::default();
-    let mut plan = Plan::default();
-    let mut remarks = Vec::new();
-    let mut nobody = super::plan::Nowhere;
-    let mut alone = false;
+    let mut s = Describing::default();
     for (i, act) in reading.acts.iter().enumerate() {
-        plan.at = (i, 0);
-        match &act.what {
-            What::Add { things } => plan.add(things, &mut nobody),
+        s.act = i;
+        s.plan.at = (i, 0);
+        if !(s.conditions(&act.what) || s.road(&act.what)) {
+            s.things(&act.what);
+        }
+    }
+    s.done()
+}
+
+#[derive(Default)]
+struct Describing {
+    d: Description,
+    plan: Plan,
+    remarks: Vec<(usize, Remark)>,
+    /// Nothing else shall be there.
+    alone: bool,
+    act: usize,
+}
+
+impl Describing {
+    fn remark(&mut self, remark: Remark) {
+        self.remarks.push((self.act, remark));
+    }
+
+    /// Light, surroundings, traffic; true if the act is about them.
+    fn conditions(&mut self, what: &What) -> bool {
+        let d = &mut self.d;
+        match what {
             What::Time { what } => d.time_of_day = Some(*what),
             What::Weather { what } => d.weather = Some(*what),
             What::Env { what } => d.environment = Some(*what),
             What::Density { what } => d.density = Some(*what),
-            What::Road { what } => d.road.kind = Some(*what),
-            What::Lanes { n } => d.road.lanes = Some((*n).min(12)),
-            What::OneWay => d.road.one_way = true,
-            What::Narrow => d.road.narrow = true,
-            What::Wide => d.road.wide = true,
+            _ => return false,
+        }
+        true
+    }
+
+    /// The road; true if the act is about it.
+    fn road(&mut self, what: &What) -> bool {
+        let road = &mut self.d.road;
+        match what {
+            What::Road { what } => road.kind = Some(*what),
+            What::Lanes { n } => road.lanes = Some((*n).min(12)),
+            What::OneWay => road.one_way = true,
+            What::Narrow => road.narrow = true,
+            What::Wide => road.wide = true,
             What::OwnLane { what } => {
-                d.road.own_lane = Some(match what {
+                road.own_lane = Some(match what {
                     LaneSide::Left => LaneRole::Left,
                     LaneSide::Right => LaneRole::Right,
                     LaneSide::Middle => LaneRole::Ego,
@@ -47,137 +91,189 @@ pub fn describe(reading: &Reading) -> Described {
             }
             What::Has {
                 what: Feature::Crossing,
-                ..
-            } => d.road.crossing = true,
+                places,
+            } => {
+                road.crossing = true;
+                let ahead = |p: &&Place| p.relation == Relation::Ahead && p.to == Some(Said::Ego);
+                road.crossing_m = places.iter().find(ahead).and_then(|p| p.metres);
+                let other = places.iter().find(|p| !ahead(p)).map(|p| p.relation);
+                if let Some(relation) = other {
+                    self.remark(Remark::PlaceIgnored { relation });
+                }
+            }
             What::Has {
                 what: Feature::Sidewalk,
                 ..
-            } => d.road.sidewalk = true,
+            } => road.sidewalk = true,
             What::Lacks {
                 what: Feature::Crossing,
-            } => d.road.no_crossing = true,
+            } => road.no_crossing = true,
             What::Lacks {
                 what: Feature::Sidewalk,
-            } => d.road.no_sidewalk = true,
-            What::No { who } | What::Remove { who } => {
-                for t in who {
-                    alone |= t.other;
-                    // (an empty lane is not an empty scene)
-                    if !t.other && t.places.is_empty() && t.paint.is_none() {
-                        d.absent.push(Absent {
-                            classes: t.noun.classes().to_vec(),
-                            state: t.state,
-                        });
-                    }
-                }
-            }
+            } => road.no_sidewalk = true,
+            _ => return false,
+        }
+        true
+    }
+
+    fn add(&mut self, things: &[Thing]) {
+        self.plan.add(things, &mut Nowhere);
+    }
+
+    /// Things, and what is said of those that were named.
+    fn things(&mut self, what: &What) {
+        match what {
+            What::Add { things } => self.add(things),
+            What::No { who } | What::Remove { who } => who.iter().for_each(|t| self.absent(t)),
             What::Keep { who } => {
-                alone = true;
-                plan.add(&who.iter().map(as_new).collect::<Vec<_>>(), &mut nobody);
+                self.alone = true;
+                self.add(&who.iter().map(as_new).collect::<Vec<_>>());
             }
-            // What is said of things that were named: of a new scene it is part of them.
-            What::Set { who, look } => {
-                for t in who {
-                    for k in matching(&plan, t) {
-                        let s = &mut plan.specs[k];
-                        s.state = look.state.or(s.state);
-                        s.size = look.size.or(s.size);
-                        if let Some(p) = look.paint {
-                            s.label.paint = Some(p);
-                        }
-                    }
-                }
-            }
-            What::Count { who, amount } => {
-                if let super::reading::Amount::To(least, most) = amount {
-                    for t in who {
-                        let them = matching(&plan, t);
-                        match them.first() {
-                            Some(k) => plan.specs[*k].count = Count::about(*least, *least, *most),
-                            None => {
-                                let t = t.clone().with(Quantity::Range(*least, *most));
-                                plan.add(&[t], &mut nobody);
-                            }
-                        }
-                    }
-                }
-            }
+            What::Set { who, look } => who.iter().for_each(|t| self.set(t, look)),
+            What::Count { who, amount } => who.iter().for_each(|t| self.count(t, *amount)),
             What::Move {
                 who,
-                to: super::reading::Destination::To(places),
+                to: Destination::To(places),
             }
             | What::Turn {
                 who,
-                turn: super::reading::Turn::To(places),
-            } => {
-                for t in who {
-                    if matching(&plan, t).is_empty() {
-                        let mut t = as_new(t);
-                        t.places.extend(places.iter().cloned());
-                        plan.add(&[t], &mut nobody);
-                    } else {
-                        remarks.push((i, Remark::Already));
-                    }
-                }
-            }
+                turn: Turn::To(places),
+            } => who.iter().for_each(|t| self.place(t, places)),
+            What::Replace { things, .. } => self.add(things),
             What::Leave { .. } => {}
-            What::Replace { things, .. } => plan.add(things, &mut nobody),
-            What::Move { .. } | What::Turn { .. } | What::Swap { .. } => {
-                remarks.push((
-                    i,
-                    Remark::Nobody {
-                        what: "thing to change".into(),
-                    },
-                ));
-            }
+            _ => self.remark(Remark::Nobody {
+                what: "thing to change".into(),
+            }),
         }
     }
-    let from = plan.from;
-    d.foreground = plan.specs;
-    if alone && d.density.is_none() {
-        d.density = Some(Density::Empty);
-    }
-    let crossing = d
-        .foreground
-        .iter()
-        .flat_map(|o| &o.relations)
-        .any(|r| r.anchor == Anchor::Crossing);
-    d.road.crossing |= crossing && !d.road.no_crossing;
-    let walks = |r: LaneRole| {
-        matches!(
-            r,
-            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
-        )
-    };
-    let sidewalk = d
-        .foreground
-        .iter()
-        .flat_map(|o| &o.relations)
-        .any(|r| matches!(r.anchor, Anchor::Lane(role) if walks(role)));
-    d.road.sidewalk |= sidewalk && !d.road.no_sidewalk;
-    let junction = d
-        .foreground
-        .iter()
-        .flat_map(|o| &o.relations)
-        .any(|r| r.anchor == Anchor::Junction);
-    if junction && d.road.kind.is_none() {
-        d.road.kind = Some(Road::Intersection);
-    }
-    d.summarise();
-    Described {
-        description: d,
-        remarks,
-        from,
-    }
-}
 
-/// The description of a line of notation.
-///
-/// # Errors
-///
-/// If it is none.
-pub fn described(line: &str) -> Result<Description, super::notation::NotationError> {
-    Ok(describe(&super::notation::parse(line)?).description)
+    fn absent(&mut self, t: &Thing) {
+        self.alone |= t.other;
+        // (an empty lane is not an empty scene)
+        if !t.other && t.places.is_empty() && t.paint.is_none() {
+            self.d.absent.push(Absent {
+                classes: t.noun.classes().to_vec(),
+                state: t.state,
+            });
+        }
+    }
+
+    /// Objects that a thing means; remarks if there are none.
+    fn those(&mut self, t: &Thing) -> Vec<usize> {
+        let them = self.matching(t);
+        if them.is_empty() {
+            self.remark(Remark::Nobody { what: words_of(t) });
+        }
+        them
+    }
+
+    fn set(&mut self, t: &Thing, look: &Look) {
+        let mut paint = look.paint;
+        if let Some(of) = &look.paint_of {
+            let model = self.those(of).first().copied();
+            paint = model.and_then(|k| self.plan.specs[k].label.paint);
+        }
+        for k in self.those(t) {
+            let s = &mut self.plan.specs[k];
+            s.state = look.state.or(s.state);
+            s.size = look.size.or(s.size);
+            s.label.paint = paint.or(s.label.paint);
+        }
+    }
+
+    fn count(&mut self, t: &Thing, amount: Amount) {
+        let them = self.matching(t);
+        match (amount, them.first()) {
+            (Amount::To(least, most), Some(k)) => {
+                self.plan.specs[*k].count = Count::about(least, least, most)
+            }
+            (Amount::To(least, most), None) => self.add(&[t.clone().with(Quantity::Range(least, most))]),
+            (Amount::Times(f), Some(_)) => {
+                for k in them {
+                    let n = f64::from(self.plan.specs[k].count.n) * f.clamp(0.0, 100.0);
+                    self.plan.specs[k].count = Count::exactly(n.round() as u32);
+                }
+            }
+            (Amount::Times(_), None) => self.remark(Remark::Nobody { what: words_of(t) }),
+        }
+    }
+
+    fn place(&mut self, t: &Thing, places: &[Place]) {
+        let them = self.matching(t);
+        if them.is_empty() {
+            let mut t = as_new(t);
+            t.places.extend(places.iter().cloned());
+            self.add(&[t]);
+        }
+        for k in them {
+            self.plan.also_at(k, places, &mut Nowhere);
+        }
+    }
+
+    /// Objects that a thing means.
+    fn matching(&mut self, t: &Thing) -> Vec<usize> {
+        let fits = |k: &usize| {
+            let (spec, named) = (&self.plan.specs[*k], self.plan.thing_of(*k));
+            let paint = match t.paint {
+                Some(PaintWish::Is(p)) => spec.label.paint == Some(p),
+                Some(PaintWish::Not(p)) => spec.label.paint != Some(p),
+                None => true,
+            };
+            let kind = match t.noun {
+                Noun::It | Noun::One | Noun::Thing => true,
+                noun if noun.is_plain() => noun.classes().contains(&spec.class),
+                noun => noun == named.noun,
+            };
+            let state = t.state.is_none() || t.state == spec.state;
+            let places = t.places.is_empty() || t.places.iter().any(|p| named.places.contains(p));
+            paint && kind && state && places
+        };
+        let mut fit: Vec<usize> = (0..self.plan.specs.len()).filter(fits).collect();
+        if matches!(t.noun, Noun::It | Noun::One) && t.quantity != Quantity::All {
+            fit = fit.last().copied().into_iter().collect();
+        }
+        // (which of several like it is the nearest is not known before they are placed)
+        let one = t.nth.or(t.pick.map(|_| 1)).filter(|_| fit.len() > 1);
+        if let Some(n) = one {
+            let k = fit.len() - 1;
+            fit = vec![fit[if n == 0 { k } else { (n as usize - 1).min(k) }]];
+            self.remark(Remark::Chosen {
+                what: words_of(t),
+                which: "first named",
+            });
+        }
+        fit
+    }
+
+    fn done(self) -> Described {
+        let (mut d, from) = (self.d, self.plan.from);
+        d.foreground = self.plan.specs;
+        if self.alone && d.density.is_none() {
+            d.density = Some(Density::Empty);
+        }
+        let is_at = |test: &dyn Fn(Anchor) -> bool| {
+            let mut relations = d.foreground.iter().flat_map(|o| &o.relations);
+            relations.any(|r| test(r.anchor))
+        };
+        let walks = |a: Anchor| {
+            use LaneRole as L;
+            matches!(a, Anchor::Lane(L::Sidewalk | L::LeftSidewalk | L::RightSidewalk))
+        };
+        let crossing = is_at(&|a| a == Anchor::Crossing);
+        let sidewalk = is_at(&walks);
+        let junction = is_at(&|a| a == Anchor::Junction);
+        d.road.crossing |= crossing && !d.road.no_crossing;
+        d.road.sidewalk |= sidewalk && !d.road.no_sidewalk;
+        if junction && d.road.kind.is_none() {
+            d.road.kind = Some(Road::Intersection);
+        }
+        d.summarise();
+        Described {
+            description: d,
+            remarks: self.remarks,
+            from,
+        }
+    }
 }
 
 /// Things that were named as if they were there, as new ones.
@@ -192,19 +288,5 @@ fn as_new(t: &Thing) -> Thing {
         quantity,
         other: false,
         ..t.clone()
-    }
-}
-
-/// Specs that a thing means.
-fn matching(plan: &Plan, t: &Thing) -> Vec<usize> {
-    let paint = |k: &usize| match t.paint {
-        Some(super::reading::PaintWish::Is(p)) => plan.specs[*k].label.paint == Some(p),
-        _ => true,
-    };
-    let kind = |k: &usize| t.noun.classes().contains(&plan.specs[*k].class);
-    let fit: Vec<usize> = (0..plan.specs.len()).filter(kind).filter(paint).collect();
-    match t.noun {
-        Noun::It | Noun::One => fit.last().copied().into_iter().collect(),
-        _ => fit,
     }
 }

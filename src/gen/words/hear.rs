@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use super::account::{Missing, missing};
+use super::account::{Missing, Why, missing};
 use super::canonical::canonical;
 use super::grammar;
 use super::notation;
 use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
-use super::tokens::Span;
+use super::tokens::{LONGEST, Span, Token, tokens};
 use crate::generation::weights::WeightsError;
 
 /// Below this confidence an act is said to be unsure.
@@ -71,14 +71,24 @@ impl Heard {
 /// If the bundled weights are damaged.
 pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
-    let said = learned.read(text, mode);
+    let mut said = learned.read(text, mode);
+    // (of words that are in no list, nothing is guessed)
+    let known = |t: &Token| {
+        !t.senses.is_empty()
+            || t.value.is_some()
+            || learned.speller().is_common(&t.text)
+            || grammar::knows(&t.text)
+    };
+    if !said.tokens.iter().any(known) {
+        said.reading = Reading::default();
+    }
     let plain = grammar::read(&said.tokens, mode);
     let same = |a: &Reading, b: &Reading| {
         notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
     };
     let agree = plain.is_whole() && same(&plain.reading, &said.reading);
     let (by, reading, other) = match (agree, plain.is_whole()) {
-        (true, _) => (By::Both, said.reading, None),
+        (true, _) => (By::Both, plain.reading, None),
         // (what the grammar reads to the last word is plain English)
         (false, true) => (By::Grammar, plain.reading, Some(said.reading)),
         (false, false) => (By::Learned, said.reading, None),
@@ -95,8 +105,23 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
             to: t.text.clone(),
         })
     });
+    let mut missing = missing(text, &said.tokens, &reading, learned.speller());
+    let bytes_left = Span {
+        start: said
+            .left_out
+            .first()
+            .map_or(LONGEST.min(text.len()), |t| t.span.start),
+        end: text.len(),
+    };
+    if !bytes_left.of(text).trim().is_empty() {
+        missing.push(Missing {
+            span: bytes_left,
+            words: bytes_left.of(text).chars().take(40).collect(),
+            why: Why::TooLong,
+        });
+    }
     Ok(Heard {
-        missing: missing(text, &said.tokens, &reading, learned.speller()),
+        missing,
         mended: mended.collect(),
         by,
         unsure,
@@ -106,19 +131,25 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
 }
 
 /// A reading from elsewhere, beside what the readers of this program heard.
-pub fn against(reading: Reading, own: Option<&Heard>, mode: Mode) -> Heard {
+///
+/// # Errors
+///
+/// If the bundled weights are damaged.
+pub fn against(text: &str, reading: Reading, own: Option<&Heard>, mode: Mode) -> Result<Heard, WeightsError> {
+    let learned = LearnedReader::bundled()?;
+    let tokens = tokens(text, Some(learned.speller()));
     let same = |a: &Reading, b: &Reading| {
         notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
     };
     let other = own
         .map(|h| h.reading.clone())
         .filter(|o| !o.acts.is_empty() && !same(o, &reading));
-    Heard {
+    Ok(Heard {
+        missing: missing(text, &tokens, &reading, learned.speller()),
         reading,
         by: By::Endpoint,
         other,
         unsure: Vec::new(),
-        missing: Vec::new(),
         mended: own.map(|h| h.mended.clone()).unwrap_or_default(),
-    }
+    })
 }

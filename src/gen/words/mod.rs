@@ -6,6 +6,7 @@ pub mod account;
 pub mod answer;
 pub mod canonical;
 pub mod carry_out;
+mod check;
 pub mod describe;
 pub mod grammar;
 pub mod hear;
@@ -21,3 +22,6 @@ mod resolve;
 pub mod stage;
 pub mod text_edit;
 pub mod tokens;
+
+#[cfg(test)]
+mod tests;

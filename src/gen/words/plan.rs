@@ -18,6 +18,8 @@ pub(super) trait Site {
     fn find(&mut self, t: &Thing) -> Result<Vec<SceneBox>, ()>;
     /// The lane or strip that a box of it is in.
     fn role(&self, b: &SceneBox) -> Option<LaneRole>;
+    /// The kind of what was spoken of last.
+    fn last_noun(&self) -> Option<Noun>;
 }
 
 /// No scene: all anchors are named in the text.
@@ -28,6 +30,9 @@ impl Site for Nowhere {
         Ok(Vec::new())
     }
     fn role(&self, _: &SceneBox) -> Option<LaneRole> {
+        None
+    }
+    fn last_noun(&self) -> Option<Noun> {
         None
     }
 }
@@ -76,6 +81,13 @@ impl Plan {
             return None;
         }
         let i = self.specs.len();
+        let mut t = t.clone();
+        if t.noun == Noun::One {
+            // ("a yellow truck, and a black one")
+            let before = self.named.last().map(|n| n.noun);
+            t.noun = before.or(site.last_noun()).unwrap_or(Noun::Car);
+        }
+        let t = &t;
         self.specs.push(spec_of(t));
         self.held.push(None);
         self.from.push(self.at);
@@ -246,8 +258,12 @@ impl Plan {
 
     /// What was named before by the same noun, the last one: `the bus`, `it`.
     fn named_before(&self, of: usize, t: &Thing) -> Option<usize> {
+        if t.id.is_some() || t.pick.is_some() || t.nth.is_some() {
+            return None;
+        }
         let fits = |i: &usize| {
             let n = &self.named[*i];
+            let look = (t.state.is_none() || t.state == n.state) && (t.size.is_none() || t.size == n.size);
             let noun = match t.noun {
                 Noun::It | Noun::One | Noun::Thing => true,
                 Noun::Vehicle => self.specs[*i].class.is_vehicle(),
@@ -255,9 +271,23 @@ impl Plan {
             };
             let paint = t.paint.is_none() || t.paint == n.paint;
             let places = t.places.is_empty() || n.places.iter().any(|p| t.places.contains(p));
-            noun && paint && places && self.held[*i].is_none() && !t.other
+            noun && paint && look && places && self.held[*i].is_none() && !t.other
         };
         (0..self.specs.len()).rev().filter(|i| *i != of).find(fits)
+    }
+
+    /// Says more of where a thing is.
+    pub(super) fn also_at(&mut self, i: usize, places: &[Place], site: &mut dyn Site) {
+        let state = self.named[i].state;
+        for p in places {
+            self.place(i, p, state, site, 1);
+            self.named[i].places.push(p.clone());
+        }
+    }
+
+    /// What was named in an object.
+    pub(super) fn thing_of(&self, i: usize) -> &Thing {
+        &self.named[i]
     }
 
     /// What is said of a group: in a row, side by side, facing each other.

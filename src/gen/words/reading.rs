@@ -234,6 +234,11 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// True if it means certain things, not any of a kind.
+    pub fn is_certain(self) -> bool {
+        matches!(self, Self::The | Self::TheN(_))
+    }
+
     /// True if it means something that is there, or was spoken of.
     pub fn is_definite(self) -> bool {
         matches!(self, Self::The | Self::TheN(_) | Self::All | Self::Half)

@@ -85,6 +85,18 @@ impl Stage<'_> {
         if fits.is_empty() {
             fits = self.fitting_loosely(t);
         }
+        self.passed_over(t);
+        if !t.quantity.is_certain() && t.id.is_none() {
+            let open: Vec<BoxId> = fits
+                .iter()
+                .copied()
+                .filter(|id| !self.stays.contains(id))
+                .collect();
+            // (all of them were said to stay: then this act means them all the same)
+            if !open.is_empty() {
+                fits = open;
+            }
+        }
         if fits.is_empty() {
             if let Some(one) = self.only_one(t) {
                 let place = self.candidate(&self.boxes[&one]).place;
@@ -125,7 +137,6 @@ impl Stage<'_> {
         match t.quantity {
             _ if t.id.is_some() => Some(fits),
             Quantity::All | Quantity::Many => Some(fits),
-            Quantity::Unsaid if fits.len() == 1 || t.noun == Noun::It => Some(fits),
             Quantity::Unsaid => Some(fits),
             Quantity::Half => {
                 let n = fits.len() / 2;
@@ -137,7 +148,7 @@ impl Stage<'_> {
             }
             Quantity::N(n) | Quantity::Range(n, _) => self.counted(fits, n as usize, spare, &words),
             Quantity::TheN(n) if fits.len() > n as usize => {
-                let fits = self.likely(fits, t);
+                let fits = self.likely(fits, t, n as usize);
                 if fits.len() > n as usize {
                     self.ask(t, &fits);
                     return None;
@@ -147,7 +158,7 @@ impl Stage<'_> {
             Quantity::TheN(n) => self.counted(fits, n as usize, spare, &words),
             Quantity::The if t.noun == Noun::It => Some(fits),
             Quantity::The => {
-                let fits = self.likely(fits, t);
+                let fits = self.likely(fits, t, 1);
                 if fits.len() > 1 {
                     self.ask(t, &fits);
                     return None;
@@ -158,11 +169,20 @@ impl Stage<'_> {
     }
 
     fn ask(&mut self, t: &Thing, fits: &[BoxId]) {
+        let thing = notation::thing(t);
+        if self
+            .out
+            .questions
+            .iter()
+            .any(|q| q.act == self.act && q.thing == thing)
+        {
+            return;
+        }
         let candidates = fits.iter().map(|id| self.candidate(&self.boxes[id])).collect();
         self.out.questions.push(Question {
             text: format!("{} {}: which?", fits.len(), plural(&words_of(t))),
             act: self.act,
-            thing: notation::thing(t),
+            thing,
             candidates,
         });
     }
@@ -205,15 +225,15 @@ impl Stage<'_> {
             .map_or(0.0, |b| b.center_m.truncate().length())
     }
 
-    /// Of several that fit, those that a listener would take: spoken of last, in our lane, called by nothing else.
-    fn likely(&self, fits: Vec<BoxId>, t: &Thing) -> Vec<BoxId> {
-        let one = |test: &dyn Fn(&BoxId) -> bool| -> Option<Vec<BoxId>> {
+    /// Of several that fit, the `n` that a listener would take: spoken of last, in our lane, called by nothing else.
+    fn likely(&self, fits: Vec<BoxId>, t: &Thing, n: usize) -> Vec<BoxId> {
+        let just = |test: &dyn Fn(&BoxId) -> bool| -> Option<Vec<BoxId>> {
             let found: Vec<BoxId> = fits.iter().copied().filter(|id| test(id)).collect();
-            (found.len() == 1).then_some(found)
+            (found.len() == n).then_some(found)
         };
         if !self.last.is_empty()
             && !t.other
-            && let Some(found) = one(&|id| self.last.contains(id))
+            && let Some(found) = just(&|id| self.last.contains(id))
         {
             return found;
         }
@@ -222,23 +242,30 @@ impl Stage<'_> {
                 && p.metres.is_none()
                 && matches!(p.relation, Relation::Ahead | Relation::Behind)
         });
-        if before_us
-            && let Some(found) =
-                one(&|id| in_role(&self.map, LaneRole::Ego, self.boxes[id].center_m.truncate()))
+        let ours = |id: &BoxId| in_role(&self.map, LaneRole::Ego, self.boxes[id].center_m.truncate());
+        if before_us && let Some(found) = just(&ours) {
+            return found;
+        }
+        if t.noun.is_plain()
+            && t.paint.is_none()
+            && let Some(found) = just(&|id| self.boxes[id].label.name.is_empty())
         {
             return found;
         }
-        if t.noun.is_plain() && t.paint.is_none() {
-            let plain: Vec<BoxId> = fits
-                .iter()
-                .copied()
-                .filter(|id| self.boxes[id].label.name.is_empty())
-                .collect();
-            if !plain.is_empty() && plain.len() < fits.len() {
-                return plain;
+        fits
+    }
+
+    /// Places that tell no box from another.
+    fn passed_over(&mut self, t: &Thing) {
+        for p in &t.places {
+            if matches!(
+                p.relation,
+                Relation::There | Relation::InLine | Relation::SideBySide
+            ) {
+                let relation = p.relation;
+                self.remark(Remark::PlaceIgnored { relation });
             }
         }
-        fits
     }
 
     /// The only box of the kind, where more was said of it than holds: never if a paint or a size speaks against it.
@@ -291,6 +318,7 @@ impl Stage<'_> {
                 .collect();
         }
         let mut fit = self.of_noun(t);
+        fit.retain(|b| Some(b.id) != self.skip);
         if t.other {
             fit.retain(|b| !self.last.contains(&b.id));
         }
@@ -306,7 +334,8 @@ impl Stage<'_> {
             fit = by_size(fit, size);
         }
         for p in &t.places {
-            fit.retain(|b| self.stands(b, p, t.state, depth));
+            let anchors = self.anchors(p, depth);
+            fit.retain(|b| self.stands(b, p, t.state, &anchors));
         }
         let mut ids: Vec<BoxId> = fit.into_iter().map(|b| b.id).collect();
         for e in t.except.iter().filter(|_| depth == 0) {
@@ -351,7 +380,6 @@ impl Stage<'_> {
                 return self.last.iter().filter_map(|id| self.boxes.get(id)).collect();
             }
             Noun::One => self.last_noun.unwrap_or(Noun::Thing),
-            Noun::Thing if t.other && !self.last.is_empty() => Noun::Thing,
             noun => noun,
         };
         let all: Vec<&SceneBox> = self
@@ -372,13 +400,37 @@ impl Stage<'_> {
         if !own.is_empty() { own } else { called("") }
     }
 
+    /// The boxes that a place is described by.
+    fn anchors(&self, p: &Place, depth: u8) -> Anchors {
+        let of = |a: &Option<Anchor>| -> Vec<SceneBox> {
+            match a {
+                Some(Anchor::Ego) => vec![ego()],
+                Some(Anchor::Thing(t)) if depth < 3 => self
+                    .fitting_deep(t, depth + 1)
+                    .iter()
+                    .map(|id| self.boxes[id])
+                    .collect(),
+                _ => Vec::new(),
+            }
+        };
+        let first = of(&p.to);
+        let mut second = of(&p.and);
+        if p.relation == Relation::Between && p.and.is_none() {
+            second.clone_from(&first);
+        }
+        Anchors { first, second }
+    }
+
     /// True if a box stands as a place says.
-    fn stands(&self, b: &SceneBox, p: &Place, state: Option<ObjectState>, depth: u8) -> bool {
+    fn stands(&self, b: &SceneBox, p: &Place, state: Option<ObjectState>, anchors: &Anchors) -> bool {
+        use LaneRole as L;
         let Some(to) = &p.to else {
             return true;
         };
         let Some(kind) = kind_of(p.relation, to, state) else {
-            return p.relation != Relation::Like || self.alike(b, to, depth);
+            let own = role_of(&self.map, b);
+            let alike = |o: &SceneBox| o.id != b.id && role_of(&self.map, o) == own;
+            return p.relation != Relation::Like || anchors.first.iter().any(alike);
         };
         let at = |target: &Target, and: Option<&SceneBox>| {
             holds(&self.map, kind, b, target, and, p.metres) || loosely(&self.map, kind, b, target, p.metres)
@@ -386,52 +438,33 @@ impl Stage<'_> {
         match to {
             Anchor::Ego => match (side_of_ego(kind, b), p.metres) {
                 (Some(held), None) => held,
-                _ => at(&Target::Thing(ego()), self.seconds(p, depth).first()),
+                _ => at(&Target::Thing(ego()), anchors.second.first()),
             },
             Anchor::Lane(role) => at(&Target::Lane(*role), None),
             Anchor::Crossing => at(&Target::Crossing, None),
             Anchor::Junction => at(&Target::Junction, None),
-            Anchor::OtherSide | Anchor::OtherLane | Anchor::EachOther => true,
-            Anchor::Thing(_) if depth >= 3 => false,
-            Anchor::Thing(t) => {
-                let others = self.fitting_deep(t, depth + 1);
-                let seconds = self.seconds(p, depth);
-                let mut between = seconds.clone();
-                if kind == RelationKind::Between && between.is_empty() {
-                    between = others.iter().map(|id| self.boxes[id]).collect();
+            // (seen from the ego vehicle)
+            Anchor::OtherSide => matches!(
+                role_of(&self.map, b),
+                Some(L::LeftRoadside | L::LeftSidewalk | L::Oncoming)
+            ),
+            Anchor::OtherLane => matches!(role_of(&self.map, b), Some(L::Left | L::Right | L::Oncoming)),
+            Anchor::EachOther => true,
+            Anchor::Thing(_) => anchors.first.iter().filter(|o| o.id != b.id).any(|o| {
+                let between = |s: &SceneBox| s.id != o.id && s.id != b.id && at(&Target::Thing(*o), Some(s));
+                match kind {
+                    RelationKind::Between => anchors.second.iter().any(between),
+                    _ => at(&Target::Thing(*o), None),
                 }
-                others.iter().filter(|id| **id != b.id).any(|id| {
-                    let target = Target::Thing(self.boxes[id]);
-                    match kind {
-                        RelationKind::Between => between
-                            .iter()
-                            .any(|s| s.id != *id && s.id != b.id && at(&target, Some(s))),
-                        _ => at(&target, None),
-                    }
-                })
-            }
+            }),
         }
     }
+}
 
-    fn seconds(&self, p: &Place, depth: u8) -> Vec<SceneBox> {
-        match &p.and {
-            Some(Anchor::Ego) => vec![ego()],
-            Some(Anchor::Thing(t)) if depth < 3 => self
-                .fitting_deep(t, depth + 1)
-                .iter()
-                .map(|id| self.boxes[id])
-                .collect(),
-            _ => Vec::new(),
-        }
-    }
-
-    fn alike(&self, b: &SceneBox, to: &Anchor, depth: u8) -> bool {
-        let Anchor::Thing(t) = to else { return true };
-        let own = role_of(&self.map, b);
-        self.fitting_deep(t, depth + 1)
-            .iter()
-            .any(|id| *id != b.id && role_of(&self.map, &self.boxes[id]) == own)
-    }
+/// The boxes that a place is described by: those of its anchor, and of the second one of `between`.
+struct Anchors {
+    first: Vec<SceneBox>,
+    second: Vec<SceneBox>,
 }
 
 /// In words a car 30 m ahead in the left lane is on the left.
@@ -470,7 +503,6 @@ fn loosely(
         (K::Following, Target::Thing(o)) if o.id.0 == u32::MAX => {
             b.center_m.x < 0.0 && b.center_m.y.abs() < 2.5
         }
-        (K::On, Target::Lane(LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk)) => false,
         _ => false,
     }
 }

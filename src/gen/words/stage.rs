@@ -73,7 +73,7 @@ impl Done {
 pub struct Outcome {
     /// Changes, in order.
     pub edits: Vec<TextEdit>,
-    /// What must be answered first; what the other acts did stands.
+    /// What must be answered first; whoever applies the edits waits for that.
     pub questions: Vec<Question>,
     /// What could not be done as it was said, by act.
     pub remarks: Vec<(usize, Remark)>,
@@ -91,6 +91,12 @@ pub struct Stage<'a> {
     pub(super) prompt: String,
     pub(super) seed: u64,
     pub(super) act: usize,
+    /// Boxes that some act of the text says to stay.
+    pub(super) stays: std::collections::BTreeSet<BoxId>,
+    /// The act whose crossing was put in before the first one.
+    pub(super) crossing_of: Option<usize>,
+    /// The box that is moved: nothing else that its act names is it.
+    pub(super) skip: Option<BoxId>,
     /// What was spoken of last, and the kind of it.
     pub(super) last: Vec<BoxId>,
     pub(super) last_noun: Option<Noun>,
@@ -109,6 +115,9 @@ impl<'a> Stage<'a> {
             prompt: scene.prompt.to_owned(),
             seed,
             act: 0,
+            stays: std::collections::BTreeSet::new(),
+            crossing_of: None,
+            skip: None,
             last: Vec::new(),
             last_noun: None,
             gone: Vec::new(),
@@ -173,7 +182,7 @@ impl<'a> Stage<'a> {
     }
 
     pub(super) fn next_id(&self) -> BoxId {
-        let last = self.boxes.keys().next_back();
+        let last = self.boxes.keys().chain(self.first.keys()).max();
         let gone = self.gone.iter().map(|b| b.id).max();
         BoxId(last.copied().max(gone).map_or(1, |id| id.0.saturating_add(1)))
     }

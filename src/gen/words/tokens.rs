@@ -52,6 +52,9 @@ pub struct Token {
     pub typed: Option<String>,
 }
 
+/// Tokens of a text in which slips are mended: as many as are read.
+const MOST_MENDED: usize = 700;
+
 const ONES: [&str; 20] = [
     "zero",
     "one",
@@ -210,6 +213,11 @@ impl Speller {
             || !w.chars().all(char::is_alphabetic)
     }
 
+    /// True if a word is one of the frequent ones.
+    pub fn is_common(&self, w: &str) -> bool {
+        self.rank.contains_key(w) && w.chars().any(char::is_alphabetic)
+    }
+
     /// The word that was meant.
     pub fn mend(&self, w: &str) -> Option<&str> {
         const LONGEST_WORD: usize = 24;
@@ -277,7 +285,9 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
                 .filter(|v: &f64| v.is_finite());
             token.text = "<n>".into();
         } else {
-            if let Some(mended) = speller.and_then(|s| s.mend(word)) {
+            if out.len() < MOST_MENDED
+                && let Some(mended) = speller.and_then(|s| s.mend(word))
+            {
                 token.typed = Some(std::mem::replace(&mut token.text, mended.to_owned()));
             }
             token.value = number_word(&token.text);

@@ -327,6 +327,7 @@ struct Read {
     reading: Reading,
     doubts: Value,
     spoke: bool,
+    wall_s: f64,
 }
 
 impl Who {
@@ -341,8 +342,10 @@ impl Who {
             reading,
             doubts: Value::Null,
             spoke: false,
+            wall_s: 0.0,
         };
-        let reading = match self {
+        let started = Instant::now();
+        let mut read = match self {
             Self::Given => {
                 let line = case.reading.as_ref();
                 let line = line.with_context(|| format!("no reading stands beside {:?}", case.text))?;
@@ -357,6 +360,7 @@ impl Who {
                     reading: if whole { plain.reading } else { Reading::default() },
                     doubts: json!(plain.left_over),
                     spoke: !whole,
+                    wall_s: 0.0,
                 }
             }
             Self::Both => {
@@ -365,10 +369,12 @@ impl Who {
                     spoke: !heard.is_plain(),
                     doubts: json!({ "by": heard.by, "other": heard.other.as_ref().map(notation::write), "unsure": heard.unsure, "missing": heard.missing }),
                     reading: heard.reading,
+                    wall_s: 0.0,
                 }
             }
         };
-        Ok(reading)
+        read.wall_s = started.elapsed().as_secs_f64();
+        Ok(read)
     }
 }
 
@@ -384,7 +390,7 @@ fn made(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
         spoke: read.spoke || !(remarks.is_empty() && short.is_empty()),
         details: json!({ "reading": notation::write(reading), "doubts": doubts, "remarks": remarks, "shortfalls": short }),
     };
-    tally.add(case, &scene, laid.wall_s, Vec::new(), told);
+    tally.add(case, &scene, read.wall_s + laid.wall_s, Vec::new(), told);
 }
 
 /// Carries out and judges an edit.
@@ -406,7 +412,7 @@ fn changed(
         prompt: &scene.prompt,
     };
     let outcome = carry_out(reading, &open, seed);
-    let wall_s = started.elapsed().as_secs_f64();
+    let wall_s = read.wall_s + started.elapsed().as_secs_f64();
     let asked = outcome.questions.first().map(|q| q.candidates.len());
     let mut wrong = Vec::new();
     if case.asks.is_some() || asked.is_some() {

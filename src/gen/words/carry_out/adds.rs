@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::super::nouns::Noun;
 use super::super::plan::{Plan, Site, label_of};
 use super::super::reading::{Quantity, Relation, Thing};
 use super::super::remark::Remark;
@@ -12,7 +13,7 @@ use crate::generation::place::holds::{Target, holds, role_of};
 use crate::generation::place::rules::{Placement, place_from};
 use crate::generation::place::to_graph::to_graph;
 use crate::generation::words::text_edit::TextEdit;
-use crate::scene::graph::{LaneRole, Locked, ObjectState, RelationKind};
+use crate::scene::graph::{LaneRole, Locked, ObjectState, RelationKind, SizeHint};
 use crate::scene::{BoxId, BoxLabel, Class, SceneBox};
 
 /// Where a plan puts things.
@@ -35,6 +36,10 @@ impl Site for Stage<'_> {
 
     fn role(&self, b: &SceneBox) -> Option<LaneRole> {
         role_of(&self.map, b)
+    }
+
+    fn last_noun(&self) -> Option<Noun> {
+        self.last_noun
     }
 }
 
@@ -344,7 +349,12 @@ impl Stage<'_> {
 /// A box of another kind where one stands or stood.
 pub(super) fn in_place_of(old: &SceneBox, t: &Thing, id: BoxId) -> Option<SceneBox> {
     let class = t.noun.classes()[0];
-    let size_m = DVec3::from_array(t.noun.size_m().or(class.typical_size_m())?);
+    let factor = match t.size {
+        Some(SizeHint::Large) => 1.18,
+        Some(SizeHint::Small) => 0.85,
+        None => 1.0,
+    };
+    let size_m = DVec3::from_array(t.noun.size_m().or(class.typical_size_m())?) * factor;
     let base_m = old.center_m.z - old.size_m.z / 2.0;
     let speed = match t.state {
         Some(ObjectState::Moving) => Stage::pace(class),

@@ -83,6 +83,16 @@ impl Stage<'_> {
         self.push(TextEdit::Replace { id, object });
         if !t.places.is_empty() {
             self.moved_to(id, &t.places);
+        } else if t.state == Some(ObjectState::Parked)
+            && object.class.is_vehicle()
+            && !self.does(&object, ObjectState::Parked)
+        {
+            let role = if object.center_m.y > 1.0 {
+                LaneRole::LeftRoadside
+            } else {
+                LaneRole::RightRoadside
+            };
+            self.park(id, role);
         }
     }
 
@@ -162,7 +172,8 @@ impl Stage<'_> {
             return;
         }
         let moves = b.velocity_mps.length() > 0.5;
-        if (state == ObjectState::Moving) == moves {
+        let can = Self::pace(b.class) > 0.0;
+        if (state == ObjectState::Moving) == moves || !(moves || can) {
             return;
         }
         let speed = if state == ObjectState::Moving {
@@ -186,8 +197,11 @@ impl Stage<'_> {
         if let Some(a) = first {
             self.speak_of(&[a], Some(one.noun));
         }
-        let second = self.that(other, Spare::Nearest);
-        let second = second.and_then(|ids| ids.into_iter().find(|id| Some(*id) != first));
+        self.skip = first;
+        let second = self
+            .that(other, Spare::Nearest)
+            .and_then(|ids| ids.first().copied());
+        self.skip = None;
         let (Some(a), Some(b)) = (first, second) else {
             return;
         };
@@ -224,6 +238,11 @@ impl Stage<'_> {
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };
+        if let Turn::To(places) = turn
+            && self.grouped(&ids, places)
+        {
+            return;
+        }
         for id in ids {
             let Some(b) = self.boxes.get(&id).copied() else {
                 continue;
@@ -233,7 +252,7 @@ impl Stage<'_> {
                 Turn::Around => {
                     // A driver changes to the lane that leads there.
                     let drives = b.velocity_mps.length() > 0.5 && b.class != crate::scene::Class::Pedestrian;
-                    if drives && self.to_other_direction(id) {
+                    if drives && self.change_direction(id) {
                         continue;
                     }
                     b.yaw_rad + std::f64::consts::PI

@@ -115,12 +115,7 @@ impl Stage<'_> {
     /// Said where the map has one, or has no room for one.
     pub(super) fn add_crossing(&mut self, places: &[Place]) {
         let there = !self.map.crossings.is_empty() && !is_elsewhere(&self.map, metres_of(places));
-        let put = self
-            .out
-            .edits
-            .iter()
-            .any(|e| matches!(e, TextEdit::Crossing { .. }));
-        if !there && !put {
+        if !there && self.crossing_of != Some(self.act) {
             self.remark(Remark::NoCrossing);
         }
     }

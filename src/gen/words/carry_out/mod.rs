@@ -7,11 +7,13 @@ mod moves;
 #[cfg(test)]
 mod tests;
 
+use super::check::look_again;
+use super::nouns::Noun;
 use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
 use super::remark::Remark;
 use super::resolve::{Spare, words_of};
 use super::stage::{OpenScene, Outcome, Stage};
-use crate::generation::place::description::{Description, TimeOfDay, Weather};
+use crate::generation::place::description::{TimeOfDay, Weather};
 use crate::generation::words::text_edit::TextEdit;
 use crate::scene::{BoxId, SceneBox};
 
@@ -27,6 +29,8 @@ pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome
         ..*scene
     };
     let mut stage = Stage::new(&scene, seed);
+    stage.stays = stage.said_to_stay(reading);
+    stage.crossing_of = with.as_ref().map(|w| w.act);
     for (i, act) in reading.acts.iter().enumerate() {
         stage.act = i;
         stage.out.done.resize(i + 1, super::stage::Done::default());
@@ -49,6 +53,7 @@ pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome
             stage.remark(Remark::Already);
         }
     }
+    look_again(&mut stage, reading);
     stage.out
 }
 
@@ -56,7 +61,7 @@ impl Stage<'_> {
     fn act(&mut self, what: &What, reading: &Reading) {
         match what {
             What::Add { things } => self.add(things),
-            What::Remove { who } => self.remove(who, reading),
+            What::Remove { who } => self.remove(who),
             What::No { who } => {
                 for t in who {
                     let t = Thing {
@@ -69,7 +74,7 @@ impl Stage<'_> {
                         Vec::new()
                     };
                     let mut ids = self.fitting(&t);
-                    ids.retain(|id| !spared.contains(id));
+                    ids.retain(|id| !spared.contains(id) && !self.stays.contains(id));
                     self.take(&ids);
                 }
             }
@@ -128,24 +133,24 @@ impl Stage<'_> {
         }
     }
 
-    fn remove(&mut self, who: &[Thing], reading: &Reading) {
-        let Some(mut ids) = self.those(who, Spare::Farthest) else {
-            return;
-        };
-        // "everything but the bus": what the same text says to stay does.
-        let stays: Vec<BoxId> = reading
-            .acts
-            .iter()
-            .filter_map(|a| match &a.what {
-                What::Leave { who } => Some(who),
-                _ => None,
-            })
+    fn remove(&mut self, who: &[Thing]) {
+        if let Some(ids) = self.those(who, Spare::Farthest) {
+            self.take(&ids);
+        }
+    }
+
+    /// Boxes that acts of the text say to stay, as far as that is known before any of them.
+    fn said_to_stay(&self, reading: &Reading) -> std::collections::BTreeSet<BoxId> {
+        let leaves = reading.acts.iter().filter_map(|a| match &a.what {
+            What::Leave { who } => Some(who),
+            _ => None,
+        });
+        let known = |t: &&Thing| !t.other && !matches!(t.noun, Noun::It | Noun::One);
+        leaves
             .flatten()
-            .filter(|t| who.iter().all(|w| w.noun != t.noun || w.paint != t.paint))
+            .filter(known)
             .flat_map(|t| self.fitting(t))
-            .collect();
-        ids.retain(|id| !stays.contains(id));
-        self.take(&ids);
+            .collect()
     }
 
     /// Boxes that other acts of the text speak of.
@@ -223,17 +228,25 @@ impl Stage<'_> {
         }
     }
 
+    /// Another time of day or weather in the words of the style; the other words stay.
     fn conditions(&mut self, time: Option<TimeOfDay>, weather: Option<Weather>) {
-        let words: Vec<String> = self.prompt.split(',').map(|w| w.trim().to_owned()).collect();
-        let has = |name: &str| words.iter().any(|w| w == name);
-        use crate::generation::place::description::Environment;
-        let d = Description {
-            time_of_day: time.or(TimeOfDay::ALL.iter().copied().find(|t| has(t.name()))),
-            weather: weather.or(Weather::ALL.iter().copied().find(|t| has(t.name()))),
-            environment: Environment::ALL.iter().copied().find(|t| has(t.name())),
-            ..Description::default()
-        };
-        let prompt = d.style();
+        let mut words: Vec<&str> = self
+            .prompt
+            .split(',')
+            .map(str::trim)
+            .filter(|w| !w.is_empty())
+            .collect();
+        let is_time = |w: &str| TimeOfDay::ALL.iter().any(|t| t.name() == w);
+        if let Some(time) = time {
+            words.retain(|w| !is_time(w));
+            words.insert(0, time.name());
+        }
+        if let Some(weather) = weather {
+            words.retain(|w| !Weather::ALL.iter().any(|t| t.name() == *w));
+            let at = usize::from(words.first().is_some_and(|w| is_time(w)));
+            words.insert(at, weather.name());
+        }
+        let prompt = words.join(", ");
         if prompt != self.prompt {
             self.push(TextEdit::Style { prompt });
         }

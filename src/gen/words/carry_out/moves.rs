@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 
+use super::super::nouns::Noun;
 use super::super::plan::Plan;
 use super::super::reading::{Anchor as Said, Destination, Place, Relation, Thing, Way};
 use super::super::remark::Remark;
@@ -23,6 +24,11 @@ impl Stage<'_> {
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };
+        if let Destination::To(places) = to
+            && self.grouped(&ids, places)
+        {
+            return;
+        }
         for id in &ids {
             let Some(b) = self.boxes.get(id).copied() else {
                 continue;
@@ -41,6 +47,55 @@ impl Stage<'_> {
             }
         }
         self.last = ids;
+    }
+
+    /// Things in a row, side by side, or facing each other: each by the one before; true if that was said.
+    pub(super) fn grouped(&mut self, ids: &[BoxId], places: &[Place]) -> bool {
+        let each = |p: &Place| p.to == Some(Said::EachOther);
+        let of_group = |p: &&Place| matches!(p.relation, Relation::InLine | Relation::SideBySide) || each(p);
+        let Some(group) = places.iter().find(of_group).cloned() else {
+            return false;
+        };
+        if ids.len() < 2 {
+            let relation = group.relation;
+            self.remark(Remark::PlaceIgnored { relation });
+            return true;
+        }
+        // (the other places are those of the first)
+        let rest: Vec<Place> = places.iter().filter(|p| **p != group).cloned().collect();
+        if !rest.is_empty() {
+            self.moved_to(ids[0], &rest);
+        }
+        for (k, id) in ids.iter().enumerate() {
+            let (relation, by) = match group.relation {
+                Relation::InLine if k > 0 => (Relation::Behind, ids[k - 1]),
+                Relation::SideBySide if k > 0 => (Relation::NextTo, ids[k - 1]),
+                Relation::InLine | Relation::SideBySide => continue,
+                Relation::Near | Relation::NextTo if k == 0 => continue,
+                relation => (relation, if k == 0 { ids[1] } else { ids[k - 1] }),
+            };
+            let mut other = Thing::new(Noun::Thing);
+            other.id = Some(by.0);
+            let place = Place {
+                relation,
+                to: Some(Said::Thing(Box::new(other))),
+                and: None,
+                metres: None,
+            };
+            self.moved_to(*id, &[place]);
+        }
+        self.last = ids.to_vec();
+        true
+    }
+
+    /// The boxes that a thing means, other than the one that is moved.
+    fn others_of(&mut self, t: &Thing, moved: BoxId) -> Option<Vec<BoxId>> {
+        let (spoken, noun) = (self.last.clone(), self.last_noun);
+        self.skip = Some(moved);
+        let ids = self.that(t, Spare::Nearest);
+        self.skip = None;
+        (self.last, self.last_noun) = (spoken, noun);
+        ids
     }
 
     fn move_by(&mut self, b: &SceneBox, way: Way, metres: Option<f64>) {
@@ -161,7 +216,7 @@ impl Stage<'_> {
     }
 
     /// To the lane that leads the other way; false if there is none.
-    pub(super) fn to_other_direction(&mut self, id: BoxId) -> bool {
+    pub(super) fn change_direction(&mut self, id: BoxId) -> bool {
         let Some(b) = self.boxes.get(&id).copied() else {
             return false;
         };
@@ -312,9 +367,10 @@ impl Stage<'_> {
                 let at = match to {
                     Said::Ego => DVec2::ZERO,
                     Said::Thing(t) => {
-                        let ids = self.that(t, Spare::Nearest)?;
-                        let other = ids.into_iter().find(|id| *id != b.id)?;
-                        self.boxes.get(&other)?.center_m.truncate()
+                        let Some(ids) = self.others_of(t, b.id) else {
+                            return Some(false);
+                        };
+                        self.boxes.get(ids.first()?)?.center_m.truncate()
                     }
                     Said::Crossing => self
                         .map
@@ -391,14 +447,9 @@ impl Stage<'_> {
                     }
                     Said::EachOther => return None,
                     Said::Thing(t) => {
-                        let spoken = stage.last.clone();
-                        let ids = stage.that(t, Spare::Nearest);
-                        stage.last = spoken;
-                        let boxes: Vec<SceneBox> = ids?
-                            .iter()
-                            .filter(|id| **id != b.id)
-                            .filter_map(|id| stage.boxes.get(id).copied())
-                            .collect();
+                        let ids = stage.others_of(t, b.id)?;
+                        let boxes: Vec<SceneBox> =
+                            ids.iter().filter_map(|id| stage.boxes.get(id).copied()).collect();
                         let first = boxes.first()?;
                         let mut spec = stage.as_spec(first);
                         spec.count.n = boxes.len() as u32;

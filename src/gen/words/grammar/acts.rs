@@ -14,8 +14,8 @@ use crate::scene::graph::ObjectState;
 type Found = Option<(What, usize)>;
 
 impl Grammar<'_> {
-    /// The act that begins at a token; `spoken`: something was said before.
-    pub(super) fn act(&self, i: usize, spoken: bool) -> Found {
+    /// The act that begins at a token.
+    pub(super) fn act(&self, i: usize) -> Found {
         if let Some(end) = self.after("rest", i) {
             return Some((What::Leave { who: Vec::new() }, end));
         }
@@ -26,10 +26,9 @@ impl Grammar<'_> {
             &|| self.feature(i),
             &|| if edit { self.command(i) } else { None },
             &|| if edit { self.statement(i) } else { None },
-            &|| self.new(i),
+            &|| self.new_things(i),
         ];
         let found = ways.iter().filter_map(|way| way());
-        let _ = spoken;
         found.reduce(|best, next| if next.1 > best.1 { next } else { best })
     }
 
@@ -77,6 +76,8 @@ impl Grammar<'_> {
                     "road" if prompt => What::Road {
                         what: Road::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
+                    // (of a car park that is more than where something stands)
+                    "place" if prompt && s.symbol == "carpark" => What::Road { what: Road::Parking },
                     "env" if prompt => What::Env {
                         what: Environment::ALL.iter().copied().find(|x| named(x.name()))?,
                     },
@@ -109,7 +110,7 @@ impl Grammar<'_> {
     }
 
     /// New things.
-    fn new(&self, i: usize) -> Found {
+    fn new_things(&self, i: usize) -> Found {
         let i = self.after("have", i).unwrap_or(i);
         let (mut things, end) = self.list(i, true)?;
         let prompt = self.mode == Mode::Prompt;
@@ -150,7 +151,7 @@ impl Grammar<'_> {
             }
         }
         // one verb for several senses: "swap", "put", "turn", "set", "make"
-        for verb in ["swap", "move", "set", "replace", "turn", "park", "stop"] {
+        for verb in ["swap", "move", "set", "replace", "turn"] {
             let end = self.table.all_at("verb", self.tokens, i).map(|f| f.1).next();
             let is = |kind: &str| match kind {
                 "swap" => matches!(self.word(i), "swap" | "exchange" | "switch"),
@@ -181,7 +182,7 @@ impl Grammar<'_> {
             })
         };
         match verb {
-            "add" => vec![self.new(i)],
+            "add" => vec![self.new_things(i)],
             "remove" => vec![
                 who(true)
                     .filter(|w| there(&w.0))
@@ -368,7 +369,7 @@ impl Grammar<'_> {
             };
             return self.is_end(end).then_some((What::Set { who, look }, end));
         }
-        let (what, end) = self.new(i)?;
+        let (what, end) = self.new_things(i)?;
         let What::Add { mut things } = what else {
             return None;
         };

@@ -8,6 +8,8 @@ mod table;
 mod tests;
 mod things;
 
+use std::cell::Cell;
+
 use super::reader::Mode;
 use super::reading::{Act, Reading};
 use super::tokens::{Span, Token};
@@ -33,16 +35,24 @@ impl Plain {
 pub fn read(tokens: &[Token], mode: Mode) -> Plain {
     let mut out = Plain::default();
     let ends = |t: &Token| matches!(t.text.as_str(), "." | ";" | "!" | "?" | ":");
-    let mut spoken = false;
     for sentence in tokens.split(ends).filter(|s| !s.is_empty()) {
         let g = Grammar {
             tokens: sentence,
             table: Table::bundled(),
             mode,
+            deep: Cell::new(0),
         };
-        g.sentence(&mut out, &mut spoken);
+        g.sentence(&mut out);
+        if !out.left_over.is_empty() {
+            break;
+        }
     }
     out
+}
+
+/// How many tokens name something that no act can bring: "dog", "traffic light".
+pub fn cannot(tokens: &[Token]) -> Option<usize> {
+    Table::bundled().at("cannot", tokens, 0).map(|f| f.1)
 }
 
 /// True if a word stands in any phrase of the grammar.
@@ -55,17 +65,19 @@ struct Grammar<'t> {
     tokens: &'t [Token],
     table: &'static Table,
     mode: Mode,
+    /// How many exceptions of exceptions the reading is in.
+    deep: Cell<u8>,
 }
 
 impl Grammar<'_> {
-    fn sentence(&self, out: &mut Plain, spoken: &mut bool) {
+    fn sentence(&self, out: &mut Plain) {
         let mut i = 0;
         while i < self.tokens.len() {
             i = self.skip(i);
             if i >= self.tokens.len() {
                 break;
             }
-            let act = self.act(i, *spoken);
+            let act = self.act(i);
             match act {
                 Some((what, end)) => {
                     let span = self.span(i, end);
@@ -74,12 +86,12 @@ impl Grammar<'_> {
                         span,
                         confidence: 1.0,
                     });
-                    *spoken = true;
                     i = self.separators(end);
                 }
+                // (what is not read to the end is not the grammar's)
                 None => {
                     out.left_over.push(self.tokens[i].span);
-                    i += 1;
+                    return;
                 }
             }
         }
@@ -107,7 +119,13 @@ impl Grammar<'_> {
     fn skip(&self, mut i: usize) -> usize {
         loop {
             let comma = (self.word(i) == ",").then_some(i + 1);
-            match comma.or(self.after("polite", i)).or(self.after("skip", i)) {
+            // (a street is what every scene has)
+            let street = self.after("street", i).filter(|_| self.mode == Mode::Prompt);
+            match comma
+                .or(street)
+                .or(self.after("polite", i))
+                .or(self.after("skip", i))
+            {
                 Some(next) => i = next,
                 None => return i,
             }

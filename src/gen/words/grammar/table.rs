@@ -63,8 +63,9 @@ impl Table {
 
     /// True if a word stands in any phrase: it is understood, or knowingly passed over.
     pub(super) fn has_word(&self, word: &str) -> bool {
-        self.kinds
-            .values()
-            .any(|of| of.keys().any(|phrase| phrase.split(' ').any(|w| w == word)))
+        let kinds = self.kinds.iter().filter(|(kind, _)| **kind != "cannot");
+        kinds
+            .into_iter()
+            .any(|(_, of)| of.keys().any(|phrase| phrase.split(' ').any(|w| w == word)))
     }
 }

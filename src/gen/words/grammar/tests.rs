@@ -41,6 +41,14 @@ fn plain_prompts_are_read_to_the_last_word() {
                 "add 1 bicycle ( between 2 parked car ) ; weather rain",
             ),
             (
+                "A street with a zebra crossing in the rain. One pedestrian walks over the crossing, and a bus comes towards me 30 m ahead.",
+                "has crossing ; weather rain ; add 1 person ( on crossing ) and 1 bus ( oncoming ego ) ( ahead ego 30m )",
+            ),
+            (
+                "A car park by day. Three white cars are parked, and a barrier stands 12 m ahead of me.",
+                "road parking ; time day ; add 3 parked white car and 1 barrier ( ahead ego 12m )",
+            ),
+            (
                 "Show me two to four cones on the right, nothing else",
                 "add 2 .. 4 cone ( right ego ) ; no other thing",
             ),

@@ -67,6 +67,9 @@ impl Grammar<'_> {
         if places {
             i = self.after_noun(&mut t, i);
         }
+        if matches!(t.noun, Noun::Cone | Noun::Barrier) {
+            t.state = None; // (they do nothing but stand)
+        }
         Some((t, i))
     }
 
@@ -215,15 +218,17 @@ impl Grammar<'_> {
                 t.places.extend(super::places::alone(relation));
                 i = end;
             } else if let Some(end) = self.after("except", i)
-                && let Some((not, end)) = self.list(end, true)
+                && self.deep.get() < 2
+                && let Some((not, end)) = {
+                    self.deep.set(self.deep.get() + 1);
+                    let not = self.list(end, true);
+                    self.deep.set(self.deep.get() - 1);
+                    not
+                }
             {
                 t.except = not;
                 i = end;
-            } else if self.word(i) == "," && self.place(i + 1).is_some() && self.thing(i + 1, false).is_none()
-            {
-                i += 1;
-            } else if self.word(i) == "and"
-                && !t.places.is_empty()
+            } else if (self.word(i) == "," || self.word(i) == "and" && !t.places.is_empty())
                 && self.place(i + 1).is_some()
                 && self.thing(i + 1, false).is_none()
             {

@@ -6,7 +6,7 @@ mod parse;
 mod tests;
 mod write;
 
-pub use parse::{NotationError, Prefix, parse, prefix};
+pub use parse::{LONGEST, NotationError, Prefix, parse, prefix};
 pub use write::{thing, write};
 
 use super::reading::Anchor;

@@ -21,8 +21,8 @@ pub struct NotationError {
     pub after: String,
 }
 
-/// Longest line that is read, bytes.
-const LONGEST: usize = 20_000;
+/// Longest line that is read, letters.
+pub const LONGEST: usize = 20_000;
 /// Deepest nesting of things in places of things.
 const DEEPEST: usize = 6;
 

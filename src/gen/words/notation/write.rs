@@ -57,7 +57,7 @@ fn destination(to: &Destination) -> String {
         Destination::Times(n) => format!("by times {n}"),
         Destination::Lanes(n) => {
             let side = if *n > 0 { "lane_left" } else { "lane_right" };
-            match n.abs() {
+            match n.unsigned_abs() {
                 1 => format!("by {side}"),
                 n => format!("by {side} {n}"),
             }

@@ -27,8 +27,11 @@ pub enum Mode {
     Edit,
 }
 
+/// Parts of a long text that are read; what lies beyond is named.
+pub const MOST_PARTS: usize = 6;
+
 /// What the network said.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Said {
     /// The reading; acts bear spans and confidences.
     pub reading: Reading,
@@ -36,6 +39,8 @@ pub struct Said {
     pub tokens: Vec<Token>,
     /// How much each token was looked at while the reading was said, 0 to 1.
     pub looked_at: Vec<f32>,
+    /// What lies beyond the longest text that is read.
+    pub left_out: Vec<Token>,
 }
 
 /// The network with its word list.
@@ -72,7 +77,7 @@ impl LearnedReader {
         let names: Vec<String> = file.config("symbols")?;
         let symbols = Symbols::new(names, &words).map_err(|e| file.config_error("symbols", e))?;
         config
-            .check(words.len(), symbols.len())
+            .check(words.len())
             .map_err(|e| file.config_error("config", e))?;
         let net = Net::new(&mut file, config)?;
         file.finish()?;
@@ -88,13 +93,29 @@ impl LearnedReader {
         &self.speller
     }
 
-    /// Reads a text.
+    /// Reads a text: whole if it is short, else sentence by sentence, and at most [`MOST_PARTS`] of these.
     pub fn read(&self, text: &str, mode: Mode) -> Said {
         let mut all = tokens(text, Some(&self.speller));
-        all.truncate(symbols::MOST_TOKENS);
-        let input = self.symbols.input(&all, mode);
+        let ends = parts(&all);
+        let read_to = ends.last().copied().unwrap_or(0);
+        let mut out = Said::default();
+        let mut from = 0;
+        for end in ends {
+            let (reading, looked_at) = self.say(&all[from..end], mode);
+            out.reading.acts.extend(reading.acts);
+            out.looked_at.extend(looked_at);
+            from = end;
+        }
+        out.left_out = all.split_off(read_to);
+        out.tokens = all;
+        out
+    }
+
+    /// The reading of a few tokens, and how much each was looked at.
+    fn say(&self, all: &[Token], mode: Mode) -> (Reading, Vec<f32>) {
+        let input = self.symbols.input(all, mode);
         let memory = self.net.encode(&input);
-        let mut state = self.net.begin(&memory);
+        let mut state = self.net.begin();
         let mut said: Vec<usize> = Vec::new();
         let mut line = String::new();
         let mut acts: Vec<(f64, Vec<usize>)> = vec![(1.0, Vec::new())];
@@ -104,7 +125,7 @@ impl LearnedReader {
             let (p, look) = self.net.next(&mut state, &memory, said.last().copied(), &input);
             let mut order: Vec<usize> = (0..p.len()).filter(|i| p[*i] > 1e-6).collect();
             order.sort_by(|a, b| p[*b].total_cmp(&p[*a]));
-            let fits = |s: &&usize| self.symbols.may_follow(**s, &said, &line, &all, &prefix);
+            let fits = |s: &&usize| self.symbols.may_follow(**s, &said, &line, all, &prefix);
             let Some(symbol) = order.iter().find(fits).copied() else {
                 break;
             };
@@ -124,7 +145,7 @@ impl LearnedReader {
                 acts.push((1.0, Vec::new()));
             }
             said.push(symbol);
-            line = self.symbols.line(&said, &all);
+            line = self.symbols.line(&said, all);
             prefix = notation::prefix(&line);
         }
         // (a reading that ran out of room ends with its last whole act)
@@ -136,16 +157,26 @@ impl LearnedReader {
         }
         for (act, (p, at)) in reading.acts.iter_mut().zip(&acts) {
             act.confidence = p.clamp(0.0, 1.0);
-            act.span = at
-                .iter()
-                .filter_map(|i| all.get(*i))
-                .map(|t| t.span)
-                .reduce(Span::to);
+            let spans = at.iter().filter_map(|i| all.get(*i)).map(|t| t.span);
+            act.span = spans.reduce(Span::to);
         }
-        Said {
-            reading,
-            tokens: all,
-            looked_at,
-        }
+        (reading, looked_at)
     }
+}
+
+/// Where the parts of a text end: one part if it is short, else sentences, as many together as fit.
+fn parts(all: &[Token]) -> Vec<usize> {
+    let mut ends = Vec::new();
+    let mut from = 0;
+    while from < all.len() && ends.len() < MOST_PARTS {
+        let most = all.len().min(from + symbols::MOST_TOKENS);
+        let stop = |i: &usize| matches!(all[*i - 1].text.as_str(), "." | ";" | "!" | "?");
+        let end = match most == all.len() {
+            true => most,
+            false => (from + 1..=most).rev().find(stop).unwrap_or(most),
+        };
+        ends.push(end);
+        from = end;
+    }
+    ends
 }

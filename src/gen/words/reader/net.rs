@@ -27,7 +27,7 @@ pub(super) struct NetConfig {
 }
 
 impl NetConfig {
-    pub(super) fn check(&self, words: usize, _symbols: usize) -> Result<(), String> {
+    pub(super) fn check(&self, words: usize) -> Result<(), String> {
         if self.words != words + 3 {
             return Err(format!("words: expected {}, found {}", words + 3, self.words));
         }
@@ -68,8 +68,7 @@ impl Attention {
         &self,
         heads: usize,
         query: &[f32],
-        keys: &[f32],
-        values: &[f32],
+        [keys, values]: [&[f32]; 2],
         at: usize,
         x: &mut [f32],
         mut look: Option<&mut [f32]>,
@@ -262,7 +261,9 @@ impl Net {
             layer.attention.k.rows(&y, &mut k);
             layer.attention.v.rows(&y, &mut v);
             for (i, (row, query)) in x.chunks_exact_mut(width).zip(y.chunks_exact(width)).enumerate() {
-                layer.attention.attend(self.c.heads, query, &k, &v, i, row, None);
+                layer
+                    .attention
+                    .attend(self.c.heads, query, [&k, &v], i, row, None);
             }
             layer.through_inner(&mut x, width);
         }
@@ -288,7 +289,7 @@ impl Net {
         }
     }
 
-    pub(super) fn begin(&self, _: &Memory) -> State {
+    pub(super) fn begin(&self) -> State {
         State {
             keys: vec![Vec::new(); self.decoder.len()],
             values: vec![Vec::new(); self.decoder.len()],
@@ -317,8 +318,7 @@ impl Net {
             layer.attention.attend(
                 self.c.heads,
                 &y,
-                &state.keys[i],
-                &state.values[i],
+                [&state.keys[i], &state.values[i]],
                 state.at,
                 &mut x,
                 None,
@@ -329,8 +329,7 @@ impl Net {
                 cross.attend(
                     self.c.heads,
                     &y,
-                    &memory.keys[i],
-                    &memory.values[i],
+                    [&memory.keys[i], &memory.values[i]],
                     0,
                     &mut x,
                     last.then_some(&mut look[..]),

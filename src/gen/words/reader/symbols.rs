@@ -54,10 +54,6 @@ impl Symbols {
         Ok(Self { names, id, word })
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.names.len()
-    }
-
     pub(super) fn name(&self, symbol: usize) -> &str {
         &self.names[symbol]
     }

@@ -39,7 +39,7 @@ fn the_network_says_what_its_twin_says() {
                 row.text
             );
         }
-        let mut state = reader.net.begin(&memory);
+        let mut state = reader.net.begin();
         let (p, _) = reader.net.next(&mut state, &memory, None, &input);
         for (symbol, truth) in &row.first {
             let found = (0..p.len())
@@ -61,6 +61,8 @@ fn the_network_says_what_its_twin_says() {
 fn whatever_is_typed_a_valid_reading_comes_of_it() {
     let reader = LearnedReader::bundled().expect("weights");
     let long = "and a bus behind the car ".repeat(400);
+    let beyond = reader.read(&long, Mode::Prompt);
+    assert!(!beyond.left_out.is_empty() && beyond.tokens.len() + beyond.left_out.len() == 2400);
     for text in [
         "",
         " ",

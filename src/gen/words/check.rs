@@ -1,0 +1,67 @@
+//! A second look after a reading was carried out: what it says must hold of the scene that came of it.
+
+use super::nouns::Noun;
+use super::reading::{Amount, Quantity, Reading, Thing, What};
+use super::remark::Remark;
+use super::resolve::words_of;
+use super::stage::Stage;
+
+/// Remarks on acts whose claims do not hold.
+pub(super) fn look_again(stage: &mut Stage<'_>, reading: &Reading) {
+    for (i, act) in reading.acts.iter().enumerate() {
+        stage.act = i;
+        match &act.what {
+            What::Leave { who } => who.iter().for_each(|t| spared(stage, t)),
+            What::Count {
+                who,
+                amount: Amount::To(least, most),
+            } if !undone_later(reading, i) => {
+                for t in who {
+                    counted(stage, t, *least as usize, *most as usize);
+                }
+            }
+            What::No { who } if !undone_later(reading, i) => {
+                for t in who.iter().filter(|t| !t.other) {
+                    counted(stage, t, 0, 0);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// True if a later act brings things, so that a number need not hold in the end.
+fn undone_later(reading: &Reading, i: usize) -> bool {
+    let brings = |w: &What| matches!(w, What::Add { .. } | What::Replace { .. } | What::Count { .. });
+    reading.acts[i + 1..].iter().any(|a| brings(&a.what))
+}
+
+/// What was said to stay must be as it was.
+fn spared(stage: &mut Stage<'_>, t: &Thing) {
+    if t.other || matches!(t.noun, Noun::It | Noun::One) {
+        return; // (who that was is known no more)
+    }
+    let now = std::mem::replace(&mut stage.boxes, stage.first.clone());
+    let meant = stage.fitting(t);
+    let before = std::mem::replace(&mut stage.boxes, now);
+    if meant.iter().any(|id| before.get(id) != stage.boxes.get(id)) {
+        stage.remark(Remark::Spared { what: words_of(t) });
+    }
+}
+
+fn counted(stage: &mut Stage<'_>, t: &Thing, least: usize, most: usize) {
+    let there = stage
+        .fitting(&Thing {
+            quantity: Quantity::All,
+            ..t.clone()
+        })
+        .len();
+    let asked = stage.out.questions.iter().any(|q| q.act == stage.act);
+    if !asked && !(least..=most).contains(&there) {
+        stage.remark(Remark::TooFew {
+            what: super::resolve::plural(&words_of(t)),
+            found: there,
+            wanted: most,
+        });
+    }
+}

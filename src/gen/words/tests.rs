@@ -1,0 +1,205 @@
+//! What was heard, what is missing of it, and what is answered.
+
+use super::account::{Why, missing};
+use super::answer::answer;
+use super::hear::hear;
+use super::notation::parse;
+use super::reader::{LearnedReader, Mode};
+use super::tokens::tokens;
+
+fn missed(text: &str, line: &str) -> Vec<(String, Why)> {
+    let reader = LearnedReader::bundled().expect("weights");
+    let tokens = tokens(text, Some(reader.speller()));
+    let reading = parse(line).expect("a reading");
+    let found = missing(text, &tokens, &reading, reader.speller());
+    found.into_iter().map(|m| (m.words, m.why)).collect()
+}
+
+#[test]
+fn content_words_are_in_the_reading_or_named() {
+    let none: Vec<(String, Why)> = Vec::new();
+    for (text, line) in [
+        ("remove both red cars, please", "remove the 2 red car"),
+        (
+            "a lorry 20 yards ahead at night",
+            "add 1 truck ( ahead ego 18.3m ) ; time night",
+        ),
+        (
+            "the truck was at 15 m, not 25",
+            "move the truck to ( at ego 15m )",
+        ),
+        ("six cars, half of them red", "add 3 red car and 3 car"),
+        ("it has left", "remove it"),
+    ] {
+        assert_eq!(missed(text, line), none, "{text}");
+    }
+    let not = |words: &str| vec![(words.to_owned(), Why::NotCarriedOut)];
+    assert_eq!(missed("remove the car and the bus", "remove the car"), not("bus"));
+    assert_eq!(missed("paint the car red", "remove the car"), not("red"));
+    assert_eq!(
+        missed("five cones on the left", "add 3 cone ( left ego )"),
+        not("five")
+    );
+    assert_eq!(missed("a bus on the left", "add 1 bus"), not("left"));
+    assert_eq!(missed("a bus and two dogs", "add 1 bus and 2 bus"), not("dogs"));
+    assert_eq!(
+        missed("a bus, a glorpify", "add 1 bus"),
+        [("glorpify".to_owned(), Why::Unknown)]
+    );
+}
+
+#[test]
+fn answers_are_sentences() {
+    let say = |line: &str| answer(&parse(line).expect("a reading"), None, &[], &[]);
+    assert_eq!(
+        say("add 3 person ( on crossing ) ; leave the bus"),
+        "Adds three pedestrians on the crossing; the bus stays."
+    );
+    assert_eq!(
+        say("move the 2 parked red car ( left ego ) by nearer 5m ; time night"),
+        "Moves the two parked red cars on the left 5 m nearer; time of day: night."
+    );
+    assert_eq!(
+        say("remove all thing ( except the taxi and 2 bus )"),
+        "Removes all objects except the taxi and two buses."
+    );
+    assert_eq!(
+        say("no other thing ; has crossing ( ahead ego 20m )"),
+        "No other objects; a pedestrian crossing 20 m ahead."
+    );
+    assert_eq!(
+        answer(&parse("").expect("empty"), None, &[], &[]),
+        "Nothing was understood."
+    );
+}
+
+/// Random texts of words, numbers and signs: no panic, and what comes of them is sound. `SCENELOOM_TEXTS` says how many.
+#[test]
+fn random_and_hostile_texts_end() {
+    use super::carry_out::carry_out;
+    use super::describe::{describe, described};
+    use super::stage::OpenScene;
+    use super::text_edit::TextEdit;
+    use crate::generation::place::{road, rules::place_with, to_graph::to_graph};
+    use crate::generation::world::draw::Draw;
+
+    const PIECES: [&str; 64] = [
+        "remove",
+        "the",
+        "all",
+        "two",
+        "car",
+        "cars",
+        "bus",
+        "red",
+        "blue",
+        "behind",
+        "it",
+        "them",
+        "other",
+        "except",
+        "but",
+        "and",
+        ",",
+        ".",
+        ";",
+        "#",
+        "7",
+        "99999999999999999999",
+        "0",
+        "-5",
+        "1e308",
+        "m",
+        "20 m",
+        "between",
+        "me",
+        "on",
+        "left",
+        "lane",
+        "crossing",
+        "move",
+        "closer",
+        "replace",
+        "with",
+        "swap",
+        "turn",
+        "around",
+        "keep",
+        "only",
+        "no",
+        "nothing else",
+        "make",
+        "night",
+        "rain",
+        "zebra",
+        "half",
+        "of",
+        "nearest",
+        "second",
+        "facing",
+        "each other",
+        "in a row",
+        "(",
+        ")",
+        "🚗",
+        "夜",
+        "\u{0}",
+        "\u{202e}",
+        "'s",
+        "-",
+        "xqzt",
+    ];
+    let d = described("add 1 bus ( ahead ego 15m ) and 3 parked car and 2 person ( on crossing )")
+        .expect("valid");
+    let g = to_graph(&d, 1);
+    let chosen = road::choose(&d, &g.graph, 1);
+    let placed = place_with(&g.graph, &chosen.layout, 1, &g.sizes_m, &[]);
+    let boxes = placed.boxes.iter().map(|b| (b.id, *b)).collect();
+    let scene = OpenScene {
+        boxes: &boxes,
+        layout: &chosen.layout,
+        prompt: "day",
+    };
+    let n: u64 = std::env::var("SCENELOOM_TEXTS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(150);
+    let mut draw = Draw::new(9, "hostile texts");
+    for i in 0..n {
+        let length = 1 + draw.below(if i % 50 == 0 { 300 } else { 14 });
+        let words: Vec<&str> = (0..length).map(|_| PIECES[draw.below(PIECES.len())]).collect();
+        let text = words.join(" ");
+        let prompt = hear(&text, Mode::Prompt).expect("weights");
+        let d = describe(&prompt.reading);
+        assert_eq!(d.from.len(), d.description.foreground.len(), "{text}");
+        let edit = hear(&text, Mode::Edit).expect("weights");
+        let done = carry_out(&edit.reading, &scene, i);
+        for e in &done.edits {
+            if let TextEdit::Add { object } | TextEdit::Replace { object, .. } = e {
+                assert_eq!(object.problem(), None, "{text}");
+            }
+        }
+        let said = answer(&edit.reading, Some(&done), &done.remarks, &edit.missing);
+        assert!(said.ends_with('.') && !said.contains('\n'), "{text}: {said}");
+    }
+}
+
+#[test]
+fn what_is_in_no_list_is_not_guessed() {
+    for text in ["夜晚", "مرحبا", "😀😀", "zxcvbq qwrtzy"] {
+        for mode in [Mode::Prompt, Mode::Edit] {
+            let heard = hear(text, mode).expect("weights");
+            assert!(heard.reading.acts.is_empty(), "{text}: {:?}", heard.reading);
+        }
+    }
+}
+
+#[test]
+fn plain_sentences_are_heard_as_the_grammar_reads_them() {
+    let heard = hear("Remvoe the bus", Mode::Edit).expect("weights");
+    assert_eq!(super::notation::write(&heard.reading), "remove the bus");
+    assert_eq!(heard.mended[0].to, "remove");
+    let long = "Two cars ahead. ".repeat(2000);
+    let heard = hear(&long, Mode::Prompt).expect("weights");
+    assert!(heard.missing.iter().any(|m| m.why == Why::TooLong));
+}
