@@ -82,7 +82,7 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     if !said.tokens.iter().any(known) {
         said.reading = Reading::default();
     }
-    let plain = grammar::read(&said.tokens, mode);
+    let plain = grammar::read(&without_unknown(&said.tokens, &known), mode);
     let same = |a: &Reading, b: &Reading| {
         notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
     };
@@ -128,6 +128,24 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         other: other.filter(|o| !o.acts.is_empty()),
         reading,
     })
+}
+
+/// The tokens without words that no list knows, and the articles before them: these are named, and what is plain beside them
+/// is read all the same.
+fn without_unknown(tokens: &[Token], known: &dyn Fn(&Token) -> bool) -> Vec<Token> {
+    let mut out: Vec<Token> = Vec::new();
+    for t in tokens {
+        let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
+        if !word || known(t) {
+            out.push(t.clone());
+        } else if out
+            .last()
+            .is_some_and(|l| matches!(l.text.as_str(), "a" | "an" | "the" | "some"))
+        {
+            out.pop();
+        }
+    }
+    out
 }
 
 /// A reading from elsewhere, beside what the readers of this program heard.

@@ -199,6 +199,9 @@ fn plain_sentences_are_heard_as_the_grammar_reads_them() {
     let heard = hear("Remvoe the bus", Mode::Edit).expect("weights");
     assert_eq!(super::notation::write(&heard.reading), "remove the bus");
     assert_eq!(heard.mended[0].to, "remove");
+    let heard = hear("a glorpify, two parked cars", Mode::Prompt).expect("weights");
+    assert_eq!(super::notation::write(&heard.reading), "add 2 parked car");
+    assert_eq!(heard.missing[0].words, "glorpify");
     let long = "Two cars ahead. ".repeat(2000);
     let heard = hear(&long, Mode::Prompt).expect("weights");
     assert!(heard.missing.iter().any(|m| m.why == Why::TooLong));
