@@ -523,7 +523,8 @@ impl PromptPane {
 
     /// What came of the words, in a sentence; what must be answered first.
     fn answers(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
-        if let Some(done) = &self.done {
+        // (a question stands below, with what can be answered)
+        if let Some(done) = self.done.as_ref().filter(|_| !self.asks) {
             ui.add(egui::Label::new(egui::RichText::new(done).color(theme::text())).wrap());
         }
         for note in &self.notes {

@@ -66,7 +66,10 @@ pub fn answer(
     let text = parts.join("; ");
     let mut letters = text.chars();
     match letters.next() {
-        Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
+        Some(first) => {
+            let end = if text.ends_with('?') { "" } else { "." };
+            format!("{}{}{end}", first.to_uppercase(), letters.as_str())
+        }
         None => String::new(),
     }
 }

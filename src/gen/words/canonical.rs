@@ -2,7 +2,8 @@
 //! `training/words/canonical.py`.
 
 use super::reader::Mode;
-use super::reading::{Act, Anchor, Destination, Place, Reading, Thing, Turn, What};
+use super::reading::{Act, Anchor, Destination, Place, Reading, Relation, Thing, Turn, What};
+use crate::scene::graph::{LaneRole, ObjectState};
 
 /// The reading in that order, without spans and confidences.
 pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
@@ -87,8 +88,23 @@ fn sort_what(what: &mut What) {
 
 fn sort_all(things: &mut [Thing]) {
     for t in things {
+        // (what is parked on the right stands at the right kerb)
+        if t.state == Some(ObjectState::Parked) {
+            t.places.iter_mut().for_each(at_the_kerb);
+        }
         sort_places(&mut t.places);
         sort_all(&mut t.except);
+    }
+}
+
+fn at_the_kerb(p: &mut Place) {
+    let role = match p.relation {
+        Relation::Left => LaneRole::LeftRoadside,
+        Relation::Right => LaneRole::RightRoadside,
+        _ => return,
+    };
+    if p.to == Some(Anchor::Ego) && p.metres.is_none() {
+        (p.relation, p.to) = (Relation::On, Some(Anchor::Lane(role)));
     }
 }
 
