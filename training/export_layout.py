@@ -18,19 +18,24 @@ from train_layout import Frames, batch_of
 
 def write_card(folder, kind, path, tensors, meta, data_command, time_text):
     """Weights in f16, the training log, and the kind's section of card.json and CARD.md."""
-    card_file, text_file = folder / "card.json", folder / "CARD.md"
-    card = json.loads(card_file.read_text()) if card_file.exists() else {}
-    text = text_file.read_text() if text_file.exists() else "# Weights\n"
     out = folder / f"{kind}.safetensors"
     save_file(halved(tensors), out, meta)
     log = Path(path).with_suffix(".csv")
     if log.exists():
         (folder / f"{kind}.csv").write_text(log.read_text())
-    held_out = last_row(path)
-    card[kind] = meta | {"config": json.loads(meta["config"]), "bytes": out.stat().st_size, "data_command": data_command,
-                         "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
-                         "parameters": sum(v.numel() for v in tensors.values()), "held_out": held_out}
-    c = card[kind]
+    add_section(folder, kind, tensors, meta, data_command, time_text, last_row(path))
+    return out
+
+
+def add_section(folder, kind, tensors, meta, data_command, time_text, held_out):
+    """The section of card.json and CARD.md about the weights of a kind that lie in the folder."""
+    card_file, text_file = folder / "card.json", folder / "CARD.md"
+    card = json.loads(card_file.read_text()) if card_file.exists() else {}
+    text = text_file.read_text() if text_file.exists() else "# Weights\n"
+    out = folder / f"{kind}.safetensors"
+    c = card[kind] = meta | {"config": json.loads(meta["config"]), "bytes": out.stat().st_size, "data_command": data_command,
+                             "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
+                             "parameters": sum(v.numel() for v in tensors.values()), "held_out": held_out}
     lines = [f"## {kind}", "", f"- {c['parameters']:,} parameters, {c['bytes'] / 1e6:.2f} MB; config `{json.dumps(c['config'])}`",
              f"- Data: `{data_command}`; recipe: `training/README.md`",
              f"- seed {c['seed']}, {c['steps']} steps, {c['samples']} samples, {time_text}",
@@ -42,7 +47,6 @@ def write_card(folder, kind, path, tensors, meta, data_command, time_text):
     card_file.write_text(json.dumps(card, indent=1) + "\n")
     text_file.write_text(text.rstrip("\n") + "\n\n" + "\n".join(lines))
     print(f"{out}: {c['bytes'] / 1e6:.2f} MB, {c['parameters']} parameters")
-    return out
 
 
 def export_net(doc, kind, net_of, golden, kept=()):

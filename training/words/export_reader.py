@@ -1,6 +1,6 @@
-"""Trained reader -> assets/weights/reader.safetensors (f16) and the golden of its parity test.
+"""Trained reader -> assets/weights/reader.safetensors (f16), its section of the card, and the golden of its parity test.
 
-python3 export_reader.py RUN
+python3 export_reader.py RUN [OUT.safetensors: the weights alone, there]
 """
 
 import json
@@ -13,9 +13,13 @@ from safetensors.torch import save_file
 import lexicon
 import symbols
 from reader import Config, Reader
-from train_reader import Data, batch, greedy
+from train_reader import HERE, Data, batch, greedy, load
 
 ROOT = Path(__file__).parents[2]
+sys.path.append(str(ROOT / "training"))
+
+from export_layout import add_section  # noqa: E402
+
 GOLDEN = [
     ("prompt", "A foggy highway, two trucks 20 m ahead of me and a red car in the left lane."),
     ("edit", "move the bus 5 metres closer, and paint it blue"),
@@ -51,6 +55,11 @@ def main():
                 "line": symbols.to_line(said, toks),
             })
     if len(sys.argv) < 3:
+        n = sum(len(load(p)) for p in HERE.glob("readings/*.jsonl"))
+        about = {"kind": "reader", "config": meta["config"], "seed": state["seed"], "steps": state["step"], "samples": state["seen"], "minutes": round(state["spent"] / 60, 1)}
+        data_command = f"training/words/readings/*.jsonl ({n:,} sentences, those of the voices below held out), their variants, generated pairs"
+        right = {f"{name}_right": share for name, share in state["right"].items()}
+        add_section(out.parent, "reader", halved, about, data_command, f"{state['spent'] / 3600:.2f} h", right)
         (ROOT / "tests/reference/reader_golden.json").write_text(json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
     print(out, f"{out.stat().st_size / 1e6:.2f} MB")
     for r in rows:

@@ -278,7 +278,7 @@ def work(rank, a):
         if (over or flags[1] > 0) and rank == 0:
             shares = {n: round(validate(model, data, t), 3) for n, t in test.items()}
             print(f"step {step} seen {seen} right {shares}", flush=True)
-            torch.save({"model": model.state_dict(), "opt": opt.state_dict(), "words": data.words, "step": step, "seen": seen, "spent": spent + time.time() - began, "config": vars(model.c)}, last)
+            torch.save({"model": model.state_dict(), "opt": opt.state_dict(), "words": data.words, "step": step, "seen": seen, "spent": spent + time.time() - began, "config": vars(model.c), "seed": a.seed, "right": shares}, last)
         if over or flags[1] > 0:
             saved = time.time()
             if a.workers > 1:

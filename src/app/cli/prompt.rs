@@ -21,6 +21,7 @@ use crate::generation::words::hear::{Heard, against};
 use crate::generation::words::notation;
 use crate::generation::words::reader::Mode;
 use crate::generation::words::stage::Candidate;
+use crate::generation::words_background::take;
 use crate::scene::Scene;
 
 /// Arguments.
@@ -87,9 +88,11 @@ impl Prompt {
         }
     }
 
-    /// What the language model reads, if one is named; what the program reads stands beside it.
+    /// What the language model reads in a text, if one is named; what the program reads stands beside it. What is said of
+    /// the background is read already and is not in the text.
     fn by_endpoint(
         &self,
+        text: &str,
         heard: Option<&Heard>,
         mode: Mode,
         scene: Option<&Scene>,
@@ -102,8 +105,8 @@ impl Prompt {
             model: model.clone(),
             timeout: std::time::Duration::try_from_secs_f64(self.timeout_s).context("--timeout-s")?,
         };
-        let reading = endpoint::read(&endpoint, &self.text, mode, scene)?;
-        Ok(Some(against(&self.text, reading, heard, mode)?))
+        let reading = endpoint::read(&endpoint, text, mode, scene)?;
+        Ok(Some(against(text, reading, heard, mode)?))
     }
 
     /// The occupancy of a document's scene by the networks, and how it went.
@@ -145,7 +148,7 @@ impl Prompt {
     fn make(self) -> Outcome {
         let own = text::read(&self.text);
         let heard = own.as_ref().ok().map(|p| &p.heard);
-        let mut prompted = match self.by_endpoint(heard, Mode::Prompt, None)? {
+        let mut prompted = match self.by_endpoint(&take(&self.text, false).rest, heard, Mode::Prompt, None)? {
             Some(heard) => Prompted::new(heard, own.map(|p| p.background).unwrap_or_default()),
             None => own?,
         };
@@ -255,7 +258,9 @@ impl Prompt {
         }
         let scene = open::scene(base)?;
         let mut edited = text::read_edit(&self.text, &scene, self.seed)?;
-        if let Some(heard) = self.by_endpoint(Some(&edited.heard), Mode::Edit, Some(&scene))? {
+        if let Some(heard) =
+            self.by_endpoint(&edited.things.rest, Some(&edited.heard), Mode::Edit, Some(&scene))?
+        {
             edited = text::edited(heard, edited.things, &scene, self.seed);
         }
         if self.reading {

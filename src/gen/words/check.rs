@@ -50,12 +50,13 @@ fn spared(stage: &mut Stage<'_>, t: &Thing) {
 }
 
 fn counted(stage: &mut Stage<'_>, t: &Thing, least: usize, most: usize) {
-    let there = stage
-        .fitting(&Thing {
-            quantity: Quantity::All,
-            ..t.clone()
-        })
-        .len();
+    let fits = stage.fitting(&Thing {
+        quantity: Quantity::All,
+        ..t.clone()
+    });
+    // (what was said to stay is not too many)
+    let spared = fits.iter().filter(|id| stage.stays.contains(id)).count();
+    let (there, most) = (fits.len(), most.max(spared));
     let asked = stage.out.questions.iter().any(|q| q.act == stage.act);
     if !asked && !(least..=most).contains(&there) {
         stage.remark(Remark::TooFew {

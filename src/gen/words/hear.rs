@@ -83,10 +83,7 @@ pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         said.reading = Reading::default();
     }
     let plain = grammar::read(&without_unknown(&said.tokens, &known), mode);
-    let same = |a: &Reading, b: &Reading| {
-        notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
-    };
-    let agree = plain.is_whole() && same(&plain.reading, &said.reading);
+    let agree = plain.is_whole() && says_the_same(&plain.reading, &said.reading, mode);
     let (by, reading, other) = match (agree, plain.is_whole()) {
         (true, _) => (By::Both, plain.reading, None),
         // (what the grammar reads to the last word is plain English)
@@ -148,6 +145,11 @@ fn without_unknown(tokens: &[Token], known: &dyn Fn(&Token) -> bool) -> Vec<Toke
     out
 }
 
+/// True if two readings ask for the same in whatever order and form.
+fn says_the_same(a: &Reading, b: &Reading, mode: Mode) -> bool {
+    notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
+}
+
 /// A reading from elsewhere, beside what the readers of this program heard.
 ///
 /// # Errors
@@ -156,12 +158,9 @@ fn without_unknown(tokens: &[Token], known: &dyn Fn(&Token) -> bool) -> Vec<Toke
 pub fn against(text: &str, reading: Reading, own: Option<&Heard>, mode: Mode) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
     let tokens = tokens(text, Some(learned.speller()));
-    let same = |a: &Reading, b: &Reading| {
-        notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
-    };
     let other = own
         .map(|h| h.reading.clone())
-        .filter(|o| !o.acts.is_empty() && !same(o, &reading));
+        .filter(|o| !o.acts.is_empty() && !says_the_same(o, &reading, mode));
     Ok(Heard {
         missing: missing(text, &tokens, &reading, learned.speller()),
         reading,

@@ -559,8 +559,7 @@ pub fn plural(words: &str) -> String {
         "person" => format!("{}people", words.trim_end_matches("person")),
         "man" | "woman" | "policeman" => format!("{}en", words.trim_end_matches("an")),
         "child" => format!("{words}ren"),
-        "bus" | "minibus" => format!("{words}es"),
         "it" => "of them".into(),
-        _ => format!("{words}s"),
+        _ => super::lexicon::plural(words),
     }
 }

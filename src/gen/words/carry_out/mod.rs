@@ -3,6 +3,7 @@
 mod adds;
 mod changes;
 mod crossing;
+mod destinations;
 mod moves;
 #[cfg(test)]
 mod tests;
@@ -180,7 +181,7 @@ impl Stage<'_> {
         let others: Vec<BoxId> = self
             .boxes
             .keys()
-            .filter(|id| !ids.contains(id))
+            .filter(|id| !ids.contains(id) && !self.stays.contains(id))
             .copied()
             .collect();
         self.take(&others);

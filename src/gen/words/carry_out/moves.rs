@@ -7,14 +7,15 @@ use super::super::nouns::Noun;
 use super::super::plan::Plan;
 use super::super::reading::{Anchor as Said, Destination, Place, Relation, Thing, Way};
 use super::super::remark::Remark;
-use super::super::resolve::{Spare, kind_of};
+use super::super::resolve::Spare;
 use super::super::stage::Stage;
-use crate::generation::place::description::{Anchor, ObjectSpec, Stated};
-use crate::generation::place::holds::{ego, overlap_m, role_of};
+use super::destinations::{CLOSE_M, Found, is_aside};
+use crate::generation::place::description::{Anchor, Stated};
+use crate::generation::place::holds::{ego, overlap_m};
 use crate::generation::place::rules::stands;
 use crate::generation::words::text_edit::TextEdit;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
-use crate::scene::{BevLayer, BoxId, Class, SceneBox};
+use crate::scene::{BoxId, Class, SceneBox};
 
 /// Width of a lane where the map does not say, m.
 const LANE_M: f64 = 3.5;
@@ -89,7 +90,7 @@ impl Stage<'_> {
     }
 
     /// The boxes that a thing means, other than the one that is moved.
-    fn others_of(&mut self, t: &Thing, moved: BoxId) -> Option<Vec<BoxId>> {
+    pub(super) fn others_of(&mut self, t: &Thing, moved: BoxId) -> Option<Vec<BoxId>> {
         let (spoken, noun) = (self.last.clone(), self.last_noun);
         self.skip = Some(moved);
         let ids = self.that(t, Spare::Nearest);
@@ -283,26 +284,20 @@ impl Stage<'_> {
         } else if b.class.is_vehicle() {
             spec.state = Some(ObjectState::Parked);
         }
-        let gone = self.boxes.remove(&id);
-        let mut found: Option<(SceneBox, Vec<RelationKind>, bool)> = None;
-        for tried in self.with_inertia(&b, &spec, moves) {
-            let mut specs = vec![tried.clone()];
-            specs.extend(plan.specs.iter().cloned());
-            let mut held = vec![None];
-            held.extend(plan.held.iter().cloned());
-            let a = self.arrange(&specs, &held, Some(&b));
-            if let Some(new) = a.new.first() {
-                let good = a.unmet.is_empty() && a.left_out.is_empty();
-                if good || found.is_none() {
-                    found = Some((*new, a.unmet, tried.state == Some(ObjectState::Parked)));
-                }
-                if good {
-                    break;
-                }
-            }
+        let mut found = self.destination(&b, &spec, &plan);
+        // (it was there already: then close to it is meant)
+        if found.as_ref().is_some_and(|f| f.moved_m(&b) < 1.0) {
+            let mut closer = spec.clone();
+            let open = closer.relations.iter_mut().filter(|r| {
+                matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind)
+                    && matches!(r.anchor, Anchor::Object(_))
+                    && r.distance_m.is_none()
+            });
+            let open = open.map(|r| r.distance_m = Some(CLOSE_M)).count();
+            let near = (open > 0).then(|| self.destination(&b, &closer, &plan)).flatten();
+            found = near.filter(|f| f.unmet.is_empty()).or(found);
         }
-        self.boxes.extend(gone.map(|b| (b.id, b)));
-        let Some((new, unmet, parked)) = found else {
+        let Some(Found { new, unmet, parked }) = found else {
             self.remark(Remark::NoRoom { id: id.0 });
             return false;
         };
@@ -417,183 +412,6 @@ impl Stage<'_> {
         });
         Some(true)
     }
-
-    /// Places as relations of a box; anchors that are boxes go to the plan, after the box itself. `None` after a question.
-    fn relations(&mut self, b: &SceneBox, places: &[Place], plan: &mut Plan) -> Option<Vec<Stated>> {
-        let mut out = Vec::new();
-        let mut state = |relation, anchor, and, distance_m| {
-            out.push(Stated {
-                relation,
-                anchor,
-                and,
-                distance_m,
-            });
-        };
-        for place in places {
-            let Some(to) = &place.to else {
-                let relation = place.relation;
-                self.remark(Remark::PlaceIgnored { relation });
-                continue;
-            };
-            // (each anchor takes the index after those before; the moved box itself is 0)
-            let mut anchor = |stage: &mut Self, a: &Said| -> Option<Anchor> {
-                Some(match a {
-                    Said::Ego => Anchor::Ego,
-                    Said::Crossing => Anchor::Crossing,
-                    Said::Junction => Anchor::Junction,
-                    Said::Lane(role) => Anchor::Lane(*role),
-                    Said::OtherSide | Said::OtherLane => {
-                        Anchor::Lane(stage.opposite(b, a == &Said::OtherLane))
-                    }
-                    Said::EachOther => return None,
-                    Said::Thing(t) => {
-                        let ids = stage.others_of(t, b.id)?;
-                        let boxes: Vec<SceneBox> =
-                            ids.iter().filter_map(|id| stage.boxes.get(id).copied()).collect();
-                        let first = boxes.first()?;
-                        let mut spec = stage.as_spec(first);
-                        spec.count.n = boxes.len() as u32;
-                        plan.specs.push(spec);
-                        plan.held.push(Some(boxes));
-                        Anchor::Object(plan.specs.len())
-                    }
-                })
-            };
-            let first = anchor(self, to)?;
-            let second = match &place.and {
-                Some(a) => Some(anchor(self, a)?),
-                None if place.relation == Relation::Between => Some(match first {
-                    Anchor::Object(j) if plan.held[j - 1].as_ref().is_some_and(|x| x.len() > 1) => first,
-                    _ => Anchor::Ego,
-                }),
-                None => None,
-            };
-            match (place.relation, first) {
-                (Relation::At, Anchor::Ego) => {
-                    let (relation, m) = (ego_side(b), place.metres);
-                    state(relation, Anchor::Ego, None, m);
-                }
-                (Relation::Like, Anchor::Object(j)) => {
-                    let model = plan.held[j - 1].as_ref().and_then(|x| x.first());
-                    match model.and_then(|m| role_of(&self.map, m)) {
-                        Some(role) => state(RelationKind::On, Anchor::Lane(role), None, None),
-                        None => state(RelationKind::NextTo, first, None, None),
-                    }
-                }
-                (Relation::Oncoming, Anchor::Ego) if place.metres.is_some() => {
-                    state(RelationKind::InFrontOf, Anchor::Ego, None, place.metres);
-                    state(RelationKind::OppositeDirection, Anchor::Ego, None, None);
-                }
-                (Relation::Waiting, Anchor::Lane(_)) => state(RelationKind::On, first, None, place.metres),
-                (relation, _) => {
-                    if let Some(kind) = kind_of(relation, to, None) {
-                        state(kind, first, second, place.metres);
-                    }
-                }
-            }
-        }
-        Some(out)
-    }
-
-    /// The lane or strip on the other side of the road, or the other lane.
-    fn opposite(&self, b: &SceneBox, lane: bool) -> LaneRole {
-        use LaneRole as L;
-        let has = |role: L| self.map.points.iter().any(|p| p.role == role);
-        match role_of(&self.map, b) {
-            Some(L::LeftRoadside) if !lane => L::RightRoadside,
-            Some(L::RightRoadside) if !lane => L::LeftRoadside,
-            Some(L::LeftSidewalk) if !lane => L::RightSidewalk,
-            Some(L::RightSidewalk) if !lane => L::LeftSidewalk,
-            Some(L::Ego) if lane && has(L::Left) => L::Left,
-            Some(L::Ego) if lane && has(L::Right) => L::Right,
-            Some(L::Left | L::Right | L::Oncoming) => L::Ego,
-            _ if b.class == Class::Pedestrian && b.center_m.y > 0.0 => L::RightSidewalk,
-            _ if b.class == Class::Pedestrian => L::LeftSidewalk,
-            _ => L::Oncoming,
-        }
-    }
-
-    /// What was said with what was not said kept: most of it first, the bare words last.
-    fn with_inertia(&self, b: &SceneBox, spec: &ObjectSpec, moves: bool) -> Vec<ObjectSpec> {
-        use RelationKind as R;
-        let mut out = Vec::new();
-        let mut keep = |more: Stated| {
-            let mut kept = spec.clone();
-            kept.relations.push(more);
-            out.push(kept);
-        };
-        let lane = |role| Stated {
-            relation: R::On,
-            anchor: Anchor::Lane(role),
-            and: None,
-            distance_m: None,
-        };
-        // Turned against the traffic it belongs to another lane; else the lane stays.
-        let sideways = spec.relations.iter().any(|r| match r.relation {
-            R::InFrontOf | R::Behind => {
-                !matches!(r.anchor, Anchor::Ego | Anchor::Crossing | Anchor::Junction)
-            }
-            R::Near | R::WaitingAt | R::FarFrom => matches!(r.anchor, Anchor::Lane(_) | Anchor::Object(_)),
-            R::Facing | R::FacingAway => false,
-            _ => true,
-        });
-        // (past the ego vehicle it does not keep to the lane that comes towards it)
-        let flips = spec.relations.iter().any(|r| match (r.relation, r.anchor) {
-            (R::Behind, Anchor::Ego) => b.center_m.x > 0.0,
-            (R::InFrontOf, Anchor::Ego) => b.center_m.x < 0.0,
-            _ => false,
-        });
-        if !sideways
-            && let Some(role) = role_of(&self.map, b)
-            && !(role == LaneRole::Cross || role == LaneRole::Oncoming && flips)
-        {
-            keep(lane(role));
-        }
-        // Behind the truck is in its lane, and goes its way.
-        let after = spec.relations.iter().position(|r| {
-            r.relation == R::Behind
-                && matches!(r.anchor, Anchor::Object(_))
-                && !matches!(b.class, Class::Pedestrian | Class::TrafficCone | Class::Barrier)
-        });
-        if let Some(i) = after {
-            let mut follows = spec.clone();
-            follows.relations[i].relation = R::Following;
-            out.push(follows);
-        }
-        // (told only a lane or a side it stays level)
-        let level = spec.relations.iter().all(|r| {
-            matches!(r.anchor, Anchor::Lane(_))
-                || matches!(r.relation, R::OppositeDirection | R::SameDirection)
-        });
-        if level && b.center_m.x.abs() > 5.0 {
-            let relation = if b.center_m.x > 0.0 {
-                R::InFrontOf
-            } else {
-                R::Behind
-            };
-            let mut kept = spec.clone();
-            kept.relations.push(Stated {
-                relation,
-                anchor: Anchor::Ego,
-                and: None,
-                distance_m: None,
-            });
-            out.push(kept);
-        }
-        out.push(spec.clone());
-        // (who stands may drive there, where only driving fits; in a car park a space is where no lane is)
-        out.push(ObjectSpec {
-            state: None,
-            ..spec.clone()
-        });
-        if !moves && b.class.is_vehicle() && self.layout.count(BevLayer::CarparkArea) > 200 {
-            out.push(ObjectSpec {
-                state: Some(ObjectState::Parked),
-                ..spec.clone()
-            });
-        }
-        out
-    }
 }
 
 /// So far from the ego vehicle, on the side where it is.
@@ -604,23 +422,4 @@ fn range(metres: f64) -> Place {
         and: None,
         metres: Some(metres),
     }
-}
-
-fn ego_side(b: &SceneBox) -> RelationKind {
-    match b.center_m.truncate() {
-        p if p.x.abs() < p.y.abs() && p.y > 0.0 => RelationKind::LeftOf,
-        p if p.x.abs() < p.y.abs() => RelationKind::RightOf,
-        p if p.x > 0.0 => RelationKind::InFrontOf,
-        _ => RelationKind::Behind,
-    }
-}
-
-/// At the edge of the road, where nothing drives.
-fn is_aside(r: &Stated) -> bool {
-    use LaneRole as L;
-    let strip = matches!(
-        r.anchor,
-        Anchor::Lane(L::Roadside | L::LeftRoadside | L::RightRoadside | L::Carpark)
-    );
-    strip && matches!(r.relation, RelationKind::On | RelationKind::ParkedOn)
 }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use glam::{DVec2, DVec3};
+
 use super::super::describe::described;
 use super::super::notation::parse;
 use super::super::remark::Remark;
@@ -150,4 +152,113 @@ fn what_cannot_be_done_is_remarked_and_changes_nothing() {
             }
         }
     }
+}
+
+#[test]
+fn what_is_said_to_stay_stays() {
+    let base =
+        Base::new("add 1 bus ( ahead ego 15m ) and 1 car ( ahead ego 30m ) and 2 person ( on sidewalk )");
+    let bus = base.of(Class::Bus)[0];
+    let done = base.edit("no all thing ; leave the bus");
+    assert_eq!(done.edits.len(), 3, "{done:?}");
+    assert!(!done.edits.contains(&TextEdit::Remove { id: bus }));
+    assert!(done.remarks.is_empty(), "{done:?}");
+    let done = base.edit("keep the car ; leave the bus");
+    assert_eq!(done.edits.len(), 2, "{done:?}");
+    assert!(!done.edits.contains(&TextEdit::Remove { id: bus }));
+    // (where what is said contradicts itself, that it did not stay is said)
+    let done = base.edit("remove the bus ; leave the bus");
+    let spared = Remark::Spared { what: "bus".into() };
+    assert!(done.remarks.iter().any(|r| r.1 == spared), "{done:?}");
+}
+
+fn moved(edits: &[TextEdit], who: BoxId) -> (DVec3, f64) {
+    let found = edits.iter().rev().find_map(|e| match e {
+        TextEdit::Move {
+            id,
+            center_m,
+            yaw_rad,
+        } if *id == who => Some((*center_m, *yaw_rad)),
+        TextEdit::Replace { id, object } if *id == who => Some((object.center_m, object.yaw_rad)),
+        _ => None,
+    });
+    found.unwrap_or_else(|| panic!("box {} is not moved: {edits:?}", who.0))
+}
+
+#[test]
+fn what_is_moved_is_not_its_own_anchor() {
+    let base = Base::new("add 1 taxi ( ahead ego 9m ) and 1 suv ( ahead ego 34m )");
+    let cars = base.of(Class::Car);
+    let suv = *cars
+        .iter()
+        .max_by(|a, b| base.boxes[a].center_m.x.total_cmp(&base.boxes[b].center_m.x))
+        .expect("two");
+    // Two cars: "the car" that the taxi goes behind is the other one, so nothing is asked.
+    let done = base.edit("move the taxi to ( behind the car )");
+    assert!(done.questions.is_empty(), "{done:?}");
+    let taxi = *cars.iter().find(|id| **id != suv).expect("two");
+    let (at, _) = moved(&done.edits, taxi);
+    let gap_m = base.boxes[&suv].center_m.x - at.x;
+    assert!((4.0..16.0).contains(&gap_m), "{gap_m} {done:?}");
+}
+
+#[test]
+fn two_that_swap_stand_where_the_other_stood() {
+    let base = Base::new("add 1 bus ( ahead ego 12m ) and 1 truck ( ahead ego 30m )");
+    let (bus, truck) = (base.of(Class::Bus)[0], base.of(Class::Truck)[0]);
+    let done = base.edit("swap the bus and the truck");
+    for (who, other) in [(bus, truck), (truck, bus)] {
+        let (at, _) = moved(&done.edits, who);
+        let apart_m = at.truncate().distance(base.boxes[&other].center_m.truncate());
+        assert!(apart_m < 3.0, "{apart_m} m: {done:?}");
+    }
+}
+
+#[test]
+fn a_group_is_placed_by_each_other() {
+    let base = Base::new("add 2 person ( on right_sidewalk )");
+    let people = base.of(Class::Pedestrian);
+    let done = base.edit("turn all person to ( facing each_other )");
+    let (at, yaw): (Vec<_>, Vec<_>) = people.iter().map(|id| moved(&done.edits, *id)).unzip();
+    for (i, j) in [(0, 1), (1, 0)] {
+        let way = (at[j] - at[i]).truncate().normalize();
+        assert!(DVec2::from_angle(yaw[i]).dot(way) > 0.9, "{done:?}");
+    }
+    let base = Base::new("add 3 car ( ahead ego )");
+    let done = base.edit("move all car to ( in_line )");
+    assert!(
+        done.remarks
+            .iter()
+            .all(|r| !matches!(r.1, Remark::PlaceIgnored { .. })),
+        "{done:?}"
+    );
+    let at: Vec<DVec3> = base
+        .of(Class::Car)
+        .iter()
+        .map(|id| {
+            let now = done.edits.iter().rev().find_map(|e| match e {
+                TextEdit::Move { id: i, center_m, .. } if i == id => Some(*center_m),
+                _ => None,
+            });
+            now.unwrap_or(base.boxes[id].center_m)
+        })
+        .collect();
+    let spread = |f: &dyn Fn(&DVec3) -> f64| {
+        let v: Vec<f64> = at.iter().map(f).collect();
+        v.iter().copied().fold(f64::MIN, f64::max) - v.iter().copied().fold(f64::MAX, f64::min)
+    };
+    assert!(spread(&|p| p.y) < 1.5 && spread(&|p| p.x) > 8.0, "{at:?}");
+}
+
+#[test]
+fn a_crossing_lies_as_far_away_as_was_said() {
+    let base = Base::new("road straight ; lacks crossing ; add 1 bus ( ahead ego 30m )");
+    let done = base.edit("has crossing ( ahead ego 14m )");
+    let outline = done.edits.iter().find_map(|e| match e {
+        TextEdit::Crossing { outline_m } => Some(outline_m.clone()),
+        _ => None,
+    });
+    let outline = outline.unwrap_or_else(|| panic!("no crossing: {done:?}"));
+    let x = outline.iter().map(|p| p.x).sum::<f64>() / outline.len() as f64;
+    assert!((x - 14.0).abs() < 2.0, "{x} m");
 }

@@ -1,6 +1,6 @@
 //! The phrases of the grammar, from `assets/words/grammar.txt`.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
 use super::super::tokens::Token;
@@ -11,10 +11,13 @@ const LONGEST: usize = 9;
 /// Phrases by kind.
 pub(super) struct Table {
     kinds: HashMap<&'static str, HashMap<&'static str, &'static str>>,
+    /// Words of all phrases but those of what cannot be done.
+    words: HashSet<&'static str>,
 }
 
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let mut kinds: HashMap<&str, HashMap<&str, &str>> = HashMap::new();
+    let mut words = HashSet::new();
     let text = include_str!("../../../../assets/words/grammar.txt");
     for (key, phrases) in text
         .lines()
@@ -27,9 +30,12 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
         let of = kinds.entry(kind).or_default();
         for phrase in phrases.split(", ") {
             of.entry(phrase).or_insert(symbol);
+            if kind != "cannot" {
+                words.extend(phrase.split(' '));
+            }
         }
     }
-    Table { kinds }
+    Table { kinds, words }
 });
 
 impl Table {
@@ -63,9 +69,6 @@ impl Table {
 
     /// True if a word stands in any phrase: it is understood, or knowingly passed over.
     pub(super) fn has_word(&self, word: &str) -> bool {
-        let kinds = self.kinds.iter().filter(|(kind, _)| **kind != "cannot");
-        kinds
-            .into_iter()
-            .any(|(_, of)| of.keys().any(|phrase| phrase.split(' ').any(|w| w == word)))
+        self.words.contains(word)
     }
 }

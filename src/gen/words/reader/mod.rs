@@ -37,8 +37,6 @@ pub struct Said {
     pub reading: Reading,
     /// Its tokens.
     pub tokens: Vec<Token>,
-    /// How much each token was looked at while the reading was said, 0 to 1.
-    pub looked_at: Vec<f32>,
     /// What lies beyond the longest text that is read.
     pub left_out: Vec<Token>,
 }
@@ -101,9 +99,8 @@ impl LearnedReader {
         let mut out = Said::default();
         let mut from = 0;
         for end in ends {
-            let (reading, looked_at) = self.say(&all[from..end], mode);
+            let reading = self.say(&all[from..end], mode);
             out.reading.acts.extend(reading.acts);
-            out.looked_at.extend(looked_at);
             from = end;
         }
         out.left_out = all.split_off(read_to);
@@ -111,15 +108,14 @@ impl LearnedReader {
         out
     }
 
-    /// The reading of a few tokens, and how much each was looked at.
-    fn say(&self, all: &[Token], mode: Mode) -> (Reading, Vec<f32>) {
+    /// The reading of a few tokens.
+    fn say(&self, all: &[Token], mode: Mode) -> Reading {
         let input = self.symbols.input(all, mode);
         let memory = self.net.encode(&input);
         let mut state = self.net.begin();
         let mut said: Vec<usize> = Vec::new();
         let mut line = String::new();
         let mut acts: Vec<(f64, Vec<usize>)> = vec![(1.0, Vec::new())];
-        let mut looked_at = vec![0.0f32; all.len()];
         let mut prefix = Prefix::default();
         while said.len() < symbols::MOST_SYMBOLS {
             let (p, look) = self.net.next(&mut state, &memory, said.last().copied(), &input);
@@ -134,9 +130,6 @@ impl LearnedReader {
                 act.0 *= f64::from(p[symbol]);
                 let most = look.iter().skip(1).enumerate().max_by(|a, b| a.1.total_cmp(b.1));
                 act.1.extend(most.map(|(i, _)| i));
-            }
-            for (seen, l) in looked_at.iter_mut().zip(look.iter().skip(1)) {
-                *seen = seen.max(*l);
             }
             if symbol == symbols::END {
                 break;
@@ -160,7 +153,7 @@ impl LearnedReader {
             let spans = at.iter().filter_map(|i| all.get(*i)).map(|t| t.span);
             act.span = spans.reduce(Span::to);
         }
-        (reading, looked_at)
+        reading
     }
 }
 

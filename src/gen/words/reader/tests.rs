@@ -77,11 +77,16 @@ fn whatever_is_typed_a_valid_reading_comes_of_it() {
         for mode in [Mode::Prompt, Mode::Edit] {
             let said = reader.read(text, mode);
             let line = notation::write(&said.reading);
-            assert_eq!(
-                notation::parse(&line).expect("valid"),
-                notation::parse(&line).expect("valid")
+            if !line.is_empty() {
+                let again = notation::parse(&line).unwrap_or_else(|e| panic!("{line}: {e}"));
+                assert_eq!(notation::write(&again), line);
+            }
+            assert!(
+                said.reading
+                    .acts
+                    .iter()
+                    .all(|a| (0.0..=1.0).contains(&a.confidence))
             );
-            assert!(said.looked_at.iter().all(|p| p.is_finite()));
         }
     }
 }
