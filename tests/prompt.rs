@@ -243,3 +243,16 @@ fn dev_sentences_are_read_no_worse() {
         "{error}"
     );
 }
+
+#[test]
+fn an_early_end_of_the_reader_is_no_panic() {
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let out = Command::new(env!("CARGO_BIN_EXE_sceneloom"))
+        .args(["prompt", "--schema"])
+        .stdout(writer)
+        .output()
+        .expect("it ends");
+    assert_eq!(String::from_utf8_lossy(&out.stderr), "");
+    assert_eq!(out.status.code(), Some(141));
+}

@@ -229,8 +229,21 @@ pub fn accepts(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Resul
     parsed.map(|_| ()).map_err(|e| e.to_string())
 }
 
+/// What reads our output may end early (`| head`): then the program ends too, as others do, and says nothing.
+fn quiet_when_nobody_reads() {
+    let loud = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let said = info.payload_as_str().unwrap_or_default();
+        if said.starts_with("failed printing to std") && said.contains("Broken pipe") {
+            std::process::exit(141);
+        }
+        loud(info);
+    }));
+}
+
 /// Parses the arguments, runs the command or the editor, prints an error once; the exit code of the process.
 pub fn main() -> ExitCode {
+    quiet_when_nobody_reads();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {

@@ -28,7 +28,7 @@ pub struct Act {
     /// Bytes of the text that say it, if the reader knows them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub span: Option<Span>,
-    /// How sure the reader is, 0 to 1.
+    /// How sure the reader is, 0 to 1: the learned one is as sure as of the symbol it is least sure of.
     #[serde(default = "sure", skip_serializing_if = "is_sure")]
     pub confidence: f64,
 }

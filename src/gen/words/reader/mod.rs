@@ -127,7 +127,7 @@ impl LearnedReader {
             };
             // (what the look of the network rests on belongs to the act that is being said)
             if let Some(act) = acts.last_mut() {
-                act.0 *= f64::from(p[symbol]);
+                act.0 = act.0.min(f64::from(p[symbol]));
                 let most = look.iter().skip(1).enumerate().max_by(|a, b| a.1.total_cmp(b.1));
                 act.1.extend(most.map(|(i, _)| i));
             }
