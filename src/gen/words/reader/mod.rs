@@ -8,12 +8,13 @@ mod tests;
 
 use std::sync::{Arc, OnceLock};
 
-use super::notation::{self, Prefix};
+use super::account::missing;
+use super::notation;
 use super::reading::Reading;
 use super::tokens::{Span, Speller, Token, tokens};
 use crate::generation::weights::{WeightFile, WeightsError};
-use net::{Net, NetConfig};
-use symbols::Symbols;
+use net::{Memory, Net, NetConfig, State};
+use symbols::{Input, Symbols};
 
 /// File name of the weights.
 pub const FILE: &str = "reader.safetensors";
@@ -99,7 +100,7 @@ impl LearnedReader {
         let mut out = Said::default();
         let mut from = 0;
         for end in ends {
-            let reading = self.say(&all[from..end], mode);
+            let reading = self.say(text, &all[from..end], mode);
             out.reading.acts.extend(reading.acts);
             from = end;
         }
@@ -108,39 +109,79 @@ impl LearnedReader {
         out
     }
 
-    /// The reading of a few tokens.
-    fn say(&self, all: &[Token], mode: Mode) -> Reading {
+    /// The reading of a few tokens: the most likely symbols one by one; where these leave words out, the few lines that
+    /// part from it where it was least sure are tried too.
+    fn say(&self, text: &str, all: &[Token], mode: Mode) -> Reading {
         let input = self.symbols.input(all, mode);
         let memory = self.net.encode(&input);
         let mut state = self.net.begin();
-        let mut said: Vec<usize> = Vec::new();
-        let mut line = String::new();
-        let mut acts: Vec<(f64, Vec<usize>)> = vec![(1.0, Vec::new())];
-        let mut prefix = Prefix::default();
+        let mut first = Spoken::default();
+        self.go_on(&mut first, &mut state, &memory, &input, all);
+        let mut best = self.reading(&first, all);
+        let left_out = |r: &Reading| missing(text, all, r, &self.speller).len() as f64;
+        let mut best_score = first.log_p() - PRICE * left_out(&best);
+        if best_score == first.log_p() {
+            return best;
+        }
+        for at in first.least_sure() {
+            let Some(rival) = first.said[at].rival else {
+                continue;
+            };
+            let mut other = Spoken {
+                said: first.said[..at].to_vec(),
+            };
+            other.said.push(rival.into());
+            // (of the steps before, the last one has heard all symbols but the rival)
+            let mut state = state.clone();
+            state.back_to(at + 1, &self.net);
+            if rival.0 != symbols::END {
+                self.go_on(&mut other, &mut state, &memory, &input, all);
+            }
+            let reading = self.reading(&other, all);
+            let score = other.log_p() - PRICE * left_out(&reading);
+            if score > best_score {
+                (best, best_score) = (reading, score);
+            }
+        }
+        best
+    }
+
+    /// Says the rest of a line, greedily; only what continues a valid reading can be said.
+    fn go_on(&self, spoken: &mut Spoken, state: &mut State, memory: &Memory, input: &Input, all: &[Token]) {
+        let mut said = spoken.symbols();
         while said.len() < symbols::MOST_SYMBOLS {
-            let (p, look) = self.net.next(&mut state, &memory, said.last().copied(), &input);
+            let line = self.symbols.line(&said, all);
+            let prefix = notation::prefix(&line);
+            let (p, look) = self.net.next(state, memory, said.last().copied(), input);
             let mut order: Vec<usize> = (0..p.len()).filter(|i| p[*i] > 1e-6).collect();
             order.sort_by(|a, b| p[*b].total_cmp(&p[*a]));
             let fits = |s: &&usize| self.symbols.may_follow(**s, &said, &line, all, &prefix);
-            let Some(symbol) = order.iter().find(fits).copied() else {
-                break;
-            };
-            // (what the look of the network rests on belongs to the act that is being said)
-            if let Some(act) = acts.last_mut() {
-                act.0 = act.0.min(f64::from(p[symbol]));
-                let most = look.iter().skip(1).enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-                act.1.extend(most.map(|(i, _)| i));
-            }
+            let mut can = order.iter().filter(fits);
+            let Some(symbol) = can.next().copied() else { break };
+            let sure = p[symbol] > SURE;
+            let rival = if sure { None } else { can.next() };
+            spoken.said.push(Symbol {
+                id: symbol,
+                p: f64::from(p[symbol]),
+                // (what the look of the network rests on belongs to the act that is being said)
+                look: look
+                    .iter()
+                    .skip(1)
+                    .enumerate()
+                    .max_by(|a, b| a.1.total_cmp(b.1))
+                    .map(|(i, _)| i),
+                rival: rival.map(|r| (*r, f64::from(p[*r]))),
+            });
             if symbol == symbols::END {
                 break;
             }
-            if self.symbols.name(symbol) == ";" {
-                acts.push((1.0, Vec::new()));
-            }
             said.push(symbol);
-            line = self.symbols.line(&said, all);
-            prefix = notation::prefix(&line);
         }
+    }
+
+    /// What was said as a reading; its acts are as sure as their least sure symbol.
+    fn reading(&self, spoken: &Spoken, all: &[Token]) -> Reading {
+        let line = self.symbols.line(&spoken.symbols(), all);
         // (a reading that ran out of room ends with its last whole act)
         let mut reading = notation::parse(&line).unwrap_or_default();
         if reading.acts.is_empty()
@@ -148,12 +189,69 @@ impl LearnedReader {
         {
             reading = notation::parse(whole).unwrap_or_default();
         }
-        for (act, (p, at)) in reading.acts.iter_mut().zip(&acts) {
-            act.confidence = p.clamp(0.0, 1.0);
-            let spans = at.iter().filter_map(|i| all.get(*i)).map(|t| t.span);
+        let acts = spoken.said.split_inclusive(|s| self.symbols.name(s.id) == ";");
+        for (act, said) in reading.acts.iter_mut().zip(acts) {
+            act.confidence = said.iter().fold(1.0, |least: f64, s| least.min(s.p)).max(0.0);
+            let spans = said.iter().filter_map(|s| all.get(s.look?)).map(|t| t.span);
             act.span = spans.reduce(Span::to);
         }
         reading
+    }
+}
+
+/// What a word that is left out costs, in log probability.
+const PRICE: f64 = 3.0;
+/// Other lines that are tried.
+const OTHERS: usize = 3;
+/// Symbols this probable have no rival.
+const SURE: f32 = 0.9;
+
+#[derive(Clone, Copy)]
+struct Symbol {
+    id: usize,
+    p: f64,
+    /// The token that the network looked at most.
+    look: Option<usize>,
+    /// What else could be said here, and its probability.
+    rival: Option<(usize, f64)>,
+}
+
+impl From<(usize, f64)> for Symbol {
+    fn from((id, p): (usize, f64)) -> Self {
+        Self {
+            id,
+            p,
+            look: None,
+            rival: None,
+        }
+    }
+}
+
+/// A line as it is said.
+#[derive(Default)]
+struct Spoken {
+    said: Vec<Symbol>,
+}
+
+impl Spoken {
+    /// Without the end.
+    fn symbols(&self) -> Vec<usize> {
+        let ids = self.said.iter().map(|s| s.id);
+        ids.filter(|id| *id != symbols::END).collect()
+    }
+
+    fn log_p(&self) -> f64 {
+        self.said.iter().map(|s| s.p.max(1e-9).ln()).sum()
+    }
+
+    /// Places where another symbol could be said, the least sure first.
+    fn least_sure(&self) -> Vec<usize> {
+        let mut at: Vec<usize> = (0..self.said.len())
+            .filter(|i| self.said[*i].rival.is_some())
+            .collect();
+        at.sort_by(|a, b| self.said[*a].p.total_cmp(&self.said[*b].p));
+        at.truncate(OTHERS);
+        at
     }
 }
 

@@ -177,10 +177,23 @@ impl Memory {
 }
 
 /// What was said so far.
+#[derive(Clone)]
 pub(super) struct State {
     keys: Vec<Vec<f32>>,
     values: Vec<Vec<f32>>,
     at: usize,
+}
+
+impl State {
+    /// As it was after so many symbols were said, to go on differently.
+    pub(super) fn back_to(&mut self, said: usize, net: &Net) {
+        let most = said * net.c.width;
+        self.keys
+            .iter_mut()
+            .chain(&mut self.values)
+            .for_each(|rows| rows.truncate(most));
+        self.at = self.at.min(said);
+    }
 }
 
 /// The network.

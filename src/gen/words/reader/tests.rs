@@ -1,7 +1,8 @@
 use serde::Deserialize;
 
 use super::super::notation;
-use super::{LearnedReader, Mode};
+use super::super::tokens::tokens;
+use super::{LearnedReader, Mode, Spoken};
 
 #[derive(Deserialize)]
 struct Row {
@@ -88,5 +89,27 @@ fn whatever_is_typed_a_valid_reading_comes_of_it() {
                     .all(|a| (0.0..=1.0).contains(&a.confidence))
             );
         }
+    }
+}
+
+#[test]
+fn gone_back_to_any_symbol_it_says_the_same_again() {
+    let reader = LearnedReader::bundled().expect("it ships");
+    let text = "a straight road, a cone 10 m ahead, a van in the left lane and three people on the crossing";
+    let all = tokens(text, Some(reader.speller()));
+    let input = reader.symbols.input(&all, Mode::Prompt);
+    let memory = reader.net.encode(&input);
+    let (mut state, mut first) = (reader.net.begin(), Spoken::default());
+    reader.go_on(&mut first, &mut state, &memory, &input, &all);
+    assert!(first.said.len() > 10, "{:?}", first.symbols());
+    for at in 0..first.said.len() - 1 {
+        let mut state = state.clone();
+        state.back_to(at + 1, &reader.net);
+        let mut again = Spoken {
+            said: first.said[..=at].to_vec(),
+        };
+        reader.go_on(&mut again, &mut state, &memory, &input, &all);
+        assert_eq!(again.symbols(), first.symbols(), "from symbol {at}");
+        assert!((again.log_p() - first.log_p()).abs() < 1e-6);
     }
 }
