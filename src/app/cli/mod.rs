@@ -234,7 +234,7 @@ fn quiet_when_nobody_reads() {
     let loud = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let said = info.payload_as_str().unwrap_or_default();
-        if said.starts_with("failed printing to std") && said.contains("Broken pipe") {
+        if said.starts_with("failed printing to stdout") && said.contains("Broken pipe") {
             std::process::exit(141);
         }
         loud(info);

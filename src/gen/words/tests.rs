@@ -2,9 +2,10 @@
 
 use super::account::{Why, missing};
 use super::answer::answer;
-use super::hear::hear;
+use super::hear::{against, hear};
 use super::notation::parse;
 use super::reader::{LearnedReader, Mode};
+use super::reading::Reading;
 use super::tokens::tokens;
 
 fn missed(text: &str, line: &str) -> Vec<(String, Why)> {
@@ -208,4 +209,22 @@ fn plain_sentences_are_heard_as_the_grammar_reads_them() {
     let long = "Two cars ahead. ".repeat(2000);
     let heard = hear(&long, Mode::Prompt).expect("weights");
     assert!(heard.missing.iter().any(|m| m.why == Why::TooLong));
+}
+
+#[test]
+fn words_that_a_language_model_knows_are_not_named() {
+    let text = "zwei lastwagen and a red bus";
+    let two = parse("add 2 truck and 1 red bus").expect("a reading");
+    let heard = against(text, two, None, Mode::Prompt).expect("the readers");
+    assert!(heard.missing.is_empty(), "{:?}", heard.missing);
+    // (what the program itself knows is still looked for, and an empty answer excuses nothing)
+    let half = parse("add 2 truck").expect("a reading");
+    let heard = against(text, half, None, Mode::Prompt).expect("the readers");
+    assert!(!heard.missing.is_empty(), "{:?}", heard.missing);
+    let nothing = against(text, Reading::default(), None, Mode::Prompt).expect("the readers");
+    assert!(
+        nothing.missing.iter().any(|m| m.why == Why::Unknown),
+        "{:?}",
+        nothing.missing
+    );
 }

@@ -10,8 +10,8 @@ use crate::generation::place::holds::role_of;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
 use crate::scene::{BevLayer, Class, SceneBox};
 
-/// Between the middles of two things that stand close behind each other, m.
-pub(super) const CLOSE_M: f64 = 9.0;
+/// The gap between two things that stand close behind each other, m.
+pub(super) const CLOSE_M: f64 = 4.5;
 
 /// Where a box goes.
 pub(super) struct Found {

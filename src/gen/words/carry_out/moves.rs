@@ -288,13 +288,17 @@ impl Stage<'_> {
         // (it was there already: then close to it is meant)
         if found.as_ref().is_some_and(|f| f.moved_m(&b) < 1.0) {
             let mut closer = spec.clone();
-            let open = closer.relations.iter_mut().filter(|r| {
-                matches!(r.relation, RelationKind::InFrontOf | RelationKind::Behind)
-                    && matches!(r.anchor, Anchor::Object(_))
-                    && r.distance_m.is_none()
-            });
-            let open = open.map(|r| r.distance_m = Some(CLOSE_M)).count();
-            let near = (open > 0).then(|| self.destination(&b, &closer, &plan)).flatten();
+            let mut open = false;
+            for r in &mut closer.relations {
+                if let (RelationKind::InFrontOf | RelationKind::Behind, Anchor::Object(j), None) =
+                    (r.relation, r.anchor, r.distance_m)
+                    && let Some(other) = plan.held[j - 1].as_ref().and_then(|x| x.first())
+                {
+                    r.distance_m = Some((b.size_m.x + other.size_m.x) / 2.0 + CLOSE_M);
+                    open = true;
+                }
+            }
+            let near = open.then(|| self.destination(&b, &closer, &plan)).flatten();
             found = near.filter(|f| f.unmet.is_empty()).or(found);
         }
         let Some(Found { new, unmet, parked }) = found else {

@@ -200,6 +200,13 @@ fn what_is_moved_is_not_its_own_anchor() {
     let (at, _) = moved(&done.edits, taxi);
     let gap_m = base.boxes[&suv].center_m.x - at.x;
     assert!((4.0..16.0).contains(&gap_m), "{gap_m} {done:?}");
+    // (long ones keep their distance: close means the gap, not the middles)
+    let base = Base::new("add 1 truck ( ahead ego 11m ) and 1 bus ( ahead ego 37m )");
+    let (truck, bus) = (base.of(Class::Truck)[0], base.of(Class::Bus)[0]);
+    let (at, _) = moved(&base.edit("move the truck to ( behind the bus )").edits, truck);
+    let (front, back) = (&base.boxes[&bus], &base.boxes[&truck]);
+    let gap_m = front.center_m.x - at.x - (front.size_m.x + back.size_m.x) / 2.0;
+    assert!((0.5..9.0).contains(&gap_m), "{gap_m}");
 }
 
 #[test]

@@ -118,11 +118,13 @@ impl LearnedReader {
         let mut first = Spoken::default();
         self.go_on(&mut first, &mut state, &memory, &input, all);
         let mut best = self.reading(&first, all);
-        let left_out = |r: &Reading| missing(text, all, r, &self.speller).len() as f64;
-        let mut best_score = first.log_p() - PRICE * left_out(&best);
-        if best_score == first.log_p() {
+        let left_out = |r: &Reading| missing(text, all, r, &self.speller).len();
+        let words = left_out(&best);
+        if words == 0 {
             return best;
         }
+        let score = |s: &Spoken, words: usize| s.log_p() - PRICE * words as f64;
+        let mut best_score = score(&first, words);
         for at in first.least_sure() {
             let Some(rival) = first.said[at].rival else {
                 continue;
@@ -138,9 +140,9 @@ impl LearnedReader {
                 self.go_on(&mut other, &mut state, &memory, &input, all);
             }
             let reading = self.reading(&other, all);
-            let score = other.log_p() - PRICE * left_out(&reading);
-            if score > best_score {
-                (best, best_score) = (reading, score);
+            let other_score = score(&other, left_out(&reading));
+            if other_score > best_score {
+                (best, best_score) = (reading, other_score);
             }
         }
         best
