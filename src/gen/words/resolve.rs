@@ -103,7 +103,10 @@ impl Stage<'_> {
                 self.remark(Remark::OnlyOne { what: words, place });
                 return Some(vec![one]);
             }
-            self.remark(Remark::Nobody { what: words });
+            // (who "it" is waits for the answer to the question)
+            if t.noun != Noun::It || self.out.questions.is_empty() {
+                self.remark(Remark::Nobody { what: words });
+            }
             return None;
         }
         if let Some(nth) = t.nth {

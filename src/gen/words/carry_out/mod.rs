@@ -50,7 +50,7 @@ pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome
         let silent = stage.out.edits.len() == before
             && stage.out.questions.len() == asked
             && stage.out.remarks.len() == remarks;
-        if silent && !matches!(act.what, What::Leave { .. }) {
+        if silent && asked == 0 && !matches!(act.what, What::Leave { .. }) {
             stage.remark(Remark::Already);
         }
     }

@@ -269,3 +269,13 @@ fn a_crossing_lies_as_far_away_as_was_said() {
     let x = outline.iter().map(|p| p.x).sum::<f64>() / outline.len() as f64;
     assert!((x - 14.0).abs() < 2.0, "{x} m");
 }
+
+#[test]
+fn what_is_said_of_it_waits_for_the_answer() {
+    let base = Base::new("add 1 taxi ( ahead ego 9m ) and 1 suv ( ahead ego 34m )");
+    let done = base.edit("move the car by back 2m ; set it red");
+    assert_eq!((done.questions.len(), done.remarks.len()), (1, 0), "{done:?}");
+    // (where nothing is asked, that nobody was spoken of is said)
+    let done = base.edit("set it red");
+    assert_eq!(done.remarks.len(), 1, "{done:?}");
+}
