@@ -38,7 +38,7 @@ pub fn schema() -> Value {
 const RULES: &str = "You turn a user's English sentence for a driving-scene editor into a reading: a JSON object of the given \
 schema and nothing else. \"add\" brings new things; \"remove\", \"move\", \"set\", \"replace\", \"turn\" and \"count\" change things that \
 are there. Write what is said and no more: no relation, state or number that is not in the sentence. The ego vehicle (me, us, \
-our car) is the anchor \"ego\"; left and right are as it sees them; distances are metres. \"the car\" has the quantity \"the\", \
+our car) is the anchor \"ego\"; what stands beside the road (buildings, trees, hedges, lamps) is \"background\", all else \"acts\"; left and right are as it sees them; distances are metres. \"the car\" has the quantity \"the\", \
 \"all cars\" and \"the cars\" have \"all\", \"two cars\" of new things have {\"n\": 2}.";
 
 fn request(text: &str, mode: Mode, scene: Option<&Scene>, model: &str) -> Value {
@@ -145,8 +145,12 @@ pub fn read(endpoint: &Endpoint, text: &str, mode: Mode, scene: Option<&Scene>) 
 /// A reading that can be carried out: of the schema, of a sane size, and sayable in notation.
 fn checked(content: &str) -> anyhow::Result<Reading> {
     let reading: Reading = serde_json::from_str(content)?;
-    if reading.acts.is_empty() || reading.acts.len() > MOST_ACTS {
-        bail!("{} acts, expected 1 to {MOST_ACTS}", reading.acts.len());
+    let n = reading.acts.len() + reading.background.len();
+    if n == 0 || n > MOST_ACTS {
+        bail!("{n} acts, expected 1 to {MOST_ACTS}");
+    }
+    if let Some(problem) = reading.background.iter().find_map(|s| s.problem()) {
+        bail!("background: {problem}");
     }
     // (what the notation cannot say, such as a number that is none, no reader says)
     let line = notation::write(&reading);
@@ -157,7 +161,12 @@ fn checked(content: &str) -> anyhow::Result<Reading> {
             notation::LONGEST
         );
     }
-    notation::parse(&line).map_err(|e| anyhow::anyhow!("{e}"))
+    let mut checked = Reading::default();
+    if !reading.acts.is_empty() {
+        checked = notation::parse(&line).map_err(|e| anyhow::anyhow!("{e}"))?;
+    }
+    checked.background = reading.background;
+    Ok(checked)
 }
 
 #[cfg(test)]
@@ -225,11 +234,13 @@ mod tests {
 
     #[test]
     fn a_reading_is_asked_for_by_its_schema_and_taken() {
-        let content = r#"{"acts": [{"act": "add", "things": [{"noun": "car", "quantity": {"n": 2}}]}, {"act": "time", "what": "night"}]}"#;
+        let content = r#"{"acts": [{"act": "add", "things": [{"noun": "car", "quantity": {"n": 2}}]}, {"act": "time", "what": "night"}],
+            "background": [{"verb": "have", "what": {"tree": null}, "plural": true, "place": {"side": "left"}}]}"#;
         for mode in [Mode::Prompt, Mode::Edit] {
             let (url, asked) = server("200 OK", says(content));
             let reading = ask(&url, mode, Duration::from_secs(60)).expect("a reading");
             assert_eq!(notation::write(&reading), "add 2 car ; time night");
+            assert_eq!(reading.background[0].described(), "trees on the left");
             let asked: Value = serde_json::from_str(&asked.join().expect("asked")).expect("JSON");
             let sent = &asked["response_format"]["json_schema"]["schema"];
             assert_eq!(*sent, schema());
@@ -256,6 +267,13 @@ mod tests {
                 ),
                 "200 OK",
                 "no reading",
+            ),
+            (
+                says(
+                    r#"{"acts": [], "background": [{"verb": "add", "what": {"tree": null}, "count": 4000000000}]}"#,
+                ),
+                "200 OK",
+                "a count above 500",
             ),
             (says(&huge), "200 OK", "read the answer"),
             (Some("not json".into()), "200 OK", "no JSON"),

@@ -6,17 +6,19 @@ use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
 use crate::editor::{Edit, Shape};
-use crate::generation::place::description::{Description, Road};
+use crate::generation::place::description::Description;
 use crate::generation::words::answer::answer;
 use crate::generation::words::carry_out::carry_out;
 use crate::generation::words::describe::{Described, describe};
-use crate::generation::words::hear::{Heard, hear};
+use crate::generation::words::hear::{Heard, hear, hear_objects};
 use crate::generation::words::reader::Mode;
+use crate::generation::words::reading::Reading;
 use crate::generation::words::stage::{OpenScene, Outcome};
 use crate::generation::words::text_edit::TextEdit;
-use crate::generation::words_background::edits::{OpenBackground, ThingEdit, ThingReading};
+use crate::generation::words_background::edits::{
+    OpenBackground, ThingEdit, ThingOutcome, carry_out as carry_out_beside, means_barriers,
+};
 use crate::generation::words_background::wishes::scenery;
-use crate::generation::words_background::{self, NearTo, take};
 use crate::generation::world::World;
 use crate::scene::{BevLayer, Frame, Polyline, PolylineKind, Scene};
 
@@ -35,42 +37,25 @@ pub struct Prompted {
     pub heard: Heard,
     /// What a scene is made of.
     pub described: Described,
-    /// Clauses about buildings, trees and the like, in their own words.
-    pub background: Vec<(String, Option<NearTo>)>,
 }
 
 impl Prompted {
-    /// Reads no words: a description of these values.
-    pub fn new(heard: Heard, background: Vec<(String, Option<NearTo>)>) -> Self {
-        let mut described = describe(&heard.reading);
-        let d = &mut described.description;
-        for (words, near) in &background {
-            // Where a crossing or a junction is spoken of, the road has one.
-            match near {
-                Some(NearTo::Crossing) => d.road.crossing = !d.road.no_crossing,
-                Some(NearTo::Junction) if d.road.kind.is_none() => d.road.kind = Some(Road::Intersection),
-                _ => {}
-            }
-            let comma = if d.summary.is_empty() { "" } else { "; " };
-            d.summary.push_str(&format!("{comma}{words}"));
-            d.background.push(words.clone());
-        }
-        Self {
-            heard,
-            described,
-            background,
-        }
+    /// The description of what was heard.
+    pub fn new(heard: Heard) -> Self {
+        let described = describe(&heard.reading);
+        Self { heard, described }
     }
 
     /// The answer in a sentence.
     pub fn answer(&self) -> String {
         let remarks = &self.described.remarks;
         let mut text = answer(&self.heard.reading, None, remarks, &self.heard.missing);
-        if self.heard.reading.acts.is_empty() {
+        let Reading { acts, background } = &self.heard.reading;
+        if acts.is_empty() && self.heard.missing.is_empty() {
             text.clear();
         }
-        if !self.background.is_empty() {
-            let words: Vec<&str> = self.background.iter().map(|b| b.0.as_str()).collect();
+        if !background.is_empty() {
+            let words: Vec<String> = background.iter().map(|s| s.described()).collect();
             text = format!("{text} Beside the road: {}.", words.join("; "));
         }
         text.trim().to_owned()
@@ -104,13 +89,7 @@ pub fn read(prompt: &str) -> anyhow::Result<Prompted> {
             "the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\""
         );
     }
-    let taken = take(prompt, false);
-    let heard = hear(&taken.rest, Mode::Prompt)?;
-    let background = taken
-        .said
-        .iter()
-        .map(|s| (s.span.of(prompt).to_owned(), s.place.near));
-    let prompted = Prompted::new(heard, background.collect());
+    let prompted = Prompted::new(hear(prompt, Mode::Prompt)?);
     if prompted.described.description.is_empty() {
         let some: Vec<&str> = prompted
             .heard
@@ -160,8 +139,8 @@ pub struct Edited {
     pub heard: Heard,
     /// What came of it: changes, questions, remarks.
     pub outcome: Outcome,
-    /// The same of the background.
-    pub things: ThingReading,
+    /// The same of what stands beside the road.
+    pub things: ThingOutcome,
 }
 
 impl Edited {
@@ -179,10 +158,8 @@ impl Edited {
     /// The answer in a sentence.
     pub fn answer(&self) -> String {
         let mut parts = Vec::new();
-        let read = !self.heard.reading.acts.is_empty() || !self.heard.missing.is_empty();
-        let alone =
-            self.things.done.is_empty() && self.things.cannot.is_empty() && self.things.questions.is_empty();
-        if read || alone {
+        let reading = &self.heard.reading;
+        if !reading.acts.is_empty() || !self.heard.missing.is_empty() || reading.is_empty() {
             parts.push(answer(
                 &self.heard.reading,
                 Some(&self.outcome),
@@ -198,32 +175,35 @@ impl Edited {
     }
 }
 
-/// Reads words as edits of a scene: of its background, and of all else.
+/// Reads words as edits of a scene, and carries them out on a copy.
 ///
 /// # Errors
 ///
 /// If the bundled weights are damaged.
 pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edited> {
+    let mut heard = hear(prompt, Mode::Edit)?;
+    // ("fence" and "guard rail" name barriers too, where there are some)
+    if means_barriers(&heard.reading.background, &scene.frame().boxes) {
+        heard = hear_objects(prompt, Mode::Edit)?;
+    }
+    Ok(edited(heard, scene, seed))
+}
+
+/// Carries out a reading that is known.
+pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
     let frame = scene.frame();
+    let mut outcome = carry_out(&heard.reading, &open_scene(scene), seed);
+    put_on_ground(&mut outcome.edits, frame);
     let open = OpenBackground {
         things: &scene.background,
         world_from_ego: frame.world_from_ego,
         layout: &frame.layout,
         boxes: &frame.boxes,
     };
-    let things = words_background::edits::read_edit(prompt, &open, seed);
-    let heard = hear(&things.rest, Mode::Edit)?;
-    Ok(edited(heard, things, scene, seed))
-}
-
-/// Carries out a reading that is known.
-pub fn edited(heard: Heard, things: ThingReading, scene: &Scene, seed: u64) -> Edited {
-    let mut outcome = carry_out(&heard.reading, &open_scene(scene), seed);
-    put_on_ground(&mut outcome.edits, scene.frame());
     Edited {
+        things: carry_out_beside(&heard.reading.background, &open, seed),
         heard,
         outcome,
-        things,
     }
 }
 

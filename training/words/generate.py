@@ -163,6 +163,9 @@ def thing_words(s, t, anchor=False, bare=False, who=False):
         text = s.pick([f"{s.number(n)} of the {core}", f"{s.number(n)} of the {core}", f"any {s.number(n)} of the {core}"])
     elif n == 1 and not t.get("the"):
         text = article(core) if s.r.random() < 0.85 else s.pick(["one ", "a single ", "1 "]) + core
+    elif n == "each":
+        plural = " ".join([*adjectives, noun_of(s, t, True)])
+        text = s.pick([f"each {core}", f"every {core}", f"each of the {plural}", f"every one of the {plural}"])
     elif n == "all" and s.r.random() < 0.2:
         single = " ".join([*adjectives, noun_of(s, t, False)])
         text = s.pick(["every ", "each ", "any "]) + single
@@ -245,7 +248,9 @@ def some_place(r, noun, new, deep=0):
 
 def anchor_thing(r, new, deep):
     t = {"noun": r.choice(COMMON)}
-    if new and r.random() < 0.6:
+    if new and not deep and r.random() < 0.05:
+        t["n"] = "each"
+    elif new and r.random() < 0.6:
         t["n"] = 1
     else:
         t["the"] = True

@@ -178,7 +178,7 @@ class Parser:
         if token == "the":
             t["the"] = True
             self.take()
-        elif token in ("all", "half", "some", "many"):
+        elif token in ("all", "half", "some", "many", "each"):
             t["n"] = self.take()
         if self.peek() == "other":
             t["other"] = True

@@ -30,6 +30,7 @@ SYMBOLS = (
     + ["0.5", "0.33", "0.25", "1.5", "30deg", "45deg", "90deg", "180deg"]
     + [f"@{k}" for k in range(MOST_NUMBERS)]  # metres, and after "#" an id
     + [f"={k}" for k in range(MOST_NUMBERS)]  # a number of things above twenty
+    + ["each"]
 )
 SYMBOLS = list(dict.fromkeys(SYMBOLS))
 ID = {s: i for i, s in enumerate(SYMBOLS)}

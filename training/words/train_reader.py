@@ -171,6 +171,26 @@ def validate(model, data, records, show=0):
     return right / max(1, len(items))
 
 
+def started(path, words):
+    """Weights of a shipped reader; their words, and behind them those of `words` that it has not (their vectors begin at 0)."""
+    from safetensors import safe_open
+    from safetensors.torch import load_file
+
+    with safe_open(path, "pt") as f:
+        known = json.loads(f.metadata()["words"])
+    weights = {k: v.float() for k, v in load_file(path).items()}
+    new = [w for w in words if w not in set(known)]
+    table = weights["word.weight"]
+    weights["word.weight"] = torch.cat([table, torch.zeros(len(new), table.shape[1])])
+    # (new symbols stand at the end; the last row of `symbol` begins a reading)
+    more = len(symbols.SYMBOLS) - weights["say.bias"].shape[0]
+    zeros = torch.zeros(more, table.shape[1])
+    weights["symbol.weight"] = torch.cat([weights["symbol.weight"][:-1], zeros, weights["symbol.weight"][-1:]])
+    weights["say.weight"] = torch.cat([weights["say.weight"], zeros])
+    weights["say.bias"] = torch.cat([weights["say.bias"], torch.full((more,), -4.0)])
+    return weights, known + new
+
+
 def averaged(model):
     """Gradients of all workers, averaged in place."""
     flat = torch.cat([w.grad.reshape(-1) for w in model.parameters()])
@@ -195,6 +215,7 @@ def main():
     p.add_argument("--sentences", type=Path, default=HERE / "readings")
     p.add_argument("--hold-out", default="", help="files of the sentences that are not learned, by name, with commas")
     p.add_argument("--share", type=float, default=1.0, help="share of the sentences that is learned, for learning curves")
+    p.add_argument("--start", type=Path, help="weights to go on from (reader.safetensors), with the words they know and those that are new")
     p.add_argument("--resume", action="store_true")
     a = p.parse_args()
     if a.workers > 1:
@@ -224,7 +245,13 @@ def work(rank, a):
     last = a.out / "last.pt"
     state = torch.load(last, weights_only=False) if a.resume and last.exists() else None
     data = Data(train, a.seed + 1000003 * rank + (state["step"] if state else 0), a.generated, state["words"] if state else None)
+    weights = None
+    if a.start and not state:
+        weights, words = started(a.start, data.words)
+        data = Data(train, a.seed + 1000003 * rank, a.generated, words)
     model = Reader(Config(len(data.words) + 3, a.width))
+    if weights:
+        model.load_state_dict(weights)
     opt = torch.optim.AdamW(model.parameters(), lr=a.rate, betas=(0.9, 0.98), weight_decay=0.01)
     step, seen, spent = 0, 0, 0.0
     if state:

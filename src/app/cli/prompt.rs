@@ -21,7 +21,6 @@ use crate::generation::words::hear::{Heard, against};
 use crate::generation::words::notation;
 use crate::generation::words::reader::Mode;
 use crate::generation::words::stage::Candidate;
-use crate::generation::words_background::take;
 use crate::scene::Scene;
 
 /// Arguments.
@@ -88,11 +87,9 @@ impl Prompt {
         }
     }
 
-    /// What the language model reads in a text, if one is named; what the program reads stands beside it. What is said of
-    /// the background is read already and is not in the text.
+    /// What the language model reads in the text, if one is named; what the program reads stands beside it.
     fn by_endpoint(
         &self,
-        text: &str,
         heard: Option<&Heard>,
         mode: Mode,
         scene: Option<&Scene>,
@@ -105,8 +102,8 @@ impl Prompt {
             model: model.clone(),
             timeout: std::time::Duration::try_from_secs_f64(self.timeout_s).context("--timeout-s")?,
         };
-        let reading = endpoint::read(&endpoint, text, mode, scene)?;
-        Ok(Some(against(text, reading, heard, mode)?))
+        let reading = endpoint::read(&endpoint, &self.text, mode, scene)?;
+        Ok(Some(against(&self.text, reading, heard, mode)?))
     }
 
     /// The occupancy of a document's scene by the networks, and how it went.
@@ -148,8 +145,8 @@ impl Prompt {
     fn make(self) -> Outcome {
         let own = text::read(&self.text);
         let heard = own.as_ref().ok().map(|p| &p.heard);
-        let mut prompted = match self.by_endpoint(&take(&self.text, false).rest, heard, Mode::Prompt, None)? {
-            Some(heard) => Prompted::new(heard, own.map(|p| p.background).unwrap_or_default()),
+        let mut prompted = match self.by_endpoint(heard, Mode::Prompt, None)? {
+            Some(heard) => Prompted::new(heard),
             None => own?,
         };
         if self.reading {
@@ -258,10 +255,8 @@ impl Prompt {
         }
         let scene = open::scene(base)?;
         let mut edited = text::read_edit(&self.text, &scene, self.seed)?;
-        if let Some(heard) =
-            self.by_endpoint(&edited.things.rest, Some(&edited.heard), Mode::Edit, Some(&scene))?
-        {
-            edited = text::edited(heard, edited.things, &scene, self.seed);
+        if let Some(heard) = self.by_endpoint(Some(&edited.heard), Mode::Edit, Some(&scene))? {
+            edited = text::edited(heard, &scene, self.seed);
         }
         if self.reading {
             return self.print(&edited.heard);
@@ -311,7 +306,7 @@ impl Prompt {
             project::save(&output, &scene)?;
         }
         output::report(&self.common, &report, || {
-            let mut lines = vec![answer.clone()];
+            let mut lines = Vec::from_iter(Some(answer.clone()).filter(|a| !a.is_empty()));
             for q in questions {
                 lines.push(q.text.clone());
                 let one = |c: &Candidate| format!("  #{} {}: {}", c.id.0, c.class.replace('_', " "), c.place);
@@ -322,7 +317,7 @@ impl Prompt {
                 lines.extend(
                     q.candidates
                         .iter()
-                        .map(|c| format!("  {}: {}", c.answer, c.place)),
+                        .map(|c| format!("  {}: {}", c.answer(), c.place)),
                 );
             }
             lines.extend(notes.iter().map(|n| format!("note: {n}")));
@@ -348,7 +343,7 @@ impl Prompt {
 fn first_answer(edited: &text::Edited) -> String {
     let thing = || {
         let q = edited.things.questions.first()?;
-        q.candidates.first().map(|c| c.answer.clone())
+        q.candidates.first().map(|c| c.answer())
     };
     let boxes = edited
         .outcome

@@ -41,8 +41,8 @@ impl Both {
         let again = text::read_edit(&self.text, scene, seed);
         self.edited = match (again, &self.edited) {
             // (changed by hand: what was changed stays, but boxes of another scene are not meant)
-            (Ok(new), Ok(old)) if old.heard.by == By::Hand && !names_boxes(&old.heard.reading) => {
-                Ok(text::edited(old.heard.clone(), new.things, scene, seed))
+            (Ok(_), Ok(old)) if old.heard.by == By::Hand && !names_boxes(&old.heard.reading) => {
+                Ok(text::edited(old.heard.clone(), scene, seed))
             }
             (again, _) => again.map_err(|e| format!("{e:#}")),
         };
@@ -103,7 +103,7 @@ impl Both {
     pub fn set_prompt(&mut self, change: impl FnOnce(&mut Reading)) {
         if let Ok(p) = &self.prompted {
             let heard = by_hand(&p.heard, change);
-            self.prompted = Ok(Prompted::new(heard, p.background.clone()));
+            self.prompted = Ok(Prompted::new(heard));
         }
     }
 
@@ -111,7 +111,7 @@ impl Both {
     pub fn set_edit(&mut self, scene: &Scene, change: impl FnOnce(&mut Reading)) {
         if let Ok(e) = &self.edited {
             let heard = by_hand(&e.heard, change);
-            self.edited = Ok(text::edited(heard, e.things.clone(), scene, self.seed));
+            self.edited = Ok(text::edited(heard, scene, self.seed));
         }
     }
 }
@@ -199,9 +199,9 @@ fn named(t: &mut Thing, id: BoxId) {
     t.except.clear();
 }
 
-/// True if a reading names boxes by their numbers.
+/// True if a reading names boxes or things by their numbers.
 fn names_boxes(reading: &Reading) -> bool {
-    let mut found = false;
+    let mut found = reading.background.iter().any(|s| s.id.is_some());
     for act in &mut reading.clone().acts {
         each_thing(&mut act.what, &mut |t| found |= t.id.is_some());
     }

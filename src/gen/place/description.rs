@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::generation::words_background::Said;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 use crate::scene::{BoxLabel, Class};
 
@@ -195,7 +196,7 @@ pub struct Description {
     /// What must not occur.
     pub absent: Vec<Absent>,
     /// Buildings, trees and the like.
-    pub background: Vec<String>,
+    pub background: Vec<Said>,
     /// How much else is going on.
     pub density: Option<Density>,
     /// The road.

@@ -216,6 +216,7 @@ pub fn thing(t: &Thing) -> String {
         Quantity::The | Quantity::Unsaid => format!("the {other}{pick}{}", bare(t, false)),
         Quantity::TheN(n) => format!("the {other}{} {pick}{}", number(n), bare(t, n != 1)),
         Quantity::All => format!("all {other}{}", bare(t, true)),
+        Quantity::Each => format!("each {other}{}", bare(t, false)),
         Quantity::Half => format!("half of the {}", bare(t, true)),
         Quantity::Some => format!("some {}", bare(t, true)),
         Quantity::Many => format!("many {}", bare(t, true)),

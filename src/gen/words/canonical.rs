@@ -5,7 +5,7 @@ use super::reader::Mode;
 use super::reading::{Act, Anchor, Destination, Place, Reading, Relation, Thing, Turn, What};
 use crate::scene::graph::{LaneRole, ObjectState};
 
-/// The reading in that order, without spans and confidences.
+/// The acts in that order, without spans and confidences, and nothing beside the road.
 pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
     let mut out: Vec<What> = Vec::new();
     for act in &reading.acts {
@@ -30,7 +30,7 @@ pub fn canonical(reading: &Reading, mode: Mode) -> Reading {
             (_, what) => acts.push(what.into()),
         }
     }
-    Reading { acts }
+    Reading::of(acts)
 }
 
 fn rank(what: &What, mode: Mode) -> u8 {

@@ -10,6 +10,7 @@ use super::reading::{
 use super::remark::Remark;
 use super::resolve::words_of;
 use crate::generation::place::description::{Absent, Anchor, Count, Density, Description, Road};
+use crate::generation::words_background::{NearTo, Said as Beside};
 use crate::scene::graph::LaneRole;
 
 /// A description and where it comes from.
@@ -42,7 +43,23 @@ pub fn describe(reading: &Reading) -> Described {
             s.things(&act.what);
         }
     }
-    s.done()
+    let mut out = s.done();
+    beside(&reading.background, &mut out.description);
+    out
+}
+
+/// What stands beside the road. Where a crossing or a junction is spoken of, the road has one.
+fn beside(background: &[Beside], d: &mut Description) {
+    for said in background {
+        match said.place.near {
+            Some(NearTo::Crossing) => d.road.crossing = !d.road.no_crossing,
+            Some(NearTo::Junction) if d.road.kind.is_none() => d.road.kind = Some(Road::Intersection),
+            _ => {}
+        }
+        let comma = if d.summary.is_empty() { "" } else { "; " };
+        d.summary.push_str(&format!("{comma}{}", said.described()));
+        d.background.push(said.clone());
+    }
 }
 
 #[derive(Default)]
@@ -281,7 +298,7 @@ fn as_new(t: &Thing) -> Thing {
     let quantity = match t.quantity {
         Quantity::The | Quantity::Unsaid => Quantity::N(1),
         Quantity::TheN(n) => Quantity::N(n),
-        Quantity::All | Quantity::Half => Quantity::Some,
+        Quantity::All | Quantity::Each | Quantity::Half => Quantity::Some,
         q => q,
     };
     Thing {

@@ -10,6 +10,7 @@ use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
 use super::tokens::{LONGEST, Span, Token, tokens};
 use crate::generation::weights::WeightsError;
+use crate::generation::words_background::{Taken, take};
 
 /// Below this confidence an act is said to be unsure: the least threshold that leaves at most 8 % of sentences in six voices
 /// that the reader had not learned wrong without a word, for prompts and for edits.
@@ -65,12 +66,27 @@ impl Heard {
     }
 }
 
-/// Reads a text with both readers.
+/// Reads a text: what is said of things beside the road first, the rest with both readers.
 ///
 /// # Errors
 ///
 /// If the bundled weights are damaged.
 pub fn hear(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
+    let Taken { said, rest } = take(text, mode == Mode::Edit);
+    let mut heard = hear_objects(&rest, mode)?;
+    if let Some(other) = &mut heard.other {
+        other.background.clone_from(&said);
+    }
+    heard.reading.background = said;
+    Ok(heard)
+}
+
+/// Reads a text in which nothing stands beside the road.
+///
+/// # Errors
+///
+/// If the bundled weights are damaged.
+pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
     let mut said = learned.read(text, mode);
     // (of words that are in no list, nothing is guessed)
@@ -151,20 +167,31 @@ fn says_the_same(a: &Reading, b: &Reading, mode: Mode) -> bool {
     notation::write(&canonical(a, mode)) == notation::write(&canonical(b, mode))
 }
 
-/// A reading from elsewhere, beside what the readers of this program heard.
+/// A reading from elsewhere, beside what the readers of this program heard. Where it says nothing of things beside the road,
+/// what was heard of them holds.
 ///
 /// # Errors
 ///
 /// If the bundled weights are damaged.
-pub fn against(text: &str, reading: Reading, own: Option<&Heard>, mode: Mode) -> Result<Heard, WeightsError> {
+pub fn against(
+    text: &str,
+    mut reading: Reading,
+    own: Option<&Heard>,
+    mode: Mode,
+) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
+    let rest = take(text, mode == Mode::Edit).rest;
+    let text = &rest;
     let tokens = tokens(text, Some(learned.speller()));
+    if let Some(own) = own.filter(|_| reading.background.is_empty()) {
+        reading.background.clone_from(&own.reading.background);
+    }
     let other = own
         .map(|h| h.reading.clone())
         .filter(|o| !o.acts.is_empty() && !says_the_same(o, &reading, mode));
     let mut missing = missing(text, &tokens, &reading, learned.speller());
     // (a word that is in no list here may be one that the model knows, of another language say)
-    missing.retain(|m| m.why != Why::Unknown || reading.acts.is_empty());
+    missing.retain(|m| m.why != Why::Unknown || reading.is_empty());
     Ok(Heard {
         missing,
         reading,

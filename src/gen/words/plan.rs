@@ -144,6 +144,13 @@ impl Plan {
         let Some(anchor) = self.anchor(i, to, site, depth) else {
             return;
         };
+        if let (Said::Thing(t), Anchor::Object(j)) = (to, anchor)
+            && t.quantity == Quantity::Each
+        {
+            // (the graph gives them to the anchors in turn)
+            let n = self.specs[i].count.n.saturating_mul(self.count_of(j) as u32);
+            self.specs[i].count = Count::exactly(n.min(MOST_OF_ONE));
+        }
         let mut and = p.and.as_ref().and_then(|a| self.anchor(i, a, site, depth));
         if relation == RelationKind::Between && and.is_none() {
             and = Some(match anchor {
@@ -357,7 +364,7 @@ pub fn count_of(q: Quantity) -> Count {
         Quantity::Range(a, b) => Count::about(at_most(a), at_most(a + (b - a.min(b)) / 2), at_most(b)),
         Quantity::Some => Count::about(2, 3, 6),
         Quantity::Many => Count::about(5, 7, 20),
-        Quantity::All | Quantity::Half => Count::about(2, 3, 12),
+        Quantity::All | Quantity::Each | Quantity::Half => Count::about(2, 3, 12),
         Quantity::The | Quantity::Unsaid => Count::exactly(1),
     }
 }

@@ -8,6 +8,7 @@ use super::named::named;
 use super::nouns::Noun;
 use super::tokens::Span;
 use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
+use crate::generation::words_background::Said;
 use crate::scene::Paint;
 use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
 
@@ -15,8 +16,26 @@ use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reading {
-    /// What is to be done.
+    /// What is to be done with objects, road and light.
     pub acts: Vec<Act>,
+    /// What is said of buildings, trees and whatever else stands beside the road.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub background: Vec<Said>,
+}
+
+impl Reading {
+    /// Of these acts, and nothing beside the road.
+    pub fn of(acts: Vec<Act>) -> Self {
+        Self {
+            acts,
+            background: Vec::new(),
+        }
+    }
+
+    /// True if it asks for nothing.
+    pub fn is_empty(&self) -> bool {
+        self.acts.is_empty() && self.background.is_empty()
+    }
 }
 
 /// One thing to do.
@@ -221,6 +240,8 @@ pub enum Quantity {
     TheN(u32),
     /// All that fit.
     All,
+    /// Of an anchor: each of those that fit has its own: "a worker behind each bus".
+    Each,
     /// Half of those that fit.
     Half,
     /// A few.
@@ -241,7 +262,10 @@ impl Quantity {
 
     /// True if it means something that is there, or was spoken of.
     pub fn is_definite(self) -> bool {
-        matches!(self, Self::The | Self::TheN(_) | Self::All | Self::Half)
+        matches!(
+            self,
+            Self::The | Self::TheN(_) | Self::All | Self::Each | Self::Half
+        )
     }
 }
 

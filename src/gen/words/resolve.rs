@@ -130,7 +130,7 @@ impl Stage<'_> {
         if let Some(pick) = t.pick {
             let n = match t.quantity {
                 Quantity::N(n) | Quantity::TheN(n) => n as usize,
-                Quantity::All => fits.len(),
+                Quantity::All | Quantity::Each => fits.len(),
                 _ => 1,
             };
             fits.sort_by(|a, b| rank(&self.boxes[a], pick).total_cmp(&rank(&self.boxes[b], pick)));
@@ -139,7 +139,7 @@ impl Stage<'_> {
         }
         match t.quantity {
             _ if t.id.is_some() => Some(fits),
-            Quantity::All | Quantity::Many => Some(fits),
+            Quantity::All | Quantity::Each | Quantity::Many => Some(fits),
             Quantity::Unsaid => Some(fits),
             Quantity::Half => {
                 let n = fits.len() / 2;

@@ -7,8 +7,9 @@ use serde::Serialize;
 
 use super::place::Ground;
 use super::targets::{Meant, targets};
-use super::wishes::{forms, name};
-use super::{Amount, Said, Taken, Verb, What, take};
+use super::wishes::forms;
+use super::{Amount, Said, Verb, What};
+use crate::generation::world::scenery::Setting;
 use crate::scene::Form;
 use crate::scene::background::STOREY_M;
 use crate::scene::{Background, BevLayout, BoxId, Class, Pose, SceneBox, ThingId};
@@ -56,34 +57,41 @@ pub struct ThingCandidate {
     pub class: &'static str,
     /// Where it stands, in words.
     pub place: String,
-    /// The words that name it alone; they replace those that were asked about.
-    pub answer: String,
+    /// It, or the first one of a row.
+    pub id: ThingId,
+    /// The clause that means it alone; it stands for the one that was asked about.
+    pub said: Said,
+}
+
+impl ThingCandidate {
+    /// Words that name it alone: `the tree #12`.
+    pub fn answer(&self) -> String {
+        format!("{}{}", self.said.things(), self.said.place())
+    }
 }
 
 /// Things that fit where one was meant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ThingQuestion {
-    /// `tree: 3 fit, which one?`
+    /// `the tree: 3 fit, which one?`
     pub text: String,
-    /// The words that named it, as they stand in the text.
-    pub phrase: String,
+    /// Index of the clause that named it.
+    pub clause: usize,
     /// The things that fit.
     pub candidates: Vec<ThingCandidate>,
 }
 
-/// What a text says of the background.
+/// What came of the clauses about the background.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ThingReading {
+pub struct ThingOutcome {
     /// Changes, in order.
     pub edits: Vec<ThingEdit>,
     /// What must be answered first.
     pub questions: Vec<ThingQuestion>,
     /// What was done, one line each.
     pub done: Vec<String>,
-    /// What could not be done, with the words, one line each.
+    /// What could not be done, one line each.
     pub cannot: Vec<String>,
-    /// The text with spaces for what was taken; empty if nothing is left to read.
-    pub rest: String,
 }
 
 /// An open scene, as far as edits of its background need it.
@@ -99,41 +107,52 @@ pub struct OpenBackground<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
 }
 
-/// Takes what a text says of the background, and leaves the rest.
-pub fn read_edit(text: &str, open: &OpenBackground<'_>, seed: u64) -> ThingReading {
-    let Taken { mut said, rest } = take(text, true);
-    // "Fence" and "guard rail" name barriers too, which are boxes.
-    let has_barriers = open.boxes.values().any(|b| b.class == Class::Barrier);
-    let is_barrier = |s: &Said| has_barriers && super::read::may_be_barrier(s);
-    if said.is_empty() || said.iter().any(is_barrier) {
-        return ThingReading {
-            rest: text.to_owned(),
-            ..ThingReading::default()
-        };
-    }
-    let mut out = ThingReading::default();
-    if rest.chars().any(char::is_alphanumeric) {
-        out.rest = rest;
+/// True if clauses name barriers of this scene, which are boxes: "the fence".
+pub fn means_barriers(said: &[Said], boxes: &BTreeMap<BoxId, SceneBox>) -> bool {
+    boxes.values().any(|b| b.class == Class::Barrier) && said.iter().any(super::may_be_barrier)
+}
+
+/// Carries out what was said, clause by clause, each on what the one before left.
+pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOutcome {
+    let mut out = ThingOutcome::default();
+    if said.is_empty() {
+        return out;
     }
     let mut now = open.things.in_frame(&open.world_from_ego.inverse());
     now = now.iter().filter(|t| in_grid(&t.form)).cloned().collect();
-    for (i, s) in said.drain(..).enumerate() {
+    for (i, s) in said.iter().enumerate() {
         let ground = Ground::new(open.layout, open.boxes, &now);
-        let words = s.span.of(text);
-        match carry_out(&s, &now, ground, seed.wrapping_add(i as u64)) {
-            Ok((edit, meaning)) => {
+        match one(s, &now, ground, seed.wrapping_add(i as u64)) {
+            Ok((edit, n)) => {
                 apply(&mut now, &edit, open.things);
-                out.done.push(meaning);
+                // (a number that was not said)
+                let counted = n > 1 && s.count.is_none_or(|c| c as usize != n);
+                let n = if counted { format!(" ({n})") } else { String::new() };
+                out.done.push(format!("{}{n}", as_command(s)));
                 out.edits.extend(in_world(edit, &open.world_from_ego));
             }
-            Err(Stopped::Asked(question)) => out.questions.push(ThingQuestion {
-                phrase: s.target.of(text).to_owned(),
-                ..question
+            Err(Stopped::Asked(candidates)) => out.questions.push(ThingQuestion {
+                text: format!(
+                    "{}{}: {} fit, which one?",
+                    s.things(),
+                    s.place(),
+                    candidates.len()
+                ),
+                clause: i,
+                candidates,
             }),
-            Err(Stopped::Cannot(why)) => out.cannot.push(format!("\u{201c}{words}\u{201d}: {why}")),
+            Err(Stopped::Cannot(why)) => out.cannot.push(why),
         }
     }
     out
+}
+
+/// What a description says is there comes, in a scene that is there.
+fn as_command(s: &Said) -> Said {
+    Said {
+        verb: if s.verb == Verb::Have { Verb::Add } else { s.verb },
+        ..s.clone()
+    }
 }
 
 fn in_grid(form: &Form) -> bool {
@@ -142,28 +161,19 @@ fn in_grid(form: &Form) -> bool {
 }
 
 enum Stopped {
-    Asked(ThingQuestion),
+    Asked(Vec<ThingCandidate>),
     Cannot(String),
 }
 
-/// Edits in the ego frame, in the order that they are applied, and what was done in words.
-fn carry_out(
-    s: &Said,
-    now: &Background,
-    ground: Ground,
-    seed: u64,
-) -> Result<(Vec<ThingEdit>, String), Stopped> {
-    let called = name(s);
+/// Edits of one clause in the ego frame, in the order that they are applied, and how many things they are of.
+fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<ThingEdit>, usize), Stopped> {
+    let called = format!("{}{}", s.things(), s.place());
     if matches!(s.verb, Verb::Add | Verb::Have) {
         let forms = forms(s, ground, seed).map_err(Stopped::Cannot)?;
-        let meaning = format!(
-            "adds {} {}",
-            forms.len(),
-            if forms.len() == 1 { "thing" } else { "things" }
-        );
-        return Ok((vec![ThingEdit::Add { forms }], meaning));
+        let n = forms.len();
+        return Ok((vec![ThingEdit::Add { forms }], n));
     }
-    if matches!(s.what, What::Place(p) if p != crate::generation::world::scenery::Setting::Forest) {
+    if matches!(s.what, What::Place(p) if p != Setting::Forest) {
         return Err(Stopped::Cannot(format!(
             "{called}: a kind of place is no single thing; name buildings, trees or fences"
         )));
@@ -178,33 +188,29 @@ fn carry_out(
                 (Some(super::NearTo::Crossing), true, _) => "there is no crossing in this scene".to_owned(),
                 (Some(super::NearTo::Junction), _, true) => "there is no junction in this scene".to_owned(),
                 _ if s.row => format!("no row of three or more along the road is there ({called})"),
-                _ => format!("no {called} is there"),
+                _ => format!("{called}: there is none"),
             };
             return Err(Stopped::Cannot(why));
         }
         Meant::These(ids) => ids,
         Meant::Ask(list) => {
-            let class = now.get(list[0].0).map_or("thing", |t| t.form.name());
-            let candidates: Vec<ThingCandidate> = list
-                .into_iter()
-                .map(|(_, place, answer)| ThingCandidate { class, place, answer })
-                .collect();
-            return Err(Stopped::Asked(ThingQuestion {
-                text: format!("{called}: {} fit, which one?", candidates.len()),
-                phrase: String::new(),
-                candidates,
-            }));
+            let candidate = |(id, place, said): (ThingId, String, Said)| ThingCandidate {
+                class: now.get(id).map_or("thing", |t| t.form.name()),
+                place,
+                id,
+                said,
+            };
+            return Err(Stopped::Asked(list.into_iter().map(candidate).collect()));
         }
     };
     let n = ids.len();
-    let counted = format!("{n} {}", if n == 1 { "thing" } else { "things" });
     match s.verb {
         Verb::Move => {
             let Some((by, (ahead, left))) = s.by.zip(s.way) else {
                 return Err(Stopped::Cannot("say how far and which way".into()));
             };
             let by_m = DVec2::new(ahead, left) * metres(by);
-            Ok((vec![ThingEdit::Move { ids, by_m }], format!("moves {counted}")))
+            Ok((vec![ThingEdit::Move { ids, by_m }], n))
         }
         Verb::Raise | Verb::Lower => {
             let sign = if s.verb == Verb::Raise { 1.0 } else { -1.0 };
@@ -229,9 +235,9 @@ fn carry_out(
                 }
                 edits.push(ThingEdit::Raise { ids: vec![id], by_m });
             }
-            Ok((edits, format!("changes the height of {counted}")))
+            Ok((edits, n))
         }
-        _ => Ok((vec![ThingEdit::Remove { ids }], format!("removes {counted}"))),
+        _ => Ok((vec![ThingEdit::Remove { ids }], n)),
     }
 }
 

@@ -1,47 +1,8 @@
 //! The words that sentences about the background are made of, and what each says.
 
+use super::said::{Verb, What};
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::{LineKind, PostKind, TreeKind};
-
-/// A kind of thing that words name.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What {
-    /// Buildings, of a kind of place if the word says so: `warehouse` is industry.
-    Building(Option<Setting>),
-    /// Trees, of a kind if the word says so.
-    Tree(Option<TreeKind>),
-    /// Bushes and undergrowth.
-    Shrubs,
-    /// A hedge, wall, fence or rail.
-    Line(LineKind),
-    /// A pole, sign, lamp, stop, bench or bin.
-    Post(PostKind),
-    /// A kind of place: `forest`.
-    Place(Setting),
-    /// Trees, shrubs and hedges.
-    Plants,
-    /// Any thing; only with its number.
-    Thing,
-}
-
-/// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verb {
-    /// Be there: a description.
-    Have,
-    /// Come.
-    Add,
-    /// Go.
-    Remove,
-    /// Become higher.
-    Raise,
-    /// Become lower.
-    Lower,
-    /// Become as is said next: `make the building taller`.
-    Make,
-    /// Go elsewhere.
-    Move,
-}
 
 /// What a run of words says.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,20 @@
 //! Words to typed clauses: parts a text, and reads each part that is about the background.
 
 use super::lexicon::{Word, lookup};
-use super::tokens::{Span, Token, TokenKind, tokens};
-use super::{Amount, NearTo, Said, SideOf, Taken, Verb, What, Where};
+use super::tokens::{Token, TokenKind, tokens};
+use super::{Amount, NearTo, Said, SideOf, Verb, What, Where};
+use crate::generation::words::tokens::Span;
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::PostKind;
+
+/// What of a text is about the background, and the rest with the same bytes in the same places.
+#[derive(Clone, Debug, Default)]
+pub struct Taken {
+    /// Clause by clause.
+    pub said: Vec<Said>,
+    /// The text with spaces for what was taken.
+    pub rest: String,
+}
 
 /// Reads all clauses about the background. `edits`: the text changes a scene rather than describes one.
 pub fn take(text: &str, edits: bool) -> Taken {
@@ -95,25 +105,10 @@ fn clauses(tokens: &[Token]) -> Vec<(Option<&Token>, &[Token])> {
 
 /// Reads one clause; `None` if it is not about the background, or not wholly understood.
 fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Option<Said> {
-    let spoken = senses(clause)?;
-    let words: Vec<Word> = spoken.iter().map(|(word, _)| *word).collect();
+    let words = senses(clause)?;
     let mut s = Said {
-        verb: Verb::Have,
-        what: What::Thing,
-        id: None,
-        plural: false,
-        definite: false,
-        count: None,
-        row: false,
-        nearest: None,
-        dense: None,
-        tall: None,
-        height: None,
-        by: None,
-        way: None,
-        place: Where::default(),
-        span,
-        target: span,
+        span: Some(span),
+        ..Said::new(Verb::Have, What::Thing)
     };
     let (mut verb, mut what, mut article) = (None, None, None);
     let (mut no, mut all, mut comparative) = (false, false, None);
@@ -247,7 +242,6 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
         Verb::Have if edits => s.verb = Verb::Add,
         _ => {}
     }
-    s.target = target(&spoken, &s);
     // "Clear the car park" is about what stands on it, "bus stops ahead" about a bus.
     let cleared = matches!(s.what, What::Place(p) if p != Setting::Forest) && s.verb == Verb::Remove && !no;
     let stops = s.what == What::Post(PostKind::BusStop) && verb.is_none();
@@ -260,50 +254,26 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
     (!other && (edits || !may_be_barrier(&s))).then_some(s)
 }
 
-/// From the article of the thing to where the amount of a change begins.
-fn target(spoken: &[(Word, Span)], s: &Said) -> Span {
-    let at = spoken
-        .iter()
-        .position(|(w, _)| matches!(w, Word::What(..)))
-        .unwrap_or(0);
-    let from = spoken[..at]
-        .iter()
-        .rposition(|(w, _)| matches!(w, Word::The | Word::A))
-        .unwrap_or(at);
-    let changes = s.by.is_some() || s.height.is_some() || s.way.is_some();
-    let amount = |(w, _): &(Word, Span)| {
-        matches!(
-            w,
-            Word::Number(_) | Word::By | Word::To | Word::Taller | Word::Lower | Word::Tall
-        )
-    };
-    let end = spoken[at..]
-        .iter()
-        .position(|w| changes && amount(w))
-        .map_or(spoken.len(), |i| at + i);
-    spoken[from].1.to(spoken[end - 1].1)
-}
-
 /// True if the word names barriers too, which are boxes, and nothing tells that it runs along the road.
-pub(super) fn may_be_barrier(s: &Said) -> bool {
+pub fn may_be_barrier(s: &Said) -> bool {
     use crate::scene::background::LineKind::{Fence, GuardRail};
     matches!(s.what, What::Line(Fence | GuardRail)) && !s.place.along
 }
 
 /// What the words of a clause say, one after another; `None` if one is not known.
-fn senses(clause: &[Token]) -> Option<Vec<(Word, Span)>> {
+fn senses(clause: &[Token]) -> Option<Vec<Word>> {
     let clause: Vec<&Token> = clause.iter().filter(|t| t.text != "#").collect();
     let words: Vec<&str> = clause.iter().map(|t| t.text.as_str()).collect();
     let mut out = Vec::new();
     let mut i = 0;
     while i < words.len() {
         if let TokenKind::Number(n) = clause[i].kind {
-            out.push((Word::Number(n), clause[i].span));
+            out.push(Word::Number(n));
             i += 1;
             continue;
         }
         let (word, n) = lookup(&words[i..])?;
-        out.push((word, clause[i].span.to(clause[i + n - 1].span)));
+        out.push(word);
         i += n;
     }
     Some(out)

@@ -22,8 +22,8 @@ const ROW_FROM_PAVED_M: f64 = 2.6;
 pub(super) enum Meant {
     /// These; none if nothing fits.
     These(Vec<ThingId>),
-    /// One is meant and several fit: each with its place in words and the words that name it alone.
-    Ask(Vec<(ThingId, String, String)>),
+    /// One is meant and several fit: each with its place in words and the clause that means it alone.
+    Ask(Vec<(ThingId, String, Said)>),
 }
 
 /// True if any of the points is near what was said.
@@ -109,11 +109,16 @@ pub(super) fn targets(said: &Said, things: &Background, ground: &Ground) -> Mean
         // "remove two trees": which two does not matter; "a taller building": the nearest.
         () if !said.definite => ids(&fits[..n.min(fits.len())]),
         () if fits.len() <= n => ids(&fits),
-        () => Meant::Ask(fits.iter().take(MOST).map(|t| candidate(t, ground)).collect()),
+        () => Meant::Ask(
+            fits.iter()
+                .take(MOST)
+                .map(|t| candidate(said, t, ground))
+                .collect(),
+        ),
     }
 }
 
-fn candidate(thing: &Thing, ground: &Ground) -> (ThingId, String, String) {
+fn candidate(said: &Said, thing: &Thing, ground: &Ground) -> (ThingId, String, Said) {
     let own = ground.roads.along_ego_lane(thing.form.middle_m());
     let along = if own.x >= 0.0 { "ahead" } else { "behind" };
     let side = if own.y >= 0.0 { "left" } else { "right" };
@@ -123,7 +128,13 @@ fn candidate(thing: &Thing, ground: &Ground) -> (ThingId, String, String) {
         own.y.abs(),
         thing.form.height_m()
     );
-    (thing.id, place, format!("thing #{}", thing.id.0))
+    let alone = Said {
+        id: Some(thing.id.0),
+        count: None,
+        place: Where::default(),
+        ..said.clone()
+    };
+    (thing.id, place, alone)
 }
 
 fn is_there(said: &Said, thing: &Thing, ground: &Ground) -> bool {
@@ -164,13 +175,11 @@ fn row(fits: &[&Thing], said: &Said, ground: &Ground) -> Meant {
     let of = |left: bool| rows.iter().filter(move |r| (r[0].1.y > 0.0) == left).flatten();
     match (of(true).next(), of(false).next()) {
         (Some(a), Some(b)) if !said.plural => Meant::Ask(
-            [(a, "left"), (b, "right")]
-                .map(|((t, _), side)| {
-                    (
-                        t.id,
-                        format!("the row on the {side}"),
-                        format!("the tree row on the {side}"),
-                    )
+            [(a, SideOf::Left, "left"), (b, SideOf::Right, "right")]
+                .map(|((t, _), side, name)| {
+                    let mut alone = said.clone();
+                    alone.place.side = Some(side);
+                    (t.id, format!("the row on the {name}"), alone)
                 })
                 .to_vec(),
         ),

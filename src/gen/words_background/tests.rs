@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::edits::{OpenBackground, ThingEdit, ThingReading, read_edit};
+use super::edits::{OpenBackground, ThingEdit, ThingOutcome, carry_out};
 use super::*;
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
@@ -282,7 +282,13 @@ fn scene() -> (Background, BevLayout) {
     (things, layout)
 }
 
-fn edit_in(text: &str, world_from_ego: Pose) -> ThingReading {
+fn edit_in(text: &str, world_from_ego: Pose) -> ThingOutcome {
+    let Taken { said, rest } = take(text, true);
+    assert!(!rest.contains(char::is_alphanumeric), "{rest:?} was left over");
+    carried_out(&said, world_from_ego)
+}
+
+fn carried_out(said: &[Said], world_from_ego: Pose) -> ThingOutcome {
     let (things, layout) = scene();
     let things = things.in_frame(&world_from_ego);
     let boxes = BTreeMap::new();
@@ -292,12 +298,10 @@ fn edit_in(text: &str, world_from_ego: Pose) -> ThingReading {
         layout: &layout,
         boxes: &boxes,
     };
-    let reading = read_edit(text, &open, 3);
-    assert!(reading.rest.is_empty(), "{:?} was left over", reading.rest);
-    reading
+    carry_out(said, &open, 3)
 }
 
-fn edit(text: &str) -> ThingReading {
+fn edit(text: &str) -> ThingOutcome {
     edit_in(text, Pose::IDENTITY)
 }
 
@@ -340,36 +344,23 @@ fn targets_are_what_the_words_name() {
 /// Several fit: asked back, with words that name each alone. None fits, or it cannot be: said.
 #[test]
 fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
-    let reading = edit("raise the building on the right by two storeys");
-    assert!(reading.edits.is_empty());
-    let [question] = &reading.questions[..] else {
-        panic!("{reading:?}")
-    };
-    assert_eq!(question.candidates.len(), 2);
-    let answered = "raise the building on the right by two storeys".replacen(
-        &question.phrase,
-        &question.candidates[0].answer,
-        1,
-    );
-    assert_eq!(answered, "raise thing #8 by two storeys");
-    assert_eq!(
-        edit(&answered).edits,
-        [ThingEdit::Raise {
-            ids: vec![ThingId(8)],
-            by_m: 6.0
-        }]
-    );
-    let text = "make the building on the right three storeys taller";
-    let question = &edit(text).questions[0];
-    assert_eq!(question.phrase, "the building on the right");
-    let answered = text.replacen(&question.phrase, &question.candidates[1].answer, 1);
-    assert_eq!(
-        edit(&answered).edits,
-        [ThingEdit::Raise {
-            ids: vec![ThingId(9)],
-            by_m: 9.0
-        }]
-    );
+    for (text, which, id, by_m) in [
+        ("raise the building on the right by two storeys", 0, 8, 6.0),
+        ("make the building on the right three storeys taller", 1, 9, 9.0),
+    ] {
+        let outcome = edit(text);
+        assert!(outcome.edits.is_empty());
+        let [question] = &outcome.questions[..] else {
+            panic!("{outcome:?}")
+        };
+        assert_eq!(question.text, "the building on the right: 2 fit, which one?");
+        assert_eq!(question.candidates.len(), 2);
+        let candidate = &question.candidates[which];
+        assert_eq!(candidate.answer(), format!("the building #{id}"));
+        let ids = vec![ThingId(id)];
+        let edits = carried_out(std::slice::from_ref(&candidate.said), Pose::IDENTITY).edits;
+        assert_eq!(edits, [ThingEdit::Raise { ids, by_m }]);
+    }
     for text in [
         "remove the wall",
         "remove the trees near the junction",
@@ -459,7 +450,7 @@ fn the_sentences_of_the_other_reader_are_left_alone() {
                 take(text, !case["base"].is_null())
                     .said
                     .iter()
-                    .map(|s| format!("{:?} of {text}", s.span.of(text))),
+                    .map(|s| format!("{:?} of {text}", s.span.expect("it is known").of(text))),
             );
         }
     }
@@ -474,7 +465,7 @@ fn descriptions_become_scenery() {
     use crate::generation::place::description::Description;
     use crate::generation::world::template;
     let said = |list: &[&str]| Description {
-        background: list.iter().map(|s| (*s).to_owned()).collect(),
+        background: list.iter().flat_map(|s| take(s, false).said).collect(),
         ..Description::default()
     };
     let none = BTreeMap::new();
@@ -535,5 +526,88 @@ fn descriptions_become_scenery() {
     for words in ["no trees near the crossing", "a tree 300 m ahead on the left"] {
         let (_, short) = scenery(&said(&[words]), &empty, &none, 1);
         assert!(short.len() == 1 && short[0].contains(words), "{short:?}");
+    }
+}
+
+/// What was said can be read again: as words, and as the JSON of its schema.
+#[test]
+fn clauses_are_values_with_words() {
+    for (text, edits, words) in [
+        (
+            "plant a tree 12 m ahead on the left",
+            true,
+            "adds a tree 12 m ahead on the left",
+        ),
+        (
+            "cut down all trees near the crossing",
+            true,
+            "removes trees near the crossing",
+        ),
+        ("delete the tree row", true, "removes the row of trees"),
+        (
+            "make the building #7 12 m tall",
+            true,
+            "makes the building #7 12 m high",
+        ),
+        (
+            "raise the houses on the right by two storeys",
+            true,
+            "makes the houses on the right taller by 2 storeys",
+        ),
+        (
+            "move the tree #7 3 m to the left",
+            true,
+            "moves the tree #7 by 3 m to the left",
+        ),
+        (
+            "fell three trees on the right",
+            true,
+            "removes 3 trees on the right",
+        ),
+        (
+            "benches along the left side",
+            false,
+            "benches along the road on the left",
+        ),
+        ("a dense forest on the right", false, "dense forest on the right"),
+        ("no trees near the crossing", false, "no trees near the crossing"),
+        (
+            "a 5-storey building on the left",
+            false,
+            "a building on the left, 5 storeys high",
+        ),
+    ] {
+        let said = one(text, edits);
+        assert_eq!(
+            if edits { said.to_string() } else { said.described() },
+            words,
+            "{text}: {said:?}"
+        );
+        assert_eq!(said.problem(), None, "{text}");
+        let json = serde_json::to_string(&said).expect("JSON");
+        assert_eq!(
+            serde_json::from_str::<Said>(&json).expect("the same"),
+            said,
+            "{json}"
+        );
+    }
+}
+
+#[test]
+fn values_from_elsewhere_are_checked() {
+    let tree = Said::new(Verb::Add, What::Tree(None));
+    assert_eq!(tree.problem(), None);
+    let bad: [fn(&mut Said); 6] = [
+        |s| s.what = What::Thing,
+        |s| s.count = Some(501),
+        |s| s.height = Some(Amount::Storeys(1e9)),
+        |s| s.place.distance_m = Some(-1.0),
+        |s| s.verb = Verb::Move,
+        |s| (s.by, s.way) = (Some(Amount::Metres(1.0)), Some((1e300, 0.0))),
+    ];
+    for (i, bad) in bad.iter().enumerate() {
+        let mut said = tree.clone();
+        bad(&mut said);
+        assert!(said.problem().is_some(), "{i}");
     }
 }

@@ -7,25 +7,12 @@ use glam::DVec2;
 
 use super::place::Ground;
 use super::targets::{Meant, is, targets};
-use super::{Amount, Said, SideOf, Verb, What, take};
+use super::{Amount, Said, SideOf, Verb, What};
 use crate::generation::place::description::{Description, Environment, Road};
 use crate::generation::world::draw::Draw;
 use crate::generation::world::scenery::{Setting, Side, Style, background_of};
 use crate::scene::background::{Building, Line, Post, PostKind, STOREY_M, Shrubs, Tree, TreeKind};
 use crate::scene::{Background, BevLayout, BoxId, Form, SceneBox};
-
-/// What a description says of the background, clause by clause, each with its words.
-pub fn wishes(description: &Description) -> Vec<(String, Said)> {
-    let read = |words: &String| {
-        let mut said = take(words, false).said;
-        if said.is_empty() {
-            // A word of its own is wanted on both sides: "forest".
-            said = take(&format!("{words} on both sides"), false).said;
-        }
-        said.into_iter().map(|s| (words.clone(), s)).collect::<Vec<_>>()
-    };
-    description.background.iter().flat_map(read).collect()
-}
 
 /// The scenery that a description asks for on a layout, and what of it could not be had, one line each.
 pub fn scenery(
@@ -34,11 +21,10 @@ pub fn scenery(
     boxes: &BTreeMap<BoxId, SceneBox>,
     seed: u64,
 ) -> (Background, Vec<String>) {
-    let wishes = wishes(description);
-    let style = style(description, &wishes, layout, seed);
+    let style = style(description, layout, seed);
     let mut things = background_of(layout, boxes, &style, seed);
     let mut short = Vec::new();
-    for (i, (words, s)) in wishes.iter().enumerate() {
+    for (i, s) in description.background.iter().enumerate() {
         let ground = Ground::new(layout, boxes, &things);
         if s.verb == Verb::Remove {
             let lacks = match s.place.near {
@@ -47,7 +33,7 @@ pub fn scenery(
                 _ => false,
             };
             if lacks {
-                short.push(format!("{words}: this road has none"));
+                short.push(format!("{}: this road has none", s.described()));
             }
             if let Meant::These(ids) = targets(s, &things, &ground) {
                 ids.iter().for_each(|id| {
@@ -77,7 +63,7 @@ pub fn scenery(
                 Ok(forms) => forms.into_iter().for_each(|f| {
                     things.add(f);
                 }),
-                Err(why) => short.push(format!("{words}: {why}")),
+                Err(why) => short.push(format!("{}: {why}", s.described())),
             }
         }
     }
@@ -113,16 +99,16 @@ fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
     }
 }
 
-fn style(description: &Description, wishes: &[(String, Said)], layout: &BevLayout, seed: u64) -> Style {
+fn style(description: &Description, layout: &BevLayout, seed: u64) -> Style {
     let mut style = Style::drawn(layout, seed);
     if let Some(setting) = around(description) {
         style = Style::both(Side::usual(setting));
     }
     let sides = [(SideOf::Left, &mut style.left), (SideOf::Right, &mut style.right)];
     for (which, side) in sides {
-        let here = wishes
+        let here = description
+            .background
             .iter()
-            .map(|w| &w.1)
             .filter(|s| s.place.side.is_none_or(|of| of == which));
         // Kinds of place first: "trees" among them say how many.
         let (places, rest): (Vec<&Said>, Vec<&Said>) = here.partition(|s| matches!(s.what, What::Place(_)));
@@ -212,26 +198,6 @@ fn storeys(s: &Said, setting: Setting) -> Option<u32> {
     Some(said.map_or(usual, |n| n.round().clamp(1.0, 60.0) as u32))
 }
 
-/// A clause's things in words.
-pub(super) fn name(s: &Said) -> String {
-    let one = match s.what {
-        What::Building(_) => "building",
-        What::Tree(_) => "tree",
-        What::Shrubs => "shrubs",
-        What::Line(kind) => kind.name(),
-        What::Post(kind) => kind.name(),
-        What::Place(_) => "place",
-        What::Plants => "plants",
-        What::Thing => "thing",
-    };
-    let side = match s.place.side {
-        Some(SideOf::Left) => " on the left",
-        Some(SideOf::Right) => " on the right",
-        None => "",
-    };
-    format!("{one}{side}")
-}
-
 /// New things of a clause, ego frame; an error in words where there is no room or it cannot be made.
 pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>, String> {
     let mut draw = Draw::new(seed, "by words");
@@ -248,7 +214,7 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
         Some(false) => 0.6,
         None => 1.0,
     };
-    let no_room = || format!("no room for {} beside the road", name(s));
+    let no_room = || format!("no room for {} beside the road", s.things());
     let mut out = Vec::new();
     if let What::Line(kind) = s.what {
         let from_paved = kind.typical_m().1 / 2.0 + 0.7;
@@ -295,7 +261,7 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
         What::Place(_) | What::Plants | What::Thing => {
             return Err(format!(
                 "{}: only buildings, trees, shrubs, lines and posts can be put in by words",
-                name(s)
+                s.things()
             ));
         }
         _ => (s.count.unwrap_or(if s.plural { 4 } else { 1 }), 6.0),
@@ -334,7 +300,7 @@ pub(super) fn forms(s: &Said, mut ground: Ground, seed: u64) -> Result<Vec<Form>
             if off > 5.0 {
                 return Err(format!(
                     "no room for {} {first:.0} m away: the nearest is {off:.0} m from there",
-                    name(s)
+                    s.things()
                 ));
             }
         }

@@ -14,7 +14,7 @@ const PIECE_M: f64 = 2.0;
 const MAX_PIECES: usize = 20_000;
 
 /// What runs along a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LineKind {
     /// Clipped shrubs.

@@ -9,7 +9,7 @@ use crate::scene::draw::{Draw, hash};
 use crate::scene::solid::Solid;
 
 /// What stands there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PostKind {
     /// A bare pole.

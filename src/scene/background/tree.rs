@@ -9,7 +9,7 @@ use crate::scene::draw::{Draw, hash};
 use crate::scene::solid::Solid;
 
 /// Kind of tree.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TreeKind {
     /// A round crown of boughs.

@@ -134,6 +134,8 @@ pub(super) struct Tally {
     spoke: usize,
     /// Failed cases of which nothing was said: no note, no question, no word named as not understood.
     silent: usize,
+    /// Failed edits of a scene whose own prompt was read with doubts.
+    doubtful_base: usize,
 }
 
 /// What the program said of a case beside doing it.
@@ -143,6 +145,8 @@ pub(super) struct Told {
     pub spoke: bool,
     /// For the report of a failed case.
     pub details: Value,
+    /// The scene that is edited was made of a prompt that was read with doubts.
+    pub doubtful_base: bool,
 }
 
 /// How many of the slowest cases the report names.
@@ -281,6 +285,7 @@ impl Tally {
         if !wrong.is_empty() {
             let after = in_short(scene);
             self.silent += usize::from(!told.spoke);
+            self.doubtful_base += usize::from(told.doubtful_base);
             self.failed.push(json!({
                 "text": case.text, "wrong": wrong, "after": after, "silent": !told.spoke, "told": told.details,
             }));
@@ -292,6 +297,7 @@ impl Tally {
             "cases": self.cases,
             "wholly_right": share(self.cases - self.failed.len(), self.cases),
             "silently_wrong": share(self.silent, self.cases),
+            "failed_on_a_doubtful_base": share(self.doubtful_base, self.failed.len()),
             "right_with_a_remark": share(self.spoke, self.cases),
             "counts_exact": with_interval(&self.counts),
             "relations_satisfied": with_interval(&self.relations),
@@ -389,6 +395,7 @@ fn made(tally: &mut Tally, case: &Case, read: &Read, seed: u64, how: &How) {
     let told = || Told {
         spoke: read.spoke || !(remarks.is_empty() && short.is_empty()),
         details: json!({ "reading": notation::write(reading), "doubts": doubts, "remarks": remarks, "shortfalls": short }),
+        doubtful_base: false,
     };
     tally.add(case, &scene, read.wall_s + laid.wall_s, Vec::new(), told);
 }
@@ -431,6 +438,7 @@ fn changed(
     let told = || Told {
         spoke: read.spoke || !(outcome.remarks.is_empty() && outcome.questions.is_empty()),
         details: json!({ "before": before, "reading": notation::write(reading), "doubts": doubts, "remarks": outcome.remarks, "questions": outcome.questions }),
+        doubtful_base: !hear(base, Mode::Prompt).is_ok_and(|h| h.is_plain()),
     };
     tally.add(case, document.scene(), wall_s, wrong, told);
     Ok(())

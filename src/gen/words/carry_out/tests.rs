@@ -50,6 +50,21 @@ impl Base {
     }
 }
 
+/// "A cone behind each parked car": one for every car, in a scene and in a description.
+#[test]
+fn each_has_its_own() {
+    let base = Base::new("add 3 parked car ( on right_roadside ) and 1 bus ( ahead ego 20m )");
+    let cars = base.of(Class::Car).len();
+    let outcome = base.edit("add 2 cone ( next_to each parked car )");
+    let added = outcome.edits.iter().filter(|e| matches!(e, TextEdit::Add { .. }));
+    assert!(cars == 3 && added.count() == 6, "{outcome:?}");
+    let d = described("add 2 bus and 1 worker ( behind each bus )").expect("a reading");
+    assert_eq!(d.foreground[1].count.n, 2);
+    let g = to_graph(&d, 1);
+    let anchors: Vec<u32> = g.graph.edges.iter().map(|e| e.to).collect();
+    assert_eq!(anchors, g.nodes[0]);
+}
+
 #[test]
 fn edits_hit_what_they_name() {
     let base = Base::new("add 1 bus ( ahead ego 15m ) and 3 parked car and 2 person ( on sidewalk )");

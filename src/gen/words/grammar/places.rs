@@ -158,7 +158,11 @@ impl Grammar<'_> {
             let end = self.after("each_other", end)?;
             return place(Anchor::EachOther, end);
         }
-        let (t, end) = self.thing(end, false)?;
+        let each = matches!(self.word(end), "each" | "every");
+        let (mut t, end) = self.thing(end, false)?;
+        if each && t.quantity == Quantity::All {
+            t.quantity = Quantity::Each;
+        }
         place(Anchor::Thing(Box::new(t)), end)
     }
 

@@ -61,6 +61,11 @@ fn plain_edits_are_read_to_the_last_word() {
     check(
         Mode::Edit,
         &[
+            (
+                "put a worker behind each of the buses",
+                "add 1 worker ( behind each bus )",
+            ),
+            ("remove each bus", "remove all bus"),
             ("Remove the bus", "remove the bus"),
             ("please take the two red cars away", "remove the 2 red car"),
             ("move the truck 5 metres closer", "move the truck by nearer 5m"),

@@ -338,6 +338,7 @@ impl<'t> Parser<'t> {
         let the = self.takes("the");
         t.quantity = match self.peek() {
             "all" => Quantity::All,
+            "each" => Quantity::Each,
             "half" => Quantity::Half,
             "some" => Quantity::Some,
             "many" => Quantity::Many,

@@ -105,6 +105,7 @@ pub fn thing(t: &Thing) -> String {
         Quantity::The => (vec!["the".into()], vec![]),
         Quantity::TheN(n) => (vec!["the".into()], vec![n.to_string()]),
         Quantity::All => (vec!["all".into()], vec![]),
+        Quantity::Each => (vec!["each".into()], vec![]),
         Quantity::Half => (vec!["half".into()], vec![]),
         Quantity::Some => (vec!["some".into()], vec![]),
         Quantity::Many => (vec!["many".into()], vec![]),

@@ -6,7 +6,9 @@ use crate::generation::world::draw::Draw;
 use crate::scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A kind of place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Setting {
     /// Old houses wall to wall.
