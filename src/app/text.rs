@@ -8,6 +8,10 @@ use super::prompting::{How, Laid, lay_out};
 use crate::editor::{Edit, Shape};
 use crate::generation::place::description::Description;
 use crate::generation::words::answer::answer;
+use crate::generation::words::beside::edits::{
+    OpenBackground, ThingEdit, ThingOutcome, carry_out as carry_out_beside, means_barriers,
+};
+use crate::generation::words::beside::wishes::scenery;
 use crate::generation::words::carry_out::carry_out;
 use crate::generation::words::describe::{Described, describe};
 use crate::generation::words::hear::{Heard, hear, hear_objects};
@@ -15,10 +19,6 @@ use crate::generation::words::reader::Mode;
 use crate::generation::words::reading::Reading;
 use crate::generation::words::stage::{OpenScene, Outcome};
 use crate::generation::words::text_edit::TextEdit;
-use crate::generation::words_background::edits::{
-    OpenBackground, ThingEdit, ThingOutcome, carry_out as carry_out_beside, means_barriers,
-};
-use crate::generation::words_background::wishes::scenery;
 use crate::generation::world::World;
 use crate::scene::{BevLayer, Frame, Polyline, PolylineKind, Scene};
 

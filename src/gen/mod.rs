@@ -29,6 +29,5 @@ pub mod solver;
 pub mod trade;
 pub mod weights;
 pub mod words;
-pub mod words_background;
 pub mod worker;
 pub mod world;

@@ -17,6 +17,12 @@ pub const BUCKETS: usize = 4096;
 /// Letters of a text that are read: the rest cannot reach [`TOKENS`].
 const LETTERS: usize = 2000;
 
+/// FNV-1a of the bytes of a text.
+pub fn hash(text: &str) -> u32 {
+    text.bytes()
+        .fold(0x811c_9dc5, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193))
+}
+
 /// Hashed n-grams of a text: words, pairs of neighbouring words, and triples of letters within words; lower case, letters
 /// and digits only, at most [`TOKENS`], the words first.
 pub fn token_ids(text: &str) -> Vec<u32> {
@@ -35,14 +41,11 @@ pub fn token_ids(text: &str) -> Vec<u32> {
         grams.extend(letters.windows(3).map(|l| l.iter().collect::<String>()));
     }
     grams.truncate(TOKENS);
-    // FNV-1a, folded.
-    let hash = |s: &String| {
-        let h = s.bytes().fold(0x811c_9dc5_u32, |h, b| {
-            (h ^ u32::from(b)).wrapping_mul(0x0100_0193)
-        });
+    let folded = |s: &String| {
+        let h = hash(s);
         (h ^ (h >> 15)) % BUCKETS as u32
     };
-    grams.iter().map(hash).collect()
+    grams.iter().map(folded).collect()
 }
 
 /// Sizes, as in the file's metadata.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::generation::words_background::Said;
+use crate::generation::words::beside::Said;
 use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 use crate::scene::{BoxLabel, Class};
 

@@ -1,5 +1,6 @@
 //! A reading as the description of a new scene.
 
+use super::beside::{NearTo, Said as Beside};
 use super::notation::{self, NotationError};
 use super::nouns::Noun;
 use super::plan::{Nowhere, Plan};
@@ -10,7 +11,6 @@ use super::reading::{
 use super::remark::Remark;
 use super::resolve::words_of;
 use crate::generation::place::description::{Absent, Anchor, Count, Density, Description, Road};
-use crate::generation::words_background::{NearTo, Said as Beside};
 use crate::scene::graph::LaneRole;
 
 /// A description and where it comes from.

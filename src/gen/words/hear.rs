@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::account::{Missing, Why, missing};
+use super::beside::{Taken, take};
 use super::canonical::canonical;
 use super::grammar;
 use super::notation;
@@ -10,7 +11,6 @@ use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
 use super::tokens::{LONGEST, Span, Token, tokens};
 use crate::generation::weights::WeightsError;
-use crate::generation::words_background::{Taken, take};
 
 /// Below this confidence an act is said to be unsure: the least threshold that leaves at most 8 % of sentences in six voices
 /// that the reader had not learned wrong without a word, for prompts and for edits.

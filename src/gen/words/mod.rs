@@ -4,6 +4,7 @@
 
 pub mod account;
 pub mod answer;
+pub mod beside;
 pub mod canonical;
 pub mod carry_out;
 mod check;

@@ -4,11 +4,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::beside::Said;
 use super::named::named;
 use super::nouns::Noun;
 use super::tokens::Span;
 use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
-use crate::generation::words_background::Said;
 use crate::scene::Paint;
 use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
 

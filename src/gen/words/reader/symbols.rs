@@ -7,6 +7,7 @@ use super::super::notation::{self, Prefix};
 use super::super::nouns::Noun;
 use super::super::tokens::Token;
 use super::Mode;
+use crate::generation::model::text::hash;
 
 /// Buckets of letter triples.
 pub(super) const GRAMS: usize = 4096;
@@ -184,10 +185,7 @@ fn grams(word: &str) -> Vec<usize> {
         .windows(3.min(letters.len()))
         .map(|l| {
             let text: String = l.iter().collect();
-            let hash = text.bytes().fold(0x811c_9dc5_u32, |h, b| {
-                (h ^ u32::from(b)).wrapping_mul(0x0100_0193)
-            });
-            1 + hash as usize % (GRAMS - 1)
+            1 + hash(&text) as usize % (GRAMS - 1)
         })
         .collect();
     out.sort_unstable();

@@ -6,7 +6,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::generation::words::tokens::Span;
+use super::super::tokens::Span;
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::{LineKind, PostKind, TreeKind};
 
@@ -342,6 +342,97 @@ impl fmt::Display for Said {
                 };
                 write!(f, "moves {things}{place}{by}{way}")
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::take;
+    use super::*;
+
+    /// What was said can be read again: as words, and as the JSON of its schema.
+    #[test]
+    fn clauses_are_values_with_words() {
+        for (text, edits, words) in [
+            (
+                "plant a tree 12 m ahead on the left",
+                true,
+                "adds a tree 12 m ahead on the left",
+            ),
+            (
+                "cut down all trees near the crossing",
+                true,
+                "removes trees near the crossing",
+            ),
+            ("delete the tree row", true, "removes the row of trees"),
+            (
+                "make the building #7 12 m tall",
+                true,
+                "makes the building #7 12 m high",
+            ),
+            (
+                "raise the houses on the right by two storeys",
+                true,
+                "makes the houses on the right taller by 2 storeys",
+            ),
+            (
+                "move the tree #7 3 m to the left",
+                true,
+                "moves the tree #7 by 3 m to the left",
+            ),
+            (
+                "fell three trees on the right",
+                true,
+                "removes 3 trees on the right",
+            ),
+            (
+                "benches along the left side",
+                false,
+                "benches along the road on the left",
+            ),
+            ("a dense forest on the right", false, "dense forest on the right"),
+            ("no trees near the crossing", false, "no trees near the crossing"),
+            (
+                "a 5-storey building on the left",
+                false,
+                "a building on the left, 5 storeys high",
+            ),
+        ] {
+            let [said] = &take(text, edits).said[..] else {
+                panic!("{text}")
+            };
+            assert_eq!(
+                if edits { said.to_string() } else { said.described() },
+                words,
+                "{text}: {said:?}"
+            );
+            assert_eq!(said.problem(), None, "{text}");
+            let json = serde_json::to_string(said).expect("JSON");
+            assert_eq!(
+                &serde_json::from_str::<Said>(&json).expect("the same"),
+                said,
+                "{json}"
+            );
+        }
+    }
+
+    #[test]
+    fn values_from_elsewhere_are_checked() {
+        let tree = Said::new(Verb::Add, What::Tree(None));
+        assert_eq!(tree.problem(), None);
+        let bad: [fn(&mut Said); 6] = [
+            |s| s.what = What::Thing,
+            |s| s.count = Some(501),
+            |s| s.height = Some(Amount::Storeys(1e9)),
+            |s| s.place.distance_m = Some(-1.0),
+            |s| s.verb = Verb::Move,
+            |s| (s.by, s.way) = (Some(Amount::Metres(1.0)), Some((1e300, 0.0))),
+        ];
+        for (i, bad) in bad.iter().enumerate() {
+            let mut said = tree.clone();
+            bad(&mut said);
+            assert!(said.problem().is_some(), "{i}");
         }
     }
 }

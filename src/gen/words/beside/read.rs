@@ -1,9 +1,9 @@
 //! Words to typed clauses: parts a text, and reads each part that is about the background.
 
+use super::super::tokens::Span;
 use super::lexicon::{Word, lookup};
 use super::tokens::{Token, TokenKind, tokens};
 use super::{Amount, NearTo, Said, SideOf, Verb, What, Where};
-use crate::generation::words::tokens::Span;
 use crate::generation::world::scenery::Setting;
 use crate::scene::background::PostKind;
 

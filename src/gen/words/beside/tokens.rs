@@ -1,6 +1,6 @@
 //! A text to words, numbers and marks: the tokens of [`words`](crate::generation::words), with lengths as number and unit.
 
-use crate::generation::words::tokens::Span;
+use super::super::tokens::Span;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub struct Token {
 pub fn tokens(text: &str) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::new();
     let mut end = 0;
-    for t in crate::generation::words::tokens::tokens(text, None) {
+    for t in super::super::tokens::tokens(text, None) {
         let span = t.span;
         let mut push = |kind, text: &str| {
             out.push(Token {
