@@ -24,6 +24,8 @@ pub struct LaneMap<'a> {
     pub points: Vec<LanePoint>,
     /// The course of the ego vehicle, every metre, from behind to ahead.
     pub ego_path: Vec<(DVec2, DVec2)>,
+    /// Index of its point that is nearest to the ego vehicle.
+    ego_at: usize,
     /// Outlines of crossings.
     pub crossings: Vec<Vec<DVec2>>,
     /// Middle of the nearest junction.
@@ -77,6 +79,7 @@ impl<'a> LaneMap<'a> {
         let mut map = Self {
             layout,
             points: Vec::new(),
+            ego_at: nearest_of(&ego_path, DVec2::ZERO),
             ego_path,
             crossings: layout
                 .polylines
@@ -144,18 +147,9 @@ impl<'a> LaneMap<'a> {
 
     /// Where a point is beside the ego vehicle's course: metres ahead along it, metres left of it, its direction there.
     pub fn course(&self, p: DVec2) -> Option<(f64, f64, DVec2)> {
-        let nearest = self
-            .ego_path
-            .iter()
-            .enumerate()
-            .min_by(|a, b| a.1.0.distance_squared(p).total_cmp(&b.1.0.distance_squared(p)))?;
-        let zero = self
-            .ego_path
-            .iter()
-            .enumerate()
-            .min_by(|a, b| a.1.0.length_squared().total_cmp(&b.1.0.length_squared()))?;
-        let (q, dir) = *nearest.1;
-        Some((nearest.0 as f64 - zero.0 as f64, dir.perp_dot(p - q), dir))
+        let at = nearest_of(&self.ego_path, p);
+        let (q, dir) = *self.ego_path.get(at)?;
+        Some((at as f64 - self.ego_at as f64, dir.perp_dot(p - q), dir))
     }
 
     /// True if any of the layers is there.
@@ -219,6 +213,18 @@ impl<'a> LaneMap<'a> {
         };
         self.crossings.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))
     }
+}
+
+/// Index of the point of a path that is nearest to `p`, the first of several; thousands of places are asked about in an edit.
+fn nearest_of(path: &[(DVec2, DVec2)], p: DVec2) -> usize {
+    let (mut at, mut least) = (0, f64::INFINITY);
+    for (i, (q, _)) in path.iter().enumerate() {
+        let d = q.distance_squared(p);
+        if d < least {
+            (at, least) = (i, d);
+        }
+    }
+    at
 }
 
 /// Chains the lanes that the ego vehicle's lane belongs to.

@@ -55,24 +55,23 @@ pub fn place_with(
     sizes_m: &BTreeMap<u32, [f64; 3]>,
     others: &[SceneBox],
 ) -> Placement {
-    place_from(graph, layout, seed, sizes_m, others, None)
+    place_from(graph, &LaneMap::new(layout), seed, sizes_m, others, None)
 }
 
 /// The same for a box that is moved: of all places that fit the one nearest to where it was is taken.
 pub fn place_from(
     graph: &SceneGraph,
-    layout: &BevLayout,
+    map: &LaneMap<'_>,
     seed: u64,
     sizes_m: &BTreeMap<u32, [f64; 3]>,
     others: &[SceneBox],
     from: Option<&SceneBox>,
 ) -> Placement {
-    let map = LaneMap::new(layout);
     let mut best: Option<Placement> = None;
     for attempt in 0..ATTEMPTS {
         let mut placer = Placer {
             graph,
-            map: &map,
+            map,
             draw: Draw::new(seed.wrapping_add(attempt.wrapping_mul(0x9e37)), "text place"),
             sizes_m,
             placed: BTreeMap::new(),

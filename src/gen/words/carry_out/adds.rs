@@ -208,7 +208,7 @@ impl Stage<'_> {
             .collect();
         let p: Placement = place_from(
             &graphed.graph,
-            self.layout,
+            &self.map,
             self.seed,
             &graphed.sizes_m,
             &others,
