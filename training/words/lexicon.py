@@ -60,6 +60,7 @@ def load():
 
 
 TABLE, UNITS = load()
+ENGLISH = {w for w in (LEXICON.parent / "english.txt").read_text().splitlines() if not w.startswith("#")}
 SINGLE = {k[0] for k in TABLE if len(k) == 1}
 PIECES = re.compile(r"\d+(?:[.,]\d+)?|[^\W\d_]+(?:['’`][^\W\d_]+)?|[^\w\s]|_")
 
@@ -109,7 +110,7 @@ def close(a, b):
 
 
 class Speller:
-    """Mends words that are in no list: the most frequent one that one slip makes of it."""
+    """Mends words that are in no list and no English words: the most frequent one that one slip makes of it."""
 
     def __init__(self, common):
         self.common = common  # word -> rank (0 is the most frequent)
@@ -119,7 +120,7 @@ class Speller:
         self.memory = {}
 
     def known(self, w):
-        return w in self.common or w in SINGLE or w in NUMBERS or (w,) in UNITS or len(w) < 4 or not w.isalpha()
+        return w in self.common or w in SINGLE or w in ENGLISH or w in NUMBERS or (w,) in UNITS or len(w) < 3 or not w.isalpha()
 
     def mend(self, w):
         if self.known(w):
@@ -130,7 +131,8 @@ class Speller:
             best = None
             for n in (len(w), len(w) + 1, len(w) - 1):
                 for c in self.by_length.get(n, []):
-                    if len(c) >= 3 and close(w, c):
+                    # (of three letters two may be swapped, no more)
+                    if len(c) >= 3 and close(w, c) and (len(w) > 3 or sorted(c) == sorted(w)):
                         rank = self.common.get(c, len(self.common))
                         key = (c[0] != w[0], rank, c)
                         if best is None or key < best[0]:

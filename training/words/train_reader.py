@@ -298,7 +298,7 @@ def work(rank, a):
             if step % 100 == 0 and rank == 0:
                 print(f"step {step} seen {seen} loss {mean:.4f} {seen / (spent + time.time() - began):.0f}/s", flush=True)
         # (all workers stop together)
-        flags = torch.tensor([float(time.time() - began >= budget), float(time.time() - saved > 600)])
+        flags = torch.tensor([float(time.time() - began >= budget), float(time.time() - saved > 400)])
         if a.workers > 1:
             dist.broadcast(flags, 0)
         over = flags[0] > 0

@@ -9,8 +9,8 @@ const ROUND: u8 = 10;
 /// Gap between the text of a chip and its end, points.
 const SEAM: f32 = 1.0;
 
-/// Begins a new line where the rest of this one is too short for a chip.
-pub fn make_room(ui: &mut Ui, text: &str) {
+/// Width of a chip with its end, points.
+fn width(ui: &Ui, text: &str) -> f32 {
     let font = TextStyle::Button.resolve(ui.style());
     let galley = |text: &str| {
         let galley = ui
@@ -18,7 +18,26 @@ pub fn make_room(ui: &mut Ui, text: &str) {
             .layout_no_wrap(text.to_owned(), font.clone(), theme::text());
         galley.size().x
     };
-    let width = galley(text) + galley("×") + 4.0 * ui.spacing().button_padding.x + SEAM;
+    galley(text) + galley("  ×") + 4.0 * ui.spacing().button_padding.x + SEAM
+}
+
+/// The text as far as a line has room for it; the rest shows under the pointer.
+fn shortened(ui: &Ui, text: &str) -> String {
+    let most = ui.max_rect().width();
+    if width(ui, text) <= most {
+        return text.to_owned();
+    }
+    let cut = |n: usize| text.chars().take(n).collect::<String>().trim_end().to_owned() + "…";
+    let fits = |n: &usize| width(ui, &cut(*n)) <= most;
+    (1..text.chars().count())
+        .rev()
+        .find(fits)
+        .map_or_else(|| cut(1), cut)
+}
+
+/// Begins a new line where the rest of this one is too short for a chip.
+pub fn make_room(ui: &mut Ui, text: &str) {
+    let width = width(ui, &shortened(ui, text));
     let begun = ui.cursor().left() > ui.max_rect().left() + 1.0;
     if begun && ui.available_size_before_wrap().x < width {
         ui.end_row();
@@ -40,7 +59,13 @@ fn button(text: &str, left: bool, right: bool) -> Button<'static> {
 
 /// A chip without a menu; a click takes it out.
 pub fn plain(ui: &mut Ui, text: &str) -> Response {
-    ui.add(button(&format!("{text}  ×"), true, true))
+    let shown = shortened(ui, text);
+    let response = ui.add(button(&format!("{shown}  ×"), true, true));
+    if shown == text {
+        response
+    } else {
+        response.on_hover_text(text)
+    }
 }
 
 /// The text of a chip, with a menu; [`end`] follows.
@@ -48,13 +73,18 @@ pub fn menu(ui: &mut Ui, text: &str, add: impl FnOnce(&mut Ui)) -> Response {
     let gap = std::mem::replace(&mut ui.spacing_mut().item_spacing.x, SEAM);
     // What is in it is typed into and dragged; what chooses closes it.
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-    let menu = MenuButton::from_button(button(text, true, false)).config(config);
+    let shown = shortened(ui, text);
+    let menu = MenuButton::from_button(button(&shown, true, false)).config(config);
     let (response, _) = menu.ui(ui, |ui| {
         ui.spacing_mut().item_spacing.x = gap;
         add(ui);
     });
     ui.spacing_mut().item_spacing.x = gap;
-    response
+    if shown == text {
+        response
+    } else {
+        response.on_hover_text(text)
+    }
 }
 
 /// The end of a chip with a menu: a click takes it out.

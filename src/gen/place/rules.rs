@@ -310,7 +310,8 @@ impl Placer<'_> {
             let chance = self.draw.unit();
             let mut cost = match self.from {
                 Some(old) => s.cost + 0.3 * chance + moved_far(old, s),
-                None => s.cost + 0.02 * (far - 14.0).abs() + chance * 1.2,
+                // (what is described is seen from the front, if nothing else was said)
+                None => s.cost + 0.02 * (far - 14.0).abs() + 0.05 * (-s.p.x).clamp(0.0, 25.0) + chance * 1.2,
             };
             cost += self.exact * off_measure(&stated, s, size_m);
             cost += between.iter().map(|ends| 0.5 * off_line(*ends, s.p)).sum::<f64>();

@@ -6,6 +6,7 @@ use super::account::{Missing, Why, missing};
 use super::beside::{Taken, take};
 use super::canonical::canonical;
 use super::grammar;
+use super::guess::take_out_guesses;
 use super::notation;
 use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
@@ -107,6 +108,11 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         (false, true) => (By::Grammar, plain.reading, Some(said.reading)),
         (false, false) => (By::Learned, said.reading, None),
     };
+    let mut reading = reading;
+    let lost = match by {
+        By::Learned => take_out_guesses(&mut reading, &said.tokens),
+        _ => Vec::new(),
+    };
     let unsure = match by {
         By::Learned => (0..reading.acts.len())
             .filter(|i| reading.acts[*i].confidence < UNSURE)
@@ -120,6 +126,23 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         })
     });
     let mut missing = missing(text, &said.tokens, &reading, learned.speller());
+    // (a word that no list has is named already)
+    let unknown = |span: &Span| {
+        missing
+            .iter()
+            .any(|m| m.why == Why::Unknown && m.span.start >= span.start && m.span.end <= span.end)
+    };
+    let unnamed: Vec<Missing> = lost
+        .into_iter()
+        .flatten()
+        .filter(|span| !unknown(span))
+        .map(|span| Missing {
+            span,
+            words: span.of(text).to_owned(),
+            why: Why::Unknown,
+        })
+        .collect();
+    missing.extend(unnamed);
     let bytes_left = Span {
         start: said
             .left_out

@@ -28,6 +28,16 @@ pub struct Lexicon {
 static LEXICON: LazyLock<Lexicon> =
     LazyLock::new(|| Lexicon::new(include_str!("../../../assets/words/lexicon.txt")));
 
+static ENGLISH: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let words = include_str!("../../../assets/words/english.txt").lines();
+    words.filter(|w| !w.starts_with('#')).collect()
+});
+
+/// True for an English word, whether or not it means anything here; the list begins at three letters.
+pub fn is_english(word: &str) -> bool {
+    ENGLISH.binary_search(&word).is_ok()
+}
+
 impl Lexicon {
     /// The one that ships with the program.
     pub fn bundled() -> &'static Self {
@@ -94,6 +104,15 @@ impl Lexicon {
     /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
+    }
+
+    /// Words that name a kind of thing, each with its symbol.
+    pub fn nouns(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        let words = self.senses.iter().filter(|(w, _)| !w.contains(' '));
+        let nouns = words.flat_map(|(w, senses)| senses.iter().map(move |s| (w.as_str(), s)));
+        nouns
+            .filter(|(_, s)| s.kind == "noun")
+            .map(|(w, s)| (w, s.symbol))
     }
 
     /// Phrases of one word.

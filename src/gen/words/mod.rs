@@ -10,6 +10,7 @@ pub mod carry_out;
 mod check;
 pub mod describe;
 pub mod grammar;
+mod guess;
 pub mod hear;
 pub mod lexicon;
 mod named;

@@ -109,11 +109,13 @@ impl fmt::Display for Remark {
         match self {
             Self::Nobody { what } => write!(f, "no {what} is in the scene"),
             Self::OnlyOne { what, place } => write!(f, "{what}: the only one was taken, {place}"),
-            Self::TooFew { what, found, wanted } => write!(f, "{found} of {wanted} {what} are there"),
+            Self::TooFew { what, found, wanted } => write!(f, "{what}: {wanted} were named, {found} fit"),
             Self::Chosen { what, which } => write!(f, "of the {what} the {which} were taken"),
             Self::LeftOut { placed, wanted, why } => write!(f, "{placed} of {wanted} were placed: {why}"),
             Self::Unmet { relations } => {
-                write!(f, "not everything said could be met: {}", relations.join(", "))
+                let mut words: Vec<String> = relations.iter().map(|r| r.replace('_', " ")).collect();
+                words.dedup();
+                write!(f, "not everything said could be met: {}", words.join(", "))
             }
             Self::NoRoom { id } => write!(f, "box {id} finds no room there: not moved"),
             Self::Outside { id } => write!(

@@ -72,6 +72,12 @@ impl Stage<'_> {
     }
 
     pub(super) fn speak_of(&mut self, ids: &[BoxId], noun: Option<Noun>) {
+        // ("four cars, the first one black, the others white": the others of the four)
+        if ids.len() < self.last.len() && ids.iter().all(|id| self.last.contains(id)) {
+            self.group.clone_from(&self.last);
+        } else if !ids.iter().all(|id| self.group.contains(id)) {
+            self.group.clear();
+        }
         self.last = ids.to_vec();
         if let Some(noun) = noun.filter(|n| !matches!(n, Noun::It | Noun::One)) {
             self.last_noun = Some(noun);
@@ -110,6 +116,15 @@ impl Stage<'_> {
             return None;
         }
         if let Some(nth) = t.nth {
+            // (of those that were put in just now, if they are such)
+            if self.last.len() > 1
+                && self
+                    .last
+                    .iter()
+                    .all(|id| fits.contains(id) && !self.first.contains_key(id))
+            {
+                fits.clone_from(&self.last);
+            }
             fits.sort_by(|a, b| self.range_m(*a).total_cmp(&self.range_m(*b)));
             let at = if nth == 0 {
                 fits.len() - 1
@@ -324,6 +339,9 @@ impl Stage<'_> {
         fit.retain(|b| Some(b.id) != self.skip);
         if t.other {
             fit.retain(|b| !self.last.contains(&b.id));
+            if fit.iter().any(|b| self.group.contains(&b.id)) {
+                fit.retain(|b| self.group.contains(&b.id));
+            }
         }
         match t.paint {
             Some(PaintWish::Is(p)) => fit.retain(|b| b.label.paint == Some(p)),

@@ -100,6 +100,8 @@ pub struct Stage<'a> {
     /// What was spoken of last, and the kind of it.
     pub(super) last: Vec<BoxId>,
     pub(super) last_noun: Option<Noun>,
+    /// The group that those were told apart from: "the others" are the rest of it.
+    pub(super) group: Vec<BoxId>,
     /// Where something was taken away last.
     pub(super) gone: Vec<SceneBox>,
     pub(super) out: Outcome,
@@ -120,6 +122,7 @@ impl<'a> Stage<'a> {
             skip: None,
             last: Vec::new(),
             last_noun: None,
+            group: Vec::new(),
             gone: Vec::new(),
             out: Outcome::default(),
         }

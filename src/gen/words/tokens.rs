@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::lexicon::{LONGEST_PHRASE, Lexicon, Sense};
+use super::lexicon::{LONGEST_PHRASE, Lexicon, Sense, is_english};
 
 /// Longest text that is read, bytes; what lies beyond is named as not understood.
 pub const LONGEST: usize = 20_000;
@@ -182,7 +182,7 @@ fn words(text: &str) -> Vec<(String, Span)> {
     out
 }
 
-/// Mends words that are in no list: the most frequent word that one slip makes of it.
+/// Mends words that are in no list and no English words: the most frequent word that one slip makes of it.
 pub struct Speller {
     rank: HashMap<String, usize>,
     by_length: HashMap<usize, Vec<String>>,
@@ -209,7 +209,8 @@ impl Speller {
             || lexicon.senses(w).is_some()
             || number_word(w).is_some()
             || lexicon.unit(w).is_some()
-            || w.chars().count() < 4
+            || is_english(w)
+            || w.chars().count() < 3
             || !w.chars().all(char::is_alphabetic)
     }
 
@@ -230,7 +231,8 @@ impl Speller {
         lists
             .filter_map(|n| self.by_length.get(&n))
             .flatten()
-            .filter(|c| is_one_slip(w, c))
+            // (of three letters two may be swapped, no more)
+            .filter(|c| is_one_slip(w, c) && (n > 3 || sorted(c) == sorted(w)))
             .min_by_key(|c| {
                 let rank = self.rank.get(c.as_str()).copied().unwrap_or(self.rank.len());
                 (c.chars().next() != first, rank, c.as_str())
@@ -239,8 +241,14 @@ impl Speller {
     }
 }
 
+fn sorted(word: &str) -> Vec<char> {
+    let mut letters: Vec<char> = word.chars().collect();
+    letters.sort_unstable();
+    letters
+}
+
 /// True if one insertion, deletion, substitution or swap of neighbours makes `b` of `a`.
-fn is_one_slip(a: &str, b: &str) -> bool {
+pub(super) fn is_one_slip(a: &str, b: &str) -> bool {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     if a == b || a.len().abs_diff(b.len()) > 1 {
         return false;

@@ -121,9 +121,14 @@ impl PromptPane {
         }
     }
 
-    /// What of the words is doubtful or not in the reading; not again after they were carried out. True if what the other
+    /// What of the words is doubtful or not in the reading; after they were carried out the answer says it. True if what the other
     /// reader says is taken.
     fn say_doubts(&self, ui: &mut Ui, heard: &Heard) -> bool {
+        for m in &heard.mended {
+            let typed = m.span.of(&self.prompt);
+            let text = format!("“{typed}” is read as “{}”", m.to);
+            ui.label(egui::RichText::new(text).small().color(theme::text()));
+        }
         if self.done.is_some() {
             return false;
         }
@@ -134,11 +139,6 @@ impl PromptPane {
                 Why::TooLong => "Too long, not read",
             };
             warn(ui, &format!("{why}: “{}”", m.words));
-        }
-        for m in &heard.mended {
-            let typed = m.span.of(&self.prompt);
-            let text = format!("“{typed}” is read as “{}”", m.to);
-            ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         }
         if !heard.unsure.is_empty() {
             let text = "Not sure that this is what was meant";
