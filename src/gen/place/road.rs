@@ -261,7 +261,18 @@ fn judge(
     }
     if let Some(lanes) = d.road.lanes {
         let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
-        wishes += usize::from((lanes as usize).div_ceil(2) != forward);
+        // ("a three-lane motorway" has three each way; of other roads all lanes are counted)
+        let each_way = d.road.one_way || d.road.kind == Some(Road::Highway) && lanes <= 3;
+        let wanted = if each_way {
+            lanes as usize
+        } else {
+            (lanes as usize).div_ceil(2)
+        };
+        if forward != wanted {
+            missing.push(format!(
+                "{lanes} lanes were asked for, and {forward} of this road go our way"
+            ));
+        }
     }
     // who is on the stripes so far ahead wants them there
     for o in &d.foreground {

@@ -3,9 +3,10 @@
 use serde::Serialize;
 
 use super::grammar;
+use super::lexicon::{is_english, is_other_thing};
 use super::notation;
 use super::nouns::Noun;
-use super::reading::Reading;
+use super::reading::{Quantity, Reading, Thing, What};
 use super::tokens::{Span, Speller, Token, number_word};
 
 /// A word that the reading does not hold.
@@ -61,6 +62,16 @@ const ARITHMETIC: [&str; 27] = [
     "dozen",
     "couple",
 ];
+/// Words that take back what stands before them.
+const CORRECTS: [&str; 7] = [
+    "sorry",
+    "mean",
+    "meant",
+    "scratch",
+    "correction",
+    "actually",
+    "wait",
+];
 /// So many tokens away.
 const NEAR: usize = 5;
 /// What follows them is what is not meant.
@@ -72,6 +83,11 @@ const NOT: [&str; 10] = [
 pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Speller) -> Vec<Missing> {
     let line = notation::write(reading);
     let said: Vec<&str> = line.split(' ').collect();
+    let sums = sums(reading);
+    let corrected = tokens
+        .iter()
+        .rposition(|t| CORRECTS.contains(&t.text.as_str()))
+        .unwrap_or(0);
     let mut out: Vec<Missing> = Vec::new();
     let mut i = 0;
     while i < tokens.len() {
@@ -86,7 +102,7 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
         }
         let before = i.checked_sub(1).map_or("", |k| tokens[k].text.as_str());
         let why = if let Some(v) = t.value {
-            let there = number_is_said(v, t.is_length, &said);
+            let there = number_is_said(v, t.is_length, &said) || !t.is_length && sums.contains(&v);
             let around = &tokens[i.saturating_sub(NEAR)..tokens.len().min(i + NEAR + 1)];
             let works_out = around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
             let small = !t.is_length && (v <= 1.0 || works_out);
@@ -107,9 +123,13 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             let word = t.text.chars().count() > 2 && t.text.chars().all(char::is_alphabetic);
             let known =
                 speller.is_common(&t.text) || grammar::knows(&t.text) || number_word(&t.text).is_some();
-            (word && !known).then_some(Why::Unknown)
+            // (verbs and adverbs tell how, and most say what the reading says)
+            let tells = is_english(&t.text) && !is_other_thing(&t.text);
+            (word && !known && !tells).then_some(Why::Unknown)
         };
-        if let Some(why) = why {
+        // (what was said before a correction is not meant)
+        let taken_back = i < corrected && why == Some(Why::NotCarriedOut);
+        if let Some(why) = why.filter(|_| !taken_back) {
             let span = t.span.to(tokens[end - 1].span);
             out.push(Missing {
                 span,
@@ -120,6 +140,41 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
         i = end;
     }
     out
+}
+
+/// What numbers of things add up to: "five cars, one of them red" is four and one.
+fn sums(reading: &Reading) -> Vec<f64> {
+    const MOST: u32 = 60;
+    let mut sums = vec![0];
+    let mut add = |t: &Thing| {
+        let n = match t.quantity {
+            Quantity::N(n) | Quantity::TheN(n) | Quantity::Range(n, _) => n,
+            Quantity::The | Quantity::Unsaid => 1,
+            _ => return,
+        };
+        let more: Vec<u32> = sums
+            .iter()
+            .map(|s| s + n)
+            .filter(|s| *s <= MOST && !sums.contains(s))
+            .collect();
+        sums.extend(more);
+    };
+    for act in &reading.acts {
+        let (who, things): (&[Thing], &[Thing]) = match &act.what {
+            What::Add { things } => (&[], things),
+            What::Replace { who, things } => (who, things),
+            What::Remove { who }
+            | What::Keep { who }
+            | What::Leave { who }
+            | What::Move { who, .. }
+            | What::Turn { who, .. }
+            | What::Set { who, .. } => (who, &[]),
+            What::Swap { one, other } => (std::slice::from_ref(one), std::slice::from_ref(other)),
+            _ => continue,
+        };
+        who.iter().chain(things).for_each(&mut add);
+    }
+    sums.into_iter().skip(1).map(f64::from).collect()
 }
 
 fn number_is_said(v: f64, is_length: bool, said: &[&str]) -> bool {
@@ -144,7 +199,15 @@ fn sense_is_said(kind: &str, symbol: &str, said: &[&str]) -> bool {
         "noun" => {
             let Some(noun) = Noun::of(symbol) else { return true };
             said.iter().filter_map(|s| Noun::of(s)).any(|n| {
+                // (who rides or drives is what is ridden)
+                let rides = matches!(
+                    n,
+                    Noun::Bicycle | Noun::Motorcycle | Noun::Scooter | Noun::TwoWheeler
+                );
+                let person = noun.classes() == Noun::Person.classes();
                 matches!(n, Noun::It | Noun::One | Noun::Thing)
+                    || person && rides
+                    || said.first() == Some(&"keep")
                     || n.classes().iter().any(|c| noun.classes().contains(c))
             })
         }

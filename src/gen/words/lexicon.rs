@@ -33,6 +33,18 @@ static ENGLISH: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     words.filter(|w| !w.starts_with('#')).collect()
 });
 
+static THINGS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let words = include_str!("../../../assets/words/things.txt").lines();
+    words.filter(|w| !w.starts_with('#')).collect()
+});
+
+/// True for a noun of something that no scene holds, one or several of them.
+pub fn is_other_thing(word: &str) -> bool {
+    let is = |w: &str| THINGS.binary_search(&w).is_ok();
+    let one = [word.strip_suffix("es"), word.strip_suffix('s')];
+    is(word) || one.into_iter().flatten().any(is)
+}
+
 /// True for an English word, whether or not it means anything here; the list begins at three letters.
 pub fn is_english(word: &str) -> bool {
     ENGLISH.binary_search(&word).is_ok()

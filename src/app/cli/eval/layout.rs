@@ -16,6 +16,7 @@ use crate::app::text;
 use crate::editor::Document;
 use crate::generation::metrics::stats::median;
 use crate::generation::place::description::Description;
+use crate::generation::words::account::missing;
 use crate::generation::words::carry_out::carry_out;
 use crate::generation::words::describe::describe;
 use crate::generation::words::grammar;
@@ -23,6 +24,7 @@ use crate::generation::words::hear::hear;
 use crate::generation::words::notation;
 use crate::generation::words::reader::{LearnedReader, Mode};
 use crate::generation::words::reading::Reading;
+use crate::generation::words::remark::Remark;
 use crate::generation::words::stage::OpenScene;
 use crate::generation::words::tokens::tokens;
 use crate::scene::{Frame, Scene, SceneBox, SensorRig};
@@ -130,8 +132,9 @@ pub(super) struct Tally {
     wall_s: Vec<f64>,
     slowest: Vec<(f64, String)>,
     failed: Vec<Value>,
-    /// Right cases of which something was said all the same.
+    /// Right cases of which something was said all the same, and what of the first of them.
     spoke: usize,
+    needless: Vec<Value>,
     /// Failed cases of which nothing was said: no note, no question, no word named as not understood.
     silent: usize,
     /// Failed edits of a scene whose own prompt was read with doubts.
@@ -149,6 +152,8 @@ pub(super) struct Told {
     pub doubtful_base: bool,
 }
 
+/// How many right cases with a remark the report names.
+const NEEDLESS: usize = 400;
 /// How many of the slowest cases the report names.
 const SLOWEST: usize = 8;
 
@@ -281,7 +286,13 @@ impl Tally {
         self.drivable = sum(self.drivable, judge.on_drivable());
         self.headings = sum(self.headings, judge.headings());
         let told = told();
-        self.spoke += usize::from(told.spoke && wrong.is_empty());
+        if told.spoke && wrong.is_empty() {
+            self.spoke += 1;
+            if self.needless.len() < NEEDLESS {
+                self.needless
+                    .push(json!({ "text": case.text, "told": told.details }));
+            }
+        }
         if !wrong.is_empty() {
             let after = in_short(scene);
             self.silent += usize::from(!told.spoke);
@@ -310,6 +321,7 @@ impl Tally {
             "wall_s_max": self.wall_s.iter().copied().fold(0.0, f64::max),
             "slowest": self.slowest.iter().map(|(wall_s, text)| json!({ "wall_s": wall_s, "text": text })).collect::<Vec<_>>(),
             "failed": self.failed,
+            "needless": self.needless,
         })
     }
 }
@@ -355,7 +367,16 @@ impl Who {
             Self::Given => {
                 let line = case.reading.as_ref();
                 let line = line.with_context(|| format!("no reading stands beside {:?}", case.text))?;
-                plainly(notation::parse(line).with_context(|| format!("{:?}", case.text))?)
+                let reading = notation::parse(line).with_context(|| format!("{:?}", case.text))?;
+                // (what is named of a right reading is named without need)
+                let reader = LearnedReader::bundled()?;
+                let tokens = tokens(&case.text, Some(reader.speller()));
+                let missing = missing(&case.text, &tokens, &reading, reader.speller());
+                Read {
+                    spoke: !missing.is_empty(),
+                    doubts: json!(missing),
+                    ..plainly(reading)
+                }
             }
             Self::Learned => plainly(LearnedReader::bundled()?.read(&case.text, mode).reading),
             Self::Grammar => {
@@ -436,7 +457,13 @@ fn changed(
         .apply_all("Edit by text", &list)
         .with_context(|| format!("{:?}", case.text))?;
     let told = || Told {
-        spoke: read.spoke || !(outcome.remarks.is_empty() && outcome.questions.is_empty()),
+        // (which of several was taken, or that it is so already, is no doubt)
+        spoke: read.spoke
+            || !outcome.questions.is_empty()
+            || outcome
+                .remarks
+                .iter()
+                .any(|r| !matches!(r.1, Remark::Chosen { .. } | Remark::Already)),
         details: json!({ "before": before, "reading": notation::write(reading), "doubts": doubts, "remarks": outcome.remarks, "questions": outcome.questions }),
         doubtful_base: !hear(base, Mode::Prompt).is_ok_and(|h| h.is_plain()),
     };

@@ -8,6 +8,8 @@ use super::PromptPane;
 use crate::app::command::Command;
 use crate::app::icons::section;
 use crate::app::theme;
+use crate::app::tools::things::ThingCommand;
+use crate::app::tools::{Choose, ToolCommand};
 use crate::generation::place::description::{TimeOfDay, Weather};
 use crate::generation::words::account::Why;
 use crate::generation::words::answer::{answer, sentence, thing};
@@ -201,7 +203,12 @@ impl PromptPane {
             for candidate in &question.candidates {
                 let text = format!("{}   {}", candidate.answer(), candidate.place);
                 let button = egui::Button::new(text).min_size(vec2(ui.available_width(), theme::ROW));
-                if ui.add(button).clicked() {
+                let response = ui.add(button);
+                if response.hovered() && scene.background.get(candidate.id).is_some() {
+                    let choose = ThingCommand::Choose(vec![candidate.id], Choose::Only);
+                    commands.push(Command::Tools(ToolCommand::Thing(choose)));
+                }
+                if response.clicked() {
                     beside = Some((question.clause, candidate.said.clone()));
                 }
             }
