@@ -390,9 +390,13 @@ impl Gather<'_, '_> {
 
     fn crossing_people(&mut self) {
         self.base.on_road = true;
-        // On a crossing if there is one, else right across the road.
+        const SIDE_ROAD_M: f64 = 4.0;
+        let old = self.base.cost;
+        // On a crossing if there is one, rather on one of our road than of another; else right across the road.
         for outline in &self.map.crossings {
             let mid = outline.iter().sum::<DVec2>() / outline.len() as f64;
+            let of_ours = self.map.course(mid).is_none_or(|c| c.1.abs() < SIDE_ROAD_M);
+            self.base.cost = old + if of_ours { 0.0 } else { 2.0 };
             let long = outline
                 .iter()
                 .zip(outline.iter().cycle().skip(1))
@@ -409,8 +413,7 @@ impl Gather<'_, '_> {
                 }
             }
         }
-        let old = self.base.cost;
-        self.base.cost += 1.0;
+        self.base.cost = old + 1.0;
         for i in 0..self.map.points.len() {
             let l = self.map.points[i];
             for turn in [FRAC_PI_2, -FRAC_PI_2] {
