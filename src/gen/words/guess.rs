@@ -1,14 +1,15 @@
 //! What the network reads where no word of the text names it, "three tractors" for "three deer": things that nobody named
 //! are not put in, moved or taken away; of people, who are called by countless words, the reader is unsure.
 
-use super::lexicon::{Lexicon, is_english};
+use super::grammar;
+use super::lexicon::{Lexicon, is_english, is_other_thing};
 use super::nouns::Noun;
 use super::reading::{Anchor, Reading, Thing, What};
 use super::tokens::{Span, Token, is_one_slip};
 use crate::scene::Class;
 
 /// Words that mean people and name no kind of them.
-const SOMEBODY: [&str; 24] = [
+const SOMEBODY: [&str; 20] = [
     "he",
     "she",
     "him",
@@ -26,22 +27,23 @@ const SOMEBODY: [&str; 24] = [
     "anyone",
     "everybody",
     "everyone",
-    "one",
-    "two",
-    "three",
     "foot",
     "folk",
-    "soul",
     "body",
 ];
 
 /// Takes out of a reading what no word of its text names; answers where the acts stood that lost something.
 pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<Option<Span>> {
     let mut lost = Vec::new();
+    // (beside "three deer" not even people)
+    let others = (0..tokens.len()).any(|i| {
+        tokens[i].senses.is_empty()
+            && (grammar::cannot(&tokens[i..]).is_some() || is_other_thing(&tokens[i].text))
+    });
     reading.acts.retain_mut(|act| {
         let named = |t: &Thing| is_named(t, tokens);
         let mut none = Vec::new();
-        let is_person = |t: &Thing| t.noun.classes() == [Class::Pedestrian];
+        let is_person = |t: &Thing| !others && t.noun.classes() == [Class::Pedestrian];
         let (new, there): (&mut Vec<Thing>, &[Thing]) = match &mut act.what {
             What::Add { things } => (things, &[]),
             What::Replace { who, things } => (things, who),
@@ -99,8 +101,65 @@ fn is_named(t: &Thing, tokens: &[Token]) -> bool {
 
 /// True if one slip of the keys makes the word of one whose noun fits.
 fn is_slip_of(word: &str, fits: &dyn Fn(&str) -> bool) -> bool {
-    !is_english(word)
+    word.chars().count() > 2
+        && !is_english(word)
         && Lexicon::bundled()
             .nouns()
             .any(|(form, symbol)| is_one_slip(word, form) && fits(symbol))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::notation::{parse, write};
+    use super::super::tokens::tokens;
+    use super::*;
+
+    #[test]
+    fn what_no_word_names_is_taken_out() {
+        for (text, line, left, sure) in [
+            (
+                "three deer run, leave the tractor",
+                "add 3 person ; leave the tractor",
+                "leave the tractor",
+                true,
+            ),
+            (
+                "a red brick school, and a bus",
+                "add 1 red car and 1 bus",
+                "add 1 bus",
+                false,
+            ),
+            (
+                "two wretches on the left",
+                "add 2 person ( left ego )",
+                "add 2 person ( left ego )",
+                false,
+            ),
+            (
+                "somebody on the left",
+                "add 1 person ( left ego )",
+                "add 1 person ( left ego )",
+                true,
+            ),
+            ("the tuck and the bsu", "remove the truck and the bus", "", true),
+            (
+                "the trcuk and the bsu",
+                "remove the truck and the bus",
+                "remove the truck and the bus",
+                true,
+            ),
+            (
+                "a lorry behind a taxi",
+                "add 1 truck ( behind 1 taxi )",
+                "add 1 truck ( behind 1 taxi )",
+                true,
+            ),
+            ("move it left", "move it by left", "move it by left", true),
+        ] {
+            let mut reading = parse(line).expect("a reading");
+            take_out_guesses(&mut reading, &tokens(text, None));
+            assert_eq!(write(&reading), left, "{text}");
+            assert_eq!(reading.acts.iter().all(|a| a.confidence > 0.0), sure, "{text}");
+        }
+    }
 }

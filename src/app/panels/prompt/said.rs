@@ -109,7 +109,9 @@ impl PromptPane {
             }
         }
         if let Some(i) = beside {
-            let take_out = |r: &mut Reading| drop(r.background.remove(i));
+            let take_out = |r: &mut Reading| {
+                r.background.remove(i);
+            };
             match as_change {
                 true => both.set_edit(scene, take_out),
                 false => both.set_prompt(take_out),
