@@ -93,7 +93,10 @@ fn is_named(t: &Thing, tokens: &[Token]) -> bool {
     general
         || t.id.is_some()
         || tokens.iter().any(|token| {
-            let senses = token.senses.iter().filter(|s| matches!(s.kind, "noun" | "group"));
+            // (alone, too: "a bus stands" is no bus stand)
+            let alone = Lexicon::bundled().senses(&token.text).unwrap_or_default();
+            let senses = token.senses.iter().chain(alone);
+            let senses = senses.filter(|s| matches!(s.kind, "noun" | "group"));
             let somebody = classes == [Class::Pedestrian] && SOMEBODY.contains(&token.text.as_str());
             somebody || senses.map(|s| s.symbol).any(fits) || is_slip_of(&token.text, &fits)
         })
@@ -155,6 +158,7 @@ mod tests {
                 true,
             ),
             ("move it left", "move it by left", "move it by left", true),
+            ("a bus stands there", "add 1 bus", "add 1 bus", true),
         ] {
             let mut reading = parse(line).expect("a reading");
             take_out_guesses(&mut reading, &tokens(text, None));
