@@ -200,7 +200,7 @@ fn what_is_in_no_list_is_not_guessed() {
 
 #[test]
 fn plain_sentences_are_heard_as_the_grammar_reads_them() {
-    let heard = hear("Remvoe the bus", Mode::Edit).expect("weights");
+    let heard = hear("Remmove the bus", Mode::Edit).expect("weights");
     assert_eq!(super::notation::write(&heard.reading), "remove the bus");
     assert_eq!(heard.mended[0].to, "remove");
     let heard = hear("a glorpify, two parked cars", Mode::Prompt).expect("weights");
