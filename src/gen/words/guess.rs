@@ -3,6 +3,7 @@
 
 use super::grammar;
 use super::lexicon::{Lexicon, is_english, is_other_thing};
+use super::notation;
 use super::nouns::Noun;
 use super::reading::{Anchor, Reading, Thing, What};
 use super::tokens::{Span, Token, is_one_slip};
@@ -35,15 +36,22 @@ const SOMEBODY: [&str; 20] = [
 /// Takes out of a reading what no word of its text names; answers where the acts stood that lost something.
 pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<Option<Span>> {
     let mut lost = Vec::new();
-    // (beside "three deer" not even people)
-    let others = (0..tokens.len()).any(|i| {
-        tokens[i].senses.is_empty()
-            && (grammar::cannot(&tokens[i..]).is_some() || is_other_thing(&tokens[i].text))
-    });
+    // Beside a word for what no scene holds, "three deer next to the bus", a kind is read once for each word that names it.
+    let foreign = (0..tokens.len()).any(|i| is_foreign(&tokens[i..]));
+    let line = notation::write(reading);
+    let is_extra = |t: &Thing, among: usize| {
+        let fits = |symbol: &str| fits(symbol, t.noun);
+        let read = line.split(' ').filter(|s| fits(s)).count();
+        let names: Vec<bool> = tokens.iter().map(|t| names(t, &fits)).collect();
+        // (words of one phrase name it once; "five cars, one of them red" are two things of one word)
+        let first = |i: &usize| *i == 0 || tokens[*i].senses != tokens[*i - 1].senses;
+        let named = (0..names.len()).filter(|i| names[*i] && first(i)).count();
+        foreign && !is_general(t) && read + 1 > named + among
+    };
     reading.acts.retain_mut(|act| {
         let named = |t: &Thing| is_named(t, tokens);
         let mut none = Vec::new();
-        let is_person = |t: &Thing| !others && t.noun.classes() == [Class::Pedestrian];
+        let is_person = |t: &Thing| !foreign && t.noun.classes() == [Class::Pedestrian];
         let (new, there): (&mut Vec<Thing>, &[Thing]) = match &mut act.what {
             What::Add { things } => (things, &[]),
             What::Replace { who, things } => (things, who),
@@ -59,7 +67,9 @@ pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<O
         if !new.iter().chain(there).all(|t| named(t) && anchors(t).all(named)) {
             act.confidence = 0.0;
         }
-        new.retain(|t| named(t) || is_person(t));
+        let nouns: Vec<Noun> = new.iter().map(|t| t.noun).collect();
+        let among = |t: &Thing| nouns.iter().filter(|n| fits(n.name(), t.noun)).count();
+        new.retain(|t| named(t) && !is_extra(t, among(t)) || is_person(t));
         let stays = (before == 0 || !new.is_empty()) && there.iter().all(|t| named(t) || is_person(t));
         if !stays || new.len() < before {
             lost.push(act.span);
@@ -78,28 +88,44 @@ fn anchors(t: &Thing) -> impl Iterator<Item = &Thing> {
     })
 }
 
-/// True if a word of the text names the kind of a thing, or is a slip of a word that does.
-fn is_named(t: &Thing, tokens: &[Token]) -> bool {
+/// True if the tokens begin with a word for what no scene holds.
+fn is_foreign(tokens: &[Token]) -> bool {
+    let t = &tokens[0];
+    t.senses.is_empty() && (grammar::cannot(tokens).is_some() || is_other_thing(&t.text))
+}
+
+/// True for what any word may mean.
+fn is_general(t: &Thing) -> bool {
     let general = matches!(
         t.noun,
         Noun::It | Noun::One | Noun::Thing | Noun::Vehicle | Noun::TwoWheeler
     );
-    let classes = t.noun.classes();
-    let fits = |symbol: &str| {
-        // ("person 10": a group)
-        let noun = symbol.split(' ').next().and_then(Noun::of);
-        noun.is_some_and(|n| n.classes().iter().any(|c| classes.contains(c)))
-    };
-    general
-        || t.id.is_some()
-        || tokens.iter().any(|token| {
-            // (alone, too: "a bus stands" is no bus stand)
-            let alone = Lexicon::bundled().senses(&token.text).unwrap_or_default();
-            let senses = token.senses.iter().chain(alone);
-            let senses = senses.filter(|s| matches!(s.kind, "noun" | "group"));
-            let somebody = classes == [Class::Pedestrian] && SOMEBODY.contains(&token.text.as_str());
-            somebody || senses.map(|s| s.symbol).any(fits) || is_slip_of(&token.text, &fits)
-        })
+    general || t.id.is_some()
+}
+
+/// True if a symbol is a noun of the same class; `person 10` is a group.
+fn fits(symbol: &str, noun: Noun) -> bool {
+    let of = symbol.split(' ').next().and_then(Noun::of);
+    of.is_some_and(|n| n.classes().iter().any(|c| noun.classes().contains(c)))
+}
+
+/// True if a token names what fits.
+fn names(token: &Token, fits: &dyn Fn(&str) -> bool) -> bool {
+    // (alone, too: "a bus stands" is no bus stand)
+    let alone = Lexicon::bundled().senses(&token.text).unwrap_or_default();
+    let senses = token.senses.iter().chain(alone);
+    let mut senses = senses.filter(|s| matches!(s.kind, "noun" | "group"));
+    senses.any(|s| fits(s.symbol)) || is_slip_of(&token.text, fits)
+}
+
+/// True if a word of the text names the kind of a thing, or is a slip of a word that does.
+fn is_named(t: &Thing, tokens: &[Token]) -> bool {
+    let people = t.noun.classes() == [Class::Pedestrian];
+    let somebody = |token: &Token| people && SOMEBODY.contains(&token.text.as_str());
+    is_general(t)
+        || tokens
+            .iter()
+            .any(|token| somebody(token) || names(token, &|s| fits(s, t.noun)))
 }
 
 /// True if one slip of the keys makes the word of one whose noun fits.
@@ -158,6 +184,24 @@ mod tests {
                 true,
             ),
             ("move it left", "move it by left", "move it by left", true),
+            (
+                "three deer next to the bus",
+                "add 3 bus ( next_to the bus )",
+                "",
+                true,
+            ),
+            (
+                "a dog by the bus, a bus behind it",
+                "add 1 bus ( behind the bus )",
+                "add 1 bus ( behind the bus )",
+                true,
+            ),
+            (
+                "a red brick school, no cars",
+                "add 1 red car ; no car",
+                "no car",
+                true,
+            ),
             ("a bus stands there", "add 1 bus", "add 1 bus", true),
         ] {
             let mut reading = parse(line).expect("a reading");
