@@ -126,16 +126,16 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         })
     });
     let mut missing = missing(text, &said.tokens, &reading, learned.speller());
-    // (a word that no list has is named already)
-    let unknown = |span: &Span| {
+    // (a word of it that is named says enough)
+    let is_named = |span: &Span| {
         missing
             .iter()
-            .any(|m| m.why == Why::Unknown && m.span.start >= span.start && m.span.end <= span.end)
+            .any(|m| m.span.start < span.end && m.span.end > span.start)
     };
     let unnamed: Vec<Missing> = lost
         .into_iter()
         .flatten()
-        .filter(|span| !unknown(span))
+        .filter(|span| !is_named(span))
         .map(|span| Missing {
             span,
             words: span.of(text).to_owned(),
