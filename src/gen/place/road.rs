@@ -268,7 +268,8 @@ fn judge(
         } else {
             (lanes as usize).div_ceil(2)
         };
-        if forward != wanted {
+        // (of more than three one sees no more than three: our own and one on either side)
+        if forward != wanted.min(3) {
             missing.push(format!(
                 "{lanes} lanes were asked for, and {forward} of this road go our way"
             ));
@@ -328,4 +329,45 @@ fn judge(
     wishes += usize::from(right && role(LaneRole::Right) < 8 && strip < 300);
     wishes += usize::from(parked && strip < 300);
     (missing, wishes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generation::place::to_graph::to_graph;
+
+    /// Three lanes each way of a motorway are there, or it is said that they are not; so many as nobody could tell are not denied.
+    #[test]
+    fn lanes_that_a_road_lacks_are_said() {
+        let of = |kind, lanes, seed| {
+            let mut d = Description::default();
+            (d.road.kind, d.road.lanes) = (Some(kind), Some(lanes));
+            let chosen = choose(&d, &to_graph(&d, seed).graph, seed);
+            let map = LaneMap::new(&chosen.layout);
+            let beside = |r| {
+                map.points
+                    .iter()
+                    .filter(|p| p.role == r && p.p.length() < 35.0)
+                    .count()
+                    > 8
+            };
+            let ours = 1 + usize::from(beside(LaneRole::Left)) + usize::from(beside(LaneRole::Right));
+            (
+                ours,
+                chosen.missing.iter().any(|m| m.contains("lanes were asked for")),
+            )
+        };
+        for seed in 0..6 {
+            for (kind, lanes, wanted) in [
+                (Road::Highway, 3, 3),
+                (Road::Straight, 2, 1),
+                (Road::Suburb, 6, 3),
+            ] {
+                let (ours, said) = of(kind, lanes, seed);
+                assert_eq!(said, ours != wanted, "{kind:?} {lanes}: {ours}");
+            }
+            assert_eq!(of(Road::Highway, 8, seed), of(Road::Highway, 6, seed));
+        }
+        assert!((0..6).any(|seed| of(Road::Suburb, 6, seed).1));
+    }
 }

@@ -48,8 +48,15 @@ pub fn answer(
         parts.push("nothing was understood".into());
     }
     let of = |why: Why| -> Vec<String> {
-        let words = missing.iter().filter(|m| m.why == why).take(MOST_WORDS);
-        words.map(|m| format!("\u{201c}{}\u{201d}", m.words)).collect()
+        let mut words: Vec<String> = Vec::new();
+        for m in missing.iter().filter(|m| m.why == why) {
+            let word = format!("\u{201c}{}\u{201d}", m.words);
+            if !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        words.truncate(MOST_WORDS);
+        words
     };
     let (idle, unknown) = (of(Why::NotCarriedOut), of(Why::Unknown));
     if !idle.is_empty() {

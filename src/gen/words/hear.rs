@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::account::{Missing, Why, missing};
-use super::beside::{Taken, take};
+use super::beside::{self, Taken, take};
 use super::canonical::canonical;
 use super::grammar;
 use super::guess::take_out_guesses;
@@ -203,11 +203,19 @@ pub fn against(
     mode: Mode,
 ) -> Result<Heard, WeightsError> {
     let learned = LearnedReader::bundled()?;
-    let rest = take(text, mode == Mode::Edit).rest;
+    // (what the program itself read beside the road is accounted for)
+    let said = own.map_or_else(
+        || take(text, mode == Mode::Edit).said,
+        |o| o.reading.background.clone(),
+    );
+    let mut rest = text.to_owned();
+    for span in said.iter().filter_map(|s| s.span) {
+        beside::blank(&mut rest, span);
+    }
     let text = &rest;
     let tokens = tokens(text, Some(learned.speller()));
-    if let Some(own) = own.filter(|_| reading.background.is_empty()) {
-        reading.background.clone_from(&own.reading.background);
+    if reading.background.is_empty() {
+        reading.background = said;
     }
     let other = own
         .map(|h| h.reading.clone())

@@ -34,6 +34,18 @@ fn content_words_are_in_the_reading_or_named() {
     ] {
         assert_eq!(missed(text, line), none, "{text}");
     }
+    for (text, line) in [
+        ("five cars, one of them red", "add 4 car and 1 red car"),
+        ("delete the yellow car, no, sorry, the bus", "remove the bus"),
+        ("a truck lumbering along", "add 1 truck"),
+        ("a lad riding a bike", "add 1 moving bicycle"),
+    ] {
+        assert_eq!(missed(text, line), none, "{text}");
+    }
+    assert_eq!(
+        missed("a giraffe, a bus", "add 1 bus"),
+        [("giraffe".to_owned(), Why::Unknown)]
+    );
     let not = |words: &str| vec![(words.to_owned(), Why::NotCarriedOut)];
     assert_eq!(missed("remove the car and the bus", "remove the car"), not("bus"));
     assert_eq!(missed("paint the car red", "remove the car"), not("red"));
@@ -203,6 +215,9 @@ fn plain_sentences_are_heard_as_the_grammar_reads_them() {
     let heard = hear("Remmove the bus", Mode::Edit).expect("weights");
     assert_eq!(super::notation::write(&heard.reading), "remove the bus");
     assert_eq!(heard.mended[0].to, "remove");
+    // (English words are no slips)
+    let heard = hear("after 3 seconds a deer runs into the wall", Mode::Edit).expect("weights");
+    assert!(heard.mended.is_empty(), "{:?}", heard.mended);
     let heard = hear("a glorpify, two parked cars", Mode::Prompt).expect("weights");
     assert_eq!(super::notation::write(&heard.reading), "add 2 parked car");
     assert_eq!(heard.missing[0].words, "glorpify");

@@ -12,5 +12,5 @@ mod tests;
 mod tokens;
 pub mod wishes;
 
-pub use read::{Taken, may_be_barrier, take};
+pub use read::{Taken, blank, may_be_barrier, take};
 pub use said::{Amount, NearTo, Said, SideOf, Verb, What, Where};

@@ -56,7 +56,8 @@ pub fn take(text: &str, edits: bool) -> Taken {
     out
 }
 
-fn blank(text: &mut String, span: Span) {
+/// Puts spaces in place of a part of a text: all else keeps its bytes.
+pub fn blank(text: &mut String, span: Span) {
     let spaces = " ".repeat(span.end - span.start);
     text.replace_range(span.start..span.end, &spaces);
 }

@@ -50,6 +50,27 @@ impl Base {
     }
 }
 
+/// "Four cars on the right, the first one black, the others white": the others of these four.
+#[test]
+fn the_others_are_those_of_the_group() {
+    let base = Base::new("add 3 parked car ( on left_roadside )");
+    let outcome = base
+        .edit("add 4 parked car ( on right_roadside ) ; set the nth 1 one black ; set all other one white");
+    let mut paints: Vec<(BoxId, Option<Paint>)> = Vec::new();
+    for e in &outcome.edits {
+        if let TextEdit::Label { id, label } = e {
+            paints.push((*id, label.paint));
+        }
+    }
+    let black = paints.iter().filter(|p| p.1 == Some(Paint::Black)).count();
+    let white = paints.iter().filter(|p| p.1 == Some(Paint::White)).count();
+    assert_eq!((black, white), (1, 3), "{outcome:?}");
+    assert!(
+        paints.iter().all(|p| !base.boxes.contains_key(&p.0)),
+        "{paints:?}"
+    );
+}
+
 /// "A cone behind each parked car": one for every car, in a scene and in a description.
 #[test]
 fn each_has_its_own() {
