@@ -1,14 +1,14 @@
 //! Time of the learned sweep (34,688 rays) on a complete world: the field, the rays, and after a car came or went.
 //! Run: `cargo bench --bench lidar`.
 
-use sceneloom::generation::model::lidar::LidarNet;
-use sceneloom::generation::model::lidar::field::Sampling;
-use sceneloom::generation::sensors::learned;
-use sceneloom::generation::sensors::learned_caster::LearnedCaster;
-use sceneloom::generation::sensors::truth;
-use sceneloom::generation::world::World;
-use sceneloom::generation::world::voxelize::{Vertical, complete};
-use sceneloom::scene::{Class, SensorRig};
+use nets::lidar::LidarNet;
+use nets::lidar::field::Sampling;
+use scene::{Class, SensorRig};
+use sensors::learned;
+use sensors::learned_caster::LearnedCaster;
+use sensors::truth;
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 #[path = "timing.rs"]
 mod timing;

@@ -3,11 +3,9 @@
 
 use std::time::Instant;
 
-use sceneloom::generation::dataset::occupancy_frame;
-use sceneloom::generation::metrics::stats::median;
-use sceneloom::generation::model::{
-    CELLS, ColumnHeights, DitCondition, GROUPS, KeysValues, OccModels, tokens_of,
-};
+use dataset::occupancy_frame;
+use metrics::stats::median;
+use nets::{CELLS, ColumnHeights, DitCondition, GROUPS, KeysValues, OccModels, tokens_of};
 
 const RUNS: usize = 25;
 const SIDE: usize = 50;

@@ -3,14 +3,14 @@
 
 use std::time::Instant;
 
-use sceneloom::generation::dataset::occupancy_frame;
-use sceneloom::generation::metrics::stats::median;
-use sceneloom::generation::model::candle_dit::CandleDit;
-use sceneloom::generation::model::candle_vae::CandleVae;
-use sceneloom::generation::model::layers::{View, matmul};
-use sceneloom::generation::model::panels::{Panels, Start};
-use sceneloom::generation::model::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccModels};
-use sceneloom::generation::params::Precision;
+use dataset::occupancy_frame;
+use metrics::stats::median;
+use nets::candle_dit::CandleDit;
+use nets::candle_vae::CandleVae;
+use nets::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccModels};
+use nn::Precision;
+use nn::layers::{View, matmul};
+use nn::packed_matrix::{PackedMatrix, Start};
 
 const RUNS: usize = 15;
 
@@ -28,7 +28,7 @@ fn products() {
     let a: Vec<f32> = (0..m * k).map(number).collect();
     let b: Vec<f32> = (0..k * n).map(number).collect();
     let mut out = vec![0.0; m * n];
-    let panels = Panels::new(View::rows(&b, n), k, n);
+    let panels = PackedMatrix::new(View::rows(&b, n), k, n);
     let (int8, bias) = (panels.to_int8(), vec![0.0; n]);
     let [mut ours, mut theirs, mut bytes] = [const { Vec::new() }; 3];
     for _ in 0..20 * RUNS {

@@ -7,20 +7,20 @@ use std::io::{BufRead, Write};
 use std::path::Path;
 use std::time::Instant;
 
+use dataset::occupancy_frame;
+use diffusion::schedule::{Betas, Schedule, Spacing};
+use diffusion::solver::{Branch, Denoiser, Guidance, Prediction, Sampler, SolverError, SolverKind};
+use formats::occ3d;
 use glam::DVec3;
+use nets::{ColumnHeights, DitCondition, GROUPS, OccModels};
+use numeric::rng::{Stream, normal_field};
 use rayon::prelude::*;
 use safetensors::{Dtype, tensor::TensorView};
-use sceneloom::formats::occ3d;
-use sceneloom::generation::dataset::occupancy_frame;
-use sceneloom::generation::model::{ColumnHeights, DitCondition, GROUPS, OccModels};
-use sceneloom::generation::rng::{Stream, normal_field};
-use sceneloom::generation::schedule::{Betas, Schedule, Spacing};
-use sceneloom::generation::sensors::{cloud::GaussianCloud, raycast::ColumnMasks, splat};
-use sceneloom::generation::solver::{
-    Branch, Denoiser, Guidance, Prediction, Sampler, SolverError, SolverKind,
-};
-use sceneloom::scene::splats::SplatOptions;
-use sceneloom::scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use scene::splats::SplatOptions;
+use scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use sensors::cloud::GaussianCloud;
+use sensors::raycast::ColumnMasks;
+use sensors::splat;
 
 /// Pictures that are splatted.
 const SIZE: [u32; 2] = [240, 135];

@@ -4,12 +4,10 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use sceneloom::generation::sensors::{
-    caster::Caster,
-    lidar,
-    raycast::{ColumnMasks, LANES, Packet},
-};
-use sceneloom::scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use sensors::caster::Caster;
+use sensors::lidar;
+use sensors::raycast::{ColumnMasks, LANES, Packet};
 
 #[path = "timing.rs"]
 mod timing;

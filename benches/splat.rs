@@ -2,12 +2,12 @@
 //! size; on the processor, and on the graphics adapter there is (a software one is slow).
 //! Run: `cargo bench --bench splat`.
 
-use sceneloom::generation::sensors::cloud::GaussianCloud;
-use sceneloom::generation::sensors::splat::{PREVIEW_SIZE, SplatOptions, VIEW_SIZE, render_rig};
-use sceneloom::scene::SensorRig;
-use sceneloom::viewport::{SplatRenderer, headless_device};
+use scene::SensorRig;
+use sensors::cloud::GaussianCloud;
+use sensors::splat::{PREVIEW_SIZE, SplatOptions, VIEW_SIZE, render_rig};
+use viewport::{SplatRenderer, headless_device};
 
-#[path = "../tests/sensor_scene/mod.rs"]
+#[path = "../tests/it/sensor_scene/mod.rs"]
 mod sensor_scene;
 #[path = "timing.rs"]
 mod timing;

@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use sceneloom::editor::{Document, Edit};
-use sceneloom::formats::project;
-use sceneloom::generation::sensors::caster::Caster;
-use sceneloom::scene::{Class, LidarSweep, SceneBox};
-use sceneloom::viewport::{
+use editor::{Document, Edit};
+use formats::project;
+use scene::{Class, LidarSweep, SceneBox};
+use sensors::caster::Caster;
+use viewport::{
     LayoutPlane, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewScene, Viewport, headless_device,
     lidar_colors,
 };

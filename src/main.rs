@@ -1,5 +1,5 @@
 //! Parses arguments, runs, reports the error once, exits.
 
 fn main() -> std::process::ExitCode {
-    sceneloom::app::cli::main()
+    app::cli::main()
 }

@@ -4,40 +4,40 @@
 
 use std::sync::OnceLock;
 
+use app::cli;
+use app::dock::Dock;
+use app::keymap::{Chord, Keymap};
+use app::settings::Settings;
+use app::state::Pane;
+use app::{open, text as app_text};
+use diffusion::solver::SolverKind;
+use editor::{Document, Edit, Shape};
+use formats::{box_list, occ3d, opendrive, project};
 use glam::{DVec2, DVec3};
-use sceneloom::app::cli;
-use sceneloom::app::dock::Dock;
-use sceneloom::app::keymap::{Chord, Keymap};
-use sceneloom::app::settings::Settings;
-use sceneloom::app::state::Pane;
-use sceneloom::app::{open, text as app_text};
-use sceneloom::editor::{Document, Edit, Shape};
-use sceneloom::formats::{box_list, occ3d, opendrive, project};
-use sceneloom::generation::job::GenParams;
-use sceneloom::generation::model::fine_vae;
-use sceneloom::generation::model::layout::net::LayoutNet;
-use sceneloom::generation::model::lidar::LidarNet;
-use sceneloom::generation::model::occ_dit::OccDit;
-use sceneloom::generation::model::occ_vae::OccVae;
-use sceneloom::generation::model::text::TextEncoder;
-use sceneloom::generation::place::lanes::LaneMap;
-use sceneloom::generation::place::rules::place_with;
-use sceneloom::generation::place::to_graph::to_graph;
-use sceneloom::generation::placement::memory::{Bank, RoadRef};
-use sceneloom::generation::sensors::appearance::{TimeOfDay, Weather};
-use sceneloom::generation::sensors::lidar::Rays;
-use sceneloom::generation::sensors::project::View;
-use sceneloom::generation::solver::SolverKind;
-use sceneloom::generation::trade::Stops;
-use sceneloom::generation::weights::{WeightFile, WeightsError};
-use sceneloom::generation::words::describe::describe;
-use sceneloom::generation::words::hear::hear;
-use sceneloom::generation::words::reader::Mode;
-use sceneloom::generation::world::{template, traffic};
-use sceneloom::scene::graph::SceneGraph;
-use sceneloom::scene::grid::NOT_PAINTED;
-use sceneloom::scene::road_map::RoadMap;
-use sceneloom::scene::{BevLayer, BevLayout, BoxId, Class, Frame, Relief, Scene, SensorRig, infer};
+use graph_layout::memory::{Bank, RoadRef};
+use job::GenParams;
+use nets::fine_vae;
+use nets::layout::net::LayoutNet;
+use nets::lidar::LidarNet;
+use nets::occ_dit::OccDit;
+use nets::occ_vae::OccVae;
+use nets::text::TextEncoder;
+use nn::weights::{WeightFile, WeightsError};
+use place::lanes::LaneMap;
+use place::rules::place_with;
+use place::to_graph::to_graph;
+use scene::graph::SceneGraph;
+use scene::grid::NOT_PAINTED;
+use scene::road_map::RoadMap;
+use scene::{BevLayer, BevLayout, BoxId, Class, Frame, Relief, Scene, SensorRig, infer};
+use sensors::appearance::{TimeOfDay, Weather};
+use sensors::lidar::Rays;
+use sensors::project::View;
+use trade::Stops;
+use words::describe::describe;
+use words::hear::hear;
+use words::reader::Mode;
+use world::{template, traffic};
 
 /// A parser under test.
 pub type Target = fn(&[u8]);
@@ -340,8 +340,8 @@ impl Choices<'_> {
             },
             7 => Edit::AddPolylines {
                 lines: (0..self.below(4))
-                    .map(|_| sceneloom::scene::Polyline {
-                        kind: sceneloom::scene::PolylineKind::LaneCenter,
+                    .map(|_| scene::Polyline {
+                        kind: scene::PolylineKind::LaneCenter,
                         points_m: self.points(),
                     })
                     .collect(),

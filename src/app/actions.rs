@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::viewport::ViewPreset;
+use viewport::ViewPreset;
 
 use super::command::Command;
 use super::dock::Workspace;
@@ -10,7 +10,7 @@ use super::staged::Verdict;
 use super::state::{Tool, UiState, VoxelVerb};
 use super::tools::things::{ThingCommand, ThingTool};
 use super::tools::{PaintShape, ToolCommand, VoxelMode};
-use crate::editor::transform::Kind;
+use editor::transform::Kind;
 
 /// Where a chord counts; what stands later wins over what stands before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::Receiver;
 use egui::{Rect, Ui};
 
-use crate::editor::Document;
-use crate::generation::job::{GenError, GenParams, GenResult, Job, JobCtx, JobEvent, Pipeline, UpdateGate};
-use crate::generation::worker::GenWorker;
-use crate::scene::{Scene, SceneRev};
+use editor::Document;
+use job::worker::GenWorker;
+use job::{GenError, GenParams, GenResult, Job, JobCtx, JobEvent, Pipeline, UpdateGate};
+use scene::{Scene, SceneRev};
 
 use super::canvas::Canvas;
 use super::checking::Checking;

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::scene::raster::{disc_cells, line_cells, polygon_cells};
-use crate::scene::{Background, Form, GridSpec};
+use scene::raster::{disc_cells, line_cells, polygon_cells};
+use scene::{Background, Form, GridSpec};
 
 /// Room around a thing of the file, m.
 const ROOM_M: f64 = 1.0;
@@ -45,7 +45,7 @@ pub(super) fn columns(form: &Form, margin_m: f64, mut visit: impl FnMut(usize, u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::background::{Building, Tree, TreeKind};
+    use scene::background::{Building, Tree, TreeKind};
 
     #[test]
     fn drawn_scenery_keeps_clear_of_what_is_there() {

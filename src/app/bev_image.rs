@@ -3,7 +3,7 @@
 
 use egui::{Color32, ColorImage};
 
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Unobserved, VoxelGrid};
+use scene::{BevLayer, BevLayout, Class, GridSpec, Unobserved, VoxelGrid};
 
 /// Map layers from the lowest to the uppermost, as the papers draw them; boxes come after.
 pub const DRAW_ORDER: [BevLayer; 8] = [

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::application::SceneloomApp;
 use super::canvas::Canvas;
 use super::panels::toasts::Level;
-use crate::viewport::ViewCamera;
+use viewport::ViewCamera;
 
 /// Numbers of bookmarks.
 pub const SLOTS: std::ops::RangeInclusive<u8> = 1..=9;

@@ -7,9 +7,9 @@ use super::panels::toasts::Level;
 use super::prompting::Ask;
 use super::state::CameraMode;
 use super::tools::Choose;
-use crate::editor::Edit;
-use crate::generation::sensors::appearance::Conditions;
-use crate::scene::{BoxId, Frame};
+use editor::Edit;
+use scene::{BoxId, Frame};
+use sensors::appearance::Conditions;
 
 /// Most boxes that are chosen after an edit; of more one sees no more than of none.
 const MOST_CHOSEN: usize = 12;

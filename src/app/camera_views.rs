@@ -6,17 +6,17 @@ use egui::ColorImage;
 
 use super::graphics::Graphics;
 use super::state::{CameraMode, CameraSource, LidarModel, UiState};
-use crate::generation::sensors::appearance::{CameraImage, Conditions, Look, Quality};
-use crate::generation::sensors::cloud::GaussianCloud;
-use crate::generation::sensors::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
-use crate::generation::sensors::march::ground::GroundHeight;
-use crate::generation::sensors::march::{MarchOptions, MarchScene};
-use crate::generation::sensors::mpi::{self, RenderIds};
-use crate::generation::sensors::perspective;
-use crate::generation::sensors::splat::{self, SplatOptions};
-use crate::scene::sensor_data::Planes;
-use crate::scene::{CameraMaps, MultiPlaneImage, PerspectiveMap, Scene};
-use crate::viewport::LidarColorMode;
+use scene::sensor_data::Planes;
+use scene::{CameraMaps, MultiPlaneImage, PerspectiveMap, Scene};
+use sensors::appearance::{CameraImage, Conditions, Look, Quality};
+use sensors::cloud::GaussianCloud;
+use sensors::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
+use sensors::march::ground::GroundHeight;
+use sensors::march::{MarchOptions, MarchScene};
+use sensors::mpi::{self, RenderIds};
+use sensors::perspective;
+use sensors::splat::{self, SplatOptions};
+use viewport::LidarColorMode;
 
 /// Size of the picture that is enlarged.
 pub const LARGE_SIZE: [u32; 2] = [800, 450];

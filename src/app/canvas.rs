@@ -10,8 +10,8 @@ use egui::{
 };
 use glam::DVec2;
 
-use crate::editor::{pick, pick_things};
-use crate::scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
+use editor::{pick, pick_things};
+use scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerLook};
 use super::canvas_draw::{

@@ -3,8 +3,8 @@
 use egui::{Align2, Color32, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
 use glam::DVec2;
 
-use crate::editor::pick;
-use crate::scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
+use editor::pick;
+use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
 use super::canvas::{CanvasInput, ScreenMap};
 use super::state::{Tool, UiState};
@@ -93,7 +93,7 @@ fn draw_direction(painter: &egui::Painter, points: &[Pos2], color: Color32) {
 }
 
 pub(super) fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, state: &UiState) {
-    let colors = crate::viewport::lidar_colors(sweep, state.lidar_colors);
+    let colors = viewport::lidar_colors(sweep, state.lidar_colors);
     let mut mesh = egui::Mesh::default();
     for (point, [r, g, b, _]) in sweep.points.iter().zip(colors) {
         let [x, y, _] = point.position_in_ego;

@@ -4,11 +4,11 @@
 use egui::{Key, Modifiers, PointerButton, Response, Ui};
 use glam::{DVec2, DVec3};
 
-use crate::editor::arrange::LANE_REACH_M;
-use crate::editor::lanes::nearest_lane;
-use crate::editor::pick::{self, Handle};
-use crate::editor::{Edit, Shape};
-use crate::scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox};
+use editor::arrange::LANE_REACH_M;
+use editor::lanes::nearest_lane;
+use editor::pick::{self, Handle};
+use editor::{Edit, Shape};
+use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox};
 
 use super::canvas::{Canvas, ScreenMap, readout};
 use super::command::Command;
@@ -307,7 +307,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::scene::{BevLayout, Polyline, PolylineKind, VoxelGrid};
+    use scene::{BevLayout, Polyline, PolylineKind, VoxelGrid};
 
     #[test]
     fn new_boxes_follow_the_nearest_lane() {

@@ -11,11 +11,11 @@ use glam::{DVec2, DVec3};
 use super::application::SceneloomApp;
 use super::camera_views::march;
 use super::command::Command;
-use crate::editor::checks::{self, Finding, Seen};
-use crate::generation::sensors::lidar;
-use crate::generation::sensors::splat::PREVIEW_SIZE;
-use crate::scene::raster::box_cells;
-use crate::scene::{BoxId, BoxLabel, Class, GridSpec, Scene, SceneBox, SceneRev};
+use editor::checks::{self, Finding, Seen};
+use scene::raster::box_cells;
+use scene::{BoxId, BoxLabel, Class, GridSpec, Scene, SceneBox, SceneRev};
+use sensors::lidar;
+use sensors::splat::PREVIEW_SIZE;
 
 /// Quiet time before a scene is checked, s.
 const AFTER_S: f64 = 0.5;
@@ -210,8 +210,8 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use super::*;
-    use crate::app::open;
-    use crate::editor::Edit;
+    use crate::open;
+    use editor::Edit;
 
     #[test]
     fn sensors_see_near_boxes_and_not_those_inside_a_wall() {

@@ -3,9 +3,9 @@
 
 use std::path::PathBuf;
 
-use crate::editor::Edit;
-use crate::scene::{BoxId, Class, SceneRev};
-use crate::viewport::ViewPreset;
+use editor::Edit;
+use scene::{BoxId, Class, SceneRev};
+use viewport::ViewPreset;
 
 use super::dock::Workspace;
 use super::state::{Pane, Tool, VoxelVerb};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use crate::scene::{GridSpec, Scene, SceneRev, VoxelGrid};
+use scene::{GridSpec, Scene, SceneRev, VoxelGrid};
 
 use super::bev_image::{SIZE, column_of};
 use super::camera_views::Wanted;
@@ -15,7 +15,7 @@ use super::panels::lidar_sweep::SweepPane;
 use super::sensing::Sensing;
 use super::theme;
 use super::view3d::View3d;
-use crate::viewport::BrushCells;
+use viewport::BrushCells;
 
 /// How two states are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -72,7 +72,7 @@ impl Difference {
                     continue;
                 }
                 for z in (0..GridSpec::NZ).filter(|z| a[*z] != b[*z]) {
-                    let free = crate::scene::Class::FREE;
+                    let free = scene::Class::FREE;
                     let of_kind = match (a[z] == free, b[z] == free) {
                         (true, _) => &mut out.added,
                         (_, true) => &mut out.removed,
@@ -109,7 +109,7 @@ impl Difference {
 
     /// From above: green where something came, red where something went, amber where only classes changed.
     fn image(before: &VoxelGrid, after: &VoxelGrid) -> ColorImage {
-        let free = crate::scene::Class::FREE;
+        let free = scene::Class::FREE;
         let pixel = |i: usize| {
             let (x, y) = column_of(i);
             let (a, b) = (before.column(x, y), after.column(x, y));
@@ -265,7 +265,7 @@ pub(super) fn tag(ui: &Ui, at: egui::Pos2, text: &str, from_right: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Class;
+    use scene::Class;
 
     #[test]
     fn differences_are_counted_by_kind() {

@@ -4,7 +4,7 @@
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Pos2, Rect, TextureId, pos2};
 
-use crate::viewport::panels::{PanelMesh, PanelVertex};
+use viewport::panels::{PanelMesh, PanelVertex};
 
 /// Rectangles up to which they are kept apart; more are joined.
 const MOST: usize = 8;

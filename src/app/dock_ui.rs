@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::{Sense, Ui, WidgetText, vec2};
 use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
 
-use crate::scene::Scene;
+use scene::Scene;
 
 use super::application::SceneloomApp;
 use super::command::Command;

@@ -9,9 +9,9 @@ use super::application::SceneloomApp;
 use super::panels::toasts::Level;
 use super::scenery::{Drawer, SceneryWish};
 use super::staged::Again;
-use crate::editor::Edit;
-use crate::generation::job::GenError;
-use crate::scene::Scene;
+use editor::Edit;
+use job::GenError;
+use scene::Scene;
 
 /// How soon the window looks again whether it is done.
 const LOOK_AGAIN: Duration = Duration::from_millis(40);

@@ -6,10 +6,10 @@ use std::time::Duration;
 use anyhow::{Context, bail};
 use serde_json::{Value, json};
 
-use crate::generation::words::notation;
-use crate::generation::words::reader::Mode;
-use crate::generation::words::reading::Reading;
-use crate::scene::Scene;
+use scene::Scene;
+use words::notation;
+use words::reader::Mode;
+use words::reading::Reading;
 
 /// Largest answer that is read, bytes.
 const LARGEST_ANSWER: u64 = 1 << 20;
@@ -66,7 +66,7 @@ fn request(text: &str, mode: Mode, scene: Option<&Scene>, model: &str) -> Value 
 
 /// Boxes of a scene, each in a few words.
 fn boxes_in_words(scene: &Scene) -> String {
-    let one = |b: &crate::scene::SceneBox| {
+    let one = |b: &scene::SceneBox| {
         let (x, y) = (b.center_m.x, b.center_m.y);
         let along = if x >= 0.0 { "ahead" } else { "behind" };
         let side = if y >= 0.0 { "left" } else { "right" };

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use crossbeam_channel::bounded;
 use egui::Context;
 
-use crate::editor::Edit;
-use crate::editor::document::Label;
-use crate::scene::SceneBox;
+use editor::Edit;
+use editor::document::Label;
+use scene::SceneBox;
 
 use super::application::{Next, Opening, SceneloomApp, one_line};
 use super::command::Command;
@@ -228,7 +228,7 @@ impl SceneloomApp {
     }
 
     /// A version becomes the present state; its result is there already.
-    fn restore(&mut self, scene: &crate::scene::Scene) {
+    fn restore(&mut self, scene: &scene::Scene) {
         self.worker.cancel();
         self.document.restore("Go to version", scene);
         self.live.source_changed();
@@ -349,7 +349,7 @@ impl SceneloomApp {
 
     fn look_through(&mut self, index: usize) {
         if let Some(camera) = self.document.scene().rig.cameras.get(index) {
-            self.view3d.camera = crate::viewport::ViewCamera::through(camera);
+            self.view3d.camera = viewport::ViewCamera::through(camera);
         }
     }
 
@@ -407,7 +407,7 @@ impl SceneloomApp {
         path: Option<PathBuf>,
         is_import: bool,
         ctx: &Context,
-        make: impl FnOnce() -> anyhow::Result<crate::scene::Scene> + Send + 'static,
+        make: impl FnOnce() -> anyhow::Result<scene::Scene> + Send + 'static,
     ) {
         let (send, scene) = bounded(1);
         let wake = ctx.clone();

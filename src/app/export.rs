@@ -10,17 +10,15 @@ use super::camera_views::march;
 use super::checking;
 use super::picture::{ShotOptions, View3d};
 use super::state::{CameraSource, LidarModel};
-use crate::formats::{atomic, box_list, occ3d, png, point_cloud};
-use crate::generation::model::lidar::LidarNet;
-use crate::generation::sensors::appearance::{
-    Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer,
-};
-use crate::generation::sensors::learned::{self, Drops};
-use crate::generation::sensors::splat::{self, GaussianCloud, SplatOptions};
-use crate::generation::sensors::{color, lidar};
-use crate::scene::sensor_data::{RENDER_IDS, RenderId};
-use crate::scene::{CameraMaps, Class, LidarSweep, Scene, SensorRig};
-use crate::viewport::{ViewCamera, ViewPreset};
+use formats::{atomic, box_list, occ3d, png, point_cloud};
+use nets::lidar::LidarNet;
+use scene::sensor_data::{RENDER_IDS, RenderId};
+use scene::{CameraMaps, Class, LidarSweep, Scene, SensorRig};
+use sensors::appearance::{Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use sensors::learned::{self, Drops};
+use sensors::splat::{self, GaussianCloud, SplatOptions};
+use sensors::{color, lidar};
+use viewport::{ViewCamera, ViewPreset};
 
 /// What can be exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -449,7 +447,7 @@ fn label_name(label: u8) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::open;
+    use crate::open;
 
     #[test]
     fn everything_that_is_cancelled_leaves_nothing_behind() {

@@ -10,7 +10,7 @@ use super::export::{ExportOptions, ExportProgress, Format, export_all};
 use super::file_dialogs::Purpose;
 use super::panels::export::{Asked, ExportInput, ExportPanel, export_window};
 use super::panels::toasts::Level;
-use crate::editor::checks::{Severity, waive};
+use editor::checks::{Severity, waive};
 
 type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 

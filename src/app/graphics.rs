@@ -4,13 +4,13 @@
 
 use std::sync::Mutex;
 
-use crate::generation::sensors::appearance::{
+use scene::{Camera, CameraMaps};
+use sensors::appearance::{
     CameraImage, Look, Quality, RayMarched, SynthesisError, SynthesisInput, ViewSynthesizer,
 };
-use crate::generation::sensors::cloud::GaussianCloud;
-use crate::generation::sensors::splat::SplatOptions;
-use crate::scene::{Camera, CameraMaps};
-use crate::viewport::{LookRenderer, SplatRenderer, headless_device};
+use sensors::cloud::GaussianCloud;
+use sensors::splat::SplatOptions;
+use viewport::{LookRenderer, SplatRenderer, headless_device};
 
 /// Set to 1, software drivers are used too, for tests; set to 0, no card is.
 const SWITCH: &str = "SCENELOOM_GPU_VIEWS";
@@ -147,10 +147,10 @@ impl ViewSynthesizer for OnCard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::camera_views::{CameraPicture, Prepared};
-    use crate::app::state::{CameraMode, CameraSource};
-    use crate::generation::world::World;
-    use crate::scene::{Frame, Scene, draft};
+    use crate::camera_views::{CameraPicture, Prepared};
+    use crate::state::{CameraMode, CameraSource};
+    use scene::{Frame, Scene, draft};
+    use world::World;
 
     /// What the window shows by way of a card, software here, is what it shows without: labels of splats to 0.1 %,
     /// pictures to 2/255 on average.

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::scene::Scene;
+use scene::Scene;
 
 /// Largest share of the columns that is generated without being asked for.
 pub const MOST_SHARE: f64 = 0.4;
@@ -79,7 +79,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::{BevLayout, BoxId, Class, Frame, SceneBox, SensorRig, VoxelGrid};
+    use scene::{BevLayout, BoxId, Class, Frame, SceneBox, SensorRig, VoxelGrid};
 
     #[test]
     fn large_slow_and_unsound_edits_wait() {

@@ -3,7 +3,7 @@
 use super::state::{Pane, Tool, UiState, VoxelVerb};
 use super::tools::things::ThingTool;
 use super::tools::{PaintShape, RegionShape, VoxelMode};
-use crate::editor::transform::Kind;
+use editor::transform::Kind;
 
 /// One line: buttons and held keys, as they count in the view under the pointer.
 pub fn hint(state: &UiState) -> String {

@@ -101,9 +101,9 @@ impl FromStr for Chord {
 /// Sets of chords that come with the program: name, and the file with what differs from the default.
 pub const PRESETS: [(&str, &str); 4] = [
     ("Default", "{}"),
-    ("Blender", include_str!("../../assets/keys/blender.json")),
-    ("MagicaVoxel", include_str!("../../assets/keys/magicavoxel.json")),
-    ("Labeler", include_str!("../../assets/keys/labeler.json")),
+    ("Blender", assets::keys::BLENDER),
+    ("MagicaVoxel", assets::keys::MAGICAVOXEL),
+    ("Labeler", assets::keys::LABELER),
 ];
 
 /// Chords by the id of their action: all that an action listens to.

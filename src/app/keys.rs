@@ -160,9 +160,9 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tools::{PaintShape, ToolCommand};
-    use crate::scene::BoxId;
+    use crate::tools::{PaintShape, ToolCommand};
     use glam::DVec3;
+    use scene::BoxId;
 
     fn of(key: Key, modifiers: Modifiers, state: &mut UiState, flying: bool) -> Vec<Command> {
         let hands = Hands {

@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::guard::{self, Pace, Pause};
-use crate::generation::job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
-use crate::generation::redraw::RedrawMask;
-use crate::generation::region::{CELLS, COLUMNS_PER_CELL, Region};
-use crate::scene::{GridSpec, Scene, SceneRev};
+use job::redraw::RedrawMask;
+use job::region::{CELLS, COLUMNS_PER_CELL, Region};
+use job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
+use scene::{GridSpec, Scene, SceneRev};
 
 /// Edge of a latent cell, m.
 const CELL_M: f64 = COLUMNS_PER_CELL as f64 * GridSpec::VOXEL_M;
@@ -336,7 +336,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::{BevLayer, BevLayout, Frame, SensorRig, VoxelGrid};
+    use scene::{BevLayer, BevLayout, Frame, SensorRig, VoxelGrid};
 
     fn scene() -> Scene {
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());

@@ -5,8 +5,8 @@ use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind};
 use glam::{DVec2, DVec3};
 
 use super::canvas::ScreenMap;
-use crate::editor::checks::Finding;
-use crate::scene::{BoxId, Frame, GridSpec};
+use editor::checks::Finding;
+use scene::{BoxId, Frame, GridSpec};
 
 /// Of the marks, in both views: no class and no layer has it.
 pub(super) const COLOR: [u8; 3] = [255, 70, 255];

@@ -6,38 +6,20 @@ use anyhow::Context;
 use rayon::prelude::*;
 
 use super::open;
-use crate::formats::opendrive::{self, RoadNetwork};
-use crate::generation::placement::memory::{Bank, Entry, RoadRef, VERSION};
-use crate::generation::world::draw::{Draw, hash};
-use crate::generation::world::{template, traffic};
-use crate::scene::{BevLayer, BevLayout, GridSpec};
+use formats::opendrive::{self, RoadNetwork};
+use graph_layout::memory::{Bank, Entry, RoadRef, VERSION};
+use scene::{BevLayer, BevLayout, GridSpec};
+use world::draw::{Draw, hash};
+use world::{template, traffic};
 
 /// The project's own roads.
 const ROADS: [(&str, &[u8]); 6] = [
-    (
-        "every_geometry.xodr",
-        include_bytes!("../../assets/roads/every_geometry.xodr"),
-    ),
-    (
-        "four_arm_junction.xodr",
-        include_bytes!("../../assets/roads/four_arm_junction.xodr"),
-    ),
-    (
-        "left_hand_bend.xodr",
-        include_bytes!("../../assets/roads/left_hand_bend.xodr"),
-    ),
-    (
-        "motorway_exit.xodr",
-        include_bytes!("../../assets/roads/motorway_exit.xodr"),
-    ),
-    (
-        "parking_street.xodr",
-        include_bytes!("../../assets/roads/parking_street.xodr"),
-    ),
-    (
-        "straight_two_way.xodr",
-        include_bytes!("../../assets/roads/straight_two_way.xodr"),
-    ),
+    ("every_geometry.xodr", assets::roads::EVERY_GEOMETRY),
+    ("four_arm_junction.xodr", assets::roads::FOUR_ARM_JUNCTION),
+    ("left_hand_bend.xodr", assets::roads::LEFT_HAND_BEND),
+    ("motorway_exit.xodr", assets::roads::MOTORWAY_EXIT),
+    ("parking_street.xodr", assets::roads::PARKING_STREET),
+    ("straight_two_way.xodr", assets::roads::STRAIGHT_TWO_WAY),
 ];
 /// Share of the bank's entries that stand on them.
 const SHARE: f64 = 0.25;
@@ -170,7 +152,7 @@ mod tests {
     fn own_scenes_are_remembered() {
         let folder = tempfile::tempdir().expect("a folder");
         assert_eq!(own_scenes(folder.path()).0.len(), 0);
-        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/first_light.loom");
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/scenes/first_light.loom");
         std::fs::copy(from, folder.path().join("mine.loom")).expect("copied");
         std::fs::write(folder.path().join("bad.loom"), "nothing").expect("written");
         let (entries, problems) = own_scenes(folder.path());

@@ -7,9 +7,9 @@ use glam::dvec2;
 use super::canvas::ScreenMap;
 use super::compare::tag;
 use super::tuning::LastEdit;
-use crate::generation::sensors::learned_caster::Sampled;
-use crate::scene::GridSpec;
-use crate::scene::grid::{BRICK, BRICKS};
+use scene::GridSpec;
+use scene::grid::{BRICK, BRICKS};
+use sensors::learned_caster::Sampled;
 
 /// Tokens along a side of the map.
 const TOKENS: usize = 25;

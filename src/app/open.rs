@@ -8,13 +8,13 @@ use anyhow::{Context, bail};
 use glam::DVec2;
 
 use super::around;
-use crate::formats::opendrive::{self, RoadNetwork};
-use crate::formats::{atomic, occ3d, project};
-use crate::generation::world::scenery::{self, Setting, Side, Style};
-use crate::generation::world::terrain::Terrain;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::generation::world::{World, template, traffic};
-use crate::scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
+use formats::opendrive::{self, RoadNetwork};
+use formats::{atomic, occ3d, project};
+use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
+use world::scenery::{self, Setting, Side, Style};
+use world::terrain::Terrain;
+use world::voxelize::{Vertical, complete};
+use world::{World, template, traffic};
 
 /// A file with fewer things beside the road in view says nothing about the place: scenery is drawn.
 const ENOUGH_THINGS: usize = 5;
@@ -24,7 +24,7 @@ const LARGEST_TEXT: u64 = 256 << 20;
 
 /// The scene that ships with the program.
 pub fn bundled() -> anyhow::Result<Scene> {
-    let bytes = include_bytes!("../../assets/scenes/first_light.loom");
+    let bytes = assets::scenes::FIRST_LIGHT;
     project::from_bytes(bytes).context("the bundled scene")
 }
 

@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 
 use super::*;
-use crate::editor::{Document, Edit};
-use crate::generation::world::voxelize::{Drive, labels};
-use crate::scene::raster::{disc_cells, polygon_cells};
-use crate::scene::solid::fill::fill;
-use crate::scene::{Background, Class, Form, GridSpec, VoxelGrid};
+use editor::{Document, Edit};
+use scene::raster::{disc_cells, polygon_cells};
+use scene::solid::fill::fill;
+use scene::{Background, Class, Form, GridSpec, VoxelGrid};
+use world::voxelize::{Drive, labels};
 
 const WORLDS: u64 = 20;
 
@@ -142,7 +142,7 @@ fn things_are_found_in_simulated_labels() {
         scene.background = Arc::new(found);
         let before = scene.background.clone();
         // Trees that go leave nothing of a building that was not seen there.
-        let is_tree = |t: &&crate::scene::Thing| matches!(t.form, Form::Tree(_));
+        let is_tree = |t: &&scene::Thing| matches!(t.form, Form::Tree(_));
         let tree_ids: Vec<_> = before.iter().filter(is_tree).map(|t| t.id).collect();
         let mut felled = Document::new(scene.clone());
         let fell = Edit::RemoveThings { ids: tree_ids };

@@ -1,7 +1,7 @@
 //! Tests of imports: an import is a whole world, a furnished file stays as it is.
 
 use super::*;
-use crate::scene::{BevLayer, Class, Form, GridSpec};
+use scene::{BevLayer, Class, Form, GridSpec};
 
 /// A straight road of one lane on each side with these objects, written for this test.
 fn road(dir: &Path, objects: &str) -> PathBuf {

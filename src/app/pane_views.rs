@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Rect, Ui, UiBuilder};
 
-use crate::scene::Scene;
+use scene::Scene;
 
 use super::application::{SceneloomApp, cameras_input};
 use super::camera_views::Wanted;
@@ -200,7 +200,7 @@ impl SceneloomApp {
             CompareMode::Difference => {
                 if let Some((difference, texture)) = self.compare.difference(ui, scene) {
                     let entries = difference.legend();
-                    let far = glam::DVec2::splat(crate::scene::GridSpec::MAX_M[0]);
+                    let far = glam::DVec2::splat(scene::GridSpec::MAX_M[0]);
                     let grid = Rect::from_two_pos(map.to_screen(-far), map.to_screen(far));
                     let unit = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                     let painter = ui.painter_at(area);

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, VecDeque};
 use serde_json::json;
 
 use super::trace::Trace;
-use crate::generation::job::Stage;
+use job::Stage;
 
 /// Frames longer than this hold the input up noticeably, s.
 pub const BLOCKED_S: f64 = 0.05;

@@ -2,12 +2,10 @@
 
 use anyhow::bail;
 
-use crate::generation::sensors::{color, lidar};
-use crate::scene::raster::box_cells;
-use crate::scene::{
-    BevLayer, Class, Frame, GridSpec, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid,
-};
-use crate::viewport::{
+use scene::raster::box_cells;
+use scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
+use sensors::{color, lidar};
+use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
 };

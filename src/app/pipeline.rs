@@ -1,8 +1,8 @@
 //! The generation that the window runs: the bundled networks, warmed up while nobody waits.
 
-use crate::generation::job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::redraw;
+use job::pipeline::OccPipeline;
+use job::redraw;
+use job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
 
 /// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
 /// so that the first edit finds both ready.

@@ -3,7 +3,7 @@
 
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui, Vec2};
 
-use crate::editor::Edit;
+use editor::Edit;
 
 use super::command::Command;
 

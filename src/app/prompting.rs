@@ -16,15 +16,15 @@ pub use filling::{Remembered, recall};
 use filling::{fill_in, memory};
 
 use super::memory::layout_of;
-use crate::generation::model::layout::net::LayoutNet;
-use crate::generation::place::description::Description;
-use crate::generation::place::road::{self, Chosen};
-use crate::generation::place::rules::{Placement, place_with};
-use crate::generation::place::to_graph::{Graphed, node_of, to_graph};
-use crate::generation::placement::diffuse::{self, PlacementReport};
-use crate::generation::placement::memory::RoadRef;
-use crate::scene::graph::{LaneRole, Locked, NodeKind};
-use crate::scene::{BevLayout, BoxId, SceneBox};
+use graph_layout::diffuse::{self, PlacementReport};
+use graph_layout::memory::RoadRef;
+use nets::layout::net::LayoutNet;
+use place::description::Description;
+use place::road::{self, Chosen};
+use place::rules::{Placement, place_with};
+use place::to_graph::{Graphed, node_of, to_graph};
+use scene::graph::{LaneRole, Locked, NodeKind};
+use scene::{BevLayout, BoxId, SceneBox};
 
 /// Who places the objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -185,7 +185,7 @@ pub fn lay_out_graph(
         Keep::Objects(boxes) => {
             let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
             for (k, b) in boxes.values().enumerate() {
-                graphed.graph.nodes.push(crate::scene::graph::Node {
+                graphed.graph.nodes.push(scene::graph::Node {
                     id: first + k as u32,
                     kind: node_of(b.class),
                     locked: Some(Locked::Box(*b)),
@@ -353,9 +353,9 @@ fn road_under(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::place::description::TimeOfDay;
-    use crate::generation::words::describe::described;
-    use crate::scene::Class;
+    use place::description::TimeOfDay;
+    use scene::Class;
+    use words::describe::described;
 
     #[test]
     fn a_kept_road_stays_and_objects_are_placed_on_it() {

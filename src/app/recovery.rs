@@ -13,9 +13,9 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use serde::{Deserialize, Serialize};
 
-use crate::editor::Document;
-use crate::formats::{atomic, project};
-use crate::scene::{Scene, SceneRev};
+use editor::Document;
+use formats::{atomic, project};
+use scene::{Scene, SceneRev};
 
 /// Time between two copies, s.
 pub const EVERY_S: f64 = 30.0;
@@ -340,8 +340,8 @@ pub fn ago(since: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::open;
-    use crate::editor::Edit;
+    use crate::open;
+    use editor::Edit;
 
     fn document() -> Document {
         Document::new(open::bundled().expect("bundled"))

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::open;
-use crate::formats::opendrive::RoadNetwork;
-use crate::generation::world::draw::Draw;
-use crate::scene::{BevLayer, BevLayout, GridSpec};
+use formats::opendrive::RoadNetwork;
+use scene::{BevLayer, BevLayout, GridSpec};
+use world::draw::Draw;
 
 /// Share of the worlds that stand on imported roads.
 const SHARE: f64 = 1.0 / 3.0;

@@ -1,15 +1,15 @@
 //! What stands beside the roads, drawn anew from a seed: by rules or by a network, everywhere or in a region, as things that
 //! can be edited. Nothing else changes.
 
-use crate::editor::{Edit, Shape};
-use crate::generation::drawn_scenery::drawn_scenery;
-use crate::generation::job::GenError;
-use crate::generation::model::scenery::SceneryNet;
-use crate::generation::redraw::RedrawMask;
-use crate::generation::region::COLUMNS_PER_CELL;
-use crate::generation::world::scenery::{self, Setting, Side, Style};
-use crate::scene::raster::box_cells;
-use crate::scene::{Background, BevLayer, Class, Form, GridSpec, Scene, ThingId};
+use editor::{Edit, Shape};
+use job::GenError;
+use job::drawn_scenery::drawn_scenery;
+use job::redraw::RedrawMask;
+use job::region::COLUMNS_PER_CELL;
+use nets::scenery::SceneryNet;
+use scene::raster::box_cells;
+use scene::{Background, BevLayer, Class, Form, GridSpec, Scene, ThingId};
+use world::scenery::{self, Setting, Side, Style};
 
 use super::around;
 
@@ -222,10 +222,10 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::app::open;
-    use crate::editor::Document;
-    use crate::scene::VoxelGrid;
-    use crate::scene::background::{Building, Tree, TreeKind};
+    use crate::open;
+    use editor::Document;
+    use scene::VoxelGrid;
+    use scene::background::{Building, Tree, TreeKind};
 
     fn wish(seed: u64) -> SceneryWish {
         SceneryWish {
@@ -265,7 +265,7 @@ mod tests {
         }
         assert!(changed > 500, "{changed}");
         // Nothing waits for the networks.
-        let region = crate::generation::region::Region::of_edit(after.frame(), 2);
+        let region = job::region::Region::of_edit(after.frame(), 2);
         assert!(region.is_empty());
         document.undo();
         assert!(document.scene().frame().occupancy == before.frame().occupancy);
@@ -362,14 +362,14 @@ mod tests {
         };
         let first = drawn(by_network(5, 1.0));
         let (old, new) = (&scene.frame().occupancy, &first.frame().occupancy);
-        let bev = crate::scene::raster::bev_channels(&scene.frame().layout, scene.frame().boxes.values());
+        let bev = scene::raster::bev_channels(&scene.frame().layout, scene.frame().boxes.values());
         let (columns, mut come) = (by_network(5, 1.0).columns(), 0);
         for (c, inside) in columns.iter().enumerate() {
             let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
             let (before, after) = (old.column(x, y), new.column(x, y));
             assert!(*inside || before == after, "column ({x}, {y}) lies outside");
             let built = |column: &[u8]| column.contains(&Class::Manmade.id());
-            let road = bev[c] & crate::scene::BevLayer::DrivableArea.bit() != 0;
+            let road = bev[c] & scene::BevLayer::DrivableArea.bit() != 0;
             assert!(
                 !road || !built(after) || built(before),
                 "built on the road at ({x}, {y})"

@@ -10,13 +10,13 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
 use super::graphics::Graphics;
 use super::state::{CameraMode, LidarModel};
-use crate::generation::model::lidar::LidarNet;
-use crate::generation::sensors::caster::Caster;
-use crate::generation::sensors::learned::Drops;
-use crate::generation::sensors::learned_caster::{LearnedCaster, Sampled};
-use crate::generation::sensors::lidar::EgoBox;
-use crate::generation::sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
-use crate::scene::{LidarSweep, Scene, SceneRev, SensorRig};
+use nets::lidar::LidarNet;
+use scene::{LidarSweep, Scene, SceneRev, SensorRig};
+use sensors::caster::Caster;
+use sensors::learned::Drops;
+use sensors::learned_caster::{LearnedCaster, Sampled};
+use sensors::lidar::EgoBox;
+use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 /// Rays whose samples are shown at most: more would cover the map.
 const SHOWN_RAYS: usize = 400;
@@ -294,8 +294,8 @@ mod tests {
     use std::time::Instant;
 
     use super::*;
-    use crate::generation::world::World;
-    use crate::scene::{Frame, draft};
+    use scene::{Frame, draft};
+    use world::World;
 
     #[test]
     fn the_newest_scene_is_sensed_in_the_end() {

@@ -13,8 +13,8 @@ use super::dock::Workspace;
 use super::keymap::Chords;
 use super::state::Pane;
 use super::theme::Look;
-use crate::editor::Document;
-use crate::scene::classes::Palette;
+use editor::Document;
+use scene::classes::Palette;
 
 /// Files that are remembered.
 const RECENT: usize = 12;
@@ -138,7 +138,7 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::dock::Dock;
+    use crate::dock::Dock;
 
     #[test]
     fn settings_come_back_and_bad_ones_are_named() {

@@ -11,7 +11,7 @@ use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor}
 
 use super::damage::{Frame, Touched};
 use super::theme;
-use crate::viewport::panels::{PanelMesh, Panels};
+use viewport::panels::{PanelMesh, Panels};
 
 /// Puts itself between egui and its renderer. Only where it pays, and where the target is not sRGB-converting.
 pub fn install(ctx: &Context, render_state: &RenderState) {

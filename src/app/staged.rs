@@ -12,14 +12,14 @@ use super::panels::toasts::Level;
 use super::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use super::state::{Tool, UiState};
 use super::theme;
-use crate::editor::Edit;
-use crate::editor::part::{Part, changed_by_class};
-use crate::generation::job::{GenParams, RegionMode};
-use crate::generation::redraw::RedrawMask;
-use crate::generation::region::COLUMNS_PER_CELL;
-use crate::scene::background::in_grid;
-use crate::scene::raster::box_cells;
-use crate::scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
+use editor::Edit;
+use editor::part::{Part, changed_by_class};
+use job::redraw::RedrawMask;
+use job::region::COLUMNS_PER_CELL;
+use job::{GenParams, RegionMode};
+use scene::background::in_grid;
+use scene::raster::box_cells;
+use scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
 
 /// Classes that the menu of parts lists.
 const MOST_CLASSES: usize = 8;

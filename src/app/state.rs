@@ -4,10 +4,10 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::editor::Edit;
-use crate::generation::job::Named;
-use crate::scene::{BevLayer, BoxId, Class};
-use crate::viewport::LidarColorMode;
+use editor::Edit;
+use job::Named;
+use scene::{BevLayer, BoxId, Class};
+use viewport::LidarColorMode;
 
 use super::compare::CompareMode;
 use super::tools::things::ThingTool;

@@ -5,22 +5,22 @@ use std::collections::BTreeMap;
 use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
-use crate::editor::{Edit, Shape};
-use crate::generation::place::description::Description;
-use crate::generation::words::answer::answer;
-use crate::generation::words::beside::edits::{
+use editor::{Edit, Shape};
+use place::description::Description;
+use scene::{BevLayer, Frame, Polyline, PolylineKind, Scene};
+use words::answer::answer;
+use words::beside::edits::{
     OpenBackground, ThingEdit, ThingOutcome, carry_out as carry_out_beside, means_barriers,
 };
-use crate::generation::words::beside::wishes::scenery;
-use crate::generation::words::carry_out::carry_out;
-use crate::generation::words::describe::{Described, describe};
-use crate::generation::words::hear::{Heard, hear, hear_objects};
-use crate::generation::words::reader::Mode;
-use crate::generation::words::reading::Reading;
-use crate::generation::words::stage::{OpenScene, Outcome};
-use crate::generation::words::text_edit::TextEdit;
-use crate::generation::world::World;
-use crate::scene::{BevLayer, Frame, Polyline, PolylineKind, Scene};
+use words::beside::wishes::scenery;
+use words::carry_out::carry_out;
+use words::describe::{Described, describe};
+use words::hear::{Heard, hear, hear_objects};
+use words::reader::Mode;
+use words::reading::Reading;
+use words::stage::{OpenScene, Outcome};
+use words::text_edit::TextEdit;
+use world::World;
 
 /// A scene made from a description.
 pub struct Made {
@@ -69,7 +69,7 @@ impl Prompted {
 
 /// What is doubtful about how a text was read, one line each.
 pub fn doubts(heard: &Heard) -> Vec<String> {
-    use crate::generation::words::answer::sentence;
+    use words::answer::sentence;
     let mut out = Vec::new();
     let unsure = heard.unsure.iter().filter_map(|i| heard.reading.acts.get(*i));
     let unsure: Vec<String> = unsure.map(|a| sentence(&a.what)).collect();
@@ -127,7 +127,7 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     let (things, short) = scenery(&laid.description, &laid.road.layout, &boxes, seed);
     laid.road.missing.extend(short);
     let world = World::with_background(laid.road.layout.clone(), boxes, things, seed);
-    let mut scene = crate::app::open::of_world(&world, "prompt");
+    let mut scene = crate::open::of_world(&world, "prompt");
     scene.prompt = laid.description.style().into();
     Made { scene, laid }
 }
@@ -254,7 +254,7 @@ pub fn open_scene(scene: &Scene) -> OpenScene<'_> {
 
 /// The editor's own edits for a text edit.
 pub fn edits(edit: &TextEdit) -> Vec<Edit> {
-    let add = |b: &crate::scene::SceneBox| Edit::AddBox {
+    let add = |b: &scene::SceneBox| Edit::AddBox {
         class: b.class,
         center_m: b.center_m,
         size_m: b.size_m,
@@ -359,8 +359,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::editor::Document;
-    use crate::scene::{Relief, SceneBox};
+    use editor::Document;
+    use scene::{Relief, SceneBox};
 
     /// What words add or move on a grade stands on its ground.
     #[test]

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Class;
+use scene::Class;
 
 /// Which theme the window has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

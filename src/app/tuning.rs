@@ -8,13 +8,13 @@ use std::sync::Arc;
 use super::trade::calibrate::{Background, News, Refine, Task, build};
 use super::trade::load::machine;
 use super::trade::plot::{percent, seconds};
-use crate::generation::job::{GenParams, GenReport, GenResult};
-use crate::generation::metrics::stats::median;
-use crate::generation::model::{OccModels, tokens_of};
-use crate::generation::redraw;
-use crate::generation::region::Region;
-use crate::generation::trade::{Stop, Stops};
-use crate::scene::Scene;
+use job::redraw;
+use job::region::Region;
+use job::{GenParams, GenReport, GenResult};
+use metrics::stats::median;
+use nets::{OccModels, tokens_of};
+use scene::Scene;
+use trade::{Stop, Stops};
 
 /// Edits that the window's own pace is taken from.
 const REMEMBERED: usize = 9;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::TextureHandle;
 
-use crate::scene::{Scene, SceneRev};
+use scene::{Scene, SceneRev};
 
 /// A scene as it was when something was generated or opened.
 pub struct Version {
@@ -93,7 +93,7 @@ impl Versions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Frame, VoxelGrid};
+    use scene::{Frame, VoxelGrid};
 
     fn scene() -> Arc<Scene> {
         let frame = Frame::new(Default::default(), Default::default(), VoxelGrid::new());

@@ -7,10 +7,10 @@ use egui::accesskit::Role;
 use egui::{Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
 use glam::{DVec2, DVec3};
 
-use crate::editor::pick::{self, Hit, Ray};
-use crate::editor::pick_things;
-use crate::scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
-use crate::viewport::{
+use editor::pick::{self, Hit, Ray};
+use editor::pick_things;
+use scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
+use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
 };

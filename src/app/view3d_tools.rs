@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 use egui::{Key, Modifiers, PointerButton, Pos2, Response, Ui};
 use glam::DVec2;
 
-use crate::editor::pick::{self, Hit, Ray, VoxelHit};
-use crate::editor::{Edit, Shape, voxel_ops};
-use crate::scene::raster::disc_cells;
-use crate::scene::{BevLayer, Class, Frame, GridSpec};
+use editor::pick::{self, Hit, Ray, VoxelHit};
+use editor::{Edit, Shape, voxel_ops};
+use scene::raster::disc_cells;
+use scene::{BevLayer, Class, Frame, GridSpec};
 
 use super::command::Command;
 use super::pointer::{self, Step};
@@ -362,7 +362,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::scene::{BevLayout, VoxelGrid};
+    use scene::{BevLayout, VoxelGrid};
 
     fn frame() -> Frame {
         let mut grid = VoxelGrid::new();

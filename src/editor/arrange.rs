@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxId, Frame, GridSpec, SceneBox};
+use scene::{BoxId, Frame, GridSpec, SceneBox};
 
 use super::Edit;
 use super::lanes::{along, nearest_lane};

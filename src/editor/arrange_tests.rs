@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use super::*;
-use crate::editor::Document;
-use crate::scene::{BevLayout, Class, Polyline, PolylineKind, Scene, VoxelGrid};
+use crate::Document;
+use scene::{BevLayout, Class, Polyline, PolylineKind, Scene, VoxelGrid};
 
 fn car(id: u32, x: f64, y: f64, yaw_rad: f64) -> SceneBox {
     SceneBox {

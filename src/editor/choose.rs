@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BoxId, Frame};
+use scene::{BoxId, Frame};
 
 /// Boxes whose centre lies in the upright rectangle between two corners (ego frame, m), by id.
 pub fn in_rect(frame: &Frame, a_m: DVec2, b_m: DVec2) -> Vec<BoxId> {

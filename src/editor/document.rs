@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::scene::{Background, Scene, SceneRev, VoxelGrid};
+use scene::{Background, Scene, SceneRev, VoxelGrid};
 
 use super::edit::{self, Edit, EditError};
 

@@ -6,9 +6,9 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::editor::Shape;
-use crate::scene::draft::draft;
-use crate::scene::{BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, SceneBox, SensorRig};
+use crate::Shape;
+use scene::draft::draft;
+use scene::{BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, SceneBox, SensorRig};
 
 fn start() -> Scene {
     let mut layout = BevLayout::default();

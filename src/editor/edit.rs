@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::scene::grid::NOT_PAINTED;
-use crate::scene::{
+use scene::grid::NOT_PAINTED;
+use scene::{
     BevLayer, BevLayout, BoxId, BoxLabel, BoxName, Class, Form, Frame, GridSpec, Polyline, Scene, SceneBox,
     SensorRig, SourceFrame, ThingId, VoxelGrid, VoxelPaint, Waiver, raster,
 };
@@ -297,12 +297,12 @@ impl Edit {
         match self {
             Self::SetPrompt { prompt } => {
                 if scene.prompt.as_ref() != prompt {
-                    scene.rev = crate::scene::SceneRev::fresh();
+                    scene.rev = scene::SceneRev::fresh();
                     scene.prompt = prompt.as_str().into();
                 }
             }
             Self::KeepWords { words } => {
-                scene.rev = crate::scene::SceneRev::fresh();
+                scene.rev = scene::SceneRev::fresh();
                 let kept = Arc::make_mut(&mut scene.words);
                 kept.push(words.chars().take(LONGEST_WORDS).collect());
                 let over = kept.len().saturating_sub(MOST_WORDS);
@@ -313,7 +313,7 @@ impl Edit {
                     return Err(EditError::BadRig(problem));
                 }
                 if *scene.rig != **rig {
-                    scene.rev = crate::scene::SceneRev::fresh();
+                    scene.rev = scene::SceneRev::fresh();
                     scene.rig = Arc::new(SensorRig::clone(rig));
                 }
             }

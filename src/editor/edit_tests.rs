@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::*;
-use crate::scene::draft::draft;
-use crate::scene::{BevLayout, SensorRig};
+use scene::draft::draft;
+use scene::{BevLayout, SensorRig};
 
 const FREE: u8 = Class::FREE;
 
@@ -353,9 +353,9 @@ fn painting_a_layer_lays_its_ground_and_lines_do_not() {
 fn a_label_is_no_work_for_the_networks_and_goes_with_the_class() {
     let mut scene = street();
     let before = scene.frame().clone();
-    let label = crate::scene::BoxLabel {
+    let label = scene::BoxLabel {
         name: BoxName::new("taxi"),
-        paint: Some(crate::scene::Paint::Yellow),
+        paint: Some(scene::Paint::Yellow),
     };
     let id = BoxId(1);
     let edit = Edit::LabelBox { id, label };
@@ -637,7 +637,7 @@ fn lines_bring_the_cells_of_their_layer_and_bad_ones_are_named() {
         error.to_string()
     };
     let line = |points_m| Polyline {
-        kind: crate::scene::PolylineKind::StopLine,
+        kind: scene::PolylineKind::StopLine,
         points_m,
     };
     assert_eq!(

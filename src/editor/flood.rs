@@ -1,6 +1,6 @@
 //! Flood fill on the bird's-eye view.
 
-use crate::scene::{BevLayer, BevLayout, GridSpec};
+use scene::{BevLayer, BevLayout, GridSpec};
 
 /// What bounds a fill.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

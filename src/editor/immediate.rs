@@ -3,10 +3,10 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::draft::{box_columns, ground_bin, ground_class};
-use crate::scene::grid::NOT_PAINTED;
-use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec, SceneBox, VoxelGrid};
+use scene::draft::{box_columns, ground_bin, ground_class};
+use scene::grid::NOT_PAINTED;
+use scene::raster::box_cells;
+use scene::{BevLayer, BevLayout, Class, Frame, GridSpec, SceneBox, VoxelGrid};
 
 /// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
 const MARGIN_M: f64 = 0.6;

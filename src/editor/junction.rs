@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::scene::distance::nearest_source;
-use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, raster};
+use scene::distance::nearest_source;
+use scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, raster};
 
 /// From this angle between two streets on they cross; below it one is drawn along the other, to widen or renew it.
 const CROSSES_RAD: f64 = 0.44;

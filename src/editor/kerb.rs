@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayer, BevLayout, Form, GridSpec};
+use scene::{BevLayer, BevLayout, Form, GridSpec};
 
 use super::lanes::nearest_lane;
 
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn the_shortest_way_to_the_kerb_sets_a_wall_beside_it() {
-        use crate::scene::background::{Line, LineKind};
+        use scene::background::{Line, LineKind};
         let layout = road(4.0, 0.0);
         let points = vec![DVec2::new(0.0, 9.0), DVec2::new(5.0, 7.0)];
         let wall = [Form::Line(Line::typical(LineKind::Wall, points))];

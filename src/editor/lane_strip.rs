@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayer, BevLayout, Polyline, PolylineKind};
+use scene::{BevLayer, BevLayout, Polyline, PolylineKind};
 
 use super::junction::{self, Area};
 use super::{Edit, Shape};
@@ -162,7 +162,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::scene::{BevLayout, Frame, GridSpec, Scene, VoxelGrid};
+    use scene::{BevLayout, Frame, GridSpec, Scene, VoxelGrid};
 
     #[test]
     fn a_street_has_its_lanes_dividers_and_walkways() {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayout, Polyline, PolylineKind};
+use scene::{BevLayout, Polyline, PolylineKind};
 
 /// A point on the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::Frame;
+use scene::Frame;
 
 /// Points that the user measures between, ego frame, m: none, one, two (a distance) or three (an angle too).
 #[derive(Clone, Debug, Default, PartialEq)]

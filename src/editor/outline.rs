@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use crate::scene::GridSpec;
-use crate::scene::background::crossing_edges;
+use scene::GridSpec;
+use scene::background::crossing_edges;
 
 use super::Shape;
 
@@ -131,7 +131,7 @@ fn hull(points: &[DVec2]) -> Vec<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::choose::is_inside;
+    use crate::choose::is_inside;
 
     fn v(x: f64, y: f64) -> DVec2 {
         DVec2::new(x, y)

@@ -1,6 +1,6 @@
 //! Part of a result: some of what differs between two states of the voxels is taken, the rest stays as it was.
 
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// What is taken.
 #[derive(Clone, Debug, PartialEq)]

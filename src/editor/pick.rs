@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid};
 
 /// A half line in the ego frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

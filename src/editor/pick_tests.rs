@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 
 use super::*;
-use crate::scene::BevLayout;
+use scene::BevLayout;
 
 fn ray(o: [f64; 3], d: [f64; 3]) -> Ray {
     Ray::new(o.into(), d.into()).expect("a direction")

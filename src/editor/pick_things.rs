@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{Background, Class, Form, Frame, GridSpec, Pose, Thing, ThingId};
+use scene::{Background, Class, Form, Frame, GridSpec, Pose, Thing, ThingId};
 
 use super::choose::is_inside;
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::scene::background::{Building, Line, LineKind, Post, PostKind, Tree, TreeKind};
-use crate::scene::{BevLayout, VoxelGrid};
+use scene::background::{Building, Line, LineKind, Post, PostKind, Tree, TreeKind};
+use scene::{BevLayout, VoxelGrid};
 
 fn v(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)

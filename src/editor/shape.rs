@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{GridSpec, raster};
+use scene::{GridSpec, raster};
 
 use super::EditError;
 

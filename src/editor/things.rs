@@ -9,11 +9,11 @@ use glam::{DVec2, DVec3};
 use super::edit::{Edit, EditError};
 use super::immediate::refill_ground;
 use super::shape::at_least;
-use crate::scene::background::{Columns, in_grid};
-use crate::scene::draft::ground_bin;
-use crate::scene::grid::NOT_PAINTED;
-use crate::scene::raster::polygon_cells;
-use crate::scene::{
+use scene::background::{Columns, in_grid};
+use scene::draft::ground_bin;
+use scene::grid::NOT_PAINTED;
+use scene::raster::polygon_cells;
+use scene::{
     Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
     VoxelPaint,
 };

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::*;
-use crate::editor::Document;
-use crate::scene::background::{Building, Facade, Line, LineKind, Roof, Tree, TreeKind};
-use crate::scene::{BoxId, Pose, Relief, SceneBox, SensorRig};
+use crate::Document;
+use scene::background::{Building, Facade, Line, LineKind, Roof, Tree, TreeKind};
+use scene::{BoxId, Pose, Relief, SceneBox, SensorRig};
 
 fn building(height_m: f64) -> Form {
     Form::Building(Building {
@@ -43,7 +43,7 @@ fn scene(relief: Relief) -> Scene {
         label: Default::default(),
     };
     let boxes: BTreeMap<_, _> = [(car.id, car)].into_iter().collect();
-    let grid = crate::scene::draft::draft(&layout, boxes.values());
+    let grid = scene::draft::draft(&layout, boxes.values());
     Scene::single(
         "test",
         Frame::new(layout, boxes, grid),
@@ -290,7 +290,7 @@ fn bad_edits_leave_the_scene_as_it_was() {
 fn shrubs_go_with_all_their_ground() {
     let mut doc = Document::new(scene(Relief::FLAT));
     let outline_m = [(10.0, 10.0), (16.0, 10.0), (16.0, 14.0), (10.0, 14.0)].map(|(x, y)| DVec2::new(x, y));
-    let area = crate::scene::background::Shrubs {
+    let area = scene::background::Shrubs {
         outline_m: outline_m.to_vec(),
         height_m: 1.0,
         per_m2: 0.05,

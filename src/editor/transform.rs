@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{Frame, SceneBox};
+use scene::{Frame, SceneBox};
 
 use super::Edit;
 use super::arrange::{LANE_REACH_M, Pivot, middle_m, standing, turned, wrapped_deg};
@@ -294,7 +294,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::scene::{BevLayout, BoxId, Class, Polyline, PolylineKind, VoxelGrid};
+    use scene::{BevLayout, BoxId, Class, Polyline, PolylineKind, VoxelGrid};
 
     fn start(kind: Kind) -> Transform {
         let car = |id, x, yaw_rad| SceneBox {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::IVec3;
 
-use crate::scene::{Class, Frame, GridSpec, VoxelGrid};
+use scene::{Class, Frame, GridSpec, VoxelGrid};
 
 use super::Edit;
 
@@ -197,8 +197,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::editor::Document;
-    use crate::scene::{BevLayout, Scene};
+    use crate::Document;
+    use scene::{BevLayout, Scene};
 
     fn grid() -> VoxelGrid {
         let mut grid = VoxelGrid::new();

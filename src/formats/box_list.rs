@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{BoxId, BoxLabel, Class, Frame, SceneBox};
+use scene::{BoxId, BoxLabel, Class, Frame, SceneBox};
 
 const FORMAT: &str = "sceneloom_boxes";
 const VERSION: u32 = 1;
@@ -119,7 +119,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<SceneBox>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BevLayout, VoxelGrid};
+    use scene::{BevLayout, VoxelGrid};
 
     #[test]
     fn boxes_come_back_bit_by_bit() {

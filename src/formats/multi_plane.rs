@@ -1,14 +1,14 @@
 //! Multi-plane images as numpy archives: runs of planes per pixel, or every plane.
 
 use super::npz::{Array, to_bytes};
-use crate::scene::MultiPlaneImage;
+use scene::MultiPlaneImage;
 
 /// Arrays `starts` (u4, one more than there are pixels), `first`, `end` (u2) and `id` (u1, one per run), `depth_m` (f4, one
 /// per plane), `size` (u4: width, height). Pixel p (row-major) holds the runs from start p up to start p + 1; a run shows
 /// class `id` on planes `first` to `end` - 1.
 pub fn sparse(image: &MultiPlaneImage) -> Vec<u8> {
     let runs = [image.runs.len()];
-    let of_u16 = |value: fn(&crate::scene::sensor_data::PlaneRun) -> u16| -> Vec<u8> {
+    let of_u16 = |value: fn(&scene::sensor_data::PlaneRun) -> u16| -> Vec<u8> {
         image.runs.iter().flat_map(|r| value(r).to_le_bytes()).collect()
     };
     let size = [image.width as u32, image.height as u32];
@@ -57,7 +57,7 @@ pub fn sparse(image: &MultiPlaneImage) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::sensor_data::{PlaneRun, Planes};
+    use scene::sensor_data::{PlaneRun, Planes};
 
     #[test]
     fn runs_come_back() {

@@ -10,7 +10,7 @@ use thiserror::Error;
 use zip::ZipArchive;
 
 use super::npz;
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Names that the labels may have, in order of preference.
 const NAMES: [&str; 3] = ["semantics", "occ", "arr_0"];

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Class, LidarPattern, LidarSweep};
+use scene::{Class, LidarPattern, LidarSweep};
 
 /// nuScenes `LIDAR_TOP` sweep: no header; x, y, z in the sensor's frame in m, intensity 0 to 255, ring index, each a
 /// little-endian f32 (nuscenes-devkit, `LidarPointCloud.from_file`). Points in the order of the sweep.

@@ -25,8 +25,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::grid::NOT_PAINTED;
-use crate::scene::{
+use scene::grid::NOT_PAINTED;
+use scene::{
     Background, BevLayout, BoxId, Frame, GridSpec, Inferred, Polyline, Pose, Relief, Scene, SceneBox,
     SceneRev, SensorRig, SourceFrame, Thing, Unobserved, VoxelGrid, VoxelPaint, Waiver,
 };

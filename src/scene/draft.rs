@@ -79,7 +79,7 @@ pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::BoxId;
+    use crate::BoxId;
     use glam::DVec2;
 
     #[test]

@@ -78,7 +78,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::scene::{BevLayer, Class, SensorRig, VoxelGrid};
+    use crate::{BevLayer, Class, SensorRig, VoxelGrid};
 
     #[test]
     fn only_what_is_not_shared_counts() {

@@ -176,7 +176,7 @@ pub fn headings<'a>(boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BoxId, Class};
+    use crate::{BoxId, Class};
 
     fn car(center: [f64; 3], size: [f64; 3], yaw_rad: f64) -> SceneBox {
         SceneBox {

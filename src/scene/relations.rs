@@ -468,9 +468,9 @@ pub fn on_crossing(crossing: &CrossingArea, p: DVec2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::graph::ObjectNode;
-    use crate::scene::raster::{draw_polyline, line_cells, polygon_cells};
-    use crate::scene::{BevLayout, Polyline, PolylineKind};
+    use crate::graph::ObjectNode;
+    use crate::raster::{draw_polyline, line_cells, polygon_cells};
+    use crate::{BevLayout, Polyline, PolylineKind};
 
     /// A street along x: the ego's lane, one to its left, one oncoming beyond it; a sidewalk on the right; a crossing at 20 m.
     fn street() -> RoadMap {

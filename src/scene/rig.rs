@@ -336,8 +336,7 @@ fn is_rotation(q: &[f64; 4]) -> bool {
 impl Default for SensorRig {
     /// The nuScenes vehicle: six cameras and a 32-beam LiDAR (published calibration).
     fn default() -> Self {
-        serde_json::from_str(include_str!("../../assets/rigs/nuscenes.json"))
-            .expect("the bundled rig is checked by a test")
+        serde_json::from_str(assets::rigs::NUSCENES).expect("the bundled rig is checked by a test")
     }
 }
 

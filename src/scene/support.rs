@@ -1,6 +1,6 @@
 //! Groups of voxels that touch each other, and what of the occupancy stands on the ground.
 
-use crate::scene::{Class, GridSpec, Unobserved, VoxelGrid};
+use crate::{Class, GridSpec, Unobserved, VoxelGrid};
 
 /// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
 const GROUND_BINS: u16 = 0b111;

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use crate::scene::{Camera, GridSpec};
+use scene::{Camera, GridSpec};
 
 /// A viewpoint that orbits a target; perspective or orthographic.
 ///
@@ -406,7 +406,7 @@ mod tests {
 
     #[test]
     fn looks_through_the_rig() {
-        let rig = crate::scene::SensorRig::default();
+        let rig = scene::SensorRig::default();
         for camera in &rig.cameras {
             let view = ViewCamera::through(camera);
             let eye = DVec3::from_array(camera.translation_m);

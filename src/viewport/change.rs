@@ -3,7 +3,7 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
-use crate::scene::GridSpec;
+use scene::GridSpec;
 
 /// A part of the ego frame, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,7 +184,7 @@ pub(super) fn may_be_seen(low_m: DVec3, high_m: DVec3, clip_from_ego: &DMat4) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewport::{ViewCamera, ViewPreset};
+    use crate::{ViewCamera, ViewPreset};
 
     const SIZE: [u32; 2] = [400, 300];
 

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::shared::{PipelineSpec, Shared, VertexBuffer};
-use crate::scene::SensorRig;
+use scene::SensorRig;
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]

@@ -3,7 +3,7 @@
 use super::change::{Change, Part};
 use super::shared::{PipelineSpec, Shared};
 use super::{LayoutPlane, ViewOptions};
-use crate::scene::{BevLayer, Class, GridSpec, VoxelGrid};
+use scene::{BevLayer, Class, GridSpec, VoxelGrid};
 
 /// Layers that lie on ground voxels as paint, later ones on top, with their opacity.
 const PAINT: [(BevLayer, f32); 5] = [

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::meshing::Solidity;
 use super::pool;
-use crate::scene::GridSpec;
+use scene::GridSpec;
 
 /// Toward the sun, ego frame, unit length: from behind, left and above.
 pub const SUN: [f32; 3] = [-0.452, 0.362, 0.815];
@@ -200,8 +200,8 @@ fn steps(dir: glam::DVec3, reach: f64) -> Vec<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::VoxelGrid;
-    use crate::viewport::meshing::Visible;
+    use crate::meshing::Visible;
+    use scene::VoxelGrid;
 
     fn bake(grid: &VoxelGrid, origin: [usize; 2], size: [usize; 2]) -> LightBlock {
         LightRays::new().bake(&Solidity::of(grid, Visible::ALL), origin, size)

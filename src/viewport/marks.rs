@@ -9,7 +9,7 @@ use super::faces::{FaceList, FaceStyle};
 use super::lines::LineList;
 use super::meshing::NORMALS;
 use super::{GROUND_TOP_M, ViewScene, drop_m, ego};
-use crate::scene::{Camera, GridSpec, SceneBox, SensorRig};
+use scene::{Camera, GridSpec, SceneBox, SensorRig};
 
 /// All marks of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]

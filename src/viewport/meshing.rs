@@ -5,8 +5,8 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::pool;
-use crate::scene::grid::{BRICK, BRICKS, Brick};
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::grid::{BRICK, BRICKS, Brick};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Which voxels are drawn: one bit per bin of every column, after hidden classes and the height clip.
 /// Empty columns border the grid on all sides, so that looking [`Solidity::MARGIN`] beyond it is no

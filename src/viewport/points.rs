@@ -7,7 +7,7 @@ use glam::{DMat4, DVec3};
 
 use super::change::{Change, Part, may_be_seen};
 use super::shared::{PipelineSpec, Shared, VertexBuffer};
-use crate::scene::{Class, LidarPoint, LidarSweep};
+use scene::{Class, LidarPoint, LidarSweep};
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]

@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::light::{LightBlock, SUN, VOLUME};
 use super::shaders::SHADERS;
 use super::{Background, ViewCamera, ViewOptions};
-use crate::scene::{Class, GridSpec};
+use scene::{Class, GridSpec};
 
 /// Format of the picture: sRGB-encoded values in a format that does not convert, as egui expects of
 /// textures; alpha is premultiplied.

@@ -10,8 +10,8 @@ use super::light::{LightBlock, LightRays, REACH};
 use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, brick_origin, join, mesh_bricks};
 use super::shared::{PipelineSpec, Shared, VertexBuffer};
 use super::{ViewCamera, ViewOptions};
-use crate::scene::grid::{BRICK, BRICKS, Brick};
-use crate::scene::{GridSpec, VoxelGrid};
+use scene::grid::{BRICK, BRICKS, Brick};
+use scene::{GridSpec, VoxelGrid};
 
 /// A vertex is one word; see [`BrickMesh::vertices`].
 const STRIDE: usize = 4;

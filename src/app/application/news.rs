@@ -6,15 +6,15 @@ use std::time::Duration;
 use crossbeam_channel::TryRecvError;
 
 use super::{SceneloomApp, one_line};
-use crate::app::camera_views::Wanted;
-use crate::app::live::{Advice, Purpose, Running};
-use crate::app::panels::status::Receipt;
-use crate::app::panels::toasts::Level;
-use crate::app::staged::Again;
-use crate::editor::Document;
-use crate::generation::job::{GenParams, GenResult, Job, JobEvent, JobUpdate, Named};
-use crate::generation::redraw::RedrawMask;
-use crate::scene::Scene;
+use crate::camera_views::Wanted;
+use crate::live::{Advice, Purpose, Running};
+use crate::panels::status::Receipt;
+use crate::panels::toasts::Level;
+use crate::staged::Again;
+use editor::Document;
+use job::redraw::RedrawMask;
+use job::{GenParams, GenResult, Job, JobEvent, JobUpdate, Named};
+use scene::Scene;
 
 impl SceneloomApp {
     pub(super) fn schedule(&mut self, ctx: &egui::Context) {
@@ -35,7 +35,7 @@ impl SceneloomApp {
         self.sensing.ask(self.document.scene(), wanted, for_a_moment);
     }
 
-    pub(in crate::app) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
+    pub(crate) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
         let now_s = self.now_s();
         let job = Job { scene, params };
         let key = job.key();
@@ -173,7 +173,7 @@ impl SceneloomApp {
     }
 
     /// Takes what a whole generation shows now as its result.
-    pub(in crate::app) fn stop_here(&mut self) {
+    pub(crate) fn stop_here(&mut self) {
         let before = self.document.settled_scene().clone();
         let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.rev;
         let Some(running) = self.live.running.as_mut().filter(whole) else {
@@ -258,7 +258,7 @@ impl SceneloomApp {
                 self.view3d.camera.focus_all();
                 // Saving must not replace the file of another scene without asking.
                 self.path = opening.path;
-                self.state.choose(&[], crate::app::tools::Choose::Only);
+                self.state.choose(&[], crate::tools::Choose::Only);
                 self.state.correcting = false;
                 self.state.tools.region = RedrawMask::default();
                 self.state.named = Named::default();

@@ -5,20 +5,20 @@ use std::sync::Arc;
 use egui::{Rect, Ui};
 
 use super::{Next, SceneloomApp, cameras_input};
-use crate::app::command::Command;
-use crate::app::keys;
-use crate::app::keys::Hands;
-use crate::app::panels::dialogs::{self, Unsaved};
-use crate::app::panels::performance::performance_ui;
-use crate::app::panels::sensors::sensors_ui;
-use crate::app::panels::settings::settings_ui;
-use crate::app::panels::start::start_ui;
-use crate::app::panels::status::{StatusInput, status_ui};
-use crate::app::panels::toolbar::{ToolbarInput, toolbar_ui};
-use crate::app::state::Pane;
-use crate::app::theme;
-use crate::editor::checks::{Severity, waive};
-use crate::scene::Scene;
+use crate::command::Command;
+use crate::keys;
+use crate::keys::Hands;
+use crate::panels::dialogs::{self, Unsaved};
+use crate::panels::performance::performance_ui;
+use crate::panels::sensors::sensors_ui;
+use crate::panels::settings::settings_ui;
+use crate::panels::start::start_ui;
+use crate::panels::status::{StatusInput, status_ui};
+use crate::panels::toolbar::{ToolbarInput, toolbar_ui};
+use crate::state::Pane;
+use crate::theme;
+use editor::checks::{Severity, waive};
+use scene::Scene;
 
 impl SceneloomApp {
     /// Draws the window and carries out what the user asked for.
@@ -131,7 +131,7 @@ impl SceneloomApp {
             paused: self.live.paused.as_ref(),
             waiting: self.live.has_waiting(settled.rev),
             dragging: self.document.is_dragging(),
-            hint: &crate::app::hints::hint(&self.state),
+            hint: &crate::hints::hint(&self.state),
         };
         egui::Panel::bottom("status")
             .exact_size(28.0)
@@ -162,7 +162,7 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
-        crate::app::tools::dialogs::show(ui, scene.frame(), &mut self.state, commands);
+        crate::tools::dialogs::show(ui, scene.frame(), &mut self.state, commands);
         let recent = &self.settings.recent;
         self.palette
             .show(ui, &self.keymap, recent, &mut self.state, commands);

@@ -7,10 +7,10 @@ use anyhow::{anyhow, bail};
 use serde_json::{Value, json};
 
 use super::{Common, Outcome, Stop, output};
-use crate::app::{checking, open, panels};
-use crate::editor::checks::{self, Finding, Severity, waive};
-use crate::formats::project;
-use crate::scene::Scene;
+use crate::{checking, open, panels};
+use editor::checks::{self, Finding, Severity, waive};
+use formats::project;
+use scene::Scene;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -7,14 +7,14 @@ use anyhow::{Context, bail};
 use super::dataset_occ3d;
 use super::progress::Progress;
 use super::{Common, Outcome, output};
-use crate::app::memory;
-use crate::app::open;
-use crate::app::roads::Roads;
-use crate::formats::occ3d;
-use crate::generation::dataset::layout::layout_frame;
-use crate::generation::dataset::lidar::lidar_frame;
-use crate::generation::dataset::text::text_frame;
-use crate::generation::dataset::{self, DatasetReport, OccupancyFrame, occupancy_frame};
+use crate::memory;
+use crate::open;
+use crate::roads::Roads;
+use dataset::layout::layout_frame;
+use dataset::lidar::lidar_frame;
+use dataset::text::text_frame;
+use dataset::{self, DatasetReport, OccupancyFrame, occupancy_frame};
+use formats::occ3d;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -7,10 +7,10 @@ use anyhow::Context;
 use rayon::prelude::*;
 
 use super::output;
-use crate::formats::occ3d::{self, Occ3dFrame};
-use crate::generation::dataset::{DatasetReport, world_of};
-use crate::generation::world::voxelize::{Drive, Vertical, labelled};
-use crate::scene::{BevLayout, SensorRig};
+use dataset::{DatasetReport, world_of};
+use formats::occ3d::{self, Occ3dFrame};
+use scene::{BevLayout, SensorRig};
+use world::voxelize::{Drive, Vertical, labelled};
 
 /// Frames between two reports.
 const CHUNK: usize = 8;

@@ -11,14 +11,14 @@ use super::generate::{models, run_and_adopt};
 use super::progress::Progress;
 use super::render::sense;
 use super::{Common, Outcome, output};
-use crate::app::open;
-use crate::app::picture::{self, Picture, View3d};
-use crate::editor::{Document, Edit, Shape};
-use crate::formats::project;
-use crate::generation::job::{GenParams, Job};
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::sensors::color;
-use crate::scene::{BevLayer, BoxId, Class, GridSpec, Scene};
+use crate::open;
+use crate::picture::{self, Picture, View3d};
+use editor::{Document, Edit, Shape};
+use formats::project;
+use job::pipeline::OccPipeline;
+use job::{GenParams, Job};
+use scene::{BevLayer, BoxId, Class, GridSpec, Scene};
+use sensors::color;
 
 /// Arguments.
 #[derive(clap::Args, Default)]
@@ -105,7 +105,7 @@ fn edits(scene: &Scene) -> Vec<(&'static str, Vec<Edit>)> {
 /// Six semantic and six depth pictures as two rows.
 fn camera_sheet(scene: &Scene) -> Picture {
     let (maps, _) = sense(scene, [320, 180]);
-    let picture = |rgba: Vec<u8>, m: &crate::scene::CameraMaps| Picture {
+    let picture = |rgba: Vec<u8>, m: &scene::CameraMaps| Picture {
         width: m.width,
         height: m.height,
         rgba,

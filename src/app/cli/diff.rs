@@ -6,15 +6,13 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 
 use super::{Common, Outcome, output};
-use crate::app::open;
-use crate::app::picture::{Picture, layout_top, lidar_top, occupancy_top};
-use crate::editor::columns_between;
-use crate::generation::job::GenParams;
-use crate::generation::region::Region;
-use crate::generation::sensors::lidar;
-use crate::scene::{
-    Background, BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, SourceFrame, Thing,
-};
+use crate::open;
+use crate::picture::{Picture, layout_top, lidar_top, occupancy_top};
+use editor::columns_between;
+use job::GenParams;
+use job::region::Region;
+use scene::{Background, BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, SourceFrame, Thing};
+use sensors::lidar;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::generate::models;
 use super::{Common, Outcome, output};
-use crate::viewport::headless_device;
+use viewport::headless_device;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -8,12 +8,12 @@ use serde_json::json;
 use super::generate::{models, run_and_adopt};
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, Stop, output};
-use crate::app::open;
-use crate::editor::{Document, Edit};
-use crate::formats::project;
-use crate::generation::job::{GenParams, Job};
-use crate::generation::metrics::agreement::layout_agreement;
-use crate::generation::pipeline::OccPipeline;
+use crate::open;
+use editor::{Document, Edit};
+use formats::project;
+use job::pipeline::OccPipeline;
+use job::{GenParams, Job};
+use metrics::agreement::layout_agreement;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -8,10 +8,10 @@ use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
-use crate::app::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
-use crate::app::open;
-use crate::app::picture::ShotOptions;
-use crate::app::state::{CameraSource, LidarModel};
+use crate::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
+use crate::open;
+use crate::picture::ShotOptions;
+use crate::state::{CameraSource, LidarModel};
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -8,16 +8,17 @@ use serde_json::json;
 
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, output};
-use crate::app::open;
-use crate::app::scenery::SceneryWish;
-use crate::editor::Document;
-use crate::formats::project;
-use crate::generation::job::{GenParams, GenResult, Job, Named, Pipeline, RegionMode};
-use crate::generation::metrics::agreement::layout_agreement;
-use crate::generation::model::OccModels;
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::sensors::{cloud::GaussianCloud, lidar, splat};
-use crate::scene::Scene;
+use crate::open;
+use crate::scenery::SceneryWish;
+use editor::Document;
+use formats::project;
+use job::pipeline::OccPipeline;
+use job::{GenParams, GenResult, Job, Named, Pipeline, RegionMode};
+use metrics::agreement::layout_agreement;
+use nets::OccModels;
+use scene::Scene;
+use sensors::cloud::GaussianCloud;
+use sensors::{lidar, splat};
 
 /// Arguments.
 #[derive(clap::Args)]

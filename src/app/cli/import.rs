@@ -8,9 +8,9 @@ use glam::DVec2;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::app::open::{self, Kind, Placement};
-use crate::formats::project;
-use crate::scene::{BevLayer, Scene};
+use crate::open::{self, Kind, Placement};
+use formats::project;
+use scene::{BevLayer, Scene};
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -9,31 +9,31 @@ mod doctor;
 mod edit;
 mod eval;
 mod export;
-pub(in crate::app) mod generate;
+pub(crate) mod generate;
 mod import;
 mod new;
-pub(in crate::app) mod output;
+pub(crate) mod output;
 mod progress;
 mod prompt;
 mod region_arg;
 mod render;
 mod scenery;
 mod shot;
-pub(in crate::app) mod trade;
-pub(in crate::app) mod trials;
+pub(crate) mod trade;
+pub(crate) mod trials;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-pub(in crate::app) use generate::full_params;
+pub(crate) use generate::full_params;
 
 use clap::{Args, Parser, Subcommand};
 
 use self::region_arg::RegionArg;
-use crate::app::open;
-use crate::generation::job::{GenParams, Named, Precision, RegionMode};
-use crate::generation::solver::SolverKind;
-use crate::generation::trade::Stops;
+use crate::open;
+use ::trade::Stops;
+use diffusion::solver::SolverKind;
+use job::{GenParams, Named, Precision, RegionMode};
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
 #[derive(Parser)]
@@ -86,7 +86,7 @@ enum Command {
 
 /// Options that every command has.
 #[derive(Args, Clone, Debug, Default)]
-pub(in crate::app) struct Common {
+pub(crate) struct Common {
     /// Print exactly one JSON object on stdout at the end.
     #[arg(long)]
     json: bool,
@@ -293,6 +293,6 @@ fn editor(path: Option<PathBuf>, trace: Option<PathBuf>) -> Outcome {
         eprintln!("no display: running the demo without a window");
         return demo::Demo::default().run();
     }
-    crate::app::run_window(scene, path, trace)?;
+    crate::run_window(scene, path, trace)?;
     Ok(())
 }

@@ -6,12 +6,12 @@ use anyhow::anyhow;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::app::open;
-use crate::formats::project;
-use crate::generation::world::scenery::Setting;
-use crate::generation::world::template::TEMPLATES;
-use crate::generation::world::terrain::Terrain;
-use crate::scene::{Class, Scene};
+use crate::open;
+use formats::project;
+use scene::{Class, Scene};
+use world::scenery::Setting;
+use world::template::TEMPLATES;
+use world::terrain::Terrain;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use super::Common;
-use crate::generation::job::{JobCtx, JobUpdate};
+use job::{JobCtx, JobUpdate};
 
 /// Draws one line over itself.
 pub struct Progress {

@@ -9,19 +9,19 @@ use super::generate::{full_params, models, run_and_adopt};
 use super::new::class_counts;
 use super::progress::Progress;
 use super::{Common, Outcome, Stop, output};
-use crate::app::endpoint::{self, Endpoint};
-use crate::app::open;
-use crate::app::prompting::{How, Keep, Placer};
-use crate::app::text::{self, Prompted, doubts};
-use crate::editor::{Document, Edit};
-use crate::formats::project;
-use crate::generation::job::GenParams;
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::words::hear::{Heard, against};
-use crate::generation::words::notation;
-use crate::generation::words::reader::Mode;
-use crate::generation::words::stage::Candidate;
-use crate::scene::Scene;
+use crate::endpoint::{self, Endpoint};
+use crate::open;
+use crate::prompting::{How, Keep, Placer};
+use crate::text::{self, Prompted, doubts};
+use editor::{Document, Edit};
+use formats::project;
+use job::GenParams;
+use job::pipeline::OccPipeline;
+use scene::Scene;
+use words::hear::{Heard, against};
+use words::notation;
+use words::reader::Mode;
+use words::stage::Candidate;
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::generation::redraw::RedrawMask;
+use job::redraw::RedrawMask;
 
 /// What is regenerated.
 #[derive(Clone, Copy, Debug, PartialEq)]

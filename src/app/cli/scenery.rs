@@ -7,12 +7,12 @@ use serde_json::json;
 
 use super::region_arg::RegionArg;
 use super::{Common, Outcome, output};
-use crate::app::open;
-use crate::app::scenery::{Drawer, SceneryWish};
-use crate::editor::Document;
-use crate::formats::project;
-use crate::generation::redraw::RedrawMask;
-use crate::generation::world::scenery::Setting;
+use crate::open;
+use crate::scenery::{Drawer, SceneryWish};
+use editor::Document;
+use formats::project;
+use job::redraw::RedrawMask;
+use world::scenery::Setting;
 
 /// What draws scenery.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -7,8 +7,8 @@ use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
-use crate::app::export::view_camera;
-use crate::app::{open, picture};
+use crate::export::view_camera;
+use crate::{open, picture};
 
 /// Arguments.
 #[derive(clap::Args)]

@@ -5,12 +5,12 @@ use egui::accesskit::Role;
 use egui::{Color32, CursorIcon, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use glam::DVec3;
 
-use crate::app::command::Command;
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::editor::Edit;
-use crate::scene::{Class, GridSpec, LidarSweep, Scene, SceneBox};
-use crate::viewport::GROUND_TOP_M;
+use crate::command::Command;
+use crate::state::UiState;
+use crate::theme;
+use editor::Edit;
+use scene::{Class, GridSpec, LidarSweep, Scene, SceneBox};
+use viewport::GROUND_TOP_M;
 
 /// What is shown around the box, m.
 const MARGIN_M: f64 = 1.6;
@@ -332,12 +332,13 @@ fn hint(ui: &Ui, rect: Rect, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::BoxId;
+    use scene::BoxId;
 
     /// The voxels of a car end at its roof; the ground around it ends where it stands.
     #[test]
     fn voxels_lie_in_their_box() {
-        use crate::scene::{BevLayout, Frame, draft::draft};
+        use scene::draft::draft;
+        use scene::{BevLayout, Frame};
         let b = SceneBox {
             id: BoxId(1),
             class: Class::Car,

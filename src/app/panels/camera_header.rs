@@ -2,12 +2,12 @@
 
 use egui::Ui;
 
-use crate::app::command::Command;
-use crate::app::icons;
-use crate::app::state::{CameraMode, CameraSource, UiState};
-use crate::app::theme;
-use crate::editor::Edit;
-use crate::generation::sensors::appearance::{Conditions, TimeOfDay, Weather};
+use crate::command::Command;
+use crate::icons;
+use crate::state::{CameraMode, CameraSource, UiState};
+use crate::theme;
+use editor::Edit;
+use sensors::appearance::{Conditions, TimeOfDay, Weather};
 
 use super::cameras::{CamerasInput, thousands};
 

@@ -11,12 +11,12 @@ use glam::DVec3;
 
 use super::camera_header::header;
 use super::lit;
-use crate::app::camera_views::{CameraView, march};
-use crate::app::command::Command;
-use crate::app::state::{CameraMode, UiState};
-use crate::app::theme;
-use crate::generation::sensors::march::{MarchHit, MarchScene};
-use crate::scene::{Camera, Class, Scene, SceneRev};
+use crate::camera_views::{CameraView, march};
+use crate::command::Command;
+use crate::state::{CameraMode, UiState};
+use crate::theme;
+use scene::{Camera, Class, Scene, SceneRev};
+use sensors::march::{MarchHit, MarchScene};
 
 /// Textures of the pictures.
 #[derive(Default)]

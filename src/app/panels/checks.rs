@@ -3,12 +3,12 @@
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
-use crate::app::command::Command;
-use crate::app::meant::Meant;
-use crate::app::theme;
-use crate::editor::Edit;
-use crate::editor::checks::{Finding, Severity, waive};
-use crate::scene::{BoxId, Frame};
+use crate::command::Command;
+use crate::meant::Meant;
+use crate::theme;
+use editor::Edit;
+use editor::checks::{Finding, Severity, waive};
+use scene::{BoxId, Frame};
 
 /// What the panel shows.
 pub struct ChecksInput<'a> {
@@ -65,7 +65,7 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
         ui.horizontal(|ui| {
             let (dot, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
             ui.painter()
-                .circle_filled(dot.center(), 4.0, crate::app::theme::good());
+                .circle_filled(dot.center(), 4.0, crate::theme::good());
             ui.label(match waived.len() {
                 0 => "All is well: no check found anything.",
                 _ => "All is well, but for what was waived.",

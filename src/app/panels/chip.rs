@@ -3,7 +3,7 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, CornerRadius, PopupCloseBehavior, Response, RichText, TextStyle, Ui};
 
-use crate::app::theme;
+use crate::theme;
 
 const ROUND: u8 = 10;
 /// Gap between the text of a chip and its end, points.

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use egui::{DragValue, Ui};
 
-use crate::app::export::{ExportOptions, ExportProgress, Format};
-use crate::app::state::{CameraSource, LidarModel};
-use crate::app::theme;
+use crate::export::{ExportOptions, ExportProgress, Format};
+use crate::state::{CameraSource, LidarModel};
+use crate::theme;
 
 /// What the dialog shows of the application.
 pub struct ExportInput<'a> {

@@ -3,9 +3,9 @@
 use egui::{DragValue, Ui};
 use glam::DVec3;
 
-use crate::app::command::Command;
-use crate::app::theme;
-use crate::editor::Edit;
+use crate::command::Command;
+use crate::theme;
+use editor::Edit;
 
 /// What the fields to its right are.
 pub fn caption(ui: &mut Ui, text: &str) {

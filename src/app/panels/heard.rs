@@ -1,11 +1,11 @@
 //! What was typed, as it was read both ways: as a change of the scene at hand and as a new scene. Chips change the reading
 //! itself, not the words.
 
-use crate::app::text::{self, Edited, Prompted};
-use crate::generation::words::hear::{By, Heard};
-use crate::generation::words::notation;
-use crate::generation::words::reading::{Quantity, Reading, Thing, What};
-use crate::scene::{BoxId, Scene, SceneRev};
+use crate::text::{self, Edited, Prompted};
+use scene::{BoxId, Scene, SceneRev};
+use words::hear::{By, Heard};
+use words::notation;
+use words::reading::{Quantity, Reading, Thing, What};
 
 /// Both readings of a text.
 pub struct Both {
@@ -210,7 +210,7 @@ fn names_boxes(reading: &Reading) -> bool {
 
 /// Calls `f` with every thing of an act, anchors included.
 fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
-    use crate::generation::words::reading::{Anchor, Destination, Place, Turn};
+    use words::reading::{Anchor, Destination, Place, Turn};
     fn places(list: &mut [Place], f: &mut dyn FnMut(&mut Thing)) {
         for p in list {
             for anchor in [p.to.as_mut(), p.and.as_mut()].into_iter().flatten() {
@@ -263,7 +263,7 @@ fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::words::notation::{parse, write};
+    use words::notation::{parse, write};
 
     #[test]
     fn chips_and_answers_change_the_reading() {

@@ -2,9 +2,9 @@
 
 use egui::Ui;
 
-use crate::app::command::Command;
-use crate::app::theme;
-use crate::editor::Document;
+use crate::command::Command;
+use crate::theme;
+use editor::Document;
 
 /// Height of a line, with the gap.
 const HISTORY_ROW: f32 = theme::ROW - 3.0;

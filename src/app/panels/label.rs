@@ -2,12 +2,12 @@
 
 use egui::{Color32, Ui};
 
-use crate::app::command::Command;
-use crate::app::icons;
-use crate::app::panels::fields::caption;
-use crate::app::theme;
-use crate::editor::Edit;
-use crate::scene::{BoxLabel, BoxName, Paint, SceneBox};
+use crate::command::Command;
+use crate::icons;
+use crate::panels::fields::caption;
+use crate::theme;
+use editor::Edit;
+use scene::{BoxLabel, BoxName, Paint, SceneBox};
 
 /// A field for the name and a list of paints; what is set holds for all of the boxes.
 pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {

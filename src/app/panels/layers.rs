@@ -3,15 +3,15 @@
 use egui::accesskit::Role;
 use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::bev_image::DRAW_ORDER;
-use crate::app::command::Command;
-use crate::app::icons::{self, Icon, section};
-use crate::app::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use crate::app::state::{Tool, UiState, Underlay, VoxelVerb};
-use crate::app::theme;
-use crate::app::tools::things::{self, ThingCommand};
-use crate::app::tools::{PaintShape, ToolCommand, panel as tools};
-use crate::scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
+use crate::bev_image::DRAW_ORDER;
+use crate::command::Command;
+use crate::icons::{self, Icon, section};
+use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::state::{Tool, UiState, Underlay, VoxelVerb};
+use crate::theme;
+use crate::tools::things::{self, ThingCommand};
+use crate::tools::{PaintShape, ToolCommand, panel as tools};
+use scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
 
 /// Draws the panel.
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {

@@ -6,10 +6,10 @@ use egui::accesskit::Role;
 use egui::{Color32, ColorImage, Rect, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2};
 use glam::DVec3;
 
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::scene::{LidarSweep, Scene};
-use crate::viewport::{LidarColorMode, lidar_colors};
+use crate::state::UiState;
+use crate::theme;
+use scene::{LidarSweep, Scene};
+use viewport::{LidarColorMode, lidar_colors};
 
 /// Columns of the picture.
 const COLUMNS: usize = 1080;

@@ -3,11 +3,11 @@
 use egui::{Color32, Painter, Pos2, Rect, Stroke, pos2};
 use glam::DVec3;
 
-use crate::app::state::{CameraMode, CameraSource, UiState};
-use crate::app::theme;
-use crate::generation::sensors::perspective::clip_near;
-use crate::scene::{Camera, Scene, SceneBox};
-use crate::viewport::GROUND_TOP_M;
+use crate::state::{CameraMode, CameraSource, UiState};
+use crate::theme;
+use scene::{Camera, Scene, SceneBox};
+use sensors::perspective::clip_near;
+use viewport::GROUND_TOP_M;
 
 /// Pairs of corners; bits of a corner are its signs along x, y and z.
 const EDGES: [[usize; 2]; 12] = [
@@ -84,7 +84,7 @@ pub fn draw(painter: &Painter, rect: Rect, camera: &Camera, scene: &Scene, state
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BoxId, Class, SensorRig};
+    use scene::{BoxId, Class, SensorRig};
 
     #[test]
     fn a_box_is_lit_where_a_camera_sees_it() {

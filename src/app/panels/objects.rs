@@ -3,17 +3,17 @@
 use egui::{DragValue, Ui};
 use glam::DVec3;
 
-use crate::app::command::Command;
-use crate::app::icons::{self, Icon, section};
-use crate::app::panels::fields::{caption, field, fields, number, numbers};
-use crate::app::panels::label::label_ui;
-use crate::app::panels::{thing_list, things};
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::app::tools::{Choose, ToolCommand};
-use crate::editor::transform::Orientation;
-use crate::editor::{Document, Edit, arrange};
-use crate::scene::{BoxId, Class, Frame, SceneBox, Thing};
+use crate::command::Command;
+use crate::icons::{self, Icon, section};
+use crate::panels::fields::{caption, field, fields, number, numbers};
+use crate::panels::label::label_ui;
+use crate::panels::{thing_list, things};
+use crate::state::UiState;
+use crate::theme;
+use crate::tools::{Choose, ToolCommand};
+use editor::transform::Orientation;
+use editor::{Document, Edit, arrange};
+use scene::{BoxId, Class, Frame, SceneBox, Thing};
 
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {

@@ -4,16 +4,16 @@ use std::path::PathBuf;
 
 use egui::{Id, Key, Modal, Ui, vec2};
 
-use crate::app::actions::ACTIONS;
-use crate::app::command::Command;
-use crate::app::keymap::Keymap;
-use crate::app::state::{Pane, UiState};
-use crate::app::theme;
-use crate::app::tools::ToolCommand;
-use crate::app::tools::things::panel::TREES;
-use crate::app::tools::things::{ThingCommand, ThingKind};
-use crate::scene::Class;
-use crate::scene::background::{LineKind, PostKind};
+use crate::actions::ACTIONS;
+use crate::command::Command;
+use crate::keymap::Keymap;
+use crate::state::{Pane, UiState};
+use crate::theme;
+use crate::tools::ToolCommand;
+use crate::tools::things::panel::TREES;
+use crate::tools::things::{ThingCommand, ThingKind};
+use scene::Class;
+use scene::background::{LineKind, PostKind};
 
 /// Lines that are shown at most.
 const SHOWN: usize = 12;

@@ -2,11 +2,11 @@
 
 use egui::Ui;
 
-use crate::app::command::Command;
-use crate::app::icons::{self, Icon};
-use crate::app::state::{CameraMode, LidarModel, UiState, Underlay};
-use crate::app::theme;
-use crate::viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
+use crate::command::Command;
+use crate::icons::{self, Icon};
+use crate::state::{CameraMode, LidarModel, UiState, Underlay};
+use crate::theme;
+use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 
 /// Of the bird's-eye view.
 pub fn bev_controls(ui: &mut Ui, state: &mut UiState) {

@@ -3,8 +3,8 @@
 use egui::accesskit::Role;
 use egui::{Align2, Color32, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::perf::{BLOCKED_S, Perf, Quantiles, SHOWN};
-use crate::app::theme;
+use crate::perf::{BLOCKED_S, Perf, Quantiles, SHOWN};
+use crate::theme;
 
 /// Draws it into the upper right corner of `over` while it is open.
 pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {

@@ -10,11 +10,11 @@ mod said;
 use super::completion::Completion;
 use super::heard::Both;
 use super::prompt_plan::{Plan, Told};
-use crate::app::command::Command;
-use crate::app::icons::section;
-use crate::app::text::doubts;
-use crate::app::theme;
-use crate::scene::Scene;
+use crate::command::Command;
+use crate::icons::section;
+use crate::text::doubts;
+use crate::theme;
+use scene::Scene;
 
 /// Prompts kept.
 const HISTORY: usize = 50;

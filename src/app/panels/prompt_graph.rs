@@ -3,11 +3,11 @@
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::icons::section;
-use crate::app::theme;
-use crate::generation::place::to_graph::Graphed;
-use crate::scene::Class;
-use crate::scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
+use crate::icons::section;
+use crate::theme;
+use place::to_graph::Graphed;
+use scene::Class;
+use scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
 
 /// Height of a line of the picture, points.
 const LINE: f32 = 19.0;
@@ -197,7 +197,7 @@ pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u3
             .for_each(|list| list.retain(|n| *n != id));
     }
     if ui.button("Add object").clicked() {
-        let node = crate::generation::place::to_graph::node_of(Class::Car);
+        let node = place::to_graph::node_of(Class::Car);
         graphed.graph.add(node);
     }
     rolled
@@ -268,8 +268,8 @@ fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], w
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::place::to_graph::to_graph;
-    use crate::generation::words::describe::described;
+    use place::to_graph::to_graph;
+    use words::describe::described;
 
     #[test]
     fn objects_of_one_relation_share_a_line() {

@@ -10,14 +10,14 @@ use egui::{Sense, Ui, WidgetInfo, vec2};
 
 use super::recalled::{Recall, Recalled};
 use super::{prompt_graph, thumbnail};
-use crate::app::command::Command;
-use crate::app::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
-use crate::app::theme;
-use crate::editor::Edit;
-use crate::generation::place::description::Description;
-use crate::generation::place::to_graph::{Graphed, to_graph};
+use crate::command::Command;
+use crate::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
+use crate::theme;
+use editor::Edit;
+use place::description::Description;
+use place::to_graph::{Graphed, to_graph};
 
-use crate::scene::{BoxId, Scene, SceneBox};
+use scene::{BoxId, Scene, SceneBox};
 
 /// Variants that are shown side by side.
 const VARIANTS: u64 = 4;
@@ -37,7 +37,7 @@ impl Told {
     /// Tells how a layout came about.
     pub fn tell(&self, laid: &Laid) {
         let mut notes = laid.notes.clone();
-        notes.extend(crate::app::text::shortfalls(laid));
+        notes.extend(crate::text::shortfalls(laid));
         let recalled = |found: Remembered| {
             let picture = Recalled::of(&found);
             (found, picture)
@@ -436,7 +436,7 @@ impl Plan {
                         egui::FontId::proportional(10.0),
                         theme::text_weak(),
                     );
-                    crate::app::icons::focus_ring(ui, &response, rect);
+                    crate::icons::focus_ring(ui, &response, rect);
                     if let Some(laid) = variants.found.get(&seed) {
                         let boxes = &laid.placement.boxes;
                         thumbnail::enlarged(&response, &laid.road.layout, boxes, "A click makes this scene");

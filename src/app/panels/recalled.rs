@@ -5,10 +5,10 @@ use std::sync::mpsc::{Receiver, channel};
 use egui::{Sense, Ui, vec2};
 
 use super::thumbnail;
-use crate::app::memory::layout_of;
-use crate::app::prompting::{Ask, Remembered, recall};
-use crate::app::theme;
-use crate::scene::{BevLayout, SceneBox};
+use crate::memory::layout_of;
+use crate::prompting::{Ask, Remembered, recall};
+use crate::theme;
+use scene::{BevLayout, SceneBox};
 
 /// Side of the map, points.
 const SIDE: f32 = 84.0;
@@ -111,7 +111,7 @@ impl Recall {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::words::describe::described;
+    use words::describe::described;
 
     #[test]
     fn words_recall_a_scene_with_its_road_and_objects() {

@@ -2,8 +2,8 @@
 
 use egui::{Id, Modal, Ui};
 
-use crate::app::recovery::{Stale, ago};
-use crate::app::theme;
+use crate::recovery::{Stale, ago};
+use crate::theme;
 
 /// What the user wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,16 +3,16 @@
 use egui::Ui;
 use glam::DVec3;
 
-use crate::app::command::Command;
-use crate::app::icons::{self, Icon, section};
-use crate::app::panels::cameras::camera_label;
-use crate::app::panels::fields::{caption, field, number, numbers};
-use crate::app::state::{SensorChoice, UiState};
-use crate::app::theme;
-use crate::editor::Edit;
-use crate::scene::rig::Aim;
-use crate::scene::rig_presets::{LIDARS, RIGS};
-use crate::scene::{Camera, LidarPattern, SensorRig};
+use crate::command::Command;
+use crate::icons::{self, Icon, section};
+use crate::panels::cameras::camera_label;
+use crate::panels::fields::{caption, field, number, numbers};
+use crate::state::{SensorChoice, UiState};
+use crate::theme;
+use editor::Edit;
+use scene::rig::Aim;
+use scene::rig_presets::{LIDARS, RIGS};
+use scene::{Camera, LidarPattern, SensorRig};
 
 /// Sensors of a kind that a rig may have; a strip of more cameras could not be read.
 const MAX_CAMERAS: usize = 12;

@@ -2,9 +2,9 @@
 
 use egui::{Ui, Window};
 
-use crate::app::settings::Settings;
-use crate::app::theme::{self, Look};
-use crate::scene::classes::Palette;
+use crate::settings::Settings;
+use crate::theme::{self, Look};
+use scene::classes::Palette;
 
 /// Draws the window while it is open.
 pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {

@@ -3,9 +3,9 @@
 use egui::accesskit::Role;
 use egui::{Id, Key, Modal, Ui, WidgetInfo, vec2};
 
-use crate::app::actions::{ACTIONS, ActionDef, Group, When};
-use crate::app::keymap::{Chord, Chords, Keymap, PRESETS};
-use crate::app::theme;
+use crate::actions::{ACTIONS, ActionDef, Group, When};
+use crate::keymap::{Chord, Chords, Keymap, PRESETS};
+use crate::theme;
 
 /// What no preset changes: the pointer, and keys that go with it.
 const FIXED: [(&str, &str); 9] = [
@@ -122,7 +122,7 @@ impl Shortcuts {
         if actions.is_empty() {
             return;
         }
-        crate::app::icons::section(ui, title);
+        crate::icons::section(ui, title);
         for action in actions {
             ui.horizontal(|ui| {
                 let chords = keymap.text(action.id);
@@ -171,7 +171,7 @@ impl Shortcuts {
         if rows.is_empty() {
             return;
         }
-        crate::app::icons::section(ui, "Pointer");
+        crate::icons::section(ui, "Pointer");
         for (keys, what) in rows {
             ui.horizontal(|ui| {
                 ui.scope(|ui| {

@@ -7,11 +7,11 @@ use egui::accesskit::Role;
 use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 
 use super::thumbnail;
-use crate::app::command::Command;
-use crate::app::settings::Settings;
-use crate::app::theme;
-use crate::generation::world::template::{TEMPLATES, layout};
-use crate::scene::BevLayout;
+use crate::command::Command;
+use crate::settings::Settings;
+use crate::theme;
+use scene::BevLayout;
+use world::template::{TEMPLATES, layout};
 
 /// Draws the start screen while it is open.
 pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mut Vec<Command>) {
@@ -30,7 +30,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
         ui.label(egui::RichText::new(text).color(theme::text_weak()));
         ui.add_space(2.0 * theme::GAP);
         ui.columns_const(|[left, right]: &mut [Ui; 2]| {
-            crate::app::icons::section(left, "Begin");
+            crate::icons::section(left, "Begin");
             if wide(left, "Go on with this scene", "Esc").clicked() {
                 *open = false;
             }
@@ -41,7 +41,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 choose(open, Command::New);
             }
             left.add_space(theme::GAP);
-            crate::app::icons::section(left, "Recent");
+            crate::icons::section(left, "Recent");
             if settings.recent.is_empty() {
                 let text = "Scenes that you open or save appear here. Files can also be dropped on the window: \
                             .loom scenes, OpenDRIVE roads (.xodr), Occ3D labels (.npz).";
@@ -55,7 +55,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                     choose(open, Command::OpenPath(path.to_owned()));
                 }
             }
-            crate::app::icons::section(right, "Roads to begin with");
+            crate::icons::section(right, "Roads to begin with");
             for pair in TEMPLATES.chunks(2) {
                 right.columns(2, |cells| {
                     for (ui, name) in cells.iter_mut().zip(pair) {
@@ -119,7 +119,7 @@ fn road(ui: &mut Ui, name: &'static str) -> egui::Response {
     let font = egui::TextStyle::Small.resolve(ui.style());
     ui.painter()
         .text(below.center(), egui::Align2::CENTER_CENTER, label, font, color);
-    crate::app::icons::focus_ring(ui, &response, rect);
+    crate::icons::focus_ring(ui, &response, rect);
     response
 }
 

@@ -4,12 +4,12 @@
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, Ui, WidgetInfo, vec2};
 
-use crate::app::command::Command;
-use crate::app::guard::Pause;
-use crate::app::live::{Purpose, Running};
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::generation::job::{GenReport, Stage};
+use crate::command::Command;
+use crate::guard::Pause;
+use crate::live::{Purpose, Running};
+use crate::state::UiState;
+use crate::theme;
+use job::{GenReport, Stage};
 
 /// How often the time that a job runs is shown anew.
 const REPAINT: std::time::Duration = std::time::Duration::from_millis(250);

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use egui::Ui;
 
-use crate::app::command::Command;
-use crate::app::icons;
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::app::tools::things::{ThingCommand, words};
-use crate::app::tools::{Choose, ToolCommand};
-use crate::scene::{Background, Frame, Thing, ThingId};
+use crate::command::Command;
+use crate::icons;
+use crate::state::UiState;
+use crate::theme;
+use crate::tools::things::{ThingCommand, words};
+use crate::tools::{Choose, ToolCommand};
+use scene::{Background, Frame, Thing, ThingId};
 
 /// A row.
 pub enum ThingRow<'a> {

@@ -2,16 +2,16 @@
 
 use egui::{Response, Ui};
 
-use crate::app::command::Command;
-use crate::app::icons::{self, Icon};
-use crate::app::panels::fields::{caption, number};
-use crate::app::theme;
-use crate::app::tools::ToolCommand;
-use crate::app::tools::things::panel::{FACADES, ROOFS, TREES, list};
-use crate::app::tools::things::{ThingCommand, words};
-use crate::editor::Edit;
-use crate::scene::background::{LineKind, PostKind, STOREY_M};
-use crate::scene::{Background, Form, Thing};
+use crate::command::Command;
+use crate::icons::{self, Icon};
+use crate::panels::fields::{caption, number};
+use crate::theme;
+use crate::tools::ToolCommand;
+use crate::tools::things::panel::{FACADES, ROOFS, TREES, list};
+use crate::tools::things::{ThingCommand, words};
+use editor::Edit;
+use scene::background::{LineKind, PostKind, STOREY_M};
+use scene::{Background, Form, Thing};
 
 fn send(command: ThingCommand, commands: &mut Vec<Command>) {
     commands.push(Command::Tools(ToolCommand::Thing(command)));
@@ -358,9 +358,9 @@ fn set_height(form: &mut Form, height_m: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ThingId;
-    use crate::scene::background::{Line, Tree};
     use glam::DVec2;
+    use scene::ThingId;
+    use scene::background::{Line, Tree};
 
     #[test]
     fn what_is_alike_makes_no_edit() {

@@ -3,9 +3,9 @@
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, pos2};
 use glam::DVec2;
 
-use crate::app::theme;
-use crate::generation::place::holds::ego;
-use crate::scene::{BevLayout, PolylineKind, SceneBox};
+use crate::theme;
+use place::holds::ego;
+use scene::{BevLayout, PolylineKind, SceneBox};
 
 /// Metres that the shorter side of a map shows, a little more than the grid is wide.
 const SIDE_M: f32 = 84.0;

@@ -2,8 +2,8 @@
 
 use egui::{Align2, Color32, Frame, Id, Margin, Order, Rect, Stroke, Ui, vec2};
 
-use crate::app::icons::{self, Icon};
-use crate::app::theme;
+use crate::icons::{self, Icon};
+use crate::theme;
 
 /// How serious a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

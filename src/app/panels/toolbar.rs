@@ -5,15 +5,15 @@ use std::path::PathBuf;
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
-use crate::app::bookmarks::SLOTS;
-use crate::app::command::Command;
-use crate::app::dock::Workspace;
-use crate::app::icons::{self, Icon};
-use crate::app::state::{Pane, Tool, UiState};
-use crate::app::theme;
-use crate::app::tools::ToolCommand;
-use crate::app::tools::things::{ThingCommand, ThingTool};
-use crate::viewport::ViewPreset;
+use crate::bookmarks::SLOTS;
+use crate::command::Command;
+use crate::dock::Workspace;
+use crate::icons::{self, Icon};
+use crate::state::{Pane, Tool, UiState};
+use crate::theme;
+use crate::tools::ToolCommand;
+use crate::tools::things::{ThingCommand, ThingTool};
+use viewport::ViewPreset;
 
 /// What the bar shows of the document and the worker.
 pub struct ToolbarInput<'a> {

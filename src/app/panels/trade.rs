@@ -3,13 +3,13 @@
 
 use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
-use crate::app::command::Command;
-use crate::app::theme;
-use crate::app::trade::load::{Load, machine};
-use crate::app::trade::plot::{Mark, front_plot, percent, seconds};
-use crate::app::tuning::{LastEdit, Measuring, Tuning, foretold};
-use crate::generation::job::GenParams;
-use crate::generation::trade::Stop;
+use crate::command::Command;
+use crate::theme;
+use crate::trade::load::{Load, machine};
+use crate::trade::plot::{Mark, front_plot, percent, seconds};
+use crate::tuning::{LastEdit, Measuring, Tuning, foretold};
+use job::GenParams;
+use trade::Stop;
 
 /// Draws the panel. `params` are those of the next edit.
 pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {

@@ -3,14 +3,14 @@
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, TextureOptions, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::bev_image;
-use crate::app::command::Command;
-use crate::app::compare::CompareMode;
-use crate::app::icons;
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::app::versions::Versions;
-use crate::scene::SceneRev;
+use crate::bev_image;
+use crate::command::Command;
+use crate::compare::CompareMode;
+use crate::icons;
+use crate::state::UiState;
+use crate::theme;
+use crate::versions::Versions;
+use scene::SceneRev;
 
 /// Height of an entry, points.
 const ENTRY: f32 = 52.0;

@@ -3,14 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Diffused;
-use crate::generation::model::layout::net::LayoutNet;
-use crate::generation::place::lanes::LaneMap;
-use crate::generation::place::road;
-use crate::generation::place::rules::{Placement, broken, place_with};
-use crate::generation::place::to_graph::Graphed;
-use crate::generation::placement::diffuse::{PlacementError, STEPS, place_with as place_by_network};
-use crate::scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
-use crate::scene::{BevLayout, SceneBox};
+use graph_layout::diffuse::{PlacementError, STEPS, place_with as place_by_network};
+use nets::layout::net::LayoutNet;
+use place::lanes::LaneMap;
+use place::road;
+use place::rules::{Placement, broken, place_with};
+use place::to_graph::Graphed;
+use scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
+use scene::{BevLayout, SceneBox};
 
 /// So far beside the middle of the lane that it was said to be in, m, a vehicle drives between two lanes.
 const ASTRAY_M: f64 = 1.0;

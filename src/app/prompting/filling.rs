@@ -6,14 +6,12 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::How;
-use crate::app::memory::own_scenes;
-use crate::generation::place::description::{
-    Count, Description, Environment, ObjectSpec, TimeOfDay, Weather,
-};
-use crate::generation::placement::facts::{self, RoadKind};
-use crate::generation::placement::memory::{Entry, Memory, Open, RoadRef};
-use crate::scene::graph::ObjectState;
-use crate::scene::{BoxLabel, Class};
+use crate::memory::own_scenes;
+use graph_layout::facts::{self, RoadKind};
+use graph_layout::memory::{Entry, Memory, Open, RoadRef};
+use place::description::{Count, Description, Environment, ObjectSpec, TimeOfDay, Weather};
+use scene::graph::ObjectState;
+use scene::{BoxLabel, Class};
 
 /// Most objects that memory adds.
 const MOST_REMEMBERED: usize = 14;

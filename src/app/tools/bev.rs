@@ -4,16 +4,16 @@
 use egui::{Key, Modifiers, Response, Ui};
 use glam::{DVec2, DVec3};
 
-use crate::app::canvas::ScreenMap;
-use crate::app::canvas_tools::Gesture;
-use crate::app::command::Command;
-use crate::app::pointer;
-use crate::app::state::{Tool, UiState};
-use crate::editor::arrange::boxes_of;
-use crate::editor::pick::{self, Handle};
-use crate::editor::transform::{Axis, Kind, Pull, Transform};
-use crate::editor::{Edit, Shape, choose, flood, measure};
-use crate::scene::{BevLayer, BoxId, Frame, GridSpec, Scene, SceneBox};
+use crate::canvas::ScreenMap;
+use crate::canvas_tools::Gesture;
+use crate::command::Command;
+use crate::pointer;
+use crate::state::{Tool, UiState};
+use editor::arrange::boxes_of;
+use editor::pick::{self, Handle};
+use editor::transform::{Axis, Kind, Pull, Transform};
+use editor::{Edit, Shape, choose, flood, measure};
+use scene::{BevLayer, BoxId, Frame, GridSpec, Scene, SceneBox};
 
 use super::boxes::of;
 use super::things::ThingCommand;
@@ -94,12 +94,12 @@ pub enum BevGesture {
 }
 
 /// Points that the pointer may move and still click.
-pub(in crate::app) const CLICK_SLACK: f64 = 4.0;
+pub(crate) const CLICK_SLACK: f64 = 4.0;
 /// Size of handles under the pointer, points.
 const HANDLE_REACH: f64 = 8.0;
 
 /// What a press begins, if it is for one of these tools.
-pub(in crate::app) fn begin(
+pub(crate) fn begin(
     map: &ScreenMap,
     scene: &Scene,
     state: &UiState,
@@ -198,7 +198,7 @@ fn paint(
 /// The uppermost shown map layer under a point.
 fn layer_at(frame: &Frame, state: &UiState, at_m: DVec2) -> Option<BevLayer> {
     let [x, y] = GridSpec::column_at(at_m.x, at_m.y)?;
-    let order = crate::app::bev_image::DRAW_ORDER;
+    let order = crate::bev_image::DRAW_ORDER;
     let there = |l: &&BevLayer| state.shows(**l) && frame.layout.has(**l, x, y);
     order.iter().rev().find(there).copied()
 }
@@ -284,7 +284,7 @@ fn held(transform: Transform, at_m: DVec2) -> BevGesture {
 }
 
 /// A drag of boxes that has not begun to move.
-pub(in crate::app) fn transform(frame: &Frame, state: &UiState, ids: &[BoxId], kind: Kind) -> Transform {
+pub(crate) fn transform(frame: &Frame, state: &UiState, ids: &[BoxId], kind: Kind) -> Transform {
     Transform {
         kind,
         start: boxes_of(frame, ids),
@@ -292,7 +292,7 @@ pub(in crate::app) fn transform(frame: &Frame, state: &UiState, ids: &[BoxId], k
         orientation: state.tools.orientation,
         pivot: match kind {
             // The ring goes about the middle of what it is drawn around.
-            Kind::Turn => crate::editor::arrange::Pivot::Middle,
+            Kind::Turn => editor::arrange::Pivot::Middle,
             _ => state.tools.pivot,
         },
         typed: String::new(),
@@ -300,7 +300,7 @@ pub(in crate::app) fn transform(frame: &Frame, state: &UiState, ids: &[BoxId], k
 }
 
 /// What a move of the pointer changes.
-pub(in crate::app) fn drag(
+pub(crate) fn drag(
     gesture: &mut BevGesture,
     map: &ScreenMap,
     scene: &Scene,
@@ -393,7 +393,7 @@ fn straightened(from_m: DVec2, to_m: DVec2, snap: bool) -> DVec2 {
 }
 
 /// How far the pointer pulls a drag on this view.
-pub(in crate::app) fn pull(transform: &Transform, from_m: DVec2, to_m: DVec2, keep_axis: bool) -> Pull {
+pub(crate) fn pull(transform: &Transform, from_m: DVec2, to_m: DVec2, keep_axis: bool) -> Pull {
     let mut flat = to_m - from_m;
     if keep_axis && transform.axis.is_none() {
         // Shift keeps to the axis that was moved along most.
@@ -440,7 +440,7 @@ fn moved_boxes(
 }
 
 /// What letting go does.
-pub(in crate::app) fn end(
+pub(crate) fn end(
     gesture: BevGesture,
     map: &ScreenMap,
     scene: &Scene,
@@ -525,13 +525,13 @@ pub(in crate::app) fn end(
 }
 
 /// Chooses what a rectangle or lasso took.
-pub(in crate::app) fn chosen(ids: Vec<BoxId>, add: bool, commands: &mut Vec<Command>) {
+pub(crate) fn chosen(ids: Vec<BoxId>, add: bool, commands: &mut Vec<Command>) {
     let how = if add { Choose::Add } else { Choose::Only };
     commands.push(Command::Tools(ToolCommand::Choose(ids, how)));
 }
 
 /// The name of the undo step that a drag makes.
-pub(in crate::app) fn step_name(transform: &Transform) -> &'static str {
+pub(crate) fn step_name(transform: &Transform) -> &'static str {
     let boxes: &[SceneBox] = &transform.start;
     match transform.kind {
         Kind::Move => of(boxes, "Move box", "Move boxes"),
@@ -542,7 +542,7 @@ pub(in crate::app) fn step_name(transform: &Transform) -> &'static str {
 
 /// What a key does to a drag of boxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum DragKey {
+pub(crate) enum DragKey {
     /// Something changed: show it.
     Changed,
     /// Enter: that is it.
@@ -550,7 +550,7 @@ pub(in crate::app) enum DragKey {
 }
 
 /// Takes the keys that a drag of boxes is steered by: X, Y, Z, digits, Backspace, Enter. They are nobody else's then.
-pub(in crate::app) fn drag_keys(ui: &Ui, transform: &mut Transform) -> Option<DragKey> {
+pub(crate) fn drag_keys(ui: &Ui, transform: &mut Transform) -> Option<DragKey> {
     let mut answer = None;
     ui.input_mut(|i| {
         i.events.retain(|event| {
@@ -607,7 +607,7 @@ pub(in crate::app) fn drag_keys(ui: &Ui, transform: &mut Transform) -> Option<Dr
 }
 
 /// Keys that belong to what is being drawn point by point, or dragged; they are taken from the frame's input.
-pub(in crate::app) fn keys(
+pub(crate) fn keys(
     ui: &Ui,
     response: &Response,
     gesture: &mut Gesture,
@@ -668,7 +668,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::scene::{BevLayout, VoxelGrid};
+    use scene::{BevLayout, VoxelGrid};
 
     #[test]
     fn shift_keeps_to_an_axis_and_to_steps() {

@@ -3,14 +3,14 @@
 use egui::{Align2, Color32, Painter, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, vec2};
 use glam::{DVec2, DVec3};
 
-use crate::app::canvas::ScreenMap;
-use crate::app::canvas_draw::{BoxLook, draw_box};
-use crate::app::canvas_tools::Gesture;
-use crate::app::state::{Tool, UiState};
-use crate::app::theme;
-use crate::editor::transform::{Axis, Kind};
-use crate::editor::{Shape as Area, measure};
-use crate::scene::{GridSpec, Scene};
+use crate::canvas::ScreenMap;
+use crate::canvas_draw::{BoxLook, draw_box};
+use crate::canvas_tools::Gesture;
+use crate::state::{Tool, UiState};
+use crate::theme;
+use editor::transform::{Axis, Kind};
+use editor::{Shape as Area, measure};
+use scene::{GridSpec, Scene};
 
 use super::bev::{BevGesture, pull};
 use super::gizmo::{Gizmo, Part};
@@ -18,7 +18,7 @@ use super::things::drag::Pull as ThingPull;
 use super::{PaintShape, RegionShape, gizmo, things};
 
 /// Draws over the finished view.
-pub(in crate::app) fn draw(
+pub(crate) fn draw(
     ui: &Ui,
     response: &Response,
     map: &ScreenMap,
@@ -119,13 +119,13 @@ fn region(painter: &Painter, map: &ScreenMap, state: &UiState) {
 }
 
 /// A rectangle that chooses.
-pub(in crate::app) fn marquee(painter: &Painter, rect: Rect) {
+pub(crate) fn marquee(painter: &Painter, rect: Rect) {
     painter.rect_filled(rect, 0.0, theme::accent().gamma_multiply(0.12));
     painter.rect_stroke(rect, 0.0, Stroke::new(1.2, theme::accent()), StrokeKind::Middle);
 }
 
 /// An outline that chooses.
-pub(in crate::app) fn lasso(painter: &Painter, mut points: Vec<Pos2>) {
+pub(crate) fn lasso(painter: &Painter, mut points: Vec<Pos2>) {
     points.extend(points.first().copied());
     painter.extend(Shape::dashed_line(
         &points,
@@ -136,7 +136,7 @@ pub(in crate::app) fn lasso(painter: &Painter, mut points: Vec<Pos2>) {
 }
 
 /// A line of text beside a point.
-pub(in crate::app) fn tag(painter: &Painter, at: Pos2, text: &str) {
+pub(crate) fn tag(painter: &Painter, at: Pos2, text: &str) {
     let font = egui::FontId::proportional(13.0);
     let galley = painter.layout_no_wrap(text.to_owned(), font, theme::ON_CANVAS);
     let rect = Rect::from_min_size(at + vec2(16.0, 14.0), galley.size()).expand2(vec2(6.0, 3.0));
@@ -244,7 +244,7 @@ fn measured(painter: &Painter, map: &ScreenMap, state: &UiState, next_m: Option<
 }
 
 /// Part of the gizmo that a drag holds.
-pub(in crate::app) fn held_part(axis: Option<Axis>, kind: Kind) -> Option<Part> {
+pub(crate) fn held_part(axis: Option<Axis>, kind: Kind) -> Option<Part> {
     match (kind, axis) {
         (Kind::Turn, _) => Some(Part::Ring),
         (_, axis) => axis.map(Part::Axis),

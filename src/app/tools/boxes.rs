@@ -3,19 +3,19 @@
 use egui::Context;
 use glam::DVec2;
 
-use crate::app::application::SceneloomApp;
-use crate::app::panels::toasts::Level;
-use crate::app::state::{Pane, Tool};
-use crate::editor::arrange::{self, Added, Clipboard};
-use crate::editor::{Edit, Shape, voxel_ops};
-use crate::generation::redraw::RedrawMask;
-use crate::scene::{Frame, GridSpec};
+use crate::application::SceneloomApp;
+use crate::panels::toasts::Level;
+use crate::state::{Pane, Tool};
+use editor::arrange::{self, Added, Clipboard};
+use editor::{Edit, Shape, voxel_ops};
+use job::redraw::RedrawMask;
+use scene::{Frame, GridSpec};
 
 use super::{Choose, PaintShape, ToolCommand};
 
 impl SceneloomApp {
     /// Carries out one command of the tools.
-    pub(in crate::app) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
+    pub(crate) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
         let ids = self.state.chosen();
         let frame = self.document.settled_scene().frame().clone();
         let of_voxels = command == ToolCommand::Delete && self.has_voxels();
@@ -39,7 +39,7 @@ impl SceneloomApp {
                 self.state.choose(&others, Choose::Only);
             }
             ToolCommand::Delete if self.has_voxels() => {
-                self.paint_chosen_voxels("Remove voxels", crate::scene::Class::Free);
+                self.paint_chosen_voxels("Remove voxels", scene::Class::Free);
             }
             ToolCommand::Delete => {
                 let label = of(&ids, "Delete box", "Delete boxes");
@@ -120,7 +120,7 @@ impl SceneloomApp {
             }
             ToolCommand::PaintChosenVoxels(class) => {
                 let label = match class {
-                    crate::scene::Class::Free => "Remove voxels",
+                    scene::Class::Free => "Remove voxels",
                     _ => "Recolour voxels",
                 };
                 self.paint_chosen_voxels(label, class);
@@ -165,7 +165,7 @@ impl SceneloomApp {
         }
     }
 
-    pub(in crate::app) fn note(&mut self, text: &str) {
+    pub(crate) fn note(&mut self, text: &str) {
         let now_s = self.now_s();
         self.toasts.push(Level::Info, text, now_s);
     }
@@ -206,7 +206,7 @@ impl SceneloomApp {
         }
     }
 
-    fn paint_chosen_voxels(&mut self, label: &'static str, class: crate::scene::Class) {
+    fn paint_chosen_voxels(&mut self, label: &'static str, class: scene::Class) {
         let cells = std::mem::take(&mut self.state.tools.voxels);
         if !cells.is_empty() {
             self.apply(label, &[Edit::PaintVoxels { cells, class }]);
@@ -248,7 +248,7 @@ impl SceneloomApp {
 }
 
 /// The name of a step for one box or for several.
-pub(in crate::app) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
+pub(crate) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
     if ids.len() > 1 { several } else { one }
 }
 

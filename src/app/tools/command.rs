@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::editor::arrange::Row;
-use crate::editor::transform::Kind;
-use crate::editor::voxel_ops::Cell;
-use crate::scene::{BevLayer, BoxId, Class};
+use editor::arrange::Row;
+use editor::transform::Kind;
+use editor::voxel_ops::Cell;
+use scene::{BevLayer, BoxId, Class};
 
 use super::options::{PaintShape, VoxelMode};
 

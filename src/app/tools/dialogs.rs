@@ -2,18 +2,18 @@
 
 use egui::{DragValue, Ui};
 
-use crate::app::command::Command;
-use crate::app::icons;
-use crate::app::panels::fields::{caption, number};
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::editor::arrange::{self, MAX_COPIES, RowAlong};
-use crate::scene::{Frame, SceneBox};
+use crate::command::Command;
+use crate::icons;
+use crate::panels::fields::{caption, number};
+use crate::state::UiState;
+use crate::theme;
+use editor::arrange::{self, MAX_COPIES, RowAlong};
+use scene::{Frame, SceneBox};
 
 use super::ToolCommand;
 
 /// The copies that the row of the dialog would add.
-pub(in crate::app) fn coming(frame: &Frame, state: &UiState) -> Vec<SceneBox> {
+pub(crate) fn coming(frame: &Frame, state: &UiState) -> Vec<SceneBox> {
     arrange::row_boxes(frame, &state.chosen(), &state.tools.row)
 }
 

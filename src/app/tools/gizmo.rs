@@ -3,12 +3,12 @@
 use egui::{Color32, Painter, Pos2, Stroke, vec2};
 use glam::{DVec2, DVec3};
 
-use crate::app::canvas::ScreenMap;
-use crate::app::state::{Tool, UiState};
-use crate::app::theme;
-use crate::editor::arrange::{boxes_of, middle_m};
-use crate::editor::transform::{Axis, Kind, Transform};
-use crate::scene::Frame;
+use crate::canvas::ScreenMap;
+use crate::state::{Tool, UiState};
+use crate::theme;
+use editor::arrange::{boxes_of, middle_m};
+use editor::transform::{Axis, Kind, Transform};
+use scene::Frame;
 
 use super::bev::transform;
 
@@ -21,7 +21,7 @@ const REACH: f32 = 7.0;
 const RING_STEPS: usize = 48;
 
 /// Colours of x, y and z, as everywhere in the field.
-pub(in crate::app) const COLORS: [Color32; 3] = [
+pub(crate) const COLORS: [Color32; 3] = [
     Color32::from_rgb(235, 92, 92),
     Color32::from_rgb(120, 200, 90),
     Color32::from_rgb(96, 150, 245),
@@ -29,7 +29,7 @@ pub(in crate::app) const COLORS: [Color32; 3] = [
 
 /// A part of the gizmo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Part {
+pub(crate) enum Part {
     /// An arrow, or the knob of a size.
     Axis(Axis),
     /// The ring.
@@ -37,7 +37,7 @@ pub(in crate::app) enum Part {
 }
 
 /// The gizmo of the chosen boxes on a view that `project` describes.
-pub(in crate::app) struct Gizmo<'a> {
+pub(crate) struct Gizmo<'a> {
     transform: Transform,
     middle_m: DVec3,
     length_m: f64,
@@ -73,7 +73,7 @@ impl<'a> Gizmo<'a> {
     fn arrow(&self, axis: Axis) -> Option<[Pos2; 2]> {
         let mut turned = self.transform.clone();
         if turned.kind == Kind::Scale {
-            turned.orientation = crate::editor::transform::Orientation::Local;
+            turned.orientation = editor::transform::Orientation::Local;
         }
         let along = turned.axis_in_ego(axis) * self.length_m;
         let from = (self.project)(self.middle_m + along * (HOLLOW / LENGTH))?;
@@ -144,12 +144,7 @@ fn distance(p: Pos2, a: Pos2, b: Pos2) -> f32 {
 }
 
 /// The arrow of the bird's-eye view under a point of the ground.
-pub(in crate::app) fn bev_axis_at(
-    map: &ScreenMap,
-    frame: &Frame,
-    state: &UiState,
-    at_m: DVec2,
-) -> Option<Axis> {
+pub(crate) fn bev_axis_at(map: &ScreenMap, frame: &Frame, state: &UiState, at_m: DVec2) -> Option<Axis> {
     let project = |p: DVec3| Some(map.to_screen(p.truncate()));
     let gizmo = Gizmo::new(frame, state, &[Axis::X, Axis::Y], DVec3::X, &project)?;
     if state.tools.gizmo == Kind::Turn {

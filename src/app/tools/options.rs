@@ -4,20 +4,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
-use crate::app::bev_image::DRAW_ORDER;
-use crate::app::canvas_tools;
-use crate::app::scenery::Drawer;
-use crate::app::state::UiState;
-use crate::editor::Edit;
-use crate::editor::arrange::{Clipboard, Pivot, Row};
-use crate::editor::flood::FillBounds;
-use crate::editor::lane_strip::LaneStrip;
-use crate::editor::measure::Measure;
-use crate::editor::transform::{Kind, Orientation, Snap};
-use crate::editor::voxel_ops::{self, Cell};
-use crate::generation::job::GenParams;
-use crate::generation::redraw::RedrawMask;
-use crate::scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
+use crate::bev_image::DRAW_ORDER;
+use crate::canvas_tools;
+use crate::scenery::Drawer;
+use crate::state::UiState;
+use editor::Edit;
+use editor::arrange::{Clipboard, Pivot, Row};
+use editor::flood::FillBounds;
+use editor::lane_strip::LaneStrip;
+use editor::measure::Measure;
+use editor::transform::{Kind, Orientation, Snap};
+use editor::voxel_ops::{self, Cell};
+use job::GenParams;
+use job::redraw::RedrawMask;
+use scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
 use super::Choose;
 
@@ -402,7 +402,7 @@ mod tests {
         ui.tools.layers_locked = BevLayer::Walkway.bit();
         let paint = |layer| Edit::PaintBev {
             layer,
-            shape: crate::editor::Shape::Cells(vec![[1, 1]]),
+            shape: editor::Shape::Cells(vec![[1, 1]]),
             value: true,
         };
         assert_eq!(ui.locked_layer(&[paint(BevLayer::StopLine)]), None);

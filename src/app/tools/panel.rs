@@ -2,16 +2,16 @@
 
 use egui::Ui;
 
-use crate::app::command::Command;
-use crate::app::icons::{self, section};
-use crate::app::panels::layers::caption;
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::editor::arrange::Pivot;
-use crate::editor::flood::FillBounds;
-use crate::editor::lane_strip::LaneStrip;
-use crate::editor::transform::{Kind, Orientation};
-use crate::scene::{Class, variants};
+use crate::command::Command;
+use crate::icons::{self, section};
+use crate::panels::layers::caption;
+use crate::state::UiState;
+use crate::theme;
+use editor::arrange::Pivot;
+use editor::flood::FillBounds;
+use editor::lane_strip::LaneStrip;
+use editor::transform::{Kind, Orientation};
+use scene::{Class, variants};
 
 use super::{PaintShape, RegionShape, ToolCommand, VoxelMode};
 
@@ -172,7 +172,7 @@ pub fn brush(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     ui.add_space(2.0);
 }
 
-pub(in crate::app) fn slider<N: egui::emath::Numeric>(
+pub(crate) fn slider<N: egui::emath::Numeric>(
     ui: &mut Ui,
     name: &str,
     value: &mut N,

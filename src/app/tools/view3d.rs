@@ -4,16 +4,16 @@
 use egui::{Modifiers, Pos2, Rect, Ui};
 use glam::{DVec2, DVec3};
 
-use crate::app::command::Command;
-use crate::app::pointer;
-use crate::app::state::{Tool, UiState, VoxelVerb};
-use crate::app::view3d::{View3d, View3dInput, point_of};
-use crate::app::view3d_tools::{Gesture3d, target};
-use crate::editor::pick::{self, Hit, Ray, VoxelHit};
-use crate::editor::transform::{Axis, Kind, Orientation, Pull, Transform};
-use crate::editor::voxel_ops::{self, Cell};
-use crate::editor::{Edit, choose};
-use crate::scene::{BoxId, Class, Frame, GridSpec};
+use crate::command::Command;
+use crate::pointer;
+use crate::state::{Tool, UiState, VoxelVerb};
+use crate::view3d::{View3d, View3dInput, point_of};
+use crate::view3d_tools::{Gesture3d, target};
+use editor::pick::{self, Hit, Ray, VoxelHit};
+use editor::transform::{Axis, Kind, Orientation, Pull, Transform};
+use editor::voxel_ops::{self, Cell};
+use editor::{Edit, choose};
+use scene::{BoxId, Class, Frame, GridSpec};
 
 use super::bev::{DragKey, chosen, drag_keys, step_name, transform};
 use super::gizmo::{Gizmo, Part};
@@ -119,7 +119,7 @@ fn step_of(verb: VoxelVerb) -> &'static str {
 }
 
 /// What a press begins, if it is for one of these tools.
-pub(in crate::app) fn begin(
+pub(crate) fn begin(
     view: &View3d,
     input: &View3dInput<'_>,
     state: &UiState,
@@ -263,12 +263,7 @@ fn voxels(
 }
 
 /// Takes over the class of the voxel under the pointer.
-pub(in crate::app) fn pick_class(
-    view: &View3d,
-    input: &View3dInput<'_>,
-    at: Pos2,
-    commands: &mut Vec<Command>,
-) {
+pub(crate) fn pick_class(view: &View3d, input: &View3dInput<'_>, at: Pos2, commands: &mut Vec<Command>) {
     let grid = &input.settled.frame().occupancy;
     let hit = view
         .pointer(at)
@@ -279,7 +274,7 @@ pub(in crate::app) fn pick_class(
 }
 
 /// What a move of the pointer changes.
-pub(in crate::app) fn drag(
+pub(crate) fn drag(
     gesture: &mut ViewGesture,
     view: &View3d,
     input: &View3dInput<'_>,
@@ -459,7 +454,7 @@ fn show_transform(
 }
 
 /// What letting go does.
-pub(in crate::app) fn end(
+pub(crate) fn end(
     gesture: ViewGesture,
     view: &View3d,
     input: &View3dInput<'_>,
@@ -537,7 +532,7 @@ fn flat(p: Pos2) -> DVec2 {
 }
 
 /// Keys and wheel that steer a drag; they are taken from the frame's input.
-pub(in crate::app) fn keys(
+pub(crate) fn keys(
     ui: &Ui,
     view: &View3d,
     gesture: &mut Gesture3d,
@@ -583,7 +578,7 @@ fn wheel(events: &[egui::Event]) -> i32 {
 }
 
 /// Draws over the finished view.
-pub(in crate::app) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, state: &UiState) {
+pub(crate) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, state: &UiState) {
     let painter = ui.painter().with_clip_rect(view.rect);
     let pointer = ui
         .input(|i| i.pointer.latest_pos())

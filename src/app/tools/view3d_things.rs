@@ -3,14 +3,14 @@
 use egui::{Modifiers, Pos2, Ui};
 use glam::{DVec2, DVec3};
 
-use crate::app::command::Command;
-use crate::app::pointer;
-use crate::app::state::{Tool, UiState};
-use crate::app::view3d::{View3d, View3dInput, point_of};
-use crate::app::view3d_tools::Gesture3d;
-use crate::editor::pick::{self, Hit};
-use crate::editor::pick_things;
-use crate::scene::ThingId;
+use crate::command::Command;
+use crate::pointer;
+use crate::state::{Tool, UiState};
+use crate::view3d::{View3d, View3dInput, point_of};
+use crate::view3d_tools::Gesture3d;
+use editor::pick::{self, Hit};
+use editor::pick_things;
+use scene::ThingId;
 
 use super::ToolCommand;
 use super::bev_draw;
@@ -186,11 +186,11 @@ pub(super) fn end(
 }
 
 /// Draws over the finished view.
-pub(in crate::app) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, state: &UiState) {
+pub(crate) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, state: &UiState) {
     let painter = ui.painter().with_clip_rect(view.rect);
     let pointer = ui
         .input(|i| i.pointer.latest_pos())
-        .filter(|p| view.rect.contains(*p) && state.hovered_pane == Some(crate::app::state::Pane::View3d));
+        .filter(|p| view.rect.contains(*p) && state.hovered_pane == Some(crate::state::Pane::View3d));
     let drawing = matches!(state.tool, Tool::Thing(_));
     let at_m = pointer.filter(|_| drawing).and_then(|p| ground_m(view, input, p));
     let project = |p: DVec3| view.project(p);

@@ -10,14 +10,14 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use super::cases::{self, Case};
 use super::edits::Bench;
 use super::load::{Load, machine};
-use crate::generation::composite::label_hash;
-use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, JobUpdate, Pipeline};
-use crate::generation::metrics::stats::median;
-use crate::generation::model::OccModels;
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::trade::{Cost, SizedTime, Stop, Stops};
-use crate::generation::world::draw::Draw;
-use crate::scene::{Scene, VoxelGrid};
+use job::composite::label_hash;
+use job::pipeline::OccPipeline;
+use job::{GenError, GenParams, GenReport, Job, JobCtx, JobUpdate, Pipeline};
+use metrics::stats::median;
+use nets::OccModels;
+use scene::{Scene, VoxelGrid};
+use trade::{Cost, SizedTime, Stop, Stops};
+use world::draw::Draw;
 
 /// Calibration ends after this, with what was measured so far.
 const AT_MOST: Duration = Duration::from_secs(28);
@@ -234,7 +234,7 @@ fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Re
     let report = |update: JobUpdate| {
         if let JobUpdate::Progress { stage, step, .. } = update {
             let done = match stage {
-                crate::generation::job::Stage::Denoise => params.steps as usize + step,
+                job::Stage::Denoise => params.steps as usize + step,
                 _ => step,
             };
             if half.fetch_max(done, Ordering::Relaxed) < done {

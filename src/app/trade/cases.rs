@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::app::cli::trials::Trial;
-use crate::editor::Document;
-use crate::generation::dataset::world_of;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Frame, Scene, SensorRig};
+use crate::cli::trials::Trial;
+use dataset::world_of;
+use editor::Document;
+use scene::{Frame, Scene, SensorRig};
+use world::voxelize::{Vertical, complete};
 
 /// Seed of the held-out worlds: that of `eval`.
 pub const TEST_SEED: u64 = 3;

@@ -11,17 +11,17 @@ use serde::{Deserialize, Serialize};
 use super::cases::Case;
 use super::load::forget_peak_memory;
 use super::settings::Setting;
-use crate::app::cli::output::peak_rss_mb;
-use crate::generation::composite::label_hash;
-use crate::generation::job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
-use crate::generation::metrics::invented::Invented;
-use crate::generation::metrics::iou::Confusion;
-use crate::generation::model::{LATENT, OccModels};
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::redraw;
-use crate::generation::region::Region;
-use crate::generation::world::draw::{Draw, hash};
-use crate::scene::{Class, GridSpec, Scene, VoxelGrid};
+use crate::cli::output::peak_rss_mb;
+use job::composite::label_hash;
+use job::invented::Invented;
+use job::pipeline::OccPipeline;
+use job::redraw;
+use job::region::Region;
+use job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
+use metrics::iou::Confusion;
+use nets::{LATENT, OccModels};
+use scene::{Class, GridSpec, Scene, VoxelGrid};
+use world::draw::{Draw, hash};
 
 /// Settings whose sources stand ready side by side while their runs take turns.
 const SIDE_BY_SIDE: usize = 8;
@@ -95,7 +95,7 @@ pub fn reference_params(base: GenParams, steps: u32) -> GenParams {
         inversion_iterations: 0,
         fine_steps: REFERENCE_FINE_STEPS,
         precision: Precision::F32,
-        quality: crate::generation::job::Quality::Preview, // no preview is decoded on the way
+        quality: job::Quality::Preview, // no preview is decoded on the way
         ..base
     }
 }
@@ -142,7 +142,7 @@ impl Bench {
             latent,
         };
         if let Some(path) = &path {
-            crate::app::cli::output::write_file(path, &pack(&reference))?;
+            crate::cli::output::write_file(path, &pack(&reference))?;
         }
         Ok(reference)
     }

@@ -55,11 +55,7 @@ fn describe_machine() -> String {
         .lines()
         .find_map(|l| l.strip_prefix("model name")?.split_once(": "));
     let threads = rayon::current_num_threads();
-    let bytes = if crate::generation::model::int8::fast_here() {
-        ", VNNI"
-    } else {
-        ""
-    };
+    let bytes = if nn::int8::fast_here() { ", VNNI" } else { "" };
     format!(
         "{}, {threads} threads{bytes}",
         name.map_or("unknown processor", |(_, name)| name.trim())

@@ -3,8 +3,8 @@
 use egui::{Align2, Color32, RichText, Ui, Vec2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
 
-use crate::app::picture::Picture;
-use crate::app::theme;
+use crate::picture::Picture;
+use crate::theme;
 
 /// Published wall times to be seen beside ours, s: all on graphics cards.
 pub const ANCHORS: [(f64, &str); 1] = [(3.25, "X-Scene, 20 steps\non an A6000: 3.25 s")];
@@ -216,7 +216,7 @@ pub fn front_plot(
 pub fn picture(marks: &[Mark], points: [f32; 2]) -> Picture {
     let ctx = egui::Context::default();
     theme::apply(&ctx, theme::Look::Light);
-    crate::app::paint::picture(&ctx, points, 2.0, |ui| {
+    crate::paint::picture(&ctx, points, 2.0, |ui| {
         let frame = egui::Frame::new().fill(theme::panel()).inner_margin(10.0);
         frame.show(ui, |ui| {
             let size = vec2(points[0] - 20.0, points[1] - 20.0);

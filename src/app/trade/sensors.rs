@@ -7,20 +7,20 @@ use serde_json::{Value, json};
 
 use super::cases::{TEST_SEED, held_out};
 use super::load::forget_peak_memory;
-use crate::app::cli::output::peak_rss_mb;
-use crate::generation::dataset::world_of;
-use crate::generation::metrics::iou::Confusion;
-use crate::generation::metrics::stats::{mean_ci95, quantile};
-use crate::generation::model::lidar::field::Sampling;
-use crate::generation::model::lidar::{LearnedRay, LidarNet};
-use crate::generation::model::{OccModels, fine_vae};
-use crate::generation::sensors::cloud::GaussianCloud;
-use crate::generation::sensors::learned;
-use crate::generation::sensors::lidar;
-use crate::generation::sensors::splat::{SplatOptions, VIEW_SIZE, render_rig};
-use crate::generation::trade::{Interval, bootstrap_median};
-use crate::scene::raster::bev_channels;
-use crate::scene::{CameraMaps, SensorRig};
+use crate::cli::output::peak_rss_mb;
+use dataset::world_of;
+use metrics::iou::Confusion;
+use metrics::stats::{mean_ci95, quantile};
+use nets::lidar::field::Sampling;
+use nets::lidar::{LearnedRay, LidarNet};
+use nets::{OccModels, fine_vae};
+use scene::raster::bev_channels;
+use scene::{CameraMaps, SensorRig};
+use sensors::cloud::GaussianCloud;
+use sensors::learned;
+use sensors::lidar;
+use sensors::splat::{SplatOptions, VIEW_SIZE, render_rig};
+use trade::{Interval, bootstrap_median};
 
 /// Samples per ray of the reference.
 const REFERENCE_SAMPLES: usize = 4096;

@@ -1,10 +1,10 @@
 //! The settings that are tried: the default, each knob by itself, and random ones across all knobs (a Latin hypercube:
 //! every knob's values occur equally often).
 
-use crate::generation::job::{GenParams, Precision};
-use crate::generation::solver::SolverKind;
-use crate::generation::trade::StopKnobs;
-use crate::generation::world::draw::Draw;
+use diffusion::solver::SolverKind;
+use job::{GenParams, Precision};
+use trade::StopKnobs;
+use world::draw::Draw;
 
 /// A setting with a name.
 #[derive(Clone, Debug)]

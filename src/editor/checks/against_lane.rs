@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::lanes::{gap_deg, near};
 use super::{Context, Finding, Fix, Severity, name_of};
-use crate::editor::Edit;
-use crate::scene::{BevLayer, Class, GridSpec, SceneBox};
+use crate::Edit;
+use scene::{BevLayer, Class, GridSpec, SceneBox};
 
 pub const NAME: &str = "against_lane";
 /// A vehicle is on a lane if its centre is this near to the lane's middle, m: half a lane.

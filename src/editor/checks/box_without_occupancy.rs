@@ -1,10 +1,10 @@
 //! Boxes in whose place no voxel of their class stands.
 
 use super::{Context, Finding, Fix, Severity, name_of};
-use crate::editor::Edit;
-use crate::scene::draft::box_columns;
-use crate::scene::raster::box_cells;
-use crate::scene::{GridSpec, SceneBox, VoxelGrid};
+use crate::Edit;
+use scene::draft::box_columns;
+use scene::raster::box_cells;
+use scene::{GridSpec, SceneBox, VoxelGrid};
 
 pub const NAME: &str = "box_without_occupancy";
 /// Voxels this far outside a box still belong to it, m.

@@ -1,9 +1,9 @@
 //! Voxels that hang in the air: nothing connects them to the ground.
 
 use super::{Context, Finding, Fix, Severity, middle};
-use crate::editor::Edit;
-use crate::scene::support::{CROWN, bins_set, groups, is_known_to_float, main_class, stem};
-use crate::scene::{Class, GridSpec};
+use crate::Edit;
+use scene::support::{CROWN, bins_set, groups, is_known_to_float, main_class, stem};
+use scene::{Class, GridSpec};
 
 pub const NAME: &str = "floating_voxels";
 /// Groups that are listed one by one, the largest; the rest is one finding.

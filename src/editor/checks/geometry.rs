@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::SceneBox;
+use scene::SceneBox;
 
 /// Area that two footprints share, m².
 pub fn shared_area_m2(a: &SceneBox, b: &SceneBox) -> f64 {
@@ -71,8 +71,8 @@ pub fn shared_height_m(a: &SceneBox, b: &SceneBox) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BoxId, Class};
     use glam::DVec3;
+    use scene::{BoxId, Class};
 
     fn block(x: f64, y: f64, length: f64, width: f64, yaw_deg: f64) -> SceneBox {
         SceneBox {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayout, PolylineKind};
+use scene::{BevLayout, PolylineKind};
 
 /// A piece of a lane's middle line near a place.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,8 +21,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::Edit;
-use crate::scene::draft::{ground_bin, ground_class};
-use crate::scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, support};
+use scene::draft::{ground_bin, ground_class};
+use scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, support};
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,9 +1,9 @@
 //! Voxels of a movable class that belong to no box.
 
 use super::{Context, Finding, Fix, Severity, middle, removal};
-use crate::editor::Edit;
-use crate::scene::raster::box_cells;
-use crate::scene::{Class, GridSpec, infer, support};
+use crate::Edit;
+use scene::raster::box_cells;
+use scene::{Class, GridSpec, infer, support};
 
 pub const NAME: &str = "occupancy_without_box";
 /// Voxels this far outside a box still belong to it, m: networks draw objects up to a voxel and a half too wide.
@@ -61,7 +61,7 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
 /// Boxes around the voxels, as a correction: the voxels stay as they are.
 fn boxes_for(context: &Context<'_>, class: Class, group: &[[usize; 3]]) -> Vec<Edit> {
     let found = infer::boxes_around(class, group);
-    let add = |b: crate::scene::SceneBox| Edit::Correct {
+    let add = |b: scene::SceneBox| Edit::Correct {
         edit: Box::new(Edit::AddBox {
             class,
             center_m: b.center_m,

@@ -3,9 +3,9 @@
 use super::geometry::{shared_area_m2, shared_height_m};
 use super::lanes::nearest;
 use super::{Context, Finding, Fix, Severity, name_of};
-use crate::editor::Edit;
-use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, SceneBox};
+use crate::Edit;
+use scene::raster::box_cells;
+use scene::{BevLayer, BevLayout, Class, GridSpec, SceneBox};
 
 pub const NAME: &str = "off_road";
 /// A vehicle is on the road if at least this share of its footprint is.

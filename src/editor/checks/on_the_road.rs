@@ -1,8 +1,8 @@
 //! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
 
 use super::{Context, Finding, Fix, Severity, middle, removal};
-use crate::scene::support::{bins_set, groups, main_class, supported};
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
+use scene::support::{bins_set, groups, main_class, supported};
+use scene::{BevLayer, BevLayout, Class, GridSpec};
 
 pub const NAME: &str = "on_the_road";
 /// What reaches down to so many bins above the ground stands in the way. In labels, whose voxels reach two bins further

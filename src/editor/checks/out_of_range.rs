@@ -1,8 +1,8 @@
 //! Boxes that stick in the ground, hover over it, or leave the grid at its top or sides.
 
 use super::{Context, Finding, Fix, Severity, name_of};
-use crate::editor::Edit;
-use crate::scene::{GridSpec, SceneBox};
+use crate::Edit;
+use scene::{GridSpec, SceneBox};
 
 pub const NAME: &str = "out_of_range";
 /// How far a bottom may lie from the ground, m: it is known by the column, and boxes are level.

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::geometry::{area_m2, shared_area_m2, shared_height_m, way_out_m};
 use super::unsound::are_duplicates;
 use super::{Context, Finding, Fix, Severity, name_of};
-use crate::editor::Edit;
+use crate::Edit;
 
 pub const NAME: &str = "overlapping_boxes";
 /// Boxes may share this part of the smaller footprint, and this height, without a word: labels are not exact.

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::*;
-use crate::editor::{Document, EditError};
-use crate::scene::draft::draft;
-use crate::scene::{BevLayer, BevLayout, Polyline, PolylineKind, SensorRig};
+use crate::{Document, EditError};
+use scene::draft::draft;
+use scene::{BevLayer, BevLayout, Polyline, PolylineKind, SensorRig};
 
 fn object(id: u32, class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
     let size_m = DVec3::from_array(class.typical_size_m().expect("an object"));
@@ -94,11 +94,7 @@ fn paint(scene: &mut Scene, class: Class, cells: Vec<[usize; 3]>) {
 fn all_is_well_on_a_good_street() {
     assert_eq!(run_checks(&street(&traffic()), None), []);
     assert_eq!(run_checks(&street(&[]), None), []);
-    let empty = Frame::new(
-        BevLayout::default(),
-        BTreeMap::new(),
-        crate::scene::VoxelGrid::new(),
-    );
+    let empty = Frame::new(BevLayout::default(), BTreeMap::new(), scene::VoxelGrid::new());
     assert_eq!(
         run_checks(&Scene::single("empty", empty, Arc::default(), 0), None),
         []
@@ -147,7 +143,7 @@ fn floating_voxels_are_found_and_removed() {
     only(&scene, "floating_voxels", None);
     let mut observed = vec![true; GridSpec::VOXELS];
     observed[(60 * GridSpec::NY + 60) * GridSpec::NZ + 7] = false;
-    scene.frame_mut().inferred.unobserved = crate::scene::Unobserved::from_observed(&observed);
+    scene.frame_mut().inferred.unobserved = scene::Unobserved::from_observed(&observed);
     assert_eq!(run_checks(&scene, None), []);
 }
 
@@ -169,7 +165,7 @@ fn a_box_needs_voxels_and_voxels_need_a_box() {
     let mut scene = street(&traffic());
     let emptied = |scene: &mut Scene, b: &SceneBox| {
         let frame = scene.frame_mut();
-        for (x, y, layers) in crate::scene::draft::box_columns(b) {
+        for (x, y, layers) in scene::draft::box_columns(b) {
             frame.occupancy.column_mut(x, y)[..layers].fill(Class::FREE);
             frame.occupancy.set(x, y, 0, Class::DriveableSurface.id());
         }

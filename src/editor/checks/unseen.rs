@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::box_without_occupancy::voxels;
 use super::{Context, Finding, Severity, name_of};
-use crate::scene::BoxId;
+use scene::BoxId;
 
 pub const NO_CAMERA: &str = "unseen_by_cameras";
 pub const NO_LIDAR: &str = "no_lidar_returns";

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::{Context, Finding, Fix, Severity, middle, name_of, removal};
-use crate::editor::Edit;
-use crate::scene::{BoxId, Class, SceneBox};
+use crate::Edit;
+use scene::{BoxId, Class, SceneBox};
 
 pub const NAME: &str = "unsound";
 /// Boxes of one class whose centres, edges and headings differ by less are the same object.

@@ -3,9 +3,9 @@
 
 use super::floating_voxels::lowest_m;
 use super::{Context, Finding, Fix, Severity, middle};
-use crate::editor::Edit;
-use crate::scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
-use crate::scene::{Class, GridSpec};
+use crate::Edit;
+use scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
+use scene::{Class, GridSpec};
 
 pub const NAME: &str = "unsupported_parts";
 /// Smaller parts are noise of labels, voxels.

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{Finding, names};
-use crate::editor::EditError;
-use crate::scene::{BoxId, Frame, Waiver};
+use crate::EditError;
+use scene::{BoxId, Frame, Waiver};
 
 /// Findings without a box are the same as long as they are this near, m.
 const NEAR_M: f64 = 2.0;
@@ -29,7 +29,7 @@ pub fn open<'a>(frame: &'a Frame, findings: &'a [Finding]) -> impl Iterator<Item
 }
 
 /// A sound waiver. Errors name what is wrong with it.
-pub(in crate::editor) fn checked(
+pub(crate) fn checked(
     check: &str,
     box_id: Option<BoxId>,
     where_m: DVec3,

@@ -9,8 +9,8 @@ use super::layout::Window;
 use super::levels::{Levels, Off, Stretch, body_edges};
 use super::sampling::Row;
 use super::xml::{Skipped, count};
-use crate::scene::background::Bridge;
-use crate::scene::{Form, Relief};
+use scene::background::Bridge;
+use scene::{Form, Relief};
 
 /// A step along a deck, m.
 const STEP_M: f64 = 2.0;

@@ -148,7 +148,7 @@ fn bounded(value: f64, most: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::opendrive::lanes::CubicPiece;
+    use crate::opendrive::lanes::CubicPiece;
 
     fn cubics(pieces: &[(f64, [f64; 4])]) -> Cubics {
         Cubics(pieces.iter().map(|&(s_m, k)| CubicPiece { s_m, k }).collect())

@@ -14,8 +14,8 @@ use super::sampling::{BUDGET, Row, walk};
 use super::things::Things;
 use super::xml::{Skipped, count};
 use super::{Road, RoadNetwork, tidy};
-use crate::scene::raster::{draw_polyline, polygon_cells};
-use crate::scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind};
+use scene::raster::{draw_polyline, polygon_cells};
+use scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind};
 
 /// The square of the grid around the ego, and where it lies in the file.
 #[derive(Clone, Copy, Debug)]

@@ -10,8 +10,8 @@ use super::lanes::{Ground, LaneSection};
 use super::layout::Window;
 use super::sampling::{BUDGET, Row, walk};
 use super::{Road, RoadEnd, RoadNetwork};
-use crate::scene::GridSpec;
-use crate::scene::raster::polygon_cells;
+use scene::GridSpec;
+use scene::raster::polygon_cells;
 
 /// Surfaces further apart than this are a bridge and what is below it, m.
 const CLEARANCE_M: f64 = 3.0;

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::lanes::{Ground, LaneKind, LaneSection, Travel};
 use super::sampling::Row;
-use crate::scene::PolylineKind;
+use scene::PolylineKind;
 
 /// Narrowest lane that takes part in dividers, m.
 const NARROWEST_M: f64 = 0.4;

@@ -8,7 +8,7 @@ use super::standing::Standing;
 use super::xml::{
     Result, Skipped, child, count, count_others, elements, named, number, number_or, number_or_none, shown,
 };
-use crate::scene::background::PostKind;
+use scene::background::PostKind;
 
 /// Sign number of the stop line in the German catalogue, which OpenDRIVE files of any country use.
 const STOP_LINE_SIGN: &str = "294";

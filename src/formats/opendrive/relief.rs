@@ -1,6 +1,6 @@
 //! The ground between and beyond roads: a membrane stretched over the road surfaces, level at the edges of the window.
 
-use crate::scene::{GridSpec, Relief};
+use scene::{GridSpec, Relief};
 
 /// Heights below this are rounding, m.
 const TINY_M: f64 = 1e-4;

@@ -1,6 +1,6 @@
 //! What the objects of a file that stand beside the road are, by the names that files give them.
 
-use crate::scene::background::{LineKind, PostKind, TreeKind};
+use scene::background::{LineKind, PostKind, TreeKind};
 
 /// Something that stands beside the road.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ use super::lines::clipped;
 use super::objects::{Copy, ObjectKind, Repeat, RoadObject, shoelace_m2};
 use super::standing::Standing;
 use super::xml::{Skipped, count};
-use crate::scene::background::{Building, Facade, Line, LineKind, Post, PostKind, Roof, Shrubs, Tree};
-use crate::scene::{BevLayer, BevLayout, Form, GridSpec};
+use scene::background::{Building, Facade, Line, LineKind, Post, PostKind, Roof, Shrubs, Tree};
+use scene::{BevLayer, BevLayout, Form, GridSpec};
 
 /// Things of one window, at most.
 const MOST_THINGS: usize = 4000;

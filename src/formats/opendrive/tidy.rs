@@ -1,6 +1,6 @@
 //! Small gaps in drivable ground, closed. Grids are `[x][y]`, one flag per cell.
 
-use crate::scene::GridSpec;
+use scene::GridSpec;
 
 const SIDES: [(i64, i64); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
 const AROUND: [(i64, i64); 9] = [

@@ -10,8 +10,8 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
-use crate::scene::grid::{BrickGrid, NOT_PAINTED};
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Polyline, VoxelGrid};
+use scene::grid::{BrickGrid, NOT_PAINTED};
+use scene::{BevLayer, BevLayout, Class, GridSpec, Polyline, VoxelGrid};
 
 use super::ProjectError;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{Frame, Scene};
+use scene::{Frame, Scene};
 
 use super::archive::within;
 use super::{MAX_FRAMES, ProjectError};

@@ -3,14 +3,12 @@
 use safetensors::tensor::Dtype;
 
 use super::Shard;
-use crate::generation::model::layout::input::{
-    LayoutInput, MAP_CHANNELS, MAP_SIDE, VALUES, input_of, map_raster,
-};
-use crate::generation::placement::graph_of::graph_of;
-use crate::generation::world::draw::{Draw, hash};
-use crate::generation::world::{template, traffic};
-use crate::scene::road_map::RoadMap;
-use crate::scene::{BevLayout, BoxId, SceneBox};
+use graph_layout::graph_of::graph_of;
+use nets::layout::input::{LayoutInput, MAP_CHANNELS, MAP_SIDE, VALUES, input_of, map_raster};
+use scene::road_map::RoadMap;
+use scene::{BevLayout, BoxId, SceneBox};
+use world::draw::{Draw, hash};
+use world::{template, traffic};
 
 /// Nodes of a frame; unused ones have kind 0.
 pub const NODES: usize = 64;

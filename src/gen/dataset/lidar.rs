@@ -4,10 +4,10 @@ use glam::{DQuat, DVec3};
 use safetensors::tensor::Dtype;
 
 use super::{Shard, VOXELS, voxels, world_of};
-use crate::generation::sensors::truth::{self, RANGE_STEP_M, TruthRay};
-use crate::generation::world::draw::Draw;
-use crate::generation::world::voxelize::{Drive, Vertical, complete, labels};
-use crate::scene::{BevLayout, LidarPattern, SensorRig, VoxelGrid};
+use scene::{BevLayout, LidarPattern, SensorRig, VoxelGrid};
+use sensors::truth::{self, RANGE_STEP_M, TruthRay};
+use world::draw::Draw;
+use world::voxelize::{Drive, Vertical, complete, labels};
 
 /// One training frame.
 pub struct LidarFrame {
@@ -116,7 +116,7 @@ impl Shard for LidarFrame {
 mod tests {
     use super::super::write;
     use super::*;
-    use crate::generation::dataset::SHARD_FRAMES;
+    use crate::SHARD_FRAMES;
 
     #[test]
     fn shards_are_repeatable_and_kept() {

@@ -3,11 +3,12 @@
 use safetensors::tensor::Dtype;
 
 use super::shard::Shard;
-use crate::generation::world::draw::hash;
-use crate::generation::world::voxelize::{Drive, Vertical, complete, observed_labels};
-use crate::generation::world::{World, template, terrain::Terrain, traffic};
-use crate::scene::inferred::KNOWN;
-use crate::scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
+use scene::inferred::KNOWN;
+use scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
+use world::draw::hash;
+use world::terrain::Terrain;
+use world::voxelize::{Drive, Vertical, complete, observed_labels};
+use world::{World, template, traffic};
 
 /// One training frame of the occupancy networks.
 pub struct OccupancyFrame {

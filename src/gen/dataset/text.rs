@@ -4,12 +4,12 @@ use safetensors::tensor::Dtype;
 
 use super::Shard;
 use super::layout::street;
-use crate::generation::model::text::{TOKENS, token_ids};
-use crate::generation::placement::describe::sentence;
-use crate::generation::placement::facts::Facts;
-use crate::generation::world::draw::hash;
-use crate::scene::BevLayout;
-use crate::scene::road_map::RoadMap;
+use graph_layout::describe::sentence;
+use graph_layout::facts::Facts;
+use nets::text::{TOKENS, token_ids};
+use scene::BevLayout;
+use scene::road_map::RoadMap;
+use world::draw::hash;
 
 /// Sentences about one scene: one that says nearly all, one that says half, two short ones.
 pub const SHARES: [f64; 4] = [0.95, 0.5, 0.25, 0.12];

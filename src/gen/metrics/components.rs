@@ -1,6 +1,6 @@
 //! Voxels that hang together: groups of 26 neighbours, as flat indices of `[x][y][z]`.
 
-use crate::scene::{GridSpec, VoxelGrid};
+use scene::{GridSpec, VoxelGrid};
 
 const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 

@@ -8,11 +8,11 @@
 
 use serde::Deserialize;
 
-use crate::generation::model::ModelError;
-use crate::generation::model::encoder::Encoder;
-use crate::generation::model::map::Window;
-use crate::generation::weights::{WeightFile, WeightsError};
-use crate::scene::VoxelGrid;
+use nets::ModelError;
+use nets::encoder::Encoder;
+use nn::map::Window;
+use nn::weights::{WeightFile, WeightsError};
+use scene::VoxelGrid;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,7 +30,7 @@ pub struct Extractor {
 impl Extractor {
     /// The one that ships with the program.
     pub fn bundled() -> Result<Self, WeightsError> {
-        let bytes = include_bytes!("../../../assets/weights/f3d.safetensors");
+        let bytes = assets::weights::F3D;
         let mut file = WeightFile::parse("f3d.safetensors", bytes)?;
         let Config { widths, kernels } = file.config("config")?;
         if widths.len() != 3 || kernels.len() != 3 {
@@ -65,16 +65,16 @@ impl Extractor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::dataset::occupancy_frame;
-    use crate::generation::metrics::frechet::frechet_distance;
-    use crate::generation::metrics::kernel::{Kernel, mmd2};
+    use crate::frechet::frechet_distance;
+    use crate::kernel::{Kernel, mmd2};
+    use dataset::occupancy_frame;
 
     /// Worlds are nearer to other worlds than their drafts are, and those than labels: by F3D and by KID.
     #[test]
     fn distances_rank_what_looks_alike() {
         let extractor = Extractor::bundled().expect("the shipped weights load");
         let frames: Vec<_> = (0..24).map(|i| occupancy_frame(2, i, |_| None)).collect();
-        let of = |pick: fn(&crate::generation::dataset::OccupancyFrame) -> &VoxelGrid, part: usize| {
+        let of = |pick: fn(&dataset::OccupancyFrame) -> &VoxelGrid, part: usize| {
             let some = frames[part * 12..][..12].iter();
             some.map(|f| extractor.features(pick(f)).expect("sound labels"))
                 .collect::<Vec<_>>()

@@ -1,7 +1,7 @@
 //! Intersection over union of label grids, after Occ3D: free is excluded from the mean, and so is a
 //! class that neither grid has; how many classes were present is told beside the figure.
 
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Voxels counted per pair of true and predicted label; sums over frames, u64 so that it never saturates.
 #[derive(Clone, Debug, PartialEq, Eq)]

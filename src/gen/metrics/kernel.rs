@@ -114,7 +114,7 @@ pub fn mmd2_with_interval(
 mod tests {
     use super::super::reference::{Reference, rows};
     use super::*;
-    use crate::generation::rng::{Stream, normal_field};
+    use numeric::rng::{Stream, normal_field};
 
     /// Row 56 of the extremes table; NumPy 2.4.6, U-statistics, tolerance 1e-12 (cubic 1e-11 relative).
     #[test]

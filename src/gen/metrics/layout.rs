@@ -7,10 +7,10 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::stats::{mean_ci95, quantile};
-use crate::scene::raster::box_cells;
-use crate::scene::relations::{STANDING_MPS, overlap_m};
-use crate::scene::road_map::RoadMap;
-use crate::scene::{Class, GridSpec, SceneBox};
+use scene::raster::box_cells;
+use scene::relations::{STANDING_MPS, overlap_m};
+use scene::road_map::RoadMap;
+use scene::{Class, GridSpec, SceneBox};
 
 /// Spread of one quantity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -238,7 +238,7 @@ pub fn real_figures() -> BTreeMap<String, Spread> {
         #[serde(flatten)]
         rest: BTreeMap<String, serde_json::Value>,
     }
-    let text = include_str!("../../../assets/statistics/layout.json");
+    let text = assets::statistics::LAYOUT;
     let Ok(file) = serde_json::from_str::<File>(text) else {
         return BTreeMap::new();
     };
@@ -310,7 +310,7 @@ pub fn diversity(layouts: &[BTreeMap<u32, SceneBox>]) -> Diversity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::{template, traffic};
+    use world::{template, traffic};
 
     #[test]
     fn procedural_streets_have_rows_and_are_sound() {

@@ -109,7 +109,7 @@ fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::draw::Draw;
+    use world::draw::Draw;
 
     #[test]
     fn known_odds_are_found_again() {

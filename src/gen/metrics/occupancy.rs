@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::components::{components, flat};
-use crate::scene::{Class, GridSpec, Relief, VoxelGrid};
+use scene::{Class, GridSpec, Relief, VoxelGrid};
 
 const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 /// Distance in the flat `[x][y][z]` array to the next voxel along each axis.

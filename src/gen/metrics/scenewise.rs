@@ -138,7 +138,7 @@ pub fn kernel(x: &[Windows], y: &[Windows]) -> Result<Distance, MetricError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::draw::Draw;
+    use world::draw::Draw;
 
     /// Windows around something of their scene's own; `shift` moves one window in four.
     fn set(seed: u64, scenes: usize, shift: f64) -> Vec<Windows> {

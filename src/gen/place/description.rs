@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::generation::words::beside::Said;
-use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
-use crate::scene::{BoxLabel, Class};
+use crate::beside_road::Said;
+use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
+use scene::{BoxLabel, Class};
 
 macro_rules! named {
     ($(#[$doc:meta])* $name:ident { $($variant:ident = $text:literal),+ $(,)? }) => {
@@ -209,7 +209,7 @@ pub struct Description {
 }
 
 impl Description {
-    /// Text for [`Scene::prompt`](crate::scene::Scene): time, weather and surroundings.
+    /// Text for [`Scene::prompt`](scene::Scene): time, weather and surroundings.
     pub fn style(&self) -> String {
         let words = [
             self.time_of_day.map(TimeOfDay::name),

@@ -4,8 +4,8 @@
 use glam::DVec2;
 
 use super::lanes::LaneMap;
-use crate::scene::graph::{LaneRole, RelationKind};
-use crate::scene::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
+use scene::graph::{LaneRole, RelationKind};
+use scene::{BevLayer, BoxId, BoxLabel, Class, SceneBox};
 
 /// What a relation is to.
 #[derive(Clone, Copy, Debug, PartialEq)]

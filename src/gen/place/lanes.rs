@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::scene::graph::LaneRole;
-use crate::scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
+use scene::graph::LaneRole;
+use scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
 
 /// A point in the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]

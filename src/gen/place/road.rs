@@ -3,10 +3,10 @@
 use super::description::{Anchor, Description, Environment, Road};
 use super::lanes::LaneMap;
 use super::to_graph::roles;
-use crate::generation::world::draw::hash;
-use crate::generation::world::template;
-use crate::scene::graph::{LaneRole, NodeKind, ObjectState, RelationKind, SceneGraph};
-use crate::scene::{BevLayer, BevLayout, PolylineKind};
+use scene::graph::{LaneRole, NodeKind, ObjectState, RelationKind, SceneGraph};
+use scene::{BevLayer, BevLayout, PolylineKind};
+use world::draw::hash;
+use world::template;
 
 /// A chosen road.
 #[derive(Clone, Debug)]
@@ -127,10 +127,10 @@ pub fn lacks(d: &Description, graph: &SceneGraph, layout: &BevLayout) -> Vec<Str
 }
 
 /// How many of given vehicles do not stand on the road of a layout, or drive across their lane.
-pub fn misplaced(layout: &BevLayout, boxes: &[crate::scene::SceneBox]) -> usize {
+pub fn misplaced(layout: &BevLayout, boxes: &[scene::SceneBox]) -> usize {
     let map = LaneMap::new(layout);
     let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
-    let wrong = |b: &&crate::scene::SceneBox| {
+    let wrong = |b: &&scene::SceneBox| {
         let p = b.center_m.truncate();
         let off = !b.footprint().iter().all(|c| map.has(road, *c));
         let against =
@@ -139,13 +139,13 @@ pub fn misplaced(layout: &BevLayout, boxes: &[crate::scene::SceneBox]) -> usize 
     };
     boxes
         .iter()
-        .filter(|b| b.class.is_vehicle() || b.class == crate::scene::Class::Motorcycle)
+        .filter(|b| b.class.is_vehicle() || b.class == scene::Class::Motorcycle)
         .filter(wrong)
         .count()
 }
 
 /// A road under given objects: of the templates (or the one that was asked for) the variation that misplaces the fewest.
-pub fn under(d: &Description, graph: &SceneGraph, boxes: &[crate::scene::SceneBox], seed: u64) -> Chosen {
+pub fn under(d: &Description, graph: &SceneGraph, boxes: &[scene::SceneBox], seed: u64) -> Chosen {
     let mut best: Option<(usize, Chosen)> = None;
     let names: Vec<&'static str> = template::TEMPLATES
         .iter()
@@ -296,10 +296,7 @@ fn judge(
         wishes += 3 * usize::from(!there);
         break;
     }
-    let people = d
-        .foreground
-        .iter()
-        .any(|o| o.class == crate::scene::Class::Pedestrian);
+    let people = d.foreground.iter().any(|o| o.class == scene::Class::Pedestrian);
     wishes += usize::from(people && walkway < 500);
     // a street has sidewalks, unless it is said to have none
     let street = d.road.kind != Some(Road::Highway) && !d.road.no_sidewalk;
@@ -309,7 +306,7 @@ fn judge(
     let strip = layout.count(BevLayer::CarparkArea);
     // Right of the ego vehicle there must be room for what drives or parks there.
     let right = d.foreground.iter().any(|o| {
-        o.class != crate::scene::Class::Pedestrian
+        o.class != scene::Class::Pedestrian
             && o.relations
                 .iter()
                 .any(|r| r.relation == RelationKind::RightOf && r.anchor == Anchor::Ego)
@@ -334,7 +331,7 @@ fn judge(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::place::to_graph::to_graph;
+    use crate::to_graph::to_graph;
 
     /// Three lanes each way of a motorway are there, or it is said that they are not; so many as nobody could tell are not denied.
     #[test]

@@ -8,12 +8,12 @@ use glam::{DVec2, DVec3};
 use super::holds::{Target, course, ego, holds, measured, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
 use super::spots::{Spot, spots};
-use crate::generation::world::draw::Draw;
-use crate::scene::graph::{
+use scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
-use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
+use scene::raster::box_cells;
+use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
+use world::draw::Draw;
 
 /// As far off, m, is wholly wrong for what should be near.
 const FAR_M: f64 = 9.0;

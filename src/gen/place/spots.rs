@@ -8,9 +8,9 @@ use glam::{DVec2, DVec3};
 use super::holds::{Target, course};
 use super::lanes::{LaneMap, REACH_M};
 use super::rules::{is_roadside, stands};
-use crate::generation::world::draw::Draw;
-use crate::scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
-use crate::scene::{BevLayer, Class};
+use scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
+use scene::{BevLayer, Class};
+use world::draw::Draw;
 
 /// A place to try.
 #[derive(Clone, Copy, Debug)]

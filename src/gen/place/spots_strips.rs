@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec2;
 
 use super::spots::Gather;
-use crate::scene::graph::LaneRole;
-use crate::scene::{BevLayer, Class, GridSpec};
+use scene::graph::LaneRole;
+use scene::{BevLayer, Class, GridSpec};
 
 impl Gather<'_, '_> {
     /// At the outer edge of the outermost lanes, in the direction of the lane.

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::description::{Anchor, Density, Description, ObjectSpec, Stated};
-use crate::generation::world::draw::Draw;
-use crate::scene::Class;
-use crate::scene::graph::{Edge, LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph};
+use scene::Class;
+use scene::graph::{Edge, LaneRole, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph};
+use world::draw::Draw;
 
 /// Most things of one kind that a scene is asked for.
 pub const MOST_OF_ONE: u32 = 400;
@@ -32,7 +32,7 @@ pub fn to_graph(d: &Description, seed: u64) -> Graphed {
     let add = |out: &mut Graphed, node: ObjectNode| {
         // Ids by hand: asking for the largest of many is slow.
         let id = out.graph.nodes.len() as u32;
-        out.graph.nodes.push(crate::scene::graph::Node {
+        out.graph.nodes.push(scene::graph::Node {
             id,
             kind: NodeKind::Object(node),
             locked: None,
@@ -193,7 +193,7 @@ fn fill(d: &Description, seed: u64, out: &mut Graphed) {
             let id = out.graph.nodes.len() as u32;
             let mut node = ObjectNode::new(*class);
             node.state = *state;
-            out.graph.nodes.push(crate::scene::graph::Node {
+            out.graph.nodes.push(scene::graph::Node {
                 id,
                 kind: NodeKind::Object(node),
                 locked: None,

@@ -9,9 +9,9 @@ use super::border::Border;
 use super::lidar::{EgoBox, Rays};
 use super::material::{Materials, Met};
 use super::own_body::{OwnBody, is_blind};
-use crate::generation::world::Surface;
-use crate::generation::world::draw::{Draw, hash};
-use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, VoxelGrid};
+use scene::{Class, GridSpec, LidarPattern, LidarPoint, VoxelGrid};
+use world::Surface;
+use world::draw::{Draw, hash};
 
 /// Rays that one thread works on in a row.
 const RAYS: usize = 512;
@@ -178,10 +178,10 @@ pub fn is_beyond(point: &LidarPoint) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::sensors::caster::Caster;
-    use crate::generation::world::World;
-    use crate::generation::world::voxelize::{Vertical, complete};
-    use crate::scene::SensorRig;
+    use crate::caster::Caster;
+    use scene::SensorRig;
+    use world::World;
+    use world::voxelize::{Vertical, complete};
 
     /// Both options off is the grid alone; on, only slots on the roof and slots without an echo change.
     #[test]

@@ -7,9 +7,9 @@ use glam::{DVec2, DVec3};
 use super::border::{Border, GRID_M};
 use super::exits::{Exit, exits};
 use super::plots;
-use crate::generation::world::World;
-use crate::scene::solid::Solid;
-use crate::scene::{Class, Polyline, VoxelGrid};
+use scene::solid::Solid;
+use scene::{Class, Polyline, VoxelGrid};
+use world::World;
 
 /// How far the continuation reaches from the middle, m.
 pub const REACH_M: f64 = 128.0;
@@ -274,7 +274,7 @@ pub(super) fn leaves_grid(origin: DVec3, dir: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::voxelize::{Vertical, complete};
+    use world::voxelize::{Vertical, complete};
 
     /// All hits lie beyond the grid and within range; rays of any kind are survived.
     #[test]

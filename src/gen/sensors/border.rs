@@ -3,8 +3,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::generation::world::World;
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
+use world::World;
 
 /// Half the edge of the grid, m.
 pub const GRID_M: f64 = 40.0;
@@ -236,7 +236,7 @@ fn nearest(p: DVec2) -> (Side, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::voxelize::{Vertical, complete};
+    use world::voxelize::{Vertical, complete};
 
     #[test]
     fn a_world_and_its_voxels_have_the_same_edge() {

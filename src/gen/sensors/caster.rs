@@ -8,8 +8,8 @@ use super::around::{Around, Height};
 use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Met, Packet};
-use crate::scene::grid::{BRICK, BRICKS};
-use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
+use scene::grid::{BRICK, BRICKS};
+use scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
 
 /// With more changed boxes than this, all rays are cast: testing them would cost as much.
 const MAX_BOXES: usize = 16;
@@ -297,8 +297,8 @@ impl Changed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::draw::Draw;
-    use crate::scene::SensorRig;
+    use scene::SensorRig;
+    use world::draw::Draw;
 
     fn world() -> VoxelGrid {
         let mut grid = VoxelGrid::new();

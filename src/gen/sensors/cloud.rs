@@ -1,9 +1,9 @@
 //! Voxels as Gaussians: one per occupied voxel, at its centre, half a voxel wide.
 
 use super::raycast::ColumnMasks;
-use crate::scene::sensor_data::RenderId;
-pub use crate::scene::splats::Gaussian;
-use crate::scene::{BevLayer, Class, GridSpec, VoxelGrid};
+use scene::sensor_data::RenderId;
+pub use scene::splats::Gaussian;
+use scene::{BevLayer, Class, GridSpec, VoxelGrid};
 
 /// Standard deviation of a voxel's Gaussian: half a voxel (UniScene; X-Scene uses 0.135 m).
 pub const VOXEL_STD_M: f32 = 0.2;

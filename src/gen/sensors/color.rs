@@ -1,7 +1,7 @@
 //! Pictures of the maps: render ids and depths as RGBA, depths as 16-bit millimetres.
 
-use crate::scene::sensor_data::{RENDER_IDS, RenderId};
-use crate::scene::{BevLayer, CameraMaps, Class, MultiPlaneImage, PerspectiveMap};
+use scene::sensor_data::{RENDER_IDS, RenderId};
+use scene::{BevLayer, CameraMaps, Class, MultiPlaneImage, PerspectiveMap};
 
 /// sRGB colour of pixels on which nothing was drawn.
 pub const SKY: [u8; 3] = [46, 58, 78];

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::border::{Border, DEPTHS, GRID_M, SIDES, Side};
-use crate::scene::{Class, GridSpec, Polyline, PolylineKind};
+use scene::{Class, GridSpec, Polyline, PolylineKind};
 
 /// Narrower ground is no road, wider is one along the edge, cells.
 const LEAST: usize = 7;

@@ -5,11 +5,11 @@ use glam::DVec3;
 use super::around::{Around, Height};
 use super::lidar::{EgoBox, Rays};
 use super::texture::textured;
-use crate::generation::model::ModelError;
-use crate::generation::model::lidar::field::{Field, Ray, Sampling};
-use crate::generation::model::lidar::{LearnedRay, LidarNet};
-use crate::generation::world::draw::{Draw, hash};
-use crate::scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
+use nets::ModelError;
+use nets::lidar::field::{Field, Ray, Sampling};
+use nets::lidar::{LearnedRay, LidarNet};
+use scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
+use world::draw::{Draw, hash};
 
 /// What happens to echoes that a real sensor may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,9 +161,9 @@ pub fn points(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::model::lidar::drop_probability;
-    use crate::generation::world::World;
-    use crate::generation::world::voxelize::{Vertical, complete};
+    use nets::lidar::drop_probability;
+    use world::World;
+    use world::voxelize::{Vertical, complete};
 
     /// Row 51 of the extremes table: extreme logits, exactly one half, NaN; the same answer every time.
     #[test]

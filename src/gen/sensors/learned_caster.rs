@@ -9,11 +9,11 @@ use rayon::prelude::*;
 use super::around::{Around, Height};
 use super::learned::{self, Drops};
 use super::lidar::{EgoBox, Rays};
-use crate::generation::model::ModelError;
-use crate::generation::model::lidar::field::{Field, Ray, Sampling};
-use crate::generation::model::lidar::update::{Changed, Region};
-use crate::generation::model::lidar::{LearnedRay, LidarNet};
-use crate::scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
+use nets::ModelError;
+use nets::lidar::field::{Field, Ray, Sampling};
+use nets::lidar::update::{Changed, Region};
+use nets::lidar::{LearnedRay, LidarNet};
+use scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// A voxel's numbers reach half a voxel beyond it, as far as the neighbours' centres.
 const HALO: f64 = 0.5;
@@ -196,10 +196,10 @@ fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
 mod tests {
     use super::super::around::is_own;
     use super::*;
-    use crate::generation::world::World;
-    use crate::generation::world::draw::Draw;
-    use crate::generation::world::voxelize::{Vertical, complete};
-    use crate::scene::Class;
+    use scene::Class;
+    use world::World;
+    use world::draw::Draw;
+    use world::voxelize::{Vertical, complete};
 
     /// Boxes of voxels come and go at random places, one after another: each time every ray is that of a fresh sweep,
     /// and few were shot.

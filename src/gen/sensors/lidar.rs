@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::caster::Caster;
 use super::raycast::ColumnMasks;
-use crate::scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
+use scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// The ego vehicle as an upright box along the ego frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +126,7 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
-    use crate::scene::Class;
+    use scene::Class;
 
     fn pattern(beams: usize, columns: u32) -> LidarPattern {
         let elevations = (0..beams).map(|i| match beams {

@@ -12,12 +12,12 @@ use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::raycast::ColumnMasks;
-use crate::scene::raster::box_cells;
-use crate::scene::sensor_data::RenderId;
-use crate::scene::{BevLayout, BoxId, Camera, CameraMaps, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
 use ground::Ground;
 pub use ground::GroundHeight;
 use paint::Paint;
+use scene::raster::box_cells;
+use scene::sensor_data::RenderId;
+use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
 use solids::{SolidHit, SolidIndex};
 
 /// Columns this far outside a box still belong to it, m: voxels stick out by up to half of one.

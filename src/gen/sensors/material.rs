@@ -3,11 +3,11 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::generation::world::draw::{Draw, hash, noise};
-use crate::generation::world::{Surface, World};
-use crate::scene::background::Facade;
-use crate::scene::solid::{Shape, Solid};
-use crate::scene::{BevLayer, Class, Form, GridSpec};
+use scene::background::Facade;
+use scene::solid::{Shape, Solid};
+use scene::{BevLayer, Class, Form, GridSpec};
+use world::draw::{Draw, hash, noise};
+use world::{Surface, World};
 
 /// Surfaces that scatter light report at most this; only what sends it back to where it came from reports more.
 pub const DIFFUSE_MOST: f64 = 100.0;
@@ -288,8 +288,8 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::scene::background::{Building, Roof};
-    use crate::scene::{Background, BevLayout};
+    use scene::background::{Building, Roof};
+    use scene::{Background, BevLayout};
 
     /// Half of what meets a wall of glass is mirrored at a slant, a fifth of what meets one with windows.
     #[test]

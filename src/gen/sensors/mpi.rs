@@ -10,8 +10,8 @@ use rayon::prelude::*;
 
 use super::cloud::{render_id, road_id};
 use super::raycast::grid_span;
-use crate::scene::sensor_data::{PlaneRun, Planes, RenderId};
-use crate::scene::{Camera, Class, GridSpec, MultiPlaneImage, VoxelGrid};
+use scene::sensor_data::{PlaneRun, Planes, RenderId};
+use scene::{Camera, Class, GridSpec, MultiPlaneImage, VoxelGrid};
 
 const FREE: u8 = Class::FREE;
 /// Free in a table of render ids, where 17 is a crossing.
@@ -121,8 +121,8 @@ fn trace(ids: &RenderIds, origin: DVec3, ray: DVec3, planes: Planes, runs: &mut 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::World;
-    use crate::scene::{SensorRig, draft};
+    use scene::{SensorRig, draft};
+    use world::World;
 
     /// The definition, point by point, in the ego frame.
     fn direct(

@@ -97,8 +97,8 @@ fn edge_m(angle_deg: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::sensors::lidar::Rays;
-    use crate::scene::SensorRig;
+    use crate::lidar::Rays;
+    use scene::SensorRig;
 
     /// Mean of three real sweeps: share of a ring's slots that end on the own body, rings 0 to 12.
     const BY_RING: [f64; 13] = [

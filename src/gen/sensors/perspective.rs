@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{
+use scene::{
     BevLayer, BevLayout, Camera, Class, GridSpec, PerspectiveMap, PolylineKind, Pose, Relief, SceneBox,
 };
 
@@ -278,7 +278,7 @@ fn clip_to_image(a: DVec2, b: DVec2, size: DVec2) -> Option<(DVec2, DVec2)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BoxId, Polyline, SensorRig};
+    use scene::{BoxId, Polyline, SensorRig};
 
     fn ahead() -> Camera {
         let mut camera = SensorRig::default().cameras[1].clone();

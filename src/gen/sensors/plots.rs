@@ -6,10 +6,10 @@ use glam::{DVec2, DVec3};
 use super::backdrop::{REACH_M, Things};
 use super::border::{Border, GRID_M};
 use super::exits::Exit;
-use crate::generation::world::draw::{Draw, hash};
-use crate::generation::world::objects;
-use crate::scene::solid::Solid;
-use crate::scene::{BoxId, Class, SceneBox};
+use scene::solid::Solid;
+use scene::{BoxId, Class, SceneBox};
+use world::draw::{Draw, hash};
+use world::objects;
 
 /// Roads are lined up to this far from the edge, m.
 const LINED_M: f64 = 70.0;

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::scene::Camera;
+use scene::Camera;
 
 /// A camera at one image size, ready to project points of the ego frame.
 #[derive(Clone, Copy, Debug)]

@@ -11,10 +11,10 @@ mod wide;
 
 use glam::DVec3;
 
-use crate::scene::grid::{BRICK, BRICKS};
-use crate::scene::{Class, GridSpec, VoxelGrid};
 pub use packet::{LANES, Met, Packet};
 use scan::{Scan, Slab};
+use scene::grid::{BRICK, BRICKS};
+use scene::{Class, GridSpec, VoxelGrid};
 pub use walk::{Span, grid_span};
 use walk::{Start, walk};
 

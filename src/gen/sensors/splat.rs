@@ -4,14 +4,14 @@
 use rayon::prelude::*;
 
 pub use super::cloud::{Gaussian, GaussianCloud};
-pub use crate::scene::splats::{RawMaps, SplatOptions};
+pub use scene::splats::{RawMaps, SplatOptions};
 
 use super::order::depth_order;
 use super::project::{Conic, View};
 use super::tile::{Limits, Placed, Splat, TILE, Tile};
-use crate::scene::sensor_data::RENDER_IDS;
-use crate::scene::splats::MIN_DEPTH_COVERAGE;
-use crate::scene::{Camera, CameraMaps, SensorRig};
+use scene::sensor_data::RENDER_IDS;
+use scene::splats::MIN_DEPTH_COVERAGE;
+use scene::{Camera, CameraMaps, SensorRig};
 
 /// Size at which the editor shows a camera: a quarter of the nuScenes images.
 pub const VIEW_SIZE: [u32; 2] = [400, 225];

@@ -4,8 +4,8 @@
 use glam::DVec3;
 
 use super::material::{DIFFUSE_MOST, gaussian as bell};
-use crate::generation::world::draw::{Draw, hash};
-use crate::scene::Class;
+use scene::Class;
+use world::draw::{Draw, hash};
 
 /// Edge of a patch of one material, m.
 const PATCH_M: f64 = 0.3;

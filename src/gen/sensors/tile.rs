@@ -1,6 +1,6 @@
 //! Blends splats front to back into one 16 x 16 tile of an image, a row of pixels at a time.
 
-use crate::scene::sensor_data::RENDER_IDS;
+use scene::sensor_data::RENDER_IDS;
 
 /// Edge of a tile, px.
 pub(super) const TILE: usize = 16;

@@ -8,10 +8,10 @@ use super::backdrop::Backdrop;
 use super::lidar::{EgoBox, direction_in_sensor};
 use super::material::{Materials, Met, gaussian, range_sigma_m};
 use super::own_body::{OwnBody, is_blind};
-use crate::generation::world::draw::{Draw, hash};
-use crate::generation::world::{Surface, World};
-use crate::scene::solid::Solid;
-use crate::scene::{Class, LidarPattern, SensorRig};
+use scene::solid::Solid;
+use scene::{Class, LidarPattern, SensorRig};
+use world::draw::{Draw, hash};
+use world::{Surface, World};
 
 /// What became of a pulse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,47 +152,6 @@ impl Sensor<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::metrics::sweep::SweepFigures;
-
-    /// Shares, ranges, echo strengths and losses inside what real sweeps (and their accepted ranges) say.
-    #[test]
-    fn sweeps_are_like_real_ones() {
-        let pattern = &SensorRig::default().lidars[0];
-        let mut sums = SweepFigures::default();
-        for seed in 40..52 {
-            sums.add_truth(&sweep(&World::random(seed), pattern, seed), pattern);
-        }
-        let found = sums.figures();
-        for (name, value) in &found {
-            println!("{name} {value:.4}");
-        }
-        for (name, low, high) in [
-            ("own_body.share", 0.10, 0.14),
-            ("own_body.in_rings_0_8", 0.95, 1.0),
-            ("own_body.share_of_rings_0_8", 0.34, 0.46),
-            ("return.share", 0.5, 0.82),
-            ("no_return.share", 0.1, 0.33),
-            ("no_return.rings_20_31", 0.2, 0.65),
-            ("range_m.p50", 5.5, 10.5),
-            ("range_m.p90", 25.0, 40.0),
-            ("range_m.p99", 49.0, 71.0),
-            ("strength.p50", 8.0, 20.0),
-            ("strength.p95", 46.0, 75.0),
-            ("strength.p99", 78.0, 101.0),
-            ("strength.driveable_surface.p50", 5.0, 11.0),
-            ("strength.sidewalk.p50", 9.0, 16.0),
-            ("strength.manmade.p50", 7.0, 26.0),
-            ("strength.vegetation.p50", 12.0, 30.0),
-            ("strength.car.p50", 0.0, 9.0),
-            ("strength.pedestrian.p50", 8.5, 34.0),
-            ("lost.driveable_surface", 0.0, 0.05),
-            ("lost.vegetation", 0.03, 0.14),
-            ("lost.manmade", 0.015, 0.12),
-            ("lost.auc", 0.62, 0.95),
-        ] {
-            assert!((low..=high).contains(&found[name]), "{name}: {}", found[name]);
-        }
-    }
 
     #[test]
     fn a_sweep_is_repeatable_and_its_surface_is_the_worlds() {

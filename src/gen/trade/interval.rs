@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::generation::metrics::stats::{median, quantile};
-use crate::generation::world::draw::Draw;
+use metrics::stats::{median, quantile};
+use world::draw::Draw;
 
 /// Resamples of a bootstrap.
 const RESAMPLES: usize = 10_000;

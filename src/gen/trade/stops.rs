@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Cost, Interval};
-use crate::generation::params::{GenParams, Precision};
-use crate::generation::solver::SolverKind;
+use diffusion::solver::SolverKind;
+use job::params::GenParams;
+use nn::Precision;
 
 /// The knobs that a stop sets; everything else of the parameters stays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,7 +90,7 @@ pub struct Stop {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stops {
-    /// Which weights they were measured with: [`ModelCard::hashes`](crate::generation::model::ModelCard).
+    /// Which weights they were measured with: [`ModelCard::hashes`](nets::ModelCard).
     pub weights: [u64; 3],
     /// The machine on which the times were taken.
     pub machine: String,
@@ -108,7 +109,7 @@ pub struct Stops {
 impl Stops {
     /// Those measured for the shipped weights; times are of the machine named in them until the user calibrates.
     pub fn bundled() -> Self {
-        let text = include_str!("../../../assets/trade/stops.json");
+        let text = assets::trade::STOPS;
         serde_json::from_str(text).unwrap_or_else(|_| Self {
             weights: [0; 3],
             machine: String::new(),
@@ -162,7 +163,7 @@ impl Stops {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::model::OccModels;
+    use nets::OccModels;
 
     /// Row 64: from the fastest stop to the slowest, time rises and the error falls; every stop can be run.
     #[test]

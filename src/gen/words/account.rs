@@ -7,7 +7,8 @@ use super::lexicon::{is_english, is_other_thing};
 use super::notation;
 use super::nouns::Noun;
 use super::reading::{Quantity, Reading, Thing, What};
-use super::tokens::{Span, Speller, Token, number_word};
+use super::tokens::{Speller, Token, number_word};
+use place::beside_road::Span;
 
 /// A word that the reading does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

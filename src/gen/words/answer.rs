@@ -9,7 +9,7 @@ use super::reading::{
 use super::remark::Remark;
 use super::resolve::plural;
 use super::stage::Outcome;
-use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
+use scene::graph::{LaneRole, ObjectState, SizeHint};
 
 /// Longest list of words that are named as having no effect.
 const MOST_WORDS: usize = 6;

@@ -3,7 +3,7 @@
 
 use super::reader::Mode;
 use super::reading::{Act, Anchor, Destination, Place, Reading, Relation, Thing, Turn, What};
-use crate::scene::graph::{LaneRole, ObjectState};
+use scene::graph::{LaneRole, ObjectState};
 
 /// The acts in that order, without spans and confidences, and nothing beside the road.
 pub fn canonical(reading: &Reading, mode: Mode) -> Reading {

@@ -10,8 +10,8 @@ use super::reading::{
 };
 use super::remark::Remark;
 use super::resolve::words_of;
-use crate::generation::place::description::{Absent, Anchor, Count, Density, Description, Road};
-use crate::scene::graph::LaneRole;
+use place::description::{Absent, Anchor, Count, Density, Description, Road};
+use scene::graph::LaneRole;
 
 /// A description and where it comes from.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,8 +6,9 @@ use super::lexicon::{Lexicon, is_english, is_other_thing};
 use super::notation;
 use super::nouns::Noun;
 use super::reading::{Anchor, Reading, Thing, What};
-use super::tokens::{Span, Token, is_one_slip};
-use crate::scene::Class;
+use super::tokens::{Token, is_one_slip};
+use place::beside_road::Span;
+use scene::Class;
 
 /// Words that mean people and name no kind of them.
 const SOMEBODY: [&str; 20] = [

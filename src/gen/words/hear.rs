@@ -10,8 +10,9 @@ use super::guess::take_out_guesses;
 use super::notation;
 use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
-use super::tokens::{LONGEST, Span, Token, tokens};
-use crate::generation::weights::WeightsError;
+use super::tokens::{LONGEST, Token, tokens};
+use nn::weights::WeightsError;
+use place::beside_road::Span;
 
 /// Below this confidence an act is said to be unsure: the least threshold that leaves at most 8 % of sentences in six voices
 /// that the reader had not learned wrong without a word, for prompts and for edits.

@@ -25,16 +25,15 @@ pub struct Lexicon {
     ids: HashMap<Sense, usize>,
 }
 
-static LEXICON: LazyLock<Lexicon> =
-    LazyLock::new(|| Lexicon::new(include_str!("../../../assets/words/lexicon.txt")));
+static LEXICON: LazyLock<Lexicon> = LazyLock::new(|| Lexicon::new(assets::words::LEXICON));
 
 static ENGLISH: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let words = include_str!("../../../assets/words/english.txt").lines();
+    let words = assets::words::ENGLISH.lines();
     words.filter(|w| !w.starts_with('#')).collect()
 });
 
 static THINGS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
-    let words = include_str!("../../../assets/words/things.txt").lines();
+    let words = assets::words::THINGS.lines();
     words.filter(|w| !w.starts_with('#')).collect()
 });
 

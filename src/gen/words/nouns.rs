@@ -1,7 +1,7 @@
 //! What can be named: kinds of objects finer than the classes of boxes, and words that name several kinds.
 
 use super::named::named;
-use crate::scene::{BoxName, Class};
+use scene::{BoxName, Class};
 
 named!(
     /// A kind of thing. `It` is what was spoken of last, `One` something of the kind that was spoken of last.

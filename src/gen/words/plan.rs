@@ -4,10 +4,10 @@
 use super::nouns::Noun;
 use super::reading::{Anchor as Said, PaintWish, Place, Quantity, Relation, Thing};
 use super::resolve::kind_of;
-use crate::generation::place::description::{Anchor, Count, ObjectSpec, Stated};
-use crate::generation::place::to_graph::MOST_OF_ONE;
-use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
-use crate::scene::{BoxLabel, Class, SceneBox};
+use place::description::{Anchor, Count, ObjectSpec, Stated};
+use place::to_graph::MOST_OF_ONE;
+use scene::graph::{LaneRole, ObjectState, RelationKind};
+use scene::{BoxLabel, Class, SceneBox};
 
 /// Most kinds of things of one reading.
 const MOST_SPECS: usize = 200;

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::beside::Said;
 use super::named::named;
 use super::nouns::Noun;
-use super::tokens::Span;
-use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
-use crate::scene::Paint;
-use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
+use place::beside_road::Span;
+use place::description::{Density, Environment, Road, TimeOfDay, Weather};
+use scene::Paint;
+use scene::graph::{LaneRole, ObjectState, SizeHint};
 
 /// All that a text asks for, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

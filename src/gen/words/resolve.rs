@@ -5,9 +5,9 @@ use super::nouns::Noun;
 use super::reading::{Anchor, PaintWish, Pick, Place, Quantity, Relation, Thing};
 use super::remark::Remark;
 use super::stage::{Question, Stage};
-use crate::generation::place::holds::{Target, ego, holds, in_role, role_of};
-use crate::scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
-use crate::scene::{BoxId, SceneBox};
+use place::holds::{Target, ego, holds, in_role, role_of};
+use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
+use scene::{BoxId, SceneBox};
 
 /// Which of too many are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -502,7 +502,7 @@ fn side_of_ego(kind: RelationKind, b: &SceneBox) -> Option<bool> {
 
 /// What people call so though it is only nearly so.
 fn loosely(
-    map: &crate::generation::place::lanes::LaneMap<'_>,
+    map: &place::lanes::LaneMap<'_>,
     kind: RelationKind,
     b: &SceneBox,
     to: &Target,

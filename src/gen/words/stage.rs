@@ -7,11 +7,11 @@ use serde::Serialize;
 
 use super::nouns::Noun;
 use super::remark::Remark;
-use crate::generation::place::holds::{in_role, overlap_m, role_of};
-use crate::generation::place::lanes::LaneMap;
-use crate::generation::words::text_edit::TextEdit;
-use crate::scene::graph::{LaneRole, ObjectState};
-use crate::scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
+use crate::text_edit::TextEdit;
+use place::holds::{in_role, overlap_m, role_of};
+use place::lanes::LaneMap;
+use scene::graph::{LaneRole, ObjectState};
+use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 
 /// An open scene, as far as words need it.
 #[derive(Clone, Copy, Debug)]
@@ -192,7 +192,7 @@ impl<'a> Stage<'a> {
 
     /// The box, or the same a few metres along its course, where it hits nothing.
     pub(super) fn clear_of_others(&self, b: SceneBox) -> Option<SceneBox> {
-        let ego = crate::generation::place::holds::ego();
+        let ego = place::holds::ego();
         let hits = |n: &SceneBox| {
             let other = |o: &SceneBox| o.id != b.id && overlap_m(n, o, 0.2) > 0.0;
             self.boxes.values().any(other) || overlap_m(n, &ego, 0.2) > 0.0

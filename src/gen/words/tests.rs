@@ -93,8 +93,10 @@ fn random_and_hostile_texts_end() {
     use super::describe::{describe, described};
     use super::stage::OpenScene;
     use super::text_edit::TextEdit;
-    use crate::generation::place::{road, rules::place_with, to_graph::to_graph};
-    use crate::generation::world::draw::Draw;
+    use place::road;
+    use place::rules::place_with;
+    use place::to_graph::to_graph;
+    use world::draw::Draw;
 
     const PIECES: [&str; 64] = [
         "remove",

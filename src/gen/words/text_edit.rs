@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-use crate::scene::{BoxId, BoxLabel, SceneBox};
+use scene::{BoxId, BoxLabel, SceneBox};
 
 /// One change of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,37 +3,12 @@
 
 use std::collections::HashMap;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+pub use place::beside_road::Span;
 
 use super::lexicon::{LONGEST_PHRASE, Lexicon, Sense, is_english};
 
 /// Longest text that is read, bytes; what lies beyond is named as not understood.
 pub const LONGEST: usize = 20_000;
-
-/// Bytes `start..end` of a text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-pub struct Span {
-    /// First byte.
-    pub start: usize,
-    /// One past the last byte.
-    pub end: usize,
-}
-
-impl Span {
-    /// From the first byte of one to the last of the other.
-    pub fn to(self, other: Self) -> Self {
-        Self {
-            start: self.start.min(other.start),
-            end: self.end.max(other.end),
-        }
-    }
-
-    /// The text it names; empty if it does not fit.
-    pub fn of(self, text: &str) -> &str {
-        text.get(self.start..self.end).unwrap_or("")
-    }
-}
 
 /// A word, a number, a length or a mark.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::draw::{Draw, Noise};
 use super::{BIN_M, BINS, Hit, scenery};
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Relief};
+use scene::{BevLayer, BevLayout, Class, GridSpec, Relief};
 
 /// Height of a kerb above the road, m.
 const KERB_M: f64 = 0.24;

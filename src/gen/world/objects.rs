@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::draw::{Draw, hash};
-use crate::scene::solid::Solid;
-use crate::scene::{Class, SceneBox};
+use scene::solid::Solid;
+use scene::{Class, SceneBox};
 
 /// Builds parts in box coordinates: fractions of length and width around the middle, of height
 /// from the ground.

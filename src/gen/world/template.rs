@@ -3,8 +3,8 @@
 use glam::DVec2;
 
 use super::draw::Draw;
-use crate::scene::raster::{draw_polyline, line_cells, polygon_cells};
-use crate::scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
+use scene::raster::{draw_polyline, line_cells, polygon_cells};
+use scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
 
 /// Names that [`layout`] knows.
 pub const TEMPLATES: [&str; 8] = [

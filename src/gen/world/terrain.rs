@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::draw::{Draw, Noise};
 use super::scenery::distance_cells;
-use crate::scene::{BevLayer, BevLayout, GridSpec, Relief};
+use scene::{BevLayer, BevLayout, GridSpec, Relief};
 
 /// A lie of the land.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -155,7 +155,7 @@ impl<'a> Stairs<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::template;
+    use crate::template;
 
     #[test]
     fn the_ego_stands_at_zero_and_each_lie_is_what_it_says() {

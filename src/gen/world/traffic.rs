@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3};
 
 use super::draw::Draw;
 use super::template::offset_line;
-use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, GridSpec, PolylineKind, SceneBox};
+use scene::raster::box_cells;
+use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, GridSpec, PolylineKind, SceneBox};
 
 /// How much of everything, 1 = as on an ordinary city street.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -332,7 +332,7 @@ impl Placer<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::template;
+    use crate::template;
 
     #[test]
     fn boxes_are_sound_apart_and_repeatable() {
@@ -364,7 +364,7 @@ mod tests {
         let mut seen = 0;
         for seed in 0..6 {
             let mut layout = template::any_layout(seed);
-            layout.relief = crate::scene::Relief::from_fn(|p| 0.12 * p.x);
+            layout.relief = scene::Relief::from_fn(|p| 0.12 * p.x);
             for b in place(&layout, seed, &TrafficSpec::NORMAL).values() {
                 let low = b.center_m.z - b.size_m.z / 2.0;
                 assert!((low - 0.12 * b.center_m.x).abs() < 1e-3, "{b:?}");

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
-use crate::scene::Class;
-use crate::scene::solid::Solid;
+use crate::Class;
+use crate::solid::Solid;
 
 const PIECE_M: f64 = 3.0;
 const MAX_PIECES: usize = 10_000;

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
-use crate::scene::Class;
-use crate::scene::draw::{Draw, hash};
-use crate::scene::solid::Solid;
+use crate::Class;
+use crate::draw::{Draw, hash};
+use crate::solid::Solid;
 
 /// Height of a storey, m.
 pub const STOREY_M: f64 = 3.0;

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::Thing;
-use crate::scene::draft::ground_bin;
-use crate::scene::solid::fill::{fill, smear_down};
-use crate::scene::{BevLayout, Class, GridSpec};
+use crate::draft::ground_bin;
+use crate::solid::fill::{fill, smear_down};
+use crate::{BevLayout, Class, GridSpec};
 
 /// Labels by column `[x, y]`; free where a thing leaves a bin alone.
 pub type Columns = BTreeMap<[usize; 2], [u8; GridSpec::NZ]>;

@@ -4,10 +4,10 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
-use crate::scene::Class;
-use crate::scene::draw::{Draw, hash};
-use crate::scene::road_map::inside;
-use crate::scene::solid::Solid;
+use crate::Class;
+use crate::draw::{Draw, hash};
+use crate::road_map::inside;
+use crate::solid::Solid;
 
 /// Plants in one area never exceed this number.
 const MAX_PLANTS: f64 = 4000.0;

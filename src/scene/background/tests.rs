@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
-use crate::scene::solid::fill::fill;
+use crate::solid::fill::fill;
 
 fn some_of_each() -> Vec<Form> {
     let corner = DVec2::new;
@@ -93,12 +93,12 @@ fn every_kind_is_sound_stands_on_the_ground_and_reaches_its_height() {
         let lowest = on_ground.iter().map(|v| v[2]).min().expect("some");
         let highest = on_ground.iter().map(|v| v[2]).max().expect("some");
         assert!(lowest <= 2, "{name} floats: bin {lowest}"); // the ground is in bin 2
-        let top = crate::scene::Relief::physical_bin(height - 0.3);
+        let top = crate::Relief::physical_bin(height - 0.3);
         // The tip of a crown fills no voxel by a third.
         let tip = if name == "tree" { 3 } else { 1 };
         assert!(highest + tip >= top.min(15), "{name}: {highest} below {top}");
         for [x, y, _] in &on_ground {
-            let p = crate::scene::GridSpec::center(*x, *y, 0).truncate();
+            let p = crate::GridSpec::center(*x, *y, 0).truncate();
             assert!(
                 p.cmpge(lo - 0.4).all() && p.cmple(hi + 0.4).all(),
                 "{name} reaches beyond its bounds at {p}"

@@ -4,9 +4,9 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
-use crate::scene::Class;
-use crate::scene::draw::{Draw, hash};
-use crate::scene::solid::Solid;
+use crate::Class;
+use crate::draw::{Draw, hash};
+use crate::solid::Solid;
 
 /// Kind of tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]

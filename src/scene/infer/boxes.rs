@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::{BoxId, BoxLabel, Class, GridSpec, Relief, SceneBox, VoxelGrid};
+use crate::{BoxId, BoxLabel, Class, GridSpec, Relief, SceneBox, VoxelGrid};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
@@ -255,7 +255,7 @@ fn fitted(middle: DVec2, part: DVec2, yaw: f64, usual: DVec2, height_m: f64, sid
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::raster::box_cells;
+    use crate::raster::box_cells;
 
     fn object(class: Class, x: f64, y: f64, yaw_deg: f64) -> SceneBox {
         let size = DVec3::from_array(class.typical_size_m().expect("an object"));

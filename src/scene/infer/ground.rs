@@ -1,6 +1,6 @@
 //! Map layers from ground labels.
 
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+use crate::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
 
 /// Columns around a gap that must be road on opposite sides for it to be road: 3.2 m bridges a car's width.
 const REACH: usize = 8;

@@ -1,6 +1,6 @@
 //! The height of the ground from labels: where ground classes lie above the lowest bin, a slope is read from them.
 
-use crate::scene::{Class, GridSpec, Relief, VoxelGrid};
+use crate::{Class, GridSpec, Relief, VoxelGrid};
 
 /// Share of the ground's columns that must lie higher than flat ground does, or the ground is called flat.
 const UNEVEN_SHARE: f64 = 0.03;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::Solid;
-use crate::scene::{Class, GridSpec};
+use crate::{Class, GridSpec};
 
 /// Labels are extended downward by so many bins in the Occ3D convention.
 pub const SMEAR: usize = 2;

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::scene::road_map::inside;
+use crate::road_map::inside;
 
 fn edges(outline: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     (0..outline.len()).map(|i| (outline[i], outline[(i + 1) % outline.len()]))

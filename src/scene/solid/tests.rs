@@ -1,7 +1,7 @@
 //! Tests of the solids: rays enter where the inside begins, normals point outward.
 
 use super::*;
-use crate::scene::draw::Draw;
+use crate::draw::Draw;
 
 /// A prism over an outline that is not convex.
 fn l_shape(base: DVec3) -> Solid {

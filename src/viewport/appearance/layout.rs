@@ -4,12 +4,12 @@
 use std::fmt::Write as _;
 use std::sync::OnceLock;
 
-use crate::scene::look::{
+use scene::look::{
     BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HEAD_NEAR_M2, HIGHEST_M, KERB_EDGE_M, KERB_M,
     KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, LookData, MIRROR_M, NX, NY, NZ,
     PART_WORDS, SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
 };
-use crate::scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
+use scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
 
 /// The uniform, see `View` in the shader.
 #[repr(C)]

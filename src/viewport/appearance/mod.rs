@@ -10,8 +10,8 @@ use layout::GpuView;
 use super::splats::buffers::Growing;
 use super::splats::pipelines::checked;
 use super::splats::read::mapped;
-use crate::scene::Camera;
-use crate::scene::look::LookData;
+use scene::Camera;
+use scene::look::LookData;
 
 /// Rows that are drawn in one piece: a card that also draws the screen is not held up for long.
 const BAND: u32 = 64;

@@ -4,7 +4,7 @@ use super::pipelines::{DIGIT_BITS, GROUP, SORT_BLOCK};
 
 /// A buffer that is made anew only when it is too small.
 #[derive(Debug)]
-pub(in crate::viewport) struct Growing {
+pub(crate) struct Growing {
     label: &'static str,
     usage: wgpu::BufferUsages,
     buffer: Option<wgpu::Buffer>,

@@ -235,7 +235,7 @@ fn whole(buffer: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::viewport::splats::read;
+    use crate::splats::read;
 
     fn noise(i: u32) -> u32 {
         let v = i.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
@@ -245,7 +245,7 @@ mod tests {
     /// Row 43: the device's order is that of a stable sort on the processor, and what is culled is gone.
     #[test]
     fn row_43_depth_sort() {
-        let (_, device, queue) = crate::viewport::headless_device().expect("an adapter");
+        let (_, device, queue) = crate::headless_device().expect("an adapter");
         let pipelines = Pipelines::new(&device).expect("able");
         let settings = PassSettings::new(&device, &queue);
         const CULLED: u32 = u32::MAX;

@@ -2,9 +2,9 @@
 
 use glam::DMat3;
 
-use crate::scene::Camera;
-use crate::scene::sensor_data::RENDER_IDS;
-use crate::scene::splats::{Gaussian, SplatOptions};
+use scene::Camera;
+use scene::sensor_data::RENDER_IDS;
+use scene::splats::{Gaussian, SplatOptions};
 
 /// Cameras in one batch: as many as the uniform has room for.
 pub(super) const MAX_VIEWS: usize = 128;
@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn a_camera_without_a_place_sees_nothing() {
-        let mut camera = crate::scene::SensorRig::default().cameras[0].clone();
+        let mut camera = scene::SensorRig::default().cameras[0].clone();
         assert!(GpuView::new(&camera, [400, 225], &SplatOptions::default()).limits[3] == 200.0);
         camera.translation_m[1] = f64::NAN;
         assert!(GpuView::new(&camera, [400, 225], &SplatOptions::default()).limits[3] < 0.0);

@@ -5,24 +5,24 @@
 //! tile of 16 x 16 pixels, blend. Only what every device offers is used: no subgroups, four storage
 //! buffers a stage, the limits of `headless_device`.
 
-pub(in crate::viewport) mod buffers;
+pub(crate) mod buffers;
 mod encode;
 mod error;
 mod layout;
-pub(in crate::viewport) mod pipelines;
-pub(in crate::viewport) mod read;
+pub(crate) mod pipelines;
+pub(crate) mod read;
 
 use std::ops::Range;
 
 pub use error::SplatError;
 pub use layout::SPLAT_UNIFORM_BYTES;
 
-use crate::scene::splats::{Gaussian, RawMaps, SplatOptions};
-use crate::scene::{Camera, CameraMaps, SensorRig};
 use buffers::Growing;
 use encode::{Data, LEDGER_BYTES, PAIR_BYTES, SPLAT_BYTES, Shape, Work};
 use layout::{GpuBatch, GpuGaussian, MAX_VIEWS};
 use pipelines::{GROUP, Pipelines, checked};
+use scene::splats::{Gaussian, RawMaps, SplatOptions};
+use scene::{Camera, CameraMaps, SensorRig};
 
 /// Edge of a tile, px.
 const TILE: u32 = 16;

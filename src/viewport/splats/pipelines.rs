@@ -1,8 +1,8 @@
 //! The compute pipelines of the splat renderer, and what a device must offer to run them.
 
 use super::SplatError;
-use crate::viewport::error::one_line;
-use crate::viewport::shaders::COMPUTE_SHADERS;
+use crate::error::one_line;
+use crate::shaders::COMPUTE_SHADERS;
 
 /// Items that one workgroup of the sort handles, as in the shader.
 pub(super) const SORT_BLOCK: u32 = 1024;
@@ -108,10 +108,7 @@ impl Pipelines {
 }
 
 /// Runs `work` and turns what the device says against it into an error.
-pub(in crate::viewport) fn checked<T>(
-    device: &wgpu::Device,
-    work: impl FnOnce() -> T,
-) -> Result<T, SplatError> {
+pub(crate) fn checked<T>(device: &wgpu::Device, work: impl FnOnce() -> T) -> Result<T, SplatError> {
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);

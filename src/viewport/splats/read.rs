@@ -1,11 +1,11 @@
 //! From the device's buffers to maps.
 
 use super::SplatError;
-use crate::scene::splats::{MIN_DEPTH_COVERAGE, RawMaps};
-use crate::viewport::error::one_line;
+use crate::error::one_line;
+use scene::splats::{MIN_DEPTH_COVERAGE, RawMaps};
 
 /// Waits for the device and shows the first `bytes` of a buffer to `look`.
-pub(in crate::viewport) fn mapped<T>(
+pub(crate) fn mapped<T>(
     device: &wgpu::Device,
     buffer: &wgpu::Buffer,
     bytes: u64,

@@ -1,22 +1,5 @@
 //! `sceneloom-worlds`: frames of procedural worlds for training, into a folder of shards or as a stream.
 
-#![allow(dead_code, reason = "the editor's sources, of which worlds need a part")]
-
-#[path = "../../../src/scene/mod.rs"]
-pub mod scene;
-
-#[path = "../../../src/gen/dataset/occupancy.rs"]
-pub mod occupancy;
-#[path = "../../../src/gen/dataset/shard.rs"]
-pub mod shard;
-#[path = "../../../src/gen/world/mod.rs"]
-pub mod world;
-
-/// The name that the editor's sources know worlds by.
-pub mod generation {
-    pub use super::world;
-}
-
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -24,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, bail};
 use clap::Parser;
 
-use occupancy::occupancy_frame;
+use dataset::{occupancy_frame, shard};
 
 /// Frames of procedural worlds: complete voxels, simulated labels, draft, layout and headings.
 #[derive(Parser)]

@@ -10,24 +10,24 @@ use serde_json::{Value, json};
 
 use super::layout_check::Judge;
 use super::{Bar, Eval, TEST_SEED, with_interval};
-use crate::app::cli::progress::Progress;
-use crate::app::prompting::{How, Laid, lay_out};
-use crate::app::text;
-use crate::editor::Document;
-use crate::generation::metrics::stats::median;
-use crate::generation::place::description::Description;
-use crate::generation::words::account::missing;
-use crate::generation::words::carry_out::carry_out;
-use crate::generation::words::describe::describe;
-use crate::generation::words::grammar;
-use crate::generation::words::hear::hear;
-use crate::generation::words::notation;
-use crate::generation::words::reader::{LearnedReader, Mode};
-use crate::generation::words::reading::Reading;
-use crate::generation::words::remark::Remark;
-use crate::generation::words::stage::OpenScene;
-use crate::generation::words::tokens::tokens;
-use crate::scene::{Frame, Scene, SceneBox, SensorRig};
+use crate::cli::progress::Progress;
+use crate::prompting::{How, Laid, lay_out};
+use crate::text;
+use editor::Document;
+use metrics::stats::median;
+use place::description::Description;
+use scene::{Frame, Scene, SceneBox, SensorRig};
+use words::account::missing;
+use words::carry_out::carry_out;
+use words::describe::describe;
+use words::grammar;
+use words::hear::hear;
+use words::notation;
+use words::reader::{LearnedReader, Mode};
+use words::reading::Reading;
+use words::remark::Remark;
+use words::stage::OpenScene;
+use words::tokens::tokens;
 
 /// Where the sets that are judged lie, in the source tree.
 const SETS: &str = "tests/words/dev";
@@ -202,7 +202,7 @@ fn place_description(
     let mut laid = lay_out(prompt, description, seed, how);
     laid.wall_s = started.elapsed().as_secs_f64();
     let boxes = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
-    let frame = Frame::new(laid.road.layout.clone(), boxes, crate::scene::VoxelGrid::new());
+    let frame = Frame::new(laid.road.layout.clone(), boxes, scene::VoxelGrid::new());
     let mut scene = Scene::single(
         laid.road.template,
         frame,

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, Paint, PolylineKind, SceneBox};
+use scene::{BevLayer, BevLayout, Class, GridSpec, Paint, PolylineKind, SceneBox};
 
 /// A layout with what stands on it.
 pub struct Judge<'a> {

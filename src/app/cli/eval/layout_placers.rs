@@ -6,12 +6,12 @@ use serde_json::{Value, json};
 
 use super::layout::{Case, Tally, Told, place};
 use super::{Eval, TEST_SEED};
-use crate::app::cli::progress::Progress;
-use crate::app::prompting::{How, Placer};
-use crate::generation::metrics::layout::{LayoutFigures, diversity};
-use crate::generation::metrics::stats::median;
-use crate::scene::SceneBox;
-use crate::scene::road_map::RoadMap;
+use crate::cli::progress::Progress;
+use crate::prompting::{How, Placer};
+use metrics::layout::{LayoutFigures, diversity};
+use metrics::stats::median;
+use scene::SceneBox;
+use scene::road_map::RoadMap;
 
 /// Prompts whose diversity across four seeds is measured.
 const DIVERSE: usize = 8;

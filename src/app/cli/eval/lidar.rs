@@ -6,22 +6,22 @@ use serde_json::{Value, json};
 
 use super::world_lidar::lidar_rows;
 use super::{Bar, Eval, TEST_SEED};
-use crate::app::cli::output;
-use crate::app::cli::progress::Progress;
-use crate::generation::dataset::world_of;
-use crate::generation::metrics::lidar::{bird_map, jsd, mmd};
-use crate::generation::metrics::logistic::{Logistic, auc};
-use crate::generation::metrics::stats::median;
-use crate::generation::metrics::sweep::{SweepFigures, loss_features};
-use crate::generation::model::lidar::field::{Ray, Sampling};
-use crate::generation::model::lidar::sites::physical;
-use crate::generation::model::lidar::{LearnedRay, LidarNet};
-use crate::generation::sensors::learned::{self, Drops};
-use crate::generation::sensors::raycast::ColumnMasks;
-use crate::generation::sensors::truth::{self, Echo, TruthRay};
-use crate::generation::world::draw::{Draw, hash};
-use crate::generation::world::voxelize::{Drive, Vertical, complete, labels};
-use crate::scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use crate::cli::output;
+use crate::cli::progress::Progress;
+use dataset::world_of;
+use metrics::lidar::{bird_map, jsd, mmd};
+use metrics::logistic::{Logistic, auc};
+use metrics::stats::median;
+use metrics::sweep::{SweepFigures, loss_features};
+use nets::lidar::field::{Ray, Sampling};
+use nets::lidar::sites::physical;
+use nets::lidar::{LearnedRay, LidarNet};
+use scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use sensors::learned::{self, Drops};
+use sensors::raycast::ColumnMasks;
+use sensors::truth::{self, Echo, TruthRay};
+use world::draw::{Draw, hash};
+use world::voxelize::{Drive, Vertical, complete, labels};
 
 /// Samples of a ray without the prior (UniScene's first stage).
 const UNIFORM: usize = 144;

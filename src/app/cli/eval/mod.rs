@@ -18,14 +18,14 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
-use crate::app::cli::generate::models;
-use crate::app::cli::progress::Progress;
-use crate::app::cli::{Common, Gen, Outcome, Stop, output};
-use crate::app::open;
-use crate::generation::dataset::world_of;
-use crate::generation::metrics::stats::mean_ci95;
-use crate::generation::pipeline::OccPipeline;
-use crate::scene::Scene;
+use crate::cli::generate::models;
+use crate::cli::progress::Progress;
+use crate::cli::{Common, Gen, Outcome, Stop, output};
+use crate::open;
+use dataset::world_of;
+use job::pipeline::OccPipeline;
+use metrics::stats::mean_ci95;
+use scene::Scene;
 
 /// Seed of the held-out worlds; training uses 1, validation 2.
 const TEST_SEED: u64 = 3;

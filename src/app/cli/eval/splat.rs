@@ -6,17 +6,17 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Bar, Eval, TEST_SEED, with_interval};
-use crate::app::cli::progress::Progress;
-use crate::generation::dataset::world_of;
-use crate::generation::metrics::maps::{LabelledDepth, MapAgreement, OUTLINE_PX};
-use crate::generation::metrics::stats::median;
-use crate::generation::sensors::cloud::GaussianCloud;
-use crate::generation::sensors::march::{CameraRays, GroundHeight, MarchOptions, MarchScene};
-use crate::generation::sensors::splat::{self, SplatOptions};
-use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::raster::bev_channels;
-use crate::scene::{Camera, CameraMaps, Class, GridSpec, SensorRig};
+use crate::cli::progress::Progress;
+use dataset::world_of;
+use metrics::maps::{LabelledDepth, MapAgreement, OUTLINE_PX};
+use metrics::stats::median;
+use scene::raster::bev_channels;
+use scene::{Camera, CameraMaps, Class, GridSpec, SensorRig};
+use sensors::cloud::GaussianCloud;
+use sensors::march::{CameraRays, GroundHeight, MarchOptions, MarchScene};
+use sensors::splat::{self, SplatOptions};
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 /// Size of the pictures judged; that of the editor's views.
 const SIZE: [u32; 2] = splat::VIEW_SIZE;

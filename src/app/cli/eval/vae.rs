@@ -9,15 +9,15 @@ use serde_json::{Value, json};
 
 use super::vae_slopes::Slopes;
 use super::{Bar, Eval, TEST_SEED, scene, with_interval};
-use crate::app::cli::progress::Progress;
-use crate::app::open;
-use crate::formats::occ3d;
-use crate::generation::dataset::occupancy_frame;
-use crate::generation::metrics::agreement::AgreementCount;
-use crate::generation::metrics::iou::Confusion;
-use crate::generation::model::{CELLS, Heard, OccVae, fine_vae};
-use crate::generation::pipeline::OccPipeline;
-use crate::scene::{Class, Unobserved, VoxelGrid, draft, infer};
+use crate::cli::progress::Progress;
+use crate::open;
+use dataset::occupancy_frame;
+use formats::occ3d;
+use job::pipeline::OccPipeline;
+use metrics::agreement::AgreementCount;
+use metrics::iou::Confusion;
+use nets::{CELLS, Heard, OccVae, fine_vae};
+use scene::{Class, Unobserved, VoxelGrid, draft, infer};
 
 /// Which latent is decoded: the mean, one drawn from the encoder's distribution, the fine network's mean; the mean again by a
 /// decoder that is told the draft and, of labels, what was observed.

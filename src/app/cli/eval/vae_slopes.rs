@@ -4,12 +4,13 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use super::vae::per_class;
-use crate::generation::dataset::world_of;
-use crate::generation::metrics::iou::Confusion;
-use crate::generation::model::OccVae;
-use crate::generation::world::voxelize::{Drive, Vertical, labels};
-use crate::generation::world::{World, draw::Draw, traffic};
-use crate::scene::{Class, GridSpec, Relief, SensorRig, VoxelGrid};
+use dataset::world_of;
+use metrics::iou::Confusion;
+use nets::OccVae;
+use scene::{Class, GridSpec, Relief, SensorRig, VoxelGrid};
+use world::draw::Draw;
+use world::voxelize::{Drive, Vertical, labels};
+use world::{World, traffic};
 
 /// Grades that are tried, rise over run.
 pub(super) const GRADES: [f64; 5] = [0.0, 0.01, 0.02, 0.04, 0.08];

@@ -5,13 +5,13 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::{Bar, Eval, TEST_SEED};
-use crate::app::cli::progress::Progress;
-use crate::generation::dataset::{occupancy_frame, world_of};
-use crate::generation::metrics::occupancy::OccupancyStatistics;
-use crate::scene::Class;
+use crate::cli::progress::Progress;
+use dataset::{occupancy_frame, world_of};
+use metrics::occupancy::OccupancyStatistics;
+use scene::Class;
 
 /// Figures of real labels.
-const TARGETS: &str = include_str!("../../../../assets/statistics/occ3d.json");
+const TARGETS: &str = assets::statistics::OCC3D;
 
 /// A file of `assets/statistics`.
 #[derive(Deserialize)]

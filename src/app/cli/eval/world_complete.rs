@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Eval, scene, with_interval};
-use crate::app::cli::progress::Progress;
-use crate::editor::checks::{Severity, run_checks};
-use crate::generation::metrics::shape::{FIGURES, shape};
+use crate::cli::progress::Progress;
+use editor::checks::{Severity, run_checks};
+use metrics::shape::{FIGURES, shape};
 
 /// Share of worlds that may have an error finding.
 const MOST_WITH_ERRORS: f64 = 0.01;

@@ -5,14 +5,14 @@ use serde_json::{Value, json};
 
 use super::world::{Targets, outside};
 use super::{Eval, TEST_SEED};
-use crate::app::cli::progress::Progress;
-use crate::generation::dataset::world_of;
-use crate::generation::metrics::sweep::SweepFigures;
-use crate::generation::sensors::truth;
-use crate::scene::SensorRig;
+use crate::cli::progress::Progress;
+use dataset::world_of;
+use metrics::sweep::SweepFigures;
+use scene::SensorRig;
+use sensors::truth;
 
 /// Figures of real sweeps.
-const TARGETS: &str = include_str!("../../../../assets/statistics/lidar.json");
+const TARGETS: &str = assets::statistics::LIDAR;
 
 /// The figures of sweeps beside the real ones, and how many of how many are inside their accepted range. Figures that
 /// these sweeps do not have are left out.

@@ -10,18 +10,18 @@ use anyhow::{Context, bail};
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::app::camera_views::march;
-use crate::app::graphics::{Graphics, OnCard};
-use crate::app::{open, picture};
-use crate::generation::model::lidar::LidarNet;
-use crate::generation::sensors::appearance::{
+use crate::camera_views::march;
+use crate::graphics::{Graphics, OnCard};
+use crate::{open, picture};
+use nets::lidar::LidarNet;
+use scene::sensor_data::Planes;
+use scene::{CameraMaps, LidarSweep, Scene};
+use sensors::appearance::{
     CameraImage, Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
 };
-use crate::generation::sensors::learned::{self, Drops};
-use crate::generation::sensors::splat::{self, GaussianCloud, SplatOptions};
-use crate::generation::sensors::{lidar, mpi, perspective};
-use crate::scene::sensor_data::Planes;
-use crate::scene::{CameraMaps, LidarSweep, Scene};
+use sensors::learned::{self, Drops};
+use sensors::splat::{self, GaussianCloud, SplatOptions};
+use sensors::{lidar, mpi, perspective};
 use write::Writer;
 
 /// What can be rendered.

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use crate::app::cli::output;
-use crate::app::picture::{self, Picture};
-use crate::formats::npz::{self, Array};
-use crate::formats::{multi_plane, point_cloud};
-use crate::generation::sensors::appearance::CameraImage;
-use crate::generation::sensors::color;
-use crate::scene::{CameraMaps, LidarSweep, MultiPlaneImage, PerspectiveMap};
+use crate::cli::output;
+use crate::picture::{self, Picture};
+use formats::npz::{self, Array};
+use formats::{multi_plane, point_cloud};
+use scene::{CameraMaps, LidarSweep, MultiPlaneImage, PerspectiveMap};
+use sensors::appearance::CameraImage;
+use sensors::color;
 
 /// A folder, and what was written into it.
 pub struct Writer {

@@ -7,10 +7,10 @@ use anyhow::{Context, bail};
 use serde::{Deserialize, Serialize};
 
 use super::{Progress, Trade};
-use crate::app::trade::cases::Case;
-use crate::app::trade::edits::{Bench, Outcome};
-use crate::generation::job::JobCtx;
-use crate::generation::model::OccModels;
+use crate::trade::cases::Case;
+use crate::trade::edits::{Bench, Outcome};
+use job::JobCtx;
+use nets::OccModels;
 
 /// Outcomes of every setting on every case, as one process found them.
 #[derive(Default, Serialize, Deserialize)]

@@ -13,17 +13,17 @@ use serde_json::{Value, json};
 use super::generate::{full_params, models};
 use super::progress::Progress;
 use super::{Common, Outcome, Stop, output};
-use crate::app::open;
-use crate::app::trade::cases::{self, Case};
-use crate::app::trade::edits::{Bench, reference_params};
-use crate::app::trade::load::{Load, machine};
-use crate::app::trade::plot::{self, Mark};
-use crate::app::trade::sensors::{self, Measured};
-use crate::app::trade::settings::{self, Setting};
-use crate::generation::job::{GenParams, JobCtx};
-use crate::generation::model::OccModels;
-use crate::generation::trade::{Placed, StopKnobs, front, hypervolume};
+use crate::open;
+use crate::trade::cases::{self, Case};
+use crate::trade::edits::{Bench, reference_params};
+use crate::trade::load::{Load, machine};
+use crate::trade::plot::{self, Mark};
+use crate::trade::sensors::{self, Measured};
+use crate::trade::settings::{self, Setting};
+use job::{GenParams, JobCtx};
+use nets::OccModels;
 use report::{Row, sensor_json, table, untouched_the_same};
+use trade::{Placed, StopKnobs, front, hypervolume};
 
 pub use stops::write_stops;
 
@@ -115,7 +115,7 @@ impl Trade {
     }
 
     fn cases(&self, part: &str) -> anyhow::Result<Vec<Case>> {
-        let whole = |scene: crate::scene::Scene, name: String| {
+        let whole = |scene: scene::Scene, name: String| {
             let scene = Arc::new(scene);
             vec![Case {
                 name,
@@ -123,7 +123,7 @@ impl Trade {
                 after: scene,
             }]
         };
-        let of = |scene: crate::scene::Scene, name: String, seed: u64| match part {
+        let of = |scene: scene::Scene, name: String, seed: u64| match part {
             "edit" => cases::of_scene(&scene, &name, seed),
             _ => whole(scene, name),
         };

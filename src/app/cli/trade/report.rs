@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::app::trade::edits::Outcome;
-use crate::app::trade::plot;
-use crate::app::trade::sensors::Measured;
-use crate::app::trade::settings::Setting;
-use crate::generation::metrics::stats::{median, quantile};
-use crate::generation::trade::{Cost, Placed, SizedTime, bootstrap_median};
+use crate::trade::edits::Outcome;
+use crate::trade::plot;
+use crate::trade::sensors::Measured;
+use crate::trade::settings::Setting;
+use metrics::stats::{median, quantile};
+use trade::{Cost, Placed, SizedTime, bootstrap_median};
 
 /// What the report says of a setting.
 pub(super) struct Row {

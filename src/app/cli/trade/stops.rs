@@ -6,13 +6,13 @@ use anyhow::Context;
 
 use super::report::Row;
 use super::{Trade, output};
-use crate::app::trade::cases;
-use crate::app::trade::edits::Outcome;
-use crate::app::trade::load::{Load, machine};
-use crate::generation::job::GenParams;
-use crate::generation::metrics::stats::{mean_ci95, median, quantile};
-use crate::generation::model::OccModels;
-use crate::generation::trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
+use crate::trade::cases;
+use crate::trade::edits::Outcome;
+use crate::trade::load::{Load, machine};
+use job::GenParams;
+use metrics::stats::{mean_ci95, median, quantile};
+use nets::OccModels;
+use trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
 
 impl Trade {
     /// Stops from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the

@@ -2,11 +2,11 @@
 
 mod places;
 
-use crate::editor::{Edit, Shape};
-use crate::generation::request::voxels_of;
-use crate::scene::raster::box_cells;
-use crate::scene::{BevLayer, BoxLabel, Class, Frame, SceneBox, VoxelGrid};
+use editor::{Edit, Shape};
+use job::request::voxels_of;
 use places::{across_the_road, on_free_road, verge};
+use scene::raster::box_cells;
+use scene::{BevLayer, BoxLabel, Class, Frame, SceneBox, VoxelGrid};
 
 /// Kinds of edits, by name.
 pub const KINDS: [&str; 6] = ["remove", "add", "move", "class", "road", "crossing"];

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::generation::world::draw::Draw;
-use crate::scene::raster::{box_cells, disc_cells};
-use crate::scene::{BevLayer, BoxId, BoxLabel, Class, Frame, GridSpec, PolylineKind, SceneBox};
+use scene::raster::{box_cells, disc_cells};
+use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, GridSpec, PolylineKind, SceneBox};
+use world::draw::Draw;
 
 /// A place on road that nothing stands on, along the nearest lane: for a new box of a class, or for
 /// `moved`.

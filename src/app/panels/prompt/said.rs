@@ -5,17 +5,17 @@ use egui::{Ui, WidgetInfo, vec2};
 
 use super::super::{chip, heard};
 use super::PromptPane;
-use crate::app::command::Command;
-use crate::app::icons::section;
-use crate::app::theme;
-use crate::app::tools::things::ThingCommand;
-use crate::app::tools::{Choose, ToolCommand};
-use crate::generation::place::description::{TimeOfDay, Weather};
-use crate::generation::words::account::Why;
-use crate::generation::words::answer::{answer, sentence, thing};
-use crate::generation::words::hear::Heard;
-use crate::generation::words::reading::{Reading, What};
-use crate::scene::Scene;
+use crate::command::Command;
+use crate::icons::section;
+use crate::theme;
+use crate::tools::things::ThingCommand;
+use crate::tools::{Choose, ToolCommand};
+use place::description::{TimeOfDay, Weather};
+use scene::Scene;
+use words::account::Why;
+use words::answer::{answer, sentence, thing};
+use words::hear::Heard;
+use words::reading::{Reading, What};
 
 impl PromptPane {
     /// Each part of what was read: to be changed, locked, re-rolled or taken out. Of a change that was carried out nothing is

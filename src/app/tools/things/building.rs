@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::editor::kerb;
-use crate::scene::Form;
-use crate::scene::background::{Building, Roof, STOREY_M, crossing_edges};
+use editor::kerb;
+use scene::Form;
+use scene::background::{Building, Roof, STOREY_M, crossing_edges};
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
@@ -132,8 +132,8 @@ fn crosses(corners_m: &[DVec2], to_m: DVec2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tools::things::{Draft, ThingTool};
-    use crate::scene::{BevLayout, Polyline, PolylineKind};
+    use crate::tools::things::{Draft, ThingTool};
+    use scene::{BevLayout, Polyline, PolylineKind};
 
     fn v(x: f64, y: f64) -> DVec2 {
         DVec2::new(x, y)

@@ -3,13 +3,13 @@
 
 use glam::DVec2;
 
-use crate::app::application::SceneloomApp;
-use crate::app::state::Pane;
-use crate::app::tools::ToolCommand;
-use crate::editor::arrange::{self, Clipboard};
-use crate::editor::pick_things::{ground_in_world, way_in_world};
-use crate::editor::{Edit, kerb};
-use crate::scene::{BoxId, Form, Frame, Scene, ThingId};
+use crate::application::SceneloomApp;
+use crate::state::Pane;
+use crate::tools::ToolCommand;
+use editor::arrange::{self, Clipboard};
+use editor::pick_things::{ground_in_world, way_in_world};
+use editor::{Edit, kerb};
+use scene::{BoxId, Form, Frame, Scene, ThingId};
 
 use super::words;
 
@@ -18,7 +18,7 @@ const KERB_REACH_M: f64 = 12.0;
 
 impl SceneloomApp {
     /// Carries out a command of boxes for things too; false if it concerns no thing.
-    pub(in crate::app) fn carry(&mut self, command: &ToolCommand, ctx: &egui::Context) -> bool {
+    pub(crate) fn carry(&mut self, command: &ToolCommand, ctx: &egui::Context) -> bool {
         let scene = self.document.settled_scene().clone();
         if *command == ToolCommand::Paste && !self.state.tools.things.clipboard.is_empty() {
             self.paste_things(&scene);
@@ -106,7 +106,7 @@ impl SceneloomApp {
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
         let added = arrange::duplicate(frame, boxes);
         self.add_things("Duplicate", copies, added.edits);
-        self.state.choose(&added.ids, crate::app::tools::Choose::Add);
+        self.state.choose(&added.ids, crate::tools::Choose::Add);
     }
 
     fn copy_all(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form], ctx: &egui::Context) {
@@ -142,12 +142,12 @@ impl SceneloomApp {
         let added = arrange::paste(frame, &boxes, box_at_m);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
         self.add_things("Paste", copies, added.edits);
-        self.state.choose(&added.ids, crate::app::tools::Choose::Add);
+        self.state.choose(&added.ids, crate::tools::Choose::Add);
     }
 }
 
 /// Forms of the world as a frame sees them.
-pub(in crate::app) fn in_ego(forms: &[Form], frame: &Frame) -> Vec<Form> {
+pub(crate) fn in_ego(forms: &[Form], frame: &Frame) -> Vec<Form> {
     let to_ego = frame.world_from_ego.inverse();
     forms.iter().map(|f| f.in_frame(&to_ego)).collect()
 }
@@ -177,7 +177,7 @@ fn beside_m(forms: &[Form]) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::background::Building;
+    use scene::background::Building;
 
     #[test]
     fn copies_come_beside_and_do_not_overlap() {

@@ -1,8 +1,8 @@
 //! What a user can ask of the tools for things, as values; carried out in `execute.rs`.
 
-use crate::app::tools::Choose;
-use crate::editor::Edit;
-use crate::scene::ThingId;
+use crate::tools::Choose;
+use editor::Edit;
+use scene::ThingId;
 
 use super::{Pointer, ThingKind};
 

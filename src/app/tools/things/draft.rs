@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::editor::kerb;
-use crate::scene::{BevLayout, Form};
+use editor::kerb;
+use scene::{BevLayout, Form};
 
 use super::building::BuildingDraft;
 use super::line::LineDraft;

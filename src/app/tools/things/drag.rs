@@ -3,11 +3,11 @@
 
 use glam::DVec2;
 
-use crate::app::state::UiState;
-use crate::editor::arrange::boxes_of;
-use crate::editor::pick_things::{self, way_in_world};
-use crate::editor::{Edit, kerb};
-use crate::scene::{Form, Frame, Scene, SceneBox, ThingId};
+use crate::state::UiState;
+use editor::arrange::boxes_of;
+use editor::pick_things::{self, way_in_world};
+use editor::{Edit, kerb};
+use scene::{Form, Frame, Scene, SceneBox, ThingId};
 
 use super::draft::KERB_M;
 use super::{carry, words};
@@ -152,7 +152,7 @@ fn moved_box(b: &SceneBox, way_m: DVec2) -> Edit {
 }
 
 /// Edits that let the chosen things go where the edits of a drag of boxes take the first of these.
-pub(in crate::app) fn along_with(
+pub(crate) fn along_with(
     mut edits: Vec<Edit>,
     boxes: &[SceneBox],
     frame: &Frame,
@@ -183,9 +183,9 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::app::tools::Choose;
-    use crate::scene::background::Building;
-    use crate::scene::{Background, BevLayout, Pose, VoxelGrid};
+    use crate::tools::Choose;
+    use scene::background::Building;
+    use scene::{Background, BevLayout, Pose, VoxelGrid};
 
     #[test]
     fn drags_start_over_and_keep_outlines_sound() {

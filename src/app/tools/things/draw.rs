@@ -3,13 +3,13 @@
 use egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
 use glam::{DVec2, DVec3};
 
-use crate::app::canvas::ScreenMap;
-use crate::app::state::{Tool, UiState};
-use crate::app::theme;
-use crate::app::tools::bev_draw::tag;
-use crate::editor::{outline, pick_things};
-use crate::scene::background::{Building, STOREY_M};
-use crate::scene::{Form, Frame, Pose, Scene, ThingId};
+use crate::canvas::ScreenMap;
+use crate::state::{Tool, UiState};
+use crate::theme;
+use crate::tools::bev_draw::tag;
+use editor::{outline, pick_things};
+use scene::background::{Building, STOREY_M};
+use scene::{Form, Frame, Pose, Scene, ThingId};
 
 use super::options::ThingTool;
 use super::{Draft, Phase, Pointer, Site, ThingState, line, post};
@@ -23,7 +23,7 @@ fn color(form: &Form) -> Color32 {
         // Brighter than their class, which is a shade of the ground.
         Form::Building(_) | Form::Bridge(_) => [232, 214, 188],
         Form::Tree(_) | Form::Shrubs(_) => [126, 206, 120],
-        Form::Line(line) if line.kind.class() == crate::scene::Class::Vegetation => [126, 206, 120],
+        Form::Line(line) if line.kind.class() == scene::Class::Vegetation => [126, 206, 120],
         Form::Line(_) => [226, 186, 140],
         Form::Post(_) => [240, 220, 110],
     };
@@ -104,7 +104,7 @@ fn is_convex(points: &[Pos2]) -> bool {
 }
 
 /// The thing under a point of the bird's-eye view that a click would choose.
-pub(in crate::app) fn under(scene: &Scene, state: &UiState, at_m: DVec2, reach_m: f64) -> Option<ThingId> {
+pub(crate) fn under(scene: &Scene, state: &UiState, at_m: DVec2, reach_m: f64) -> Option<ThingId> {
     let p_m = pick_things::ground_in_world(&scene.frame().world_from_ego, at_m);
     let open = state.tools.things.is_open();
     open.then(|| pick_things::thing_at(&scene.background, p_m, reach_m))
@@ -112,7 +112,7 @@ pub(in crate::app) fn under(scene: &Scene, state: &UiState, at_m: DVec2, reach_m
 }
 
 /// Outlines of all things over the map layers; `hovered_m` is where the pointer chooses.
-pub(in crate::app) fn outlines(
+pub(crate) fn outlines(
     painter: &Painter,
     map: &ScreenMap,
     scene: &Scene,
@@ -169,7 +169,7 @@ fn handles_m(scene: &Scene, state: &UiState) -> Vec<DVec2> {
 }
 
 /// Handles of what is chosen, and what a tool has in hand, over the bird's-eye view.
-pub(in crate::app) fn hands(
+pub(crate) fn hands(
     painter: &Painter,
     map: &ScreenMap,
     scene: &Scene,
@@ -265,7 +265,7 @@ fn in_hand(tool: ThingTool, frame: &Frame, state: &UiState, at_m: Option<DVec2>,
         }
         ThingTool::Tree if things.draft == Draft::None => {
             out.forms.extend(at_m.map(|position_m| {
-                Form::Tree(crate::scene::background::Tree {
+                Form::Tree(scene::background::Tree {
                     position_m,
                     height_m: things.tree_m,
                     crown_radius_m: ThingState::crown_m(things.tree, things.tree_m),
@@ -276,7 +276,7 @@ fn in_hand(tool: ThingTool, frame: &Frame, state: &UiState, at_m: Option<DVec2>,
         ThingTool::Shrubs if things.draft == Draft::None => {
             let area = at_m.and_then(|p| outline::of_stroke(&[p], state.brush_m));
             out.forms.extend(area.map(|outline_m| {
-                Form::Shrubs(crate::scene::background::Shrubs {
+                Form::Shrubs(scene::background::Shrubs {
                     outline_m,
                     height_m: things.shrubs_m,
                     per_m2: 0.5,
@@ -290,7 +290,7 @@ fn in_hand(tool: ThingTool, frame: &Frame, state: &UiState, at_m: Option<DVec2>,
 
 /// Where the first point of a line would lie.
 fn dot(at_m: DVec2) -> Form {
-    Form::Tree(crate::scene::background::Tree {
+    Form::Tree(scene::background::Tree {
         position_m: at_m,
         height_m: 1.0,
         crown_radius_m: 0.4,
@@ -309,7 +309,7 @@ fn length(points: &[DVec2]) -> Option<String> {
 }
 
 /// The knob that raises what is chosen in the 3D view: in the middle of its top, ego frame, m.
-pub(in crate::app) fn knob_m(scene: &Scene, state: &UiState) -> Option<DVec3> {
+pub(crate) fn knob_m(scene: &Scene, state: &UiState) -> Option<DVec3> {
     let frame = scene.frame();
     let to_ego = frame.world_from_ego.inverse();
     let chosen = state.tools.things.chosen_in(&scene.background);
@@ -334,7 +334,7 @@ fn top_m(form: &Form, frame: &Frame) -> DVec3 {
 }
 
 /// Chosen things and what a tool has in hand, over the 3D view; `ground_m` is where the pointer meets it.
-pub(in crate::app) fn in_3d(
+pub(crate) fn in_3d(
     painter: &Painter,
     project: &dyn Fn(DVec3) -> Option<Pos2>,
     scene: &Scene,
@@ -397,4 +397,4 @@ pub(in crate::app) fn in_3d(
 }
 
 /// How near the pointer takes hold of the knob, points.
-pub(in crate::app) const KNOB_REACH: f32 = 9.0;
+pub(crate) const KNOB_REACH: f32 = 9.0;

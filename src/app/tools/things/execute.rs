@@ -1,10 +1,10 @@
 //! Carries out the commands of the tools for things.
 
-use crate::app::application::SceneloomApp;
-use crate::app::tools::Choose;
-use crate::editor::Edit;
-use crate::scene::background::STOREY_M;
-use crate::scene::{Background, Form, ThingId};
+use crate::application::SceneloomApp;
+use crate::tools::Choose;
+use editor::Edit;
+use scene::background::STOREY_M;
+use scene::{Background, Form, ThingId};
 
 use super::{Draft, Outcome, Pointer, Site, ThingCommand, words};
 
@@ -13,7 +13,7 @@ const STEP_M: f64 = 0.5;
 
 impl SceneloomApp {
     /// Carries out one command of the tools for things.
-    pub(in crate::app) fn thing_command(&mut self, command: ThingCommand) {
+    pub(crate) fn thing_command(&mut self, command: ThingCommand) {
         match command {
             ThingCommand::Pointer(pointer) => self.thing_pointer(&pointer),
             ThingCommand::Finish => {
@@ -105,7 +105,7 @@ impl SceneloomApp {
     }
 
     /// Adds things (world frame), with other edits, as one undo step, and chooses them.
-    pub(in crate::app) fn add_things(&mut self, verb: &str, forms: Vec<Form>, mut edits: Vec<Edit>) {
+    pub(crate) fn add_things(&mut self, verb: &str, forms: Vec<Form>, mut edits: Vec<Edit>) {
         let named: Vec<&Form> = forms.iter().collect();
         let label = format!("{verb} {}", words::count(&named));
         let before = self.document.settled_scene().background.clone();
@@ -116,7 +116,7 @@ impl SceneloomApp {
     }
 
     /// Brings the chosen things into the middle of both large views.
-    pub(in crate::app) fn frame_things(&mut self) {
+    pub(crate) fn frame_things(&mut self) {
         let scene = self.document.scene();
         let to_ego = scene.frame().world_from_ego.inverse();
         let chosen = self.state.tools.things.chosen_in(&scene.background);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::scene::Form;
+use scene::Form;
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
@@ -63,8 +63,8 @@ pub fn snapped(p: &Pointer, site: &Site<'_>, options: &ThingState) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::background::LineKind;
-    use crate::scene::{BevLayer, BevLayout, GridSpec};
+    use scene::background::LineKind;
+    use scene::{BevLayer, BevLayout, GridSpec};
 
     #[test]
     fn points_lie_beside_the_kerb_unless_alt_is_held() {

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use glam::DVec2;
 
-use crate::app::state::{Tool, UiState};
-use crate::app::tools::Choose;
-use crate::scene::background::{Facade, Line, LineKind, PostKind, Roof, TreeKind};
-use crate::scene::{Background, Form, ThingId};
+use crate::state::{Tool, UiState};
+use crate::tools::Choose;
+use scene::background::{Facade, Line, LineKind, PostKind, Roof, TreeKind};
+use scene::{Background, Form, ThingId};
 
 use super::Draft;
 
@@ -130,7 +130,7 @@ impl ThingState {
     }
 
     /// Chosen things that are there, by id.
-    pub fn chosen_in<'a>(&'a self, all: &'a Background) -> impl Iterator<Item = &'a crate::scene::Thing> {
+    pub fn chosen_in<'a>(&'a self, all: &'a Background) -> impl Iterator<Item = &'a scene::Thing> {
         self.chosen.iter().filter_map(|id| all.get(*id))
     }
 }
@@ -186,7 +186,7 @@ impl UiState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::BoxId;
+    use scene::BoxId;
 
     #[test]
     fn boxes_and_things_are_chosen_together_only_on_request() {

@@ -2,12 +2,12 @@
 
 use egui::Ui;
 
-use crate::app::icons::{self, section};
-use crate::app::panels::layers::caption;
-use crate::app::state::UiState;
-use crate::app::theme;
-use crate::app::tools::panel::slider;
-use crate::scene::background::{Facade, LineKind, PostKind, Roof, TreeKind};
+use crate::icons::{self, section};
+use crate::panels::layers::caption;
+use crate::state::UiState;
+use crate::theme;
+use crate::tools::panel::slider;
+use scene::background::{Facade, LineKind, PostKind, Roof, TreeKind};
 
 use super::{ThingState, ThingTool};
 
@@ -123,7 +123,7 @@ pub fn list<T: Copy + PartialEq>(
 ) -> bool {
     let before = *chosen;
     ui.horizontal(|ui| {
-        crate::app::panels::fields::caption(ui, title);
+        crate::panels::fields::caption(ui, title);
         let name = choices.iter().find(|c| c.0 == before).map_or("", |c| c.1);
         egui::ComboBox::from_id_salt(title)
             .selected_text(name)

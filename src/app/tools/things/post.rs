@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::editor::kerb;
-use crate::scene::Form;
-use crate::scene::background::{Post, PostKind};
+use editor::kerb;
+use scene::Form;
+use scene::background::{Post, PostKind};
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
@@ -69,7 +69,7 @@ fn clear_m(kind: PostKind) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BevLayer, BevLayout, GridSpec};
+    use scene::{BevLayer, BevLayout, GridSpec};
 
     #[test]
     fn posts_stand_clear_of_the_kerb_and_face_the_road() {

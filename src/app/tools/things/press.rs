@@ -3,11 +3,11 @@
 use egui::{Key, Modifiers, PointerButton, Response, Ui};
 use glam::DVec2;
 
-use crate::app::command::Command;
-use crate::app::state::{Tool, UiState};
-use crate::app::tools::{Choose, ToolCommand};
-use crate::editor::pick_things;
-use crate::scene::{Scene, ThingId};
+use crate::command::Command;
+use crate::state::{Tool, UiState};
+use crate::tools::{Choose, ToolCommand};
+use editor::pick_things;
+use scene::{Scene, ThingId};
 
 use super::drag::{Pull, ThingDrag};
 use super::{Phase, Pointer, ThingCommand, draw};
@@ -82,7 +82,7 @@ impl ThingPress {
 }
 
 /// Keys and the double click that belong to what is drawn point by point; they are taken from the frame's input.
-pub(in crate::app) fn keys(ui: &Ui, response: &Response, state: &UiState, commands: &mut Vec<Command>) {
+pub(crate) fn keys(ui: &Ui, response: &Response, state: &UiState, commands: &mut Vec<Command>) {
     let drawn = !state.tools.things.draft.points_m().is_empty();
     if !drawn || state.thing_tool().is_none() || ui.ctx().text_edit_focused() {
         return;
@@ -104,7 +104,7 @@ pub(in crate::app) fn keys(ui: &Ui, response: &Response, state: &UiState, comman
 }
 
 /// What a press on the bird's-eye view takes hold of among the chosen things: a corner of the only one, or all of them.
-pub(in crate::app) fn held_things(
+pub(crate) fn held_things(
     scene: &Scene,
     state: &UiState,
     at_m: DVec2,
@@ -130,7 +130,7 @@ pub(in crate::app) fn held_things(
 }
 
 /// A click on the bird's-eye view where no box is: chooses the thing there, or nothing.
-pub(in crate::app) fn click(
+pub(crate) fn click(
     scene: &Scene,
     state: &UiState,
     at_m: DVec2,
@@ -142,7 +142,7 @@ pub(in crate::app) fn click(
 }
 
 /// Chooses a thing, or nothing.
-pub(in crate::app) fn choose(hit: Option<ThingId>, add: bool, commands: &mut Vec<Command>) {
+pub(crate) fn choose(hit: Option<ThingId>, add: bool, commands: &mut Vec<Command>) {
     match (hit, add) {
         (Some(id), true) => send(ThingCommand::Choose(vec![id], Choose::Toggle), commands),
         (Some(id), false) => send(ThingCommand::Choose(vec![id], Choose::Only), commands),
@@ -152,7 +152,7 @@ pub(in crate::app) fn choose(hit: Option<ThingId>, add: bool, commands: &mut Vec
 }
 
 /// Chooses the things whose middle (ego frame, m) lies in an area, too.
-pub(in crate::app) fn in_area(
+pub(crate) fn in_area(
     scene: &Scene,
     state: &UiState,
     inside: impl Fn(DVec2) -> bool,

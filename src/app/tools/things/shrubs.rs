@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use crate::editor::outline;
-use crate::scene::Form;
-use crate::scene::background::Shrubs;
+use editor::outline;
+use scene::Form;
+use scene::background::Shrubs;
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
@@ -49,7 +49,7 @@ impl ShrubStroke {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::choose::is_inside;
+    use editor::choose::is_inside;
 
     #[test]
     fn a_stroke_becomes_an_area() {

@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-use crate::editor::choose::is_inside;
-use crate::editor::kerb;
-use crate::scene::Form;
-use crate::scene::background::Tree;
-use crate::scene::draw::{Draw, hash};
+use editor::choose::is_inside;
+use editor::kerb;
+use scene::Form;
+use scene::background::Tree;
+use scene::draw::{Draw, hash};
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
 
@@ -97,7 +97,7 @@ impl TreeStroke {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{BevLayer, BevLayout, GridSpec};
+    use scene::{BevLayer, BevLayout, GridSpec};
 
     fn stroke(to_m: DVec2, layout: &BevLayout, trees_m: &[DVec2]) -> Vec<Form> {
         stroke_by(to_m, layout, trees_m, &[])

@@ -1,6 +1,6 @@
 //! What things are called in undo steps and panels.
 
-use crate::scene::Form;
+use scene::Form;
 
 /// One of a kind: `tree`; several: `5 trees`; of several kinds: `5 things`.
 pub fn count(forms: &[&Form]) -> String {
@@ -27,8 +27,8 @@ pub fn plural(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::background::{Line, LineKind, Post, PostKind};
     use glam::DVec2;
+    use scene::background::{Line, LineKind, Post, PostKind};
 
     #[test]
     fn things_are_called_what_they_are() {

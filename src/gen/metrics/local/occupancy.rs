@@ -3,8 +3,8 @@
 
 use super::Windows;
 use super::random::{Bank, Map, normal};
-use crate::generation::world::draw::Draw;
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
+use world::draw::Draw;
 
 /// Columns of a window each way.
 pub const WINDOW: usize = 8;

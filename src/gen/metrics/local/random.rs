@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::generation::world::draw::Draw;
+use world::draw::Draw;
 
 /// A map `[rows][columns][channels]`.
 pub struct Map<'a> {

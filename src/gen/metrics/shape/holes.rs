@@ -1,7 +1,7 @@
 //! Holes in the ground: columns inside the area of a ground class where there is neither ground nor anything on it.
 
 use super::{ShapeFigures, share};
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Classes of ground, and the names of their figures.
 const CLASSES: [Class; 4] = [

@@ -1,8 +1,8 @@
 //! What is built, seen from above: how much edge it has, in how many parts, how even its roofs are.
 
 use super::{ShapeFigures, share};
-use crate::generation::metrics::stats::median;
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use crate::stats::median;
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Sides that face a column without manmade, per manmade column: 0 inside, 4 for a post.
 pub const EDGE: &str = "edge_per_manmade_column";

@@ -8,7 +8,7 @@ mod support;
 
 use std::collections::BTreeMap;
 
-use crate::scene::VoxelGrid;
+use scene::VoxelGrid;
 
 /// Figures of a frame by name; one that the frame has no matter for (no wall, no sidewalk) is missing.
 pub type ShapeFigures = BTreeMap<&'static str, f64>;

@@ -3,7 +3,7 @@
 
 use super::manmade::tops;
 use super::{ShapeFigures, share};
-use crate::scene::{GridSpec, VoxelGrid};
+use scene::{GridSpec, VoxelGrid};
 
 /// Share of the stretches that deviate from a line by no more than the steps of its columns do.
 pub const STRAIGHT: &str = "wall_straightness";

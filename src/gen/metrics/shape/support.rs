@@ -1,8 +1,8 @@
 //! What rests on nothing: crowns without a trunk, and voxels of any class that nothing connects to the ground.
 
 use super::{ShapeFigures, share};
-use crate::generation::metrics::components::{around, components, flat, place, spread};
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use crate::components::{around, components, flat, place, spread};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Groups of vegetation (26 neighbours, [`SMALLEST_CROWN`] voxels or more) none of whose voxels stands on anything else.
 pub const CROWNS: &str = "crowns_without_trunk";

@@ -1,9 +1,9 @@
 //! Every figure on things built by hand, then with its fault put in by hand.
 
 use super::*;
-use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Class, GridSpec};
+use scene::{Class, GridSpec};
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 const ROAD: u8 = Class::DriveableSurface as u8;
 
@@ -121,7 +121,7 @@ fn a_lifted_crown_and_a_tree_in_the_air() {
 /// A block turned by `angle` runs straight; with every outline column thrown out by chance it does not.
 #[test]
 fn walls_in_any_direction_are_straight_until_roughened() {
-    let mut draw = crate::generation::world::draw::Draw::new(1, "rough walls");
+    let mut draw = world::draw::Draw::new(1, "rough walls");
     for degrees in [0.0f64, 7.0, 18.0, 30.0, 45.0, 61.0] {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let (mut smooth, mut rough) = (VoxelGrid::new(), VoxelGrid::new());
@@ -155,7 +155,7 @@ fn walls_in_any_direction_are_straight_until_roughened() {
 fn faults_in_a_world_move_their_figures_and_no_others() {
     let world = complete(&World::random(11), Vertical::Occ3d);
     let sound = shape(&world);
-    let mut draw = crate::generation::world::draw::Draw::new(2, "faults");
+    let mut draw = world::draw::Draw::new(2, "faults");
     let [mut roofs, mut shards, mut holes] = [world.clone(), world.clone(), world.clone()];
     for x in 0..GridSpec::NX {
         for y in 0..GridSpec::NY {

@@ -11,9 +11,9 @@ use super::MetricError;
 use super::frechet::check;
 use super::local::Windows;
 use super::stats::{interval, t_quantile_975};
-use crate::generation::world::draw::Draw;
 use net::Net;
 pub use tells::{Tell, tells};
+use world::draw::Draw;
 
 /// Random splits into halves; each half is judged once in each.
 const SPLITS: usize = 3;

@@ -1,7 +1,7 @@
 //! A small classifier that is trained on the spot: one hidden layer, Adam (Kingma and Ba 2014), decayed weights. Plain
 //! f64 in a fixed order, so equal input gives equal bits.
 
-use crate::generation::world::draw::Draw;
+use world::draw::Draw;
 
 /// Units of the hidden layer.
 const HIDDEN: usize = 24;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::generation::metrics::local::Windows;
-use crate::generation::metrics::stats::interval;
+use crate::local::Windows;
+use crate::stats::interval;
 
 /// A feature and how far the sets are apart in it.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,10 +1,10 @@
 //! Guessing where there is nothing to be told, certainty where there is; on cheap features, then on worlds with a fault.
 
 use super::*;
-use crate::generation::metrics::local::occupancy;
-use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use crate::local::occupancy;
+use scene::{Class, GridSpec, VoxelGrid};
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 /// Scenes whose windows share something that belongs to the scene alone, `shift` added to one feature of every `every`-th
 /// window.

@@ -5,8 +5,8 @@
 use glam::{IVec3, Vec2, Vec3};
 
 use super::noise::{floor, hash1, unit, value3};
-use crate::scene::look::{BLOCK, BLOCKS, LEAVES, LookData, NX, NY, NZ, SURFACE, Section, TRUNK};
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::look::{BLOCK, BLOCKS, LEAVES, LookData, NX, NY, NZ, SURFACE, Section, TRUNK};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Cells between the middles of voxels.
 const CX: usize = NX - 1;

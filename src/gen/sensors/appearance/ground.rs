@@ -6,9 +6,9 @@ use std::collections::VecDeque;
 use glam::{Vec2, Vec3};
 
 use super::noise::{floor, ramp, value2};
-use crate::generation::sensors::march::ground::Ground as Columns;
-use crate::scene::look::{HIGHEST_M, KERB_M, LookData, Section};
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec};
+use crate::march::ground::Ground as Columns;
+use scene::look::{HIGHEST_M, KERB_M, LookData, Section};
+use scene::{BevLayer, BevLayout, Class, GridSpec};
 
 /// Width of the blur's kernel in columns: its standard deviation is about 1.2.
 const BLURS: usize = 3;

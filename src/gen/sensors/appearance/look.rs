@@ -7,10 +7,10 @@ use super::field::Field;
 use super::ground::Ground;
 use super::sky::Air;
 use super::things::{Material, Thing};
-use crate::generation::sensors::march::paint::Paint;
-use crate::generation::sensors::march::{GroundHeight, ground, remove_voxels};
-use crate::scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M};
-use crate::scene::{Frame, SceneBox, SensorRig};
+use crate::march::paint::Paint;
+use crate::march::{GroundHeight, ground, remove_voxels};
+use scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M};
+use scene::{Frame, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;

@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::look::{Hit, Look, What};
 use super::noise::{ramp, value3};
 use super::things::rgb;
-use crate::scene::Class;
+use scene::Class;
 
 /// A surface to be lit.
 #[derive(Clone, Copy, Debug)]

@@ -19,7 +19,7 @@ pub use look::Look;
 
 use rayon::prelude::*;
 
-use crate::scene::{Frame, SensorRig};
+use scene::{Frame, SensorRig};
 
 /// How much work goes into a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

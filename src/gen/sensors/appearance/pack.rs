@@ -3,9 +3,9 @@
 use super::Look;
 use super::look::Beam;
 use super::things::{Material, Part, Thing, rgb};
-use crate::scene::Class;
-use crate::scene::look::{LookData, PART_WORDS, Section, THING_WORDS};
 use glam::Vec3;
+use scene::Class;
+use scene::look::{LookData, PART_WORDS, Section, THING_WORDS};
 
 impl Look {
     /// Everything that the picture of a camera depends on.

@@ -8,9 +8,9 @@ use super::look::Look;
 use super::noise::{hash3, ramp, unit, unit3};
 use super::shade::Sample;
 use super::{CameraImage, Quality};
-use crate::generation::sensors::march::CameraRays;
-use crate::scene::Camera;
-use crate::scene::look::CONTRAST;
+use crate::march::CameraRays;
+use scene::Camera;
+use scene::look::CONTRAST;
 
 impl Look {
     /// The picture of one camera at `width` x `height` px.

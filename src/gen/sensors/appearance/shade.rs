@@ -5,9 +5,7 @@ use glam::Vec3;
 use super::look::{Beam, Hit, Look, What};
 use super::material::Surface;
 use super::noise::ramp;
-use crate::scene::look::{
-    FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M,
-};
+use scene::look::{FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M};
 
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{BoxId, Class, GridSpec, Pose, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, GridSpec, Pose, SceneBox, VoxelGrid};
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 fn street(seed: u64) -> Frame {
     let world = World::random(seed);
@@ -112,7 +112,7 @@ fn places_look_the_same_from_everywhere() {
             grid.set(x, y, 0, class.id());
         }
     }
-    let frame = Frame::new(crate::scene::BevLayout::default(), Default::default(), grid);
+    let frame = Frame::new(scene::BevLayout::default(), Default::default(), grid);
     let mut ahead = frame.clone();
     ahead.world_from_ego = Pose::planar(4.0, 0.0, 0.0);
     let rig = SensorRig::default();
@@ -164,7 +164,7 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
     let rig = SensorRig::default();
     let with = |boxes: &[SceneBox]| {
         let boxes = boxes.iter().map(|b| (b.id, *b)).collect();
-        Frame::new(crate::scene::BevLayout::default(), boxes, grid.clone())
+        Frame::new(scene::BevLayout::default(), boxes, grid.clone())
     };
     let conditions = of(TimeOfDay::Day, Weather::Clear);
     let (empty, full) = (

@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::noise::{hash1, unit};
-use crate::scene::{Class, Paint, SceneBox};
+use scene::{Class, Paint, SceneBox};
 
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]

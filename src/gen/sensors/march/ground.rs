@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Where the ground is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

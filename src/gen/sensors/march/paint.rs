@@ -4,9 +4,9 @@
 
 use glam::DVec2;
 
-use crate::scene::look::{LookData, Section};
-use crate::scene::sensor_data::RenderId;
-use crate::scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
+use scene::look::{LookData, Section};
+use scene::sensor_data::RenderId;
+use scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
 
 /// Half the width of a line in the label maps, m: a cell, as in the layout and in the splats.
 pub const HALF_LINE_M: f64 = 0.2;

@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::generation::world::objects;
-use crate::scene::solid::Solid;
-use crate::scene::{BoxId, SceneBox};
+use scene::solid::Solid;
+use scene::{BoxId, SceneBox};
+use world::objects;
 
 const BIN_M: f64 = 4.0;
 const BINS: usize = 20;

@@ -1,9 +1,9 @@
 //! Tests of the marched camera maps.
 
 use super::*;
-use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Polyline, PolylineKind};
+use scene::{Polyline, PolylineKind};
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 fn everything() -> [MarchOptions; 4] {
     let options = |ground, boxes| MarchOptions {
@@ -131,12 +131,12 @@ fn lines_are_finer_than_voxels_and_follow_the_cells() {
         points_m: vec![DVec2::new(-30.0, 1.0), DVec2::new(30.0, 4.0)],
     };
     let mut cells = BevLayout::default();
-    crate::scene::raster::draw_polyline(&mut cells, &line);
-    cells.set(crate::scene::BevLayer::RoadDivider, 150, 60, true);
+    scene::raster::draw_polyline(&mut cells, &line);
+    cells.set(scene::BevLayer::RoadDivider, 150, 60, true);
     let erased = 5;
     for x in 0..erased {
         for y in 0..GridSpec::NY {
-            cells.set(crate::scene::BevLayer::LaneDivider, 25 + x, y, false);
+            cells.set(scene::BevLayer::LaneDivider, 25 + x, y, false);
         }
     }
     let layout = BevLayout::from_cells(cells.cells().to_vec(), vec![line]).expect("40,000");

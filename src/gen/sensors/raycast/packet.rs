@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::walk::{Start, inverse_of, walk};
 use super::wide::{Wide, Work, heights, run};
 use super::{BLOCK, BLOCK_STRIDE, BORDER, ColumnMasks, STRIDE};
-use crate::scene::GridSpec;
+use scene::GridSpec;
 
 /// Rays in a packet.
 pub const LANES: usize = 8;

@@ -6,7 +6,7 @@
 
 use super::walk::Start;
 use super::{BLOCK, BLOCK_STRIDE, BORDER, ColumnMasks, STRIDE};
-use crate::scene::GridSpec;
+use scene::GridSpec;
 
 const FRACTION: u32 = 32;
 const BLOCK_SHIFT: u32 = BLOCK.trailing_zeros();

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::{BORDER, ColumnMasks, STRIDE};
-use crate::scene::GridSpec;
+use scene::GridSpec;
 
 const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 /// A slower component moves a ray by less than a rounding error over any distance that f64 can tell.

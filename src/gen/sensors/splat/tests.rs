@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::*;
-use crate::scene::Class;
+use scene::Class;
 
 /// At the origin, looking along ego x, `fov_deg` wide.
 fn camera(width: u32, height: u32, fov_deg: f64) -> Camera {
@@ -347,7 +347,7 @@ fn row_44_depth_map() {
 #[test]
 fn sizes_and_threads() {
     let grid = {
-        let mut grid = crate::scene::VoxelGrid::new();
+        let mut grid = scene::VoxelGrid::new();
         for i in 0..6000usize {
             grid.set(i * 7919 % 200, i * 104_729 % 200, i * 31 % 16, (i % 17) as u8);
         }

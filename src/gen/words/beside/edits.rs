@@ -9,10 +9,10 @@ use super::place::Ground;
 use super::targets::{Meant, targets};
 use super::wishes::forms;
 use super::{Amount, Said, Verb, What};
-use crate::generation::world::scenery::Setting;
-use crate::scene::Form;
-use crate::scene::background::STOREY_M;
-use crate::scene::{Background, BevLayout, BoxId, Class, Pose, SceneBox, ThingId};
+use scene::Form;
+use scene::background::STOREY_M;
+use scene::{Background, BevLayout, BoxId, Class, Pose, SceneBox, ThingId};
+use world::scenery::Setting;
 
 /// Change of a height if none is said: a building by storeys, other things by this share of theirs.
 const USUAL_STOREYS: f64 = 2.0;
@@ -259,7 +259,7 @@ fn apply(now: &mut Background, edits: &[ThingEdit], all: &Background) {
                 for form in forms {
                     // The id that the editor will give it.
                     let id = ThingId(now.next_id().0.max(all.next_id().0));
-                    now.insert(crate::scene::Thing {
+                    now.insert(scene::Thing {
                         id,
                         form: form.clone(),
                         look: id.0,

@@ -1,8 +1,8 @@
 //! The words that sentences about the background are made of, and what each says.
 
-use super::said::{Verb, What};
-use crate::generation::world::scenery::Setting;
-use crate::scene::background::{LineKind, PostKind, TreeKind};
+use place::beside_road::{Verb, What};
+use scene::background::{LineKind, PostKind, TreeKind};
+use world::scenery::Setting;
 
 /// What a run of words says.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,12 +5,11 @@ pub mod edits;
 mod lexicon;
 mod place;
 mod read;
-pub mod said;
 mod targets;
 #[cfg(test)]
 mod tests;
 mod tokens;
 pub mod wishes;
 
+pub use ::place::beside_road::{Amount, NearTo, Said, SideOf, Verb, What, Where};
 pub use read::{Taken, blank, may_be_barrier, take};
-pub use said::{Amount, NearTo, Said, SideOf, Verb, What, Where};

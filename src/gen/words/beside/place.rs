@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::{SideOf, Where};
-use crate::generation::world::scenery::distance_cells;
-use crate::scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
-use crate::scene::road_map::RoadMap;
-use crate::scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
+use scene::road_map::RoadMap;
+use scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+use world::scenery::distance_cells;
 
 /// Things end at the border of the grid, m.
 const BORDER_M: f64 = 39.4;

@@ -1,11 +1,11 @@
 //! Words to typed clauses: parts a text, and reads each part that is about the background.
 
-use super::super::tokens::Span;
 use super::lexicon::{Word, lookup};
 use super::tokens::{Token, TokenKind, tokens};
 use super::{Amount, NearTo, Said, SideOf, Verb, What, Where};
-use crate::generation::world::scenery::Setting;
-use crate::scene::background::PostKind;
+use place::beside_road::Span;
+use scene::background::PostKind;
+use world::scenery::Setting;
 
 /// What of a text is about the background, and the rest with the same bytes in the same places.
 #[derive(Clone, Debug, Default)]
@@ -257,7 +257,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
 
 /// True if the word names barriers too, which are boxes, and nothing tells that it runs along the road.
 pub fn may_be_barrier(s: &Said) -> bool {
-    use crate::scene::background::LineKind::{Fence, GuardRail};
+    use scene::background::LineKind::{Fence, GuardRail};
     matches!(s.what, What::Line(Fence | GuardRail)) && !s.place.along
 }
 

@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use super::place::Ground;
 use super::{NearTo, Said, SideOf, What, Where};
-use crate::scene::background::{LineKind, PostKind};
-use crate::scene::road_map::{RoadMap, outline_distance_m};
-use crate::scene::{Background, Form, Thing, ThingId};
+use scene::background::{LineKind, PostKind};
+use scene::road_map::{RoadMap, outline_distance_m};
+use scene::{Background, Form, Thing, ThingId};
 
 /// "Near" a crossing, a junction, and the ego vehicle, m.
 const NEAR_M: [f64; 3] = [12.0, 20.0, 15.0];
@@ -38,7 +38,7 @@ pub(super) fn is_near(roads: &RoadMap, place: &Where, points_m: &[DVec2]) -> boo
     );
     points_m.iter().any(|p| match near {
         NearTo::Crossing => roads.crossings.iter().any(|c| {
-            crate::scene::road_map::inside(&c.outline_m, *p) || outline_distance_m(&c.outline_m, *p) <= reach
+            scene::road_map::inside(&c.outline_m, *p) || outline_distance_m(&c.outline_m, *p) <= reach
         }),
         NearTo::Junction => roads.junctions_m.iter().any(|j| j.distance(*p) <= reach),
         NearTo::Ego => p.length() <= reach,
@@ -61,13 +61,11 @@ pub(super) fn is(what: What, form: &Form) -> bool {
             )
         }
         (What::Post(kind), Form::Post(p)) => p.kind == kind,
-        (What::Plants | What::Place(crate::generation::world::scenery::Setting::Forest), form) => {
-            match form {
-                Form::Tree(_) | Form::Shrubs(_) => true,
-                Form::Line(l) => l.kind == LineKind::Hedge,
-                _ => false,
-            }
-        }
+        (What::Plants | What::Place(world::scenery::Setting::Forest), form) => match form {
+            Form::Tree(_) | Form::Shrubs(_) => true,
+            Form::Line(l) => l.kind == LineKind::Hedge,
+            _ => false,
+        },
         _ => false,
     }
 }

@@ -6,9 +6,9 @@ use glam::DVec2;
 
 use super::edits::{OpenBackground, ThingEdit, ThingOutcome, carry_out};
 use super::*;
-use crate::generation::world::scenery::Setting;
-use crate::scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
-use crate::scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind, Pose, ThingId};
+use scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
+use scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind, Pose, ThingId};
+use world::scenery::Setting;
 
 fn one(text: &str, edits: bool) -> Said {
     let taken = take(text, edits);
@@ -431,7 +431,7 @@ fn new_things_stand_where_they_were_wanted() {
 /// houses, parks and walls.
 #[test]
 fn the_sentences_of_the_other_reader_are_left_alone() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/words/dev");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/words/dev");
     let (mut all, mut taken) = (0, Vec::new());
     for entry in std::fs::read_dir(folder).expect("the folder") {
         let path = entry.expect("an entry").path();
@@ -462,8 +462,8 @@ fn the_sentences_of_the_other_reader_are_left_alone() {
 #[test]
 fn descriptions_become_scenery() {
     use super::wishes::scenery;
-    use crate::generation::place::description::Description;
-    use crate::generation::world::template;
+    use ::place::description::Description;
+    use world::template;
     let said = |list: &[&str]| Description {
         background: list.iter().flat_map(|s| take(s, false).said).collect(),
         ..Description::default()
@@ -472,7 +472,7 @@ fn descriptions_become_scenery() {
     let (mut houses, mut worlds) = (0, 0);
     for seed in 0..12 {
         let layout = template::layout("intersection", seed).expect("a template");
-        let roads = crate::scene::road_map::RoadMap::new(&layout);
+        let roads = scene::road_map::RoadMap::new(&layout);
         if roads.crossings.is_empty() {
             continue;
         }
@@ -496,8 +496,8 @@ fn descriptions_become_scenery() {
                 Form::Building(_) => panic!("a building in the forest"),
                 Form::Tree(t) => {
                     trees_right += usize::from(!on_left(&thing.form));
-                    let close = |c: &crate::scene::road_map::CrossingArea| {
-                        crate::scene::road_map::outline_distance_m(&c.outline_m, t.position_m) < 12.0
+                    let close = |c: &scene::road_map::CrossingArea| {
+                        scene::road_map::outline_distance_m(&c.outline_m, t.position_m) < 12.0
                     };
                     near += usize::from(roads.crossings.iter().any(close));
                 }
@@ -509,10 +509,7 @@ fn descriptions_become_scenery() {
         // The same words, the same scenery; and without them another.
         assert_eq!(scenery(&wish, &layout, &none, seed).0, things);
         let plain = scenery(&said(&[]), &layout, &none, seed).0;
-        assert_eq!(
-            plain,
-            crate::generation::world::scenery::background(&layout, &none, seed)
-        );
+        assert_eq!(plain, world::scenery::background(&layout, &none, seed));
         let (hedged, short) = scenery(&said(&["a hedge along the right side"]), &layout, &none, seed);
         let is_hedge = |f: &Form| matches!(f, Form::Line(l) if l.kind == LineKind::Hedge);
         assert!(
@@ -526,5 +523,71 @@ fn descriptions_become_scenery() {
     for words in ["no trees near the crossing", "a tree 300 m ahead on the left"] {
         let (_, short) = scenery(&said(&[words]), &empty, &none, 1);
         assert!(short.len() == 1 && short[0].contains(words), "{short:?}");
+    }
+}
+
+/// What was said can be read again: as words, and as the JSON of its schema.
+#[test]
+fn clauses_are_values_with_words() {
+    for (text, edits, words) in [
+        (
+            "plant a tree 12 m ahead on the left",
+            true,
+            "adds a tree 12 m ahead on the left",
+        ),
+        (
+            "cut down all trees near the crossing",
+            true,
+            "removes trees near the crossing",
+        ),
+        ("delete the tree row", true, "removes the row of trees"),
+        (
+            "make the building #7 12 m tall",
+            true,
+            "makes the building #7 12 m high",
+        ),
+        (
+            "raise the houses on the right by two storeys",
+            true,
+            "makes the houses on the right taller by 2 storeys",
+        ),
+        (
+            "move the tree #7 3 m to the left",
+            true,
+            "moves the tree #7 by 3 m to the left",
+        ),
+        (
+            "fell three trees on the right",
+            true,
+            "removes 3 trees on the right",
+        ),
+        (
+            "benches along the left side",
+            false,
+            "benches along the road on the left",
+        ),
+        ("a dense forest on the right", false, "dense forest on the right"),
+        ("no trees near the crossing", false, "no trees near the crossing"),
+        (
+            "a 5-storey building on the left",
+            false,
+            "a building on the left, 5 storeys high",
+        ),
+    ] {
+        let [said] = &take(text, edits).said[..] else {
+            panic!("{text}")
+        };
+        assert_eq!(
+            if edits { said.to_string() } else { said.described() },
+            words,
+            "{text}: {said:?}"
+        );
+        assert_eq!(said.problem(), None, "{text}");
+        let json = serde_json::to_string(said).expect("JSON");
+        assert_eq!(
+            &serde_json::from_str::<Said>(&json).expect("the same"),
+            said,
+            "{json}"
+        );
     }
 }

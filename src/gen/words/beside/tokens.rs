@@ -1,6 +1,6 @@
-//! A text to words, numbers and marks: the tokens of [`words`](crate::generation::words), with lengths as number and unit.
+//! A text to words, numbers and marks: the tokens of [`words`](crate), with lengths as number and unit.
 
-use super::super::tokens::Span;
+use place::beside_road::Span;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,11 +8,11 @@ use glam::DVec2;
 use super::place::Ground;
 use super::targets::{Meant, is, targets};
 use super::{Amount, Said, SideOf, Verb, What};
-use crate::generation::place::description::{Description, Environment, Road};
-use crate::generation::world::draw::Draw;
-use crate::generation::world::scenery::{Setting, Side, Style, background_of};
-use crate::scene::background::{Building, Line, Post, PostKind, STOREY_M, Shrubs, Tree, TreeKind};
-use crate::scene::{Background, BevLayout, BoxId, Form, SceneBox};
+use place::description::{Description, Environment, Road};
+use scene::background::{Building, Line, Post, PostKind, STOREY_M, Shrubs, Tree, TreeKind};
+use scene::{Background, BevLayout, BoxId, Form, SceneBox};
+use world::draw::Draw;
+use world::scenery::{Setting, Side, Style, background_of};
 
 /// The scenery that a description asks for on a layout, and what of it could not be had, one line each.
 pub fn scenery(
@@ -86,7 +86,7 @@ fn is_there(s: &Said, things: &Background, ground: &Ground) -> bool {
         What::Place(_) => of(What::Building(None)).count() > 0,
         What::Building(_) => of(s.what).count() > 0,
         What::Line(_) => {
-            let length = |t: &crate::scene::Thing| {
+            let length = |t: &scene::Thing| {
                 t.form
                     .points_m()
                     .windows(2)

@@ -8,13 +8,13 @@ use super::super::reading::{Quantity, Relation, Thing};
 use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
-use crate::generation::place::description::{Anchor, Count, Description, ObjectSpec, Stated};
-use crate::generation::place::holds::{Target, holds, role_of};
-use crate::generation::place::rules::{Placement, place_from};
-use crate::generation::place::to_graph::to_graph;
-use crate::generation::words::text_edit::TextEdit;
-use crate::scene::graph::{LaneRole, Locked, ObjectState, RelationKind, SizeHint};
-use crate::scene::{BoxId, BoxLabel, Class, SceneBox};
+use crate::text_edit::TextEdit;
+use place::description::{Anchor, Count, Description, ObjectSpec, Stated};
+use place::holds::{Target, holds, role_of};
+use place::rules::{Placement, place_from};
+use place::to_graph::to_graph;
+use scene::graph::{LaneRole, Locked, ObjectState, RelationKind, SizeHint};
+use scene::{BoxId, BoxLabel, Class, SceneBox};
 
 /// Where a plan puts things.
 pub(super) struct Arranged {

@@ -7,10 +7,10 @@ use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
 use super::adds::in_place_of;
-use crate::generation::place::holds::overlap_m;
-use crate::generation::words::text_edit::TextEdit;
-use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
-use crate::scene::{BoxId, BoxLabel, SceneBox};
+use crate::text_edit::TextEdit;
+use place::holds::overlap_m;
+use scene::graph::{LaneRole, ObjectState, SizeHint};
+use scene::{BoxId, BoxLabel, SceneBox};
 
 impl Stage<'_> {
     /// One for one; where a number is said, those too many go and those too few stand by the others.
@@ -116,7 +116,7 @@ impl Stage<'_> {
     }
 
     /// The paint of a thing that is there, or was before the first act.
-    fn paint_of(&mut self, of: &Thing) -> Option<crate::scene::Paint> {
+    fn paint_of(&mut self, of: &Thing) -> Option<scene::Paint> {
         let last = self.last.clone();
         let now = self.fitting(of);
         let boxes = match now.is_empty() {
@@ -134,7 +134,7 @@ impl Stage<'_> {
         paint
     }
 
-    fn set_one(&mut self, id: BoxId, look: &Look, paint: Option<crate::scene::Paint>) {
+    fn set_one(&mut self, id: BoxId, look: &Look, paint: Option<scene::Paint>) {
         let Some(b) = self.boxes.get(&id).copied() else {
             return;
         };
@@ -251,7 +251,7 @@ impl Stage<'_> {
             let yaw_rad = match turn {
                 Turn::Around => {
                     // A driver changes to the lane that leads there.
-                    let drives = b.velocity_mps.length() > 0.5 && b.class != crate::scene::Class::Pedestrian;
+                    let drives = b.velocity_mps.length() > 0.5 && b.class != scene::Class::Pedestrian;
                     if drives && self.change_direction(id) {
                         continue;
                     }

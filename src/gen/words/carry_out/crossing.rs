@@ -5,11 +5,11 @@ use glam::DVec2;
 use super::super::reading::{Anchor, Destination, Feature, Place, Reading, Relation, Thing, Turn, What};
 use super::super::remark::Remark;
 use super::super::stage::Stage;
-use crate::generation::place::holds::overlap_m;
-use crate::generation::place::lanes::LaneMap;
-use crate::generation::words::text_edit::TextEdit;
-use crate::scene::raster::draw_polyline;
-use crate::scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Polyline, PolylineKind, SceneBox};
+use crate::text_edit::TextEdit;
+use place::holds::overlap_m;
+use place::lanes::LaneMap;
+use scene::raster::draw_polyline;
+use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Polyline, PolylineKind, SceneBox};
 
 /// Depth of a crossing along the road, m.
 const DEPTH_M: f64 = 3.0;

@@ -5,10 +5,10 @@ use super::super::reading::{Anchor as Said, Place, Relation};
 use super::super::remark::Remark;
 use super::super::resolve::kind_of;
 use super::super::stage::Stage;
-use crate::generation::place::description::{Anchor, ObjectSpec, Stated};
-use crate::generation::place::holds::role_of;
-use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
-use crate::scene::{BevLayer, Class, SceneBox};
+use place::description::{Anchor, ObjectSpec, Stated};
+use place::holds::role_of;
+use scene::graph::{LaneRole, ObjectState, RelationKind};
+use scene::{BevLayer, Class, SceneBox};
 
 /// The gap between two things that stand close behind each other, m.
 pub(super) const CLOSE_M: f64 = 4.5;

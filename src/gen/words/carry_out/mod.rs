@@ -14,9 +14,9 @@ use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
 use super::remark::Remark;
 use super::resolve::{Spare, words_of};
 use super::stage::{OpenScene, Outcome, Stage};
-use crate::generation::place::description::{TimeOfDay, Weather};
-use crate::generation::words::text_edit::TextEdit;
-use crate::scene::{BoxId, SceneBox};
+use crate::text_edit::TextEdit;
+use place::description::{TimeOfDay, Weather};
+use scene::{BoxId, SceneBox};
 
 /// Most acts that are carried out.
 pub const MOST_ACTS: usize = 100;

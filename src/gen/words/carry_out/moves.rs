@@ -10,12 +10,12 @@ use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
 use super::destinations::{CLOSE_M, Found, is_aside};
-use crate::generation::place::description::{Anchor, Stated};
-use crate::generation::place::holds::{ego, overlap_m};
-use crate::generation::place::rules::stands;
-use crate::generation::words::text_edit::TextEdit;
-use crate::scene::graph::{LaneRole, ObjectState, RelationKind};
-use crate::scene::{BoxId, Class, SceneBox};
+use crate::text_edit::TextEdit;
+use place::description::{Anchor, Stated};
+use place::holds::{ego, overlap_m};
+use place::rules::stands;
+use scene::graph::{LaneRole, ObjectState, RelationKind};
+use scene::{BoxId, Class, SceneBox};
 
 /// Width of a lane where the map does not say, m.
 const LANE_M: f64 = 3.5;

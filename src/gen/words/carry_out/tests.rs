@@ -10,10 +10,10 @@ use super::super::remark::Remark;
 use super::super::stage::{OpenScene, Outcome};
 use super::super::text_edit::TextEdit;
 use super::carry_out;
-use crate::generation::place::road;
-use crate::generation::place::rules::place_with;
-use crate::generation::place::to_graph::to_graph;
-use crate::scene::{BevLayout, BoxId, Class, Paint, SceneBox};
+use place::road;
+use place::rules::place_with;
+use place::to_graph::to_graph;
+use scene::{BevLayout, BoxId, Class, Paint, SceneBox};
 
 struct Base {
     layout: BevLayout,

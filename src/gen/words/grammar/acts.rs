@@ -8,8 +8,8 @@ use super::super::reading::{
 };
 use super::Grammar;
 use super::things::state_of;
-use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
-use crate::scene::graph::ObjectState;
+use place::description::{Density, Environment, Road, TimeOfDay, Weather};
+use scene::graph::ObjectState;
 
 type Found = Option<(What, usize)>;
 

@@ -12,7 +12,8 @@ use std::cell::Cell;
 
 use super::reader::Mode;
 use super::reading::{Act, Reading};
-use super::tokens::{Span, Token};
+use super::tokens::Token;
+use place::beside_road::Span;
 use table::Table;
 
 /// What the grammar reads of a text.

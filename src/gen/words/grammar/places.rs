@@ -5,7 +5,7 @@ use super::super::notation::anchor_of;
 use super::super::reading::Quantity;
 use super::super::reading::{Anchor, Place, Relation};
 use super::Grammar;
-use crate::scene::graph::LaneRole;
+use scene::graph::LaneRole;
 
 pub(super) fn to_ego(relation: Relation) -> Place {
     Place {

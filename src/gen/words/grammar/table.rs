@@ -18,7 +18,7 @@ pub(super) struct Table {
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let mut kinds: HashMap<&str, HashMap<&str, &str>> = HashMap::new();
     let mut words = HashSet::new();
-    let text = include_str!("../../../../assets/words/grammar.txt");
+    let text = assets::words::GRAMMAR;
     for (key, phrases) in text
         .lines()
         .filter(|l| !l.starts_with('#'))

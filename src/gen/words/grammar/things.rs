@@ -4,8 +4,8 @@ use super::super::lexicon::{LONGEST_PHRASE, Lexicon};
 use super::super::nouns::Noun;
 use super::super::reading::{PaintWish, Pick, Quantity, Thing};
 use super::Grammar;
-use crate::scene::Paint;
-use crate::scene::graph::{ObjectState, SizeHint};
+use scene::Paint;
+use scene::graph::{ObjectState, SizeHint};
 
 impl Grammar<'_> {
     /// Things joined by "and".

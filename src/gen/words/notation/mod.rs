@@ -10,8 +10,8 @@ pub use parse::{LONGEST, NotationError, Prefix, parse, prefix};
 pub use write::{thing, write};
 
 use super::reading::Anchor;
-use crate::scene::Paint;
-use crate::scene::graph::{LaneRole, ObjectState, SizeHint};
+use scene::Paint;
+use scene::graph::{LaneRole, ObjectState, SizeHint};
 
 const ANCHORS: [(&str, Anchor); 17] = [
     ("ego", Anchor::Ego),

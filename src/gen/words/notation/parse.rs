@@ -6,8 +6,8 @@ use super::super::reading::{
     Relation, Thing, Turn, Way, What,
 };
 use super::{SIZES, STATES, anchors, paint, plain};
-use crate::generation::place::description::{Density, Environment, Road, TimeOfDay, Weather};
-use crate::scene::graph::{ObjectState, SizeHint};
+use place::description::{Density, Environment, Road, TimeOfDay, Weather};
+use scene::graph::{ObjectState, SizeHint};
 
 /// Why a line is no reading.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -4,7 +4,7 @@ use super::super::reading::{
     Amount, Anchor, Destination, Look, PaintWish, Place, Quantity, Reading, Thing, Turn, What,
 };
 use super::{SIZES, STATES, anchors, plain};
-use crate::scene::graph::{ObjectState, SizeHint};
+use scene::graph::{ObjectState, SizeHint};
 
 /// The line of a reading; `parse` of it gives the same reading.
 pub fn write(reading: &Reading) -> String {

@@ -11,9 +11,10 @@ use std::sync::{Arc, OnceLock};
 use super::account::missing;
 use super::notation;
 use super::reading::Reading;
-use super::tokens::{Span, Speller, Token, tokens};
-use crate::generation::weights::{WeightFile, WeightsError};
+use super::tokens::{Speller, Token, tokens};
 use net::{Memory, Net, NetConfig, State};
+use nn::weights::{WeightFile, WeightsError};
+use place::beside_road::Span;
 use symbols::{Input, Symbols};
 
 /// File name of the weights.
@@ -60,7 +61,7 @@ impl LearnedReader {
         if let Some(reader) = READER.get() {
             return Ok(reader.clone());
         }
-        let bytes = include_bytes!("../../../../assets/weights/reader.safetensors");
+        let bytes = assets::weights::READER;
         let reader = Self::new(WeightFile::parse(FILE, bytes)?)?;
         Ok(READER.get_or_init(|| Arc::new(reader)).clone())
     }

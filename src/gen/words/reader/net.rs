@@ -5,9 +5,9 @@ use serde::Deserialize;
 
 use super::super::lexicon::Lexicon;
 use super::symbols::{GRAMS, Input, MOST_NUMBERS};
-use crate::generation::model::kernels;
-use crate::generation::model::layers::{Linear, Norm};
-use crate::generation::weights::{WeightFile, WeightsError};
+use nn::kernels;
+use nn::layers::{Linear, Norm};
+use nn::weights::{WeightFile, WeightsError};
 
 /// Positions whose bias differs.
 const NEAR: usize = 24;

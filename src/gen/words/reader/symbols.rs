@@ -7,7 +7,7 @@ use super::super::notation::{self, Prefix};
 use super::super::nouns::Noun;
 use super::super::tokens::Token;
 use super::Mode;
-use crate::generation::model::text::hash;
+use nets::text::hash;
 
 /// Buckets of letter triples.
 pub(super) const GRAMS: usize = 4096;

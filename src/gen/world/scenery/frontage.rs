@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::setting::{Setting, Side};
 use super::site::Site;
 use super::walk;
-use crate::generation::world::draw::Draw;
-use crate::scene::Form;
-use crate::scene::background::{Building, Facade, Roof, STOREY_M};
+use crate::draw::Draw;
+use scene::Form;
+use scene::background::{Building, Facade, Roof, STOREY_M};
 
 /// How a setting builds; ranges in m.
 struct Lots {

@@ -11,7 +11,7 @@ mod walk;
 use std::collections::BTreeMap;
 
 use super::draw::Draw;
-use crate::scene::{Background, BevLayout, BoxId, SceneBox};
+use scene::{Background, BevLayout, BoxId, SceneBox};
 
 pub use setting::{Setting, Side, Style};
 use site::Site;

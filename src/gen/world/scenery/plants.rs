@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::setting::{Setting, Side};
 use super::site::Site;
 use super::walk;
-use crate::generation::world::draw::{Draw, noise};
-use crate::scene::background::{Shrubs, Tree, TreeKind};
-use crate::scene::{Form, GridSpec};
+use crate::draw::{Draw, noise};
+use scene::background::{Shrubs, Tree, TreeKind};
+use scene::{Form, GridSpec};
 
 /// Trees per 1,000 m² of open ground, how much they gather in groves (0 to 1), and weights of [`TreeKind::ALL`].
 fn wood(setting: Setting) -> (f64, f64, [f64; 4]) {

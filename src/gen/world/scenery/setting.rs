@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::generation::world::draw::Draw;
-use crate::scene::{BevLayer, BevLayout, PolylineKind};
+use crate::draw::Draw;
+use scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A kind of place.
 #[derive(

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use super::setting::{Side, Style};
-use crate::scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
-use crate::scene::road_map::RoadMap;
-use crate::scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
+use scene::road_map::RoadMap;
+use scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
 
 /// Distance in cells from every cell to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
 pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {

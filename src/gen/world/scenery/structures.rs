@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::setting::Setting;
 use super::site::Site;
 use super::walk;
-use crate::generation::world::draw::Draw;
-use crate::scene::background::{Bridge, Line, LineKind};
-use crate::scene::{BevLayer, Form, GridSpec};
+use crate::draw::Draw;
+use scene::background::{Bridge, Line, LineKind};
+use scene::{BevLayer, Form, GridSpec};
 
 /// Distances from paved ground at which a step of the ground is looked for, m.
 const STEPS_AT_M: [f64; 4] = [1.2, 1.6, 2.0, 2.4];

@@ -1,9 +1,9 @@
 //! Tests of the scenery: sound, repeatable, off the road, and along it.
 
 use super::*;
-use crate::generation::world::{World, template, traffic};
-use crate::scene::raster::polygon_cells;
-use crate::scene::{BevLayer, Form, GridSpec};
+use crate::{World, template, traffic};
+use scene::raster::polygon_cells;
+use scene::{BevLayer, Form, GridSpec};
 
 #[test]
 fn distance_is_zero_on_the_set_and_grows() {
@@ -82,8 +82,8 @@ fn buildings_face_the_road() {
 
 #[test]
 fn steps_are_held_by_walls_and_bridges_span_the_road() {
-    use crate::generation::world::terrain::Terrain;
-    use crate::scene::background::LineKind;
+    use crate::terrain::Terrain;
+    use scene::background::LineKind;
     let count = |all: &Background, kind: LineKind| {
         let lines = all.iter().filter_map(|t| match &t.form {
             Form::Line(l) if l.kind == kind => Some(super::walk::length_m(&l.points_m)),
@@ -102,7 +102,7 @@ fn steps_are_held_by_walls_and_bridges_span_the_road() {
         layout.relief = Terrain::Viaduct.relief(&layout, seed);
         let carried = background_of(&layout, &nothing, &Style::both(side), seed);
         assert!(count(&carried, LineKind::Wall) > 20.0, "seed {seed}");
-        layout.relief = crate::scene::Relief::FLAT;
+        layout.relief = scene::Relief::FLAT;
         let level = background_of(&layout, &nothing, &Style::both(side), seed);
         assert_eq!(count(&level, LineKind::RetainingWall), 0.0);
         let decks = level.iter().filter(|t| matches!(t.form, Form::Bridge(_)));

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::generation::world::World;
-use crate::scene::{Polyline, PolylineKind};
+use crate::World;
+use scene::{Polyline, PolylineKind};
 
 /// How the simulated labelling drive goes.
 #[derive(Clone, Debug)]

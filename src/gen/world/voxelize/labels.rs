@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use super::drive::{Drive, poses};
 use super::observed::{Passed, seen_by_cameras};
 use super::{Vertical, finish_column};
-use crate::generation::world::World;
-use crate::generation::world::draw::Draw;
-use crate::scene::{Class, GridSpec, LidarPattern, Relief, SensorRig, VoxelGrid};
+use crate::World;
+use crate::draw::Draw;
+use scene::{Class, GridSpec, LidarPattern, Relief, SensorRig, VoxelGrid};
 
 /// A lowest hit up to so many bins above the ground still belongs to something standing on it, before the smear.
 const HIGHEST_UNDERSIDE: usize = 4;

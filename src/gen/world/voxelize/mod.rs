@@ -6,11 +6,11 @@ mod labels;
 mod observed;
 
 use super::World;
-use crate::scene::raster::bev_channels;
-use crate::scene::solid::fill::{SMEAR, fill, smear_down};
-use crate::scene::{BevLayer, Class, GridSpec, Relief, VoxelGrid};
 pub use drive::Drive;
 pub use labels::{Labelled, labelled, labels, observed_labels};
+use scene::raster::bev_channels;
+use scene::solid::fill::{SMEAR, fill, smear_down};
+use scene::{BevLayer, Class, GridSpec, Relief, VoxelGrid};
 
 /// Where the ground sits vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -103,7 +103,7 @@ fn finish_column(column: &mut [u8; GridSpec::NZ], ground: Option<(usize, u8)>, v
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SensorRig;
+    use scene::SensorRig;
 
     #[test]
     fn ground_is_where_the_convention_says() {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::scene::{Camera, Class, GridSpec, Pose, SensorRig, VoxelGrid};
+use scene::{Camera, Class, GridSpec, Pose, SensorRig, VoxelGrid};
 
 /// Voxels that rays went through before they ended; one bit each.
 #[derive(Clone, Default)]
@@ -149,8 +149,8 @@ impl<'a> View<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generation::world::World;
-    use crate::generation::world::voxelize::{Drive, Vertical, labelled, labels};
+    use crate::World;
+    use crate::voxelize::{Drive, Vertical, labelled, labels};
 
     #[test]
     fn walks_are_unbroken_and_end_where_they_should() {

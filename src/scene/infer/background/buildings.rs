@@ -4,9 +4,9 @@ use glam::DVec2;
 
 use super::columns::{Standing, closed, middle_m, parts};
 use super::rectangle::{Rectangle, split};
-use crate::scene::background::{Building, Facade, Roof};
-use crate::scene::raster::polygon_cells;
-use crate::scene::{GridSpec, VoxelGrid};
+use crate::background::{Building, Facade, Roof};
+use crate::raster::polygon_cells;
+use crate::{GridSpec, VoxelGrid};
 
 /// Columns lower than this are walls and fences, m.
 const LOWEST_M: f64 = 2.2;
@@ -38,7 +38,7 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
             labels
                 .column(c / GridSpec::NY, c % GridSpec::NY)
                 .iter()
-                .all(|l| *l == crate::scene::Class::FREE)
+                .all(|l| *l == crate::Class::FREE)
         })
         .collect();
     let mut pieces: Vec<(Rectangle, Vec<usize>)> = Vec::new();

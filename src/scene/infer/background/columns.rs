@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::scene::draft::ground_bin;
-use crate::scene::{BevLayout, Class, GridSpec, VoxelGrid};
+use crate::draft::ground_bin;
+use crate::{BevLayout, Class, GridSpec, VoxelGrid};
 
 /// Voxels of one class, column by column `[x][y]`, above the ground.
 pub(super) struct Standing {

@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::columns::{Standing, middle_m, parts};
 use super::rectangle::{Rectangle, split};
-use crate::scene::background::{Line, LineKind, Post, PostKind, Shrubs};
-use crate::scene::{Form, GridSpec};
+use crate::background::{Line, LineKind, Post, PostKind, Shrubs};
+use crate::{Form, GridSpec};
 
 /// Most columns of a pole.
 const POLE: usize = 4;

@@ -9,7 +9,7 @@ mod trees;
 
 use columns::{Standing, around};
 
-use crate::scene::{Background, BevLayout, Class, Form, GridSpec, VoxelGrid};
+use crate::{Background, BevLayout, Class, Form, GridSpec, VoxelGrid};
 
 /// Things of the labels, in the ego frame; ids count from 1, the largest kinds first. `layout` tells the height of the
 /// ground.

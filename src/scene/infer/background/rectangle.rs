@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::columns::middle_m;
-use crate::scene::GridSpec;
+use crate::GridSpec;
 
 /// Parts are cut at most this often, one within another.
 const DEEPEST: u32 = 6;

@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use super::*;
-use crate::scene::VoxelGrid;
-use crate::scene::background::LineKind;
-use crate::scene::raster::{disc_cells, line_cells, polygon_cells};
+use crate::VoxelGrid;
+use crate::background::LineKind;
+use crate::raster::{disc_cells, line_cells, polygon_cells};
 
 /// Ground everywhere, then columns of a class from the ground up to a height.
 struct Labels(VoxelGrid);
@@ -121,7 +121,7 @@ fn vegetation_becomes_trees_hedges_and_shrubs() {
     let patch = [(5.0, -20.0), (11.0, -20.0), (11.0, -15.0), (5.0, -15.0)].map(|(x, y)| DVec2::new(x, y));
     polygon_cells(&patch, |x, y| labels.stand(x, y, Class::Vegetation, -1.0, 0.6));
     let found = labels.things();
-    let trees: Vec<&crate::scene::background::Tree> = found
+    let trees: Vec<&crate::background::Tree> = found
         .iter()
         .filter_map(|f| if let Form::Tree(t) = f { Some(t) } else { None })
         .collect();

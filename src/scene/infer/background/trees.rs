@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use super::columns::{Standing, around, middle_m};
-use crate::scene::GridSpec;
-use crate::scene::background::{Tree, TreeKind};
-use crate::scene::distance::signed_distance_m;
+use crate::GridSpec;
+use crate::background::{Tree, TreeKind};
+use crate::distance::signed_distance_m;
 
 /// Vegetation lower than this is shrubs, m.
 const LOWEST_M: f64 = 2.0;
@@ -51,7 +51,7 @@ pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
         }
         for tree in &trees {
             let reach = tree.crown_radius_m + 0.5 * GridSpec::VOXEL_M;
-            crate::scene::raster::disc_cells(tree.position_m, reach, |x, y| {
+            crate::raster::disc_cells(tree.position_m, reach, |x, y| {
                 let c = x * GridSpec::NY + y;
                 (left[c], taken[c]) = (false, true);
             });

@@ -6,17 +6,17 @@ use serde_json::{Value, json};
 
 use super::super::{Eval, scene, with_interval};
 use super::edited;
-use crate::app::cli::progress::Progress;
-use crate::app::cli::trials::{KINDS, Trial};
-use crate::editor::Document;
-use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
-use crate::generation::metrics::iou::Confusion;
-use crate::generation::model::tokens_of;
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::region::Region;
-use crate::generation::solver::SolverKind;
-use crate::generation::world::draw::Draw;
-use crate::scene::{GridSpec, Scene, VoxelGrid};
+use crate::cli::progress::Progress;
+use crate::cli::trials::{KINDS, Trial};
+use diffusion::solver::SolverKind;
+use editor::Document;
+use job::pipeline::OccPipeline;
+use job::region::Region;
+use job::{GenParams, Job, JobCtx, Pipeline};
+use metrics::iou::Confusion;
+use nets::tokens_of;
+use scene::{GridSpec, Scene, VoxelGrid};
+use world::draw::Draw;
 
 /// Edits of one world before the next is taken.
 const EDITS_PER_WORLD: usize = 25;
@@ -28,7 +28,7 @@ const REFERENCE_STEPS: u32 = 1000;
 impl Eval {
     /// Edits of random kinds and places, each on top of the last; the second figure is the number of voxels
     /// that changed outside their regions.
-    pub(in crate::app::cli::eval) fn random_edits(
+    pub(in crate::cli::eval) fn random_edits(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
@@ -74,7 +74,7 @@ impl Eval {
     }
 
     /// Relative error of inverting a world and sampling it again, by scheme and number of steps.
-    pub(in crate::app::cli::eval) fn schemes(
+    pub(in crate::cli::eval) fn schemes(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
@@ -113,7 +113,7 @@ impl Eval {
     }
 
     /// Two edits in regions apart, in either order: share of the voxels of both regions that differ, per world.
-    pub(in crate::app::cli::eval) fn order(
+    pub(in crate::cli::eval) fn order(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,
@@ -142,7 +142,7 @@ impl Eval {
     }
 
     /// Removals with the usual steps against the same with many.
-    pub(in crate::app::cli::eval) fn reference(
+    pub(in crate::cli::eval) fn reference(
         &self,
         pipeline: &mut OccPipeline,
         params: GenParams,

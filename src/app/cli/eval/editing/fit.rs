@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use super::super::with_interval;
 use super::tried::Brought;
-use crate::generation::metrics::stats::{median, quantile};
-use crate::generation::request::voxels_of;
-use crate::scene::{Class, Frame};
+use job::request::voxels_of;
+use metrics::stats::{median, quantile};
+use scene::{Class, Frame};
 
 /// Voxels of the objects of each class.
 #[derive(Default)]

@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 
 use super::tally::Tally;
 use super::tried::try_edit;
-use crate::app::cli::trials::Trial;
-use crate::generation::job::{GenParams, Job, JobCtx};
-use crate::generation::pipeline::OccPipeline;
-use crate::scene::Scene;
+use crate::cli::trials::Trial;
+use job::pipeline::OccPipeline;
+use job::{GenParams, Job, JobCtx};
+use scene::Scene;
 
 /// Starts: name and share of the steps that fresh noise is put in at; 0 is inversion.
 const STARTS: [(&str, f64); 3] = [

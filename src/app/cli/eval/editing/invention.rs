@@ -11,12 +11,12 @@ use super::fit::{Bands, Fit};
 use super::materials::Material;
 use super::tally::{MUCH, Tally};
 use super::tried::{STATES, try_edit};
-use crate::app::cli::progress::Progress;
-use crate::app::cli::trials::{Trial, vehicles};
-use crate::generation::job::{GenParams, Job, JobCtx};
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::trade::{Stop, Stops};
-use crate::scene::{Class, Scene};
+use crate::cli::progress::Progress;
+use crate::cli::trials::{Trial, vehicles};
+use job::pipeline::OccPipeline;
+use job::{GenParams, Job, JobCtx};
+use scene::{Class, Scene};
+use trade::{Stop, Stops};
 
 /// Classes that are added to every scene, in this order, as many as `--vehicles` allows.
 const ADDED: [Class; 6] = [
@@ -212,8 +212,8 @@ fn contradictions(presets: &[Stop], found: &[OfPreset]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::cli::eval::editing::tried::Tried;
-    use crate::generation::metrics::invented::Invented;
+    use crate::cli::eval::editing::tried::Tried;
+    use job::invented::Invented;
 
     #[test]
     fn a_slower_preset_that_invents_more_is_named() {

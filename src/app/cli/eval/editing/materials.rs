@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::super::{TEST_SEED, scene};
-use crate::app::open;
-use crate::generation::dataset::world_of;
-use crate::generation::world::voxelize::{Drive, Vertical, labelled};
-use crate::scene::{Frame, Scene, SensorRig, Unobserved};
+use crate::open;
+use dataset::world_of;
+use scene::{Frame, Scene, SensorRig, Unobserved};
+use world::voxelize::{Drive, Vertical, labelled};
 
 /// Scenes of one kind.
 pub enum Material {

@@ -14,14 +14,14 @@ use anyhow::bail;
 use serde_json::{Value, json};
 
 use super::{Bar, Eval};
-use crate::app::cli::progress::Progress;
-use crate::app::cli::trials::Trial;
-use crate::app::open;
-use crate::editor::Document;
-use crate::generation::job::{GenParams, GenReport, Job, JobCtx, Pipeline};
-use crate::generation::pipeline::OccPipeline;
-use crate::scene::{Scene, VoxelGrid};
+use crate::cli::progress::Progress;
+use crate::cli::trials::Trial;
+use crate::open;
+use editor::Document;
+use job::pipeline::OccPipeline;
+use job::{GenParams, GenReport, Job, JobCtx, Pipeline};
 use materials::Material;
+use scene::{Scene, VoxelGrid};
 
 impl Eval {
     /// All of it for procedural worlds; what edits invent for a folder of frames.

@@ -7,12 +7,12 @@ use serde_json::{Value, json};
 
 use super::super::{Bar, Eval, scene, with_interval};
 use super::edited;
-use crate::app::cli::progress::Progress;
-use crate::app::cli::trials::{KINDS, Reached, Trial};
-use crate::generation::job::{GenParams, GenReport, Job, JobCtx};
-use crate::generation::metrics::stats::{mean_ci95, median};
-use crate::generation::pipeline::OccPipeline;
-use crate::scene::GridSpec;
+use crate::cli::progress::Progress;
+use crate::cli::trials::{KINDS, Reached, Trial};
+use job::pipeline::OccPipeline;
+use job::{GenParams, GenReport, Job, JobCtx};
+use metrics::stats::{mean_ci95, median};
+use scene::GridSpec;
 
 /// What was measured of one kind of edit.
 #[derive(Default)]
@@ -67,7 +67,7 @@ impl Kind {
 
 impl Eval {
     /// One edit of every kind per world; the inversion of its source is shared, as in the window.
-    pub(in crate::app::cli::eval) fn success(
+    pub(in crate::cli::eval) fn success(
         &self,
         pipeline: &mut OccPipeline,
         progress: &Progress,

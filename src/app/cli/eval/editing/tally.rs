@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use super::super::with_interval;
 use super::tried::{STATES, Tried};
-use crate::generation::metrics::stats::mean_ci95;
-use crate::scene::Class;
+use metrics::stats::mean_ci95;
+use scene::Class;
 
 /// More invented voxels than this are a thing that somebody would see.
 pub const MUCH: usize = 20;

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use crate::app::cli::trials::{Reached, Trial};
-use crate::editor::Document;
-use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
-use crate::generation::keep_clear::{keep_clear, keep_unobserved};
-use crate::generation::keep_grounded::keep_grounded;
-use crate::generation::keep_objects::{keep_ground, keep_objects};
-use crate::generation::metrics::invented::Invented;
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::redraw;
-use crate::generation::request::{Request, voxels_of};
-use crate::scene::{BevLayout, Class, Scene, SceneBox, VoxelGrid, draft};
+use crate::cli::trials::{Reached, Trial};
+use editor::Document;
+use job::invented::Invented;
+use job::keep_clear::{keep_clear, keep_unobserved};
+use job::keep_grounded::keep_grounded;
+use job::keep_objects::{keep_ground, keep_objects};
+use job::pipeline::OccPipeline;
+use job::redraw;
+use job::request::{Request, voxels_of};
+use job::{GenParams, Job, JobCtx, Pipeline};
+use scene::{BevLayout, Class, Scene, SceneBox, VoxelGrid, draft};
 
 /// States of a result, in the order in which the composite makes them: the networks alone; with placed boxes and painted
 /// ground kept; as the editor shows it, with the road kept clear and unobserved places kept as well.

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use crate::app::cli::eval::{Bar, with_interval};
-use crate::generation::metrics::agreement::AgreementCount;
-use crate::scene::{Scene, VoxelGrid};
+use crate::cli::eval::{Bar, with_interval};
+use metrics::agreement::AgreementCount;
+use scene::{Scene, VoxelGrid};
 
 /// Columns of all frames together and frame by frame.
 #[derive(Default)]

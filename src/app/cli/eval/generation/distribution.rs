@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::generation::metrics::frechet::frechet_distance;
-use crate::generation::metrics::kernel::{Kernel, mmd2_with_interval};
-use crate::generation::metrics::local::Windows;
-use crate::generation::metrics::scenewise::{self, standardised};
+use metrics::frechet::frechet_distance;
+use metrics::kernel::{Kernel, mmd2_with_interval};
+use metrics::local::Windows;
+use metrics::scenewise::{self, standardised};
 
 /// Parts that the sets are split into for the intervals of MMD and KID.
 const SUBSETS: usize = 8;

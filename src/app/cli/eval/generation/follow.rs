@@ -3,9 +3,9 @@
 
 use serde_json::{Value, json};
 
-use crate::app::cli::eval::with_interval;
-use crate::generation::metrics::iou::Confusion;
-use crate::scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+use crate::cli::eval::with_interval;
+use metrics::iou::Confusion;
+use scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
 
 /// Scenes of some roads, each from a seed of its own and from one seed for all.
 #[derive(Default)]

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::app::cli::eval::with_interval;
-use crate::scene::{Class, GridSpec, VoxelGrid};
+use crate::cli::eval::with_interval;
+use scene::{Class, GridSpec, VoxelGrid};
 
 /// Classes of the background and their names in the report.
 const CLASSES: [(Class, &str); 2] = [(Class::Manmade, "manmade"), (Class::Vegetation, "vegetation")];

@@ -16,25 +16,25 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Bar, Eval, scene, with_interval};
-use crate::app::cli::generate::full_params;
-use crate::app::cli::progress::Progress;
-use crate::app::scenery::{Drawer, SceneryWish};
-use crate::editor::Document;
-use crate::generation::job::{GenParams, Job, JobCtx, Pipeline};
-use crate::generation::metrics::extractor::Extractor;
-use crate::generation::metrics::iou::Confusion;
-use crate::generation::metrics::stats::median;
-use crate::generation::model::fine_vae;
-use crate::generation::pipeline::{Ablation, OccPipeline};
-use crate::generation::world::World;
-use crate::generation::world::voxelize::{Vertical, complete};
-use crate::scene::{Scene, VoxelGrid, draft};
+use crate::cli::generate::full_params;
+use crate::cli::progress::Progress;
+use crate::scenery::{Drawer, SceneryWish};
 use agreement::Agreement;
+use editor::Document;
 use follow::Follow;
 use given::Given;
+use job::pipeline::{Ablation, OccPipeline};
+use job::{GenParams, Job, JobCtx, Pipeline};
+use metrics::extractor::Extractor;
+use metrics::iou::Confusion;
+use metrics::stats::median;
+use nets::fine_vae;
 use redrawn::Redrawn;
 use row::{ROWS, Row, Seen};
+use scene::{Scene, VoxelGrid, draft};
 pub(super) use table::table;
+use world::World;
+use world::voxelize::{Vertical, complete};
 
 /// Frames that are generated a second time, from another seed.
 const DIVERSITY_FRAMES: usize = 8;

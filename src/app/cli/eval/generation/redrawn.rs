@@ -5,11 +5,11 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::OTHER_SEED;
-use crate::app::cli::eval::with_interval;
-use crate::generation::job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
-use crate::generation::pipeline::OccPipeline;
-use crate::generation::region::Region;
-use crate::scene::{Class, Density, GridSpec, VoxelGrid};
+use crate::cli::eval::with_interval;
+use job::pipeline::OccPipeline;
+use job::region::Region;
+use job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
+use scene::{Class, Density, GridSpec, VoxelGrid};
 
 /// Side of the square, columns, how often it is drawn, and the step of its places.
 const REDRAWN: usize = 28;

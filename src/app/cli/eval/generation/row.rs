@@ -7,14 +7,14 @@ use serde_json::{Map, Value, json};
 
 use super::agreement::Agreement;
 use super::{distribution, told_apart};
-use crate::app::cli::eval::with_interval;
-use crate::editor::checks::{Severity, names, run_checks};
-use crate::generation::metrics::extractor::Extractor;
-use crate::generation::metrics::local::{Windows, depth, occupancy};
-use crate::generation::metrics::shape::{FIGURES, ShapeFigures, shape};
-use crate::generation::sensors::march::{MarchOptions, MarchScene};
-use crate::generation::world::draw::Draw;
-use crate::scene::{Scene, SensorRig, VoxelGrid};
+use crate::cli::eval::with_interval;
+use editor::checks::{Severity, names, run_checks};
+use metrics::extractor::Extractor;
+use metrics::local::{Windows, depth, occupancy};
+use metrics::shape::{FIGURES, ShapeFigures, shape};
+use scene::{Scene, SensorRig, VoxelGrid};
+use sensors::march::{MarchOptions, MarchScene};
+use world::draw::Draw;
 
 /// Cells of the extractor's map, and windows of occupancy, that are taken of a scene for distances.
 const TAKEN: usize = 48;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use super::row::ROWS;
-use crate::generation::metrics::shape::FIGURES;
+use metrics::shape::FIGURES;
 
 /// Width of a column and of the names before them, characters.
 const COLUMN: usize = 17;

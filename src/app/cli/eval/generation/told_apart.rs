@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::generation::metrics::local::Windows;
-use crate::generation::metrics::two_sample::{tells, two_sample};
+use metrics::local::Windows;
+use metrics::two_sample::{tells, two_sample};
 
 /// Fewest scenes of a set.
 const FEWEST: usize = 4;

@@ -7,8 +7,8 @@ use super::super::look::{Hit, Look};
 use super::super::noise::{hash1, ramp, unit, unit3, value2, value3};
 use super::super::things::rgb;
 use super::{Surface, band, calm, gray, visible};
-use crate::scene::Class;
-use crate::scene::look::TRUNK;
+use scene::Class;
+use scene::look::TRUNK;
 
 impl Look {
     pub(super) fn voxel_surface(&self, hit: &Hit, label: u8, normal: Vec3, fp: f32) -> Surface {

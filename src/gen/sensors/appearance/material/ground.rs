@@ -5,8 +5,8 @@ use glam::{IVec3, Vec2, Vec3};
 use super::super::look::Look;
 use super::super::noise::{fbm2, ramp, unit3, value2};
 use super::{Surface, band, gray, visible};
-use crate::scene::look::{KERB_EDGE_M, KERB_SEEN_M};
-use crate::scene::{BevLayer, PolylineKind};
+use scene::look::{KERB_EDGE_M, KERB_SEEN_M};
+use scene::{BevLayer, PolylineKind};
 
 impl Look {
     pub(super) fn ground_surface(&self, p: Vec3, normal: Vec3, fp: f32) -> Surface {

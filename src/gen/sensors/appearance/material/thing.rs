@@ -6,7 +6,7 @@ use super::super::look::Look;
 use super::super::noise::{ramp, unit, unit3, value2, value3};
 use super::super::things::{Material, Thing, rgb};
 use super::{Surface, TAIL, band, gray, visible};
-use crate::scene::Class;
+use scene::Class;
 
 impl Look {
     pub(super) fn thing_surface(&self, t: &Thing, p: Vec3, n: Vec3, material: Material, fp: f32) -> Surface {

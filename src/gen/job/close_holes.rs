@@ -1,0 +1,50 @@
+//! A scene that is to be complete has ground everywhere: what the networks left open is closed, and counted.
+
+use scene::draft::{ground_bin, ground_class};
+use scene::{BevLayout, Class, GridSpec, VoxelGrid};
+
+/// Lays the layout's ground in columns without any ground in which nothing stands on its place either. Returns how many.
+pub fn close_holes(layout: &BevLayout, generated: &mut VoxelGrid) -> usize {
+    let mut closed = 0;
+    for c in 0..GridSpec::COLUMNS {
+        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        let bin = ground_bin(layout, x, y);
+        let column = generated.column(x, y);
+        let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);
+        if column.iter().any(is_ground) || column[..=bin].iter().any(|l| *l != Class::FREE) {
+            continue;
+        }
+        generated.set(x, y, bin, ground_class(layout.cell(x, y)).id());
+        closed += 1;
+    }
+    closed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::request::tests::removal;
+    use scene::draft;
+
+    #[test]
+    fn holes_are_closed_and_nothing_else_changes() {
+        let frame = removal();
+        let sound = draft::draft(&frame.layout, frame.boxes.values());
+        let mut generated = sound.clone();
+        assert_eq!(close_holes(&frame.layout, &mut generated), 0);
+        let bins = [(5, 5), (100, 100)].map(|(x, y)| (x, y, ground_bin(&frame.layout, x, y)));
+        for (x, y, bin) in bins {
+            generated.set(x, y, bin, Class::FREE);
+        }
+        // A crown above a hole stays; a wall in the place of the ground is no hole.
+        generated.set(5, 5, 12, Class::Vegetation.id());
+        let (x, y) = (7, 7);
+        let wall = ground_bin(&frame.layout, x, y);
+        generated.set(x, y, wall, Class::Manmade.id());
+        assert_eq!(close_holes(&frame.layout, &mut generated), 2);
+        let mut expected = sound;
+        expected.set(5, 5, 12, Class::Vegetation.id());
+        expected.set(x, y, wall, Class::Manmade.id());
+        assert!(generated == expected);
+    }
+}

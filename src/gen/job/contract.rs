@@ -1,0 +1,434 @@
+//! What is asked of the generation worker and what it answers, as plain values.
+//! A job is a pure function of its scene and parameters: same key, same result.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+use thiserror::Error;
+
+use diffusion::schedule::ScheduleError;
+use diffusion::solver::SolverError;
+use scene::{Scene, SceneRev, VoxelGrid};
+
+pub use super::params::{GenParams, Named, Quality, RegionMode};
+pub use nn::Precision;
+
+/// All that a pipeline may read.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The scene as it was when the job was made.
+    pub scene: Arc<Scene>,
+    /// How to generate.
+    pub params: GenParams,
+}
+
+impl Job {
+    /// What names this job's result.
+    pub fn key(&self) -> JobKey {
+        JobKey {
+            rev: self.scene.rev,
+            params: self.params,
+        }
+    }
+}
+
+/// Same key, same result: the key of a cache of results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct JobKey {
+    /// State of the scene.
+    pub rev: SceneRev,
+    /// Parameters.
+    pub params: GenParams,
+}
+
+/// Names a submitted job; later jobs have greater ids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct JobId(pub u64);
+
+/// Part of a generation, for progress and timing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Stage {
+    /// Networks are read.
+    Load,
+    /// Labels to latent.
+    Encode,
+    /// Latent to noise, under the source's layout.
+    Invert,
+    /// Noise to latent, under the new layout.
+    Denoise,
+    /// Latent to labels.
+    Decode,
+    /// Region, composite and measures.
+    Composite,
+    /// LiDAR sweep.
+    Lidar,
+    /// Camera maps.
+    Cameras,
+}
+
+impl Stage {
+    /// Name as in reports: `denoise`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Load => "load",
+            Stage::Encode => "encode",
+            Stage::Invert => "invert",
+            Stage::Denoise => "denoise",
+            Stage::Decode => "decode",
+            Stage::Composite => "composite",
+            Stage::Lidar => "lidar",
+            Stage::Cameras => "cameras",
+        }
+    }
+}
+
+/// What a generation did and what it cost. Serialises for `--report`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct GenReport {
+    /// Calls of the denoising network, inversion included.
+    pub network_calls: usize,
+    /// Calls of them for inversion; 0 if the trajectory was at hand.
+    pub inversion_calls: usize,
+    /// Wall time by [`Stage::name`], s.
+    pub wall_s: BTreeMap<&'static str, f64>,
+    /// Columns in the region.
+    pub region_columns: usize,
+    /// Share of all columns.
+    pub region_share: f64,
+    /// Latent cells regenerated.
+    pub region_cells: usize,
+    /// Tokens that the denoising network worked on per call.
+    pub tokens: usize,
+    /// Voxels outside the region, not painted, that differ from the source: must be 0.
+    pub untouched_voxels_changed: usize,
+    /// Names the labels outside the region that are not painted (FNV-1a): the same before and after.
+    pub untouched_hash: u64,
+    /// Share of voxels changed along the inner border of the region.
+    pub seam_change_share: f64,
+    /// Voxels that differ from the source.
+    pub voxels_changed: usize,
+    /// Voxels of the region that the edit does not change and the VAE would have ([`keep_unchanged`]).
+    ///
+    /// [`keep_unchanged`]: super::keep_unchanged::keep_unchanged
+    pub unchanged_kept: usize,
+    /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
+    pub objects_kept: usize,
+    /// Columns whose painted ground the networks did not follow, and that were given it.
+    pub ground_kept: usize,
+    /// Voxels that nobody asked for on the road or in a removed box's place, and that were cleared.
+    pub invented_cleared: usize,
+    /// Columns that the networks left without ground in a scene that is to be complete, and that were given it.
+    pub holes_closed: usize,
+    /// Voxels put under crowns that hung in the air.
+    pub stems_added: usize,
+    /// Voxels that hung in the air or were of an object without a box, and were taken out.
+    pub loose_dropped: usize,
+    /// Voxels that were put where no sensor of the source had looked, and that were taken out again.
+    pub unobserved_kept: usize,
+    /// Relative RMS error of encode, invert and sample again, where it was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub round_trip_error: Option<f64>,
+    /// Standard deviation of the noise that inversion ended in, where one ran or was at hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_std: Option<f64>,
+    /// Largest magnitude in that noise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise_max_abs: Option<f64>,
+    /// What the user should know: fallbacks, moments out of bounds. One line each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
+}
+
+impl GenReport {
+    /// Runs `work` and adds its wall time to a stage.
+    pub fn timed<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let out = work(self);
+        *self.wall_s.entry(stage.name()).or_default() += start.elapsed().as_secs_f64();
+        out
+    }
+
+    /// Notes what hung in the air.
+    pub fn grounded(&mut self, found: super::keep_grounded::Grounded) {
+        (self.stems_added, self.loose_dropped) = (found.stems, found.dropped);
+    }
+
+    /// Wall time of all stages, s.
+    pub fn total_s(&self) -> f64 {
+        self.wall_s.values().sum()
+    }
+}
+
+/// A generated occupancy, finished or on the way.
+#[derive(Clone, Debug)]
+pub struct GenResult {
+    /// The job that it answers.
+    pub key: JobKey,
+    /// Index of the frame that was generated.
+    pub frame: usize,
+    /// The new occupancy: source outside the region, painted voxels kept.
+    pub occupancy: VoxelGrid,
+    /// What it cost.
+    pub report: GenReport,
+}
+
+impl GenResult {
+    /// State of the scene that it belongs to.
+    pub fn rev(&self) -> SceneRev {
+        self.key.rev
+    }
+}
+
+/// Why there is no result. Displays as one line.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum GenError {
+    /// A newer job waits, or the user cancelled. Not an error to show.
+    #[error("stopped for a newer job")]
+    Superseded,
+    /// A parameter out of range.
+    #[error("{0}")]
+    Params(String),
+    /// A solver refused.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// The pipeline panicked; it is built anew for the next job.
+    #[error("generation panicked: {0}")]
+    Panicked(String),
+    /// Anything else: weights, device, networks.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl GenError {
+    /// From any error, on one line; for an `anyhow::Error` format it with `{:#}` first.
+    pub fn failed(error: impl Display) -> Self {
+        Self::Failed(one_line(&error.to_string()))
+    }
+
+    /// From what a panic left behind.
+    pub fn panicked(payload: &(dyn std::any::Any + Send)) -> Self {
+        let text = payload
+            .downcast_ref::<&str>()
+            .copied()
+            .or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+        Self::Panicked(one_line(text.unwrap_or("no message")))
+    }
+}
+
+impl From<ScheduleError> for GenError {
+    fn from(error: ScheduleError) -> Self {
+        Self::Solver(error.into())
+    }
+}
+
+fn one_line(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
+    lines.join("; ")
+}
+
+/// News about a job.
+#[derive(Clone, Debug)]
+pub enum JobUpdate {
+    /// Where it is: `step` of `steps` of a stage are done.
+    Progress {
+        /// Part of the work.
+        stage: Stage,
+        /// Steps done.
+        step: usize,
+        /// All steps of the stage.
+        steps: usize,
+    },
+    /// Something to look at on the way.
+    Preview(Arc<GenResult>),
+    /// The result. Terminal.
+    Finished(Arc<GenResult>),
+    /// No result. Terminal; later jobs run.
+    Failed(GenError),
+    /// Given up for a newer job or on request. Terminal.
+    Superseded,
+}
+
+impl JobUpdate {
+    /// True for the last update of a job.
+    pub fn is_terminal(&self) -> bool {
+        matches!(self, Self::Finished(_) | Self::Failed(_) | Self::Superseded)
+    }
+}
+
+/// A [`JobUpdate`] with its job.
+#[derive(Clone, Debug)]
+pub struct JobEvent {
+    /// Which job.
+    pub id: JobId,
+    /// What became of it.
+    pub update: JobUpdate,
+}
+
+/// How a running job talks to whoever asked for it.
+pub struct JobCtx<'a> {
+    stop: &'a (dyn Fn() -> bool + Sync),
+    report: &'a (dyn Fn(JobUpdate) + Sync),
+    previews: bool,
+}
+
+impl<'a> JobCtx<'a> {
+    /// `stop` is asked between steps, `report` gets every update.
+    pub fn new(stop: &'a (dyn Fn() -> bool + Sync), report: &'a (dyn Fn(JobUpdate) + Sync)) -> Self {
+        Self {
+            stop,
+            report,
+            previews: false,
+        }
+    }
+
+    /// For somebody who looks on: long jobs show what comes.
+    pub fn with_previews(self) -> Self {
+        Self {
+            previews: true,
+            ..self
+        }
+    }
+
+    /// Somebody looks on.
+    pub fn previews(&self) -> bool {
+        self.previews
+    }
+
+    /// For a caller that waits: never stopped, tells nobody.
+    pub fn detached() -> JobCtx<'static> {
+        JobCtx {
+            stop: &|| false,
+            report: &|_| {},
+            previews: false,
+        }
+    }
+
+    /// Fails if the job should end.
+    pub fn check(&self) -> Result<(), GenError> {
+        if (self.stop)() {
+            Err(GenError::Superseded)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Says where the job is; fails if it should end. Call it between steps and leave with `?`.
+    pub fn progress(&self, stage: Stage, step: usize, steps: usize) -> Result<(), GenError> {
+        self.check()?;
+        (self.report)(JobUpdate::Progress { stage, step, steps });
+        Ok(())
+    }
+
+    /// Shows something on the way; may be dropped if the receiver is slow.
+    pub fn preview(&self, result: GenResult) {
+        (self.report)(JobUpdate::Preview(Arc::new(result)));
+    }
+}
+
+/// Makes results. Runs on the worker's thread, or on the caller's in the command line.
+pub trait Pipeline {
+    /// Does a job. Must depend on nothing but `job` (and on caches that change no result).
+    fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError>;
+}
+
+/// Lets through only what may still change the screen: nothing of a job that has ended, and nothing of a
+/// job older than the newest one that was heard of.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct UpdateGate {
+    newest: Option<JobId>,
+    ended: Option<JobId>,
+}
+
+impl UpdateGate {
+    /// True if the update is news.
+    pub fn admit(&mut self, event: &JobEvent) -> bool {
+        if Some(event.id) < self.newest || Some(event.id) <= self.ended {
+            return false;
+        }
+        self.newest = Some(event.id);
+        if event.update.is_terminal() {
+            self.ended = Some(event.id);
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    #[test]
+    fn errors_are_one_line() {
+        let error = GenError::failed("weights:\n\n  tensor \"a\" is missing\n");
+        assert_eq!(error.to_string(), "weights:; tensor \"a\" is missing");
+        let payload: Box<dyn std::any::Any + Send> = Box::new("a\nb");
+        assert_eq!(
+            GenError::panicked(&*payload).to_string(),
+            "generation panicked: a; b"
+        );
+        let payload: Box<dyn std::any::Any + Send> = Box::new(7);
+        assert_eq!(
+            GenError::panicked(&*payload).to_string(),
+            "generation panicked: no message"
+        );
+    }
+
+    #[test]
+    fn a_context_reports_until_it_is_stopped() {
+        let stop = std::sync::atomic::AtomicBool::new(false);
+        let seen = Mutex::new(Vec::new());
+        let stop_fn = || stop.load(std::sync::atomic::Ordering::Relaxed);
+        let report = |u: JobUpdate| seen.lock().expect("one thread").push(u);
+        let ctx = JobCtx::new(&stop_fn, &report);
+        assert_eq!(ctx.progress(Stage::Denoise, 1, 3), Ok(()));
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert_eq!(ctx.progress(Stage::Denoise, 2, 3), Err(GenError::Superseded));
+        assert_eq!(seen.lock().expect("one thread").len(), 1);
+        assert_eq!(JobCtx::detached().progress(Stage::Load, 0, 1), Ok(()));
+    }
+
+    /// Row 61 of the extremes table: what arrives late is dropped by its job id.
+    #[test]
+    fn row_61_late_updates_are_dropped() {
+        let mut gate = UpdateGate::default();
+        let progress = JobUpdate::Progress {
+            stage: Stage::Invert,
+            step: 1,
+            steps: 2,
+        };
+        let mut admit = |id, update: &JobUpdate| {
+            gate.admit(&JobEvent {
+                id: JobId(id),
+                update: update.clone(),
+            })
+        };
+        let failed = JobUpdate::Failed(GenError::failed("x"));
+        assert!(admit(3, &progress));
+        assert!(admit(3, &JobUpdate::Superseded));
+        assert!(!admit(3, &progress), "after the end");
+        assert!(!admit(3, &failed), "a second end");
+        assert!(!admit(2, &failed), "an older job");
+        assert!(admit(5, &progress));
+        assert!(!admit(4, &failed), "older than the running one");
+        assert!(admit(5, &failed));
+        assert!(admit(6, &progress));
+    }
+
+    #[test]
+    fn reports_add_up() {
+        let mut report = GenReport::default();
+        let seven = report.timed(Stage::Decode, |r| {
+            r.network_calls += 1;
+            7
+        });
+        report.timed(Stage::Decode, |_| ());
+        assert_eq!((seven, report.network_calls, report.wall_s.len()), (7, 1, 1));
+        assert!(report.total_s() >= 0.0);
+        let text = serde_json::to_string(&report).expect("plain values");
+        assert!(text.contains("\"untouched_voxels_changed\":0") && !text.contains("round_trip"));
+    }
+}

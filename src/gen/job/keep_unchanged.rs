@@ -1,0 +1,98 @@
+//! An edit transports a difference: where the networks give a voxel the label that they also give it in the source, the source's
+//! own label stays. What the VAE cannot carry (holes of labels, thin things) is so lost only where something changed.
+
+use super::redraw::RedrawMask;
+use super::region::{COLUMNS_PER_CELL, Region};
+use super::request::Request;
+use scene::raster::box_cells;
+use scene::{Frame, GridSpec, VoxelGrid};
+
+/// How far around a removed or changed box its class does not come back: what lies there may have been a part of it, m.
+const SCRAPS_M: f64 = 1.2;
+
+/// Gives `generated` the source's labels, in the region's columns, where it agrees with `decoded`: what the same decoder makes of
+/// the source. Columns that the user edited and cells of `redraw` are left alone, and so are voxels beside a box that went,
+/// of its class and in no other box. Returns how many voxels got their label back.
+pub fn keep_unchanged(
+    frame: &Frame,
+    region: &Region,
+    redraw: &RedrawMask,
+    request: &Request<'_>,
+    decoded: &VoxelGrid,
+    generated: &mut VoxelGrid,
+) -> usize {
+    let mut gone = vec![0u32; GridSpec::COLUMNS]; // a bit per class
+    for (id, b) in &frame.source.boxes {
+        if frame.boxes.get(id) != Some(b) {
+            box_cells(b, SCRAPS_M, |x, y| {
+                gone[x * GridSpec::NY + y] |= 1 << b.class.id()
+            });
+        }
+    }
+    let mut count = 0;
+    for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
+        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        if request.edited(c) || redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+            continue;
+        }
+        let (source, before) = (frame.source.occupancy.column(x, y), decoded.column(x, y));
+        let mut column = *generated.column(x, y);
+        for (z, now) in column.iter_mut().enumerate() {
+            let scrap = gone[c] >> source[z] & 1 == 1 && !request.holds(x, y, z, source[z]);
+            if *now == before[z] && *now != source[z] && !scrap {
+                *now = source[z];
+                count += 1;
+            }
+        }
+        if column != *generated.column(x, y) {
+            *generated.column_mut(x, y) = column;
+        }
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use scene::{BevLayer, BevLayout, Class, draft};
+
+    #[test]
+    fn only_differences_are_carried_over() {
+        let layout = BevLayout::default();
+        let mut source = draft::draft(&layout, std::iter::empty());
+        let wall = Class::Manmade.id();
+        (1..6).for_each(|z| source.set(90, 90, z, wall)); // thin: the VAE loses its top
+        source.set(91, 90, 0, Class::FREE); // a hole: the VAE closes it
+        let mut frame = Frame::new(layout, BTreeMap::new(), source.clone());
+        frame.layout.set(BevLayer::DrivableArea, 92, 90, true);
+        let mut decoded = source.clone();
+        decoded.set(90, 90, 5, Class::FREE);
+        decoded.set(91, 90, 0, Class::Terrain.id());
+        let mut generated = decoded.clone();
+        generated.set(90, 90, 1, Class::FREE); // a change: it stays
+        generated.set(92, 90, 0, Class::DriveableSurface.id()); // so does what is in an edited column
+        let region = Region::of_edit(&frame, 2);
+        let request = Request::of(&frame);
+        let mut found = generated.clone();
+        let none = RedrawMask::default();
+        assert_eq!(
+            keep_unchanged(&frame, &region, &none, &request, &decoded, &mut found),
+            2
+        );
+        let mut expected = source;
+        expected.set(90, 90, 1, Class::FREE);
+        expected.set(92, 90, 0, Class::DriveableSurface.id());
+        assert_eq!(found, expected);
+        // Where something new is asked for, nothing of the source comes back.
+        let mut anew = RedrawMask::default();
+        anew.set_columns(&[[90, 90], [91, 90]], true);
+        let mut found = generated.clone();
+        assert_eq!(
+            keep_unchanged(&frame, &region, &anew, &request, &decoded, &mut found),
+            0
+        );
+        assert_eq!(found, generated);
+    }
+}

@@ -1,0 +1,21 @@
+//! How a scene is generated: the job and its parts, the pipeline that does it, the worker that runs it.
+
+pub mod close_holes;
+pub mod composite;
+mod contract;
+pub mod drawn_scenery;
+pub mod invented;
+pub mod keep_clear;
+pub mod keep_grounded;
+pub mod keep_objects;
+pub mod keep_unchanged;
+pub mod params;
+pub mod pipeline;
+pub mod redraw;
+pub mod refine;
+pub mod region;
+pub mod request;
+pub mod seen_draft;
+pub mod worker;
+
+pub use contract::*;

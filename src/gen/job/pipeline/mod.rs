@@ -1,0 +1,495 @@
+//! The generation itself: from a layout alone, or by inverting the source of an edit and denoising
+//! the touched region under the new layout. UniScene (occupancy, C.1 editing) with trajectory replay
+//! outside the region and a composite in label space.
+
+mod network;
+mod round_trip;
+mod source;
+mod standing;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::close_holes::close_holes;
+use crate::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
+use crate::contract::{
+    GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
+};
+use crate::keep_clear::{keep_clear, keep_unobserved, observed_still};
+use crate::keep_grounded::keep_grounded;
+use crate::keep_objects::{keep_ground, keep_objects};
+use crate::keep_unchanged::keep_unchanged;
+use crate::redraw::{self, RedrawMask};
+use crate::refine::decode_refined;
+use crate::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
+use crate::request::Request;
+use diffusion::inversion::Trajectory;
+use diffusion::replay::edit_with_replay;
+use diffusion::solver::Sampler;
+use nets::{DitCondition, GROUPS, Heard, OccModels, tokens_of};
+use network::{Condition, Network, density_of_source};
+use numeric::rng::{Stream, normal_field};
+use scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
+use source::{Source, stored_for};
+use standing::Standing;
+
+pub use network::Ablation;
+pub use round_trip::RoundTrip;
+
+/// Numbers per latent cell.
+const CHANNELS: usize = 8;
+/// A scene of which at least this share of the columns is asked for is to be complete.
+const COMPLETE: f32 = 0.95;
+
+/// When a long job shows what comes: after its first step, then so seldom that looking on costs a fifth of its time.
+#[derive(Default)]
+struct Glimpses {
+    begun: Option<Instant>,
+    next: Option<Instant>,
+}
+
+impl Glimpses {
+    const PAUSE_PER_COST: u32 = 4;
+
+    fn due(&mut self) -> bool {
+        self.begun = Some(Instant::now());
+        self.next.is_none_or(|next| next <= Instant::now())
+    }
+
+    fn shown(&mut self) {
+        let cost = self.begun.map_or(Duration::ZERO, |begun| begun.elapsed());
+        self.next = Some(Instant::now() + cost * Self::PAUSE_PER_COST);
+    }
+}
+
+/// Generates occupancy. Clones share what they keep. Keeps the trajectories of recent sources, its own results among them, so
+/// that the next edit of a scene needs no inversion.
+#[derive(Clone)]
+pub struct OccPipeline {
+    models: Arc<OccModels>,
+    sources: VecDeque<Source>,
+    /// The last draft and its latent: the next one differs in a few columns.
+    draft: Option<(VoxelGrid, Vec<f32>)>,
+    /// What stood beside the road in the last job.
+    standing: Option<Standing>,
+    /// What is hidden from the network, to measure what it is worth.
+    ablation: Option<Ablation>,
+}
+
+impl OccPipeline {
+    /// With these networks.
+    pub fn new(models: Arc<OccModels>) -> Self {
+        Self {
+            models,
+            sources: VecDeque::new(),
+            draft: None,
+            standing: None,
+            ablation: None,
+        }
+    }
+
+    /// Hides a part of every condition from the network, to measure what it is worth.
+    pub fn ablate(&mut self, ablation: Option<Ablation>) {
+        self.ablation = ablation;
+    }
+
+    /// With the weights that ship with the program.
+    pub fn bundled() -> Result<Self, GenError> {
+        Ok(Self::new(OccModels::bundled().map_err(GenError::failed)?))
+    }
+
+    /// The networks in use.
+    pub fn models(&self) -> &OccModels {
+        &self.models
+    }
+
+    /// The tokens that an edit computes: those of its region and a few around, if the source's keys and
+    /// values can stand for the others; `None` for all tokens.
+    fn local_tokens(
+        &self,
+        source: &Source,
+        sampler: &Sampler,
+        region: &Region,
+        params: &GenParams,
+    ) -> Option<Vec<usize>> {
+        let kept = source.keys_values.as_ref().filter(|_| params.local)?;
+        let first = sampler.states_of_noise() - 1;
+        let mut asked = sampler.levels[first..sampler.steps()].iter();
+        let known = asked.all(|level| kept.contains_key(&level.t.to_bits()));
+        (known && sampler.guidance.weight == 1.0)
+            .then(|| tokens_of(&region.cells, params.halo_tokens as usize))
+    }
+
+    /// Encodes a draft; where the last one was the same, its latents are taken.
+    fn draft_latent(&mut self, draft: &VoxelGrid) -> Result<Vec<f32>, GenError> {
+        let vae = &self.models.vae;
+        let latent = match self.draft.take() {
+            Some((last, mut latent)) => {
+                let columns = (0..GridSpec::COLUMNS).map(|c| {
+                    let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+                    last.column(x, y) != draft.column(x, y)
+                });
+                let changed = Region::of_columns(columns.collect());
+                let seen = dilate(&changed.cells, CELLS_PER_SIDE, vae.encoder_reach());
+                vae.encode_cells(draft, &seen, &mut latent).map(|()| latent)
+            }
+            None => vae.encode(draft),
+        };
+        let latent = latent.map_err(GenError::failed)?;
+        self.draft = Some((draft.clone(), latent.clone()));
+        Ok(latent)
+    }
+
+    /// What a scene's frame is generated from, with this layout and these boxes.
+    fn condition(
+        &mut self,
+        scene: &Scene,
+        layout: &BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        named: Named,
+    ) -> Condition {
+        self.standing = Standing::of(scene, layout, self.standing.as_ref());
+        Condition::new(layout, boxes, self.standing.as_ref(), named, self.ablation)
+    }
+
+    /// The network under a condition, for some tokens or (`None`) all.
+    fn network(
+        &mut self,
+        condition: &Condition,
+        tokens: Option<Vec<usize>>,
+        mask: Vec<f32>,
+        context: Vec<f32>,
+        params: &GenParams,
+    ) -> Result<Network, GenError> {
+        let guided = params.guidance != 1.0;
+        let draft_latent = match condition.draft_hidden {
+            true => vec![0.0; CELLS * CHANNELS],
+            false => self.draft_latent(&condition.draft)?,
+        };
+        let full = DitCondition {
+            bev: condition.bev.clone(),
+            heading: condition.heading.clone(),
+            named: condition.named.values(),
+            draft_latent,
+            given: vec![[f32::from(u8::from(condition.given)); GROUPS]; CELLS],
+            columns: condition.columns.clone(),
+            ground: true,
+            mask,
+            context,
+        };
+        let models = self.models.clone();
+        let dit = &models.dit;
+        let prepared = match tokens {
+            Some(tokens) => dit.prepare_some(&full, tokens),
+            None => dit.prepare(&full),
+        };
+        let prepared = prepared.map_err(GenError::failed)?;
+        let without = if guided {
+            let null = dit.null_condition(&full);
+            Some(dit.prepare(&null).map_err(GenError::failed)?)
+        } else {
+            None
+        };
+        Ok(Network {
+            models: self.models.clone(),
+            condition: prepared,
+            without,
+            keys_values: None,
+            precision: params.precision,
+            reuse_steps: params.reuse_steps,
+            predictions: 0,
+            added: Vec::new(),
+        })
+    }
+
+    /// The clean end of the trajectory that the latest job used or made: latent, 50x50x8.
+    pub fn latest_latent(&self) -> Option<Vec<f32>> {
+        self.sources.front().map(|s| s.trajectory.latent_f32())
+    }
+
+    /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
+    pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
+        let mut report = GenReport::default();
+        let condition = self.condition_of_source(&job.scene);
+        self.source(&job.scene, &condition, &job.params, &mut report, ctx)?;
+        Ok(report.network_calls)
+    }
+
+    fn generate(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        let (frame, params) = (job.scene.frame(), &job.params);
+        let mut report = GenReport::default();
+        let condition = self.condition(&job.scene, &frame.layout, &frame.boxes, params.named);
+        let sampler = Sampler::standard(params.solver, params.steps as usize, params.guidance())?;
+        ctx.progress(Stage::Encode, 0, 1)?;
+        let mut network = report.timed(Stage::Encode, |_| {
+            self.network(
+                &condition,
+                None,
+                vec![1.0; CELLS],
+                vec![0.0; CELLS * CHANNELS],
+                params,
+            )
+        })?;
+        network.keys_values = stored_for(params);
+        let start = normal_field(params.seed, Stream::Start, CELLS, CHANNELS);
+        let region = Region::full();
+        let mut glimpses = Glimpses::default();
+        let states = report.timed(Stage::Denoise, |report| {
+            sampler.sample(start, &mut network, |view| {
+                ctx.progress(Stage::Denoise, view.step, view.steps)?;
+                if ctx.previews() && view.step < view.steps && glimpses.due() {
+                    self.glimpse(job, &condition, &view.clean_estimate(), report, ctx)?;
+                    glimpses.shown();
+                }
+                Ok(())
+            })
+        })?;
+        report.network_calls = params.steps as usize * sampler.guidance.calls();
+        report.tokens = network.condition.tokens();
+        let keys_values = network.keys_values.take();
+        drop(network);
+        let trajectory = Trajectory {
+            levels: sampler.levels.clone(),
+            states,
+        };
+        ctx.progress(Stage::Decode, 0, 1)?;
+        let latent = trajectory.latent_f32();
+        let mut generated = report.timed(Stage::Decode, |_| {
+            let refine = (params.fine_steps, params.seed);
+            decode_refined(&self.models, &latent, &region.cells, condition.told(), refine)
+        })?;
+        if params.keep_objects {
+            report.objects_kept = keep_objects(frame, &region, true, &mut generated);
+            if params.named.completeness.is_none_or(|share| share >= COMPLETE) {
+                report.holes_closed = close_holes(&frame.layout, &mut generated);
+            }
+            report.grounded(keep_grounded(
+                frame,
+                &region,
+                true,
+                &Request::of(frame),
+                &mut generated,
+            ));
+        }
+        let source = &frame.source.occupancy;
+        let result = self.finish(job, source, &generated, &region, &mut report);
+        self.adopt(
+            &result.occupancy,
+            &condition,
+            params,
+            sampler.solver,
+            trajectory,
+            keys_values,
+        );
+        Ok(result)
+    }
+
+    /// Shows what the latent on the way would decode to.
+    fn glimpse(
+        &self,
+        job: &Job,
+        condition: &Condition,
+        clean: &[f64],
+        report: &GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<(), GenError> {
+        let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
+        let (vae, region) = (&self.models.vae, Region::full());
+        let grid = vae.decode_told(&latent, &region.cells, condition.told());
+        let grid = grid.map_err(GenError::failed)?;
+        let frame = job.scene.frame();
+        ctx.preview(GenResult {
+            key: job.key(),
+            frame: job.scene.current,
+            occupancy: composite(&frame.source.occupancy, &grid, &region, &frame.painted),
+            report: report.clone(),
+        });
+        Ok(())
+    }
+
+    fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        let mut report = GenReport::default();
+        let region = report.timed(Stage::Composite, |_| {
+            redraw::region_of(job.scene.frame(), &job.params)
+        });
+        self.redraw(job, region, &job.params.redraw, report, ctx)
+    }
+
+    /// Regenerates a region of the job's frame, whatever was edited in it.
+    pub fn redraw_region(
+        &mut self,
+        job: &Job,
+        region: Region,
+        ctx: &JobCtx<'_>,
+    ) -> Result<GenResult, GenError> {
+        job.params.check()?;
+        // Something new is wanted in all of it.
+        let mut anew = RedrawMask::default();
+        let columns = region.columns.iter().enumerate().filter(|(_, c)| **c);
+        columns.for_each(|(c, _)| anew.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
+        self.redraw(job, region, &anew, GenReport::default(), ctx)
+    }
+
+    fn redraw(
+        &mut self,
+        job: &Job,
+        region: Region,
+        redraw: &RedrawMask,
+        mut report: GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<GenResult, GenError> {
+        let (frame, params) = (job.scene.frame(), &job.params);
+        let before = &frame.source.occupancy;
+        if region.is_empty() {
+            // Nothing to redraw: no network is asked.
+            return Ok(self.finish(job, before, before, &region, &mut report));
+        }
+        let anew = params.strength > 0.0;
+        let condition_before = self.condition_of_source(&job.scene);
+        let (sampler, source) = match anew {
+            true => self.noised(&job.scene, &condition_before, params, &mut report, ctx)?,
+            false => self.inverted(&job.scene, &condition_before, params, &mut report, ctx)?,
+        };
+        let named = params.named.or(&density_of_source(frame));
+        let condition = self.condition(&job.scene, &frame.layout, &frame.boxes, named);
+        let latent = source.trajectory.latent_f32();
+        let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
+        let context = latent
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
+            .collect();
+        let models = self.models.clone();
+        let local = self.local_tokens(&source, &sampler, &region, params);
+        // Tokens that are not computed show what they held in the source; if all are, nothing is shown.
+        let kept = source.keys_values.as_deref().filter(|_| local.is_some());
+        let keys_values = match kept {
+            Some(kept) => Some(kept.clone()),
+            None => stored_for(params).filter(|_| !anew),
+        };
+        let mut network = report.timed(Stage::Encode, |_| {
+            self.network(&condition, local, mask, context, params)
+        })?;
+        network.keys_values = keys_values;
+        report.tokens = network.condition.tokens();
+        let preview_at = if params.quality == Quality::Final {
+            sampler.steps() / 2
+        } else {
+            0
+        };
+        let edited = report.timed(Stage::Denoise, |report| {
+            edit_with_replay(
+                &sampler,
+                &source.trajectory,
+                &region.cells,
+                CHANNELS,
+                &mut network,
+                |view| {
+                    ctx.progress(Stage::Denoise, view.step, view.steps)?;
+                    if view.step == preview_at && view.step > 1 {
+                        let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
+                        let grid = models
+                            .vae
+                            .decode_told(&clean, &region.cells, condition.told())
+                            .map_err(GenError::failed)?;
+                        let occupancy = composite(before, &grid, &region, &frame.painted);
+                        ctx.preview(GenResult {
+                            key: job.key(),
+                            frame: job.scene.current,
+                            occupancy,
+                            report: report.clone(),
+                        });
+                    }
+                    Ok(())
+                },
+            )
+        })?;
+        let keys_values = network.keys_values.take().filter(|_| params.reuse_steps <= 1);
+        drop(network);
+        report.network_calls += edited.calls;
+        ctx.progress(Stage::Decode, 0, 1)?;
+        let request = Request::of(frame);
+        let observed = observed_still(frame, redraw, &request);
+        let mut generated = report.timed(Stage::Decode, |report| {
+            let refine = (params.fine_steps, params.seed);
+            let decoded = |latent: &[f32], condition: &Condition| {
+                let heard = Heard {
+                    observed: observed.as_deref(),
+                    ..condition.told()
+                };
+                decode_refined(&self.models, latent, &region.cells, heard, refine)
+            };
+            let (generated, source) = rayon::join(
+                || decoded(&edited.latent, &condition),
+                || decoded(&latent, &condition_before),
+            );
+            let (mut generated, source) = (generated?, source?);
+            report.unchanged_kept = keep_unchanged(frame, &region, redraw, &request, &source, &mut generated);
+            Ok::<_, GenError>(generated)
+        })?;
+        if params.keep_objects {
+            report.objects_kept = keep_objects(frame, &region, false, &mut generated);
+            report.ground_kept = keep_ground(frame, &region, &mut generated);
+            report.unobserved_kept = keep_unobserved(frame, &region, redraw, &request, &mut generated);
+            report.invented_cleared = keep_clear(frame, &region, redraw, &request, &mut generated);
+            report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
+        }
+        let result = self.finish(job, before, &generated, &region, &mut report);
+        if anew {
+            return Ok(result); // its states around the region lead nowhere: the next edit inverts it
+        }
+        self.adopt(
+            &result.occupancy,
+            &condition,
+            params,
+            sampler.solver,
+            edited.trajectory,
+            keys_values,
+        );
+        Ok(result)
+    }
+
+    fn finish(
+        &self,
+        job: &Job,
+        source: &VoxelGrid,
+        generated: &VoxelGrid,
+        region: &Region,
+        report: &mut GenReport,
+    ) -> GenResult {
+        if job.params.fine_steps > 0 && self.models.refiner.is_none() {
+            report
+                .notes
+                .push("no fine stage: the folder of weights has no refiner".into());
+        }
+        let painted = &job.scene.frame().painted;
+        let occupancy = report.timed(Stage::Composite, |_| {
+            composite(source, generated, region, painted)
+        });
+        report.region_columns = region.column_count();
+        report.region_share = region.share();
+        report.region_cells = region.cell_count();
+        report.untouched_voxels_changed = untouched_voxels_changed(source, &occupancy, region, painted);
+        report.untouched_hash = untouched_hash(&occupancy, region, painted);
+        report.voxels_changed = source.count_different(&occupancy);
+        report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
+        GenResult {
+            key: job.key(),
+            frame: job.scene.current,
+            occupancy,
+            report: std::mem::take(report),
+        }
+    }
+}
+
+impl Pipeline for OccPipeline {
+    fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        job.params.check()?;
+        ctx.check()?;
+        match job.params.region {
+            RegionMode::Full => self.generate(job, ctx),
+            RegionMode::Auto => self.edit(job, ctx),
+        }
+    }
+}

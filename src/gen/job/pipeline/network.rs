@@ -1,0 +1,148 @@
+//! The network as solvers see it, and what it is conditioned on.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::standing::Standing;
+use crate::contract::{GenError, Named};
+use diffusion::solver::{Branch, Denoiser};
+use nets::{ColumnHeights, Heard, KeysValues, Middle, OccModels, Prepared, column_heights};
+use nn::Precision;
+use scene::{BevLayout, BoxId, Density, Frame, SceneBox, VoxelGrid, draft, raster};
+
+/// Keys and values by training step (its bits).
+pub type StepKeysValues = BTreeMap<u64, KeysValues>;
+
+/// A part of the condition that is hidden, as in UniScene's table 8 and X-Scene's table 7.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ablation {
+    /// No map layers: neither as channels nor in the draft.
+    Layout,
+    /// No boxes.
+    Boxes,
+    /// No background: the network invents it.
+    Background,
+    /// No draft: its latent is shown as zeros, as training shows one frame in four (mostly with the layout).
+    Draft,
+}
+
+/// A layout as the networks read it.
+pub struct Condition {
+    /// Bits of the 18 layers.
+    pub bev: Vec<u32>,
+    /// Headings of objects.
+    pub heading: Vec<u8>,
+    /// Densities and completeness asked for.
+    pub named: Named,
+    /// The layout extruded naively, with the background if it is given.
+    pub draft: VoxelGrid,
+    /// The background is given.
+    pub given: bool,
+    /// Nobody hears the draft.
+    pub draft_hidden: bool,
+    /// What of it stands in each column, and how high the ground is there.
+    pub columns: Vec<ColumnHeights>,
+}
+
+impl Condition {
+    /// Of a layout, boxes and what stands beside the road, less what the ablation hides.
+    pub fn new(
+        layout: &BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        standing: Option<&Standing>,
+        named: Named,
+        ablation: Option<Ablation>,
+    ) -> Self {
+        let (empty, none) = (BevLayout::default(), BTreeMap::new());
+        let layout = if ablation == Some(Ablation::Layout) {
+            &empty
+        } else {
+            layout
+        };
+        let boxes = if ablation == Some(Ablation::Boxes) {
+            &none
+        } else {
+            boxes
+        };
+        let standing = standing.filter(|_| ablation != Some(Ablation::Background));
+        let bare = draft::draft(layout, boxes.values());
+        let mut draft = bare.clone();
+        if let Some(standing) = standing {
+            standing.stand_in(&mut draft);
+        }
+        Self {
+            bev: raster::bev_channels(layout, boxes.values()),
+            heading: raster::headings(boxes.values()),
+            named,
+            given: standing.is_some(),
+            columns: column_heights(&bare, &draft),
+            draft_hidden: ablation == Some(Ablation::Draft),
+            draft,
+        }
+    }
+}
+
+impl Condition {
+    /// What the decoder hears of it; nothing where the draft is hidden.
+    pub fn told(&self) -> Heard<'_> {
+        Heard {
+            draft: (!self.draft_hidden).then_some(&self.draft),
+            observed: None,
+        }
+    }
+}
+
+/// What a frame's source is made of: an edit keeps that character unless the user names another.
+pub fn density_of_source(frame: &Frame) -> Density {
+    Density::of(&frame.source.occupancy, frame.source.layout.cells())
+}
+
+/// The network as a solver sees it, under one condition.
+pub struct Network {
+    /// Its weights.
+    pub models: Arc<OccModels>,
+    /// What it is asked for.
+    pub condition: Prepared,
+    /// The same without layout and draft, for guidance.
+    pub without: Option<Prepared>,
+    /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
+    /// computed; none if nobody wants them.
+    pub keys_values: Option<StepKeysValues>,
+    /// How the denoising network's products are computed.
+    pub precision: Precision,
+    /// Compute the middle blocks at every so many predictions; 1 = at every one.
+    pub reuse_steps: u32,
+    /// Predictions so far.
+    pub predictions: u32,
+    /// What the middle blocks added when they were last computed.
+    pub added: Vec<f32>,
+}
+
+impl Denoiser for Network {
+    type Error = GenError;
+
+    fn predict(&mut self, x: &[f64], t: f64, branch: Branch) -> Result<Vec<f64>, GenError> {
+        let x: Vec<f32> = x.iter().map(|v| *v as f32).collect();
+        let (dit, step) = (&self.models.dit, t as f32);
+        let mut fresh = KeysValues::default();
+        let v = match (branch, &self.without) {
+            (Branch::Unconditional, Some(without)) => {
+                dit.forward_in(&x, step, without, &mut fresh, self.precision, Middle::Computed)
+            }
+            _ => {
+                let kept = match &mut self.keys_values {
+                    Some(kept) => kept.entry(t.to_bits()).or_default(),
+                    None => &mut fresh,
+                };
+                let middle = match self.reuse_steps {
+                    0 | 1 => Middle::Computed,
+                    n if self.predictions.is_multiple_of(n) => Middle::Kept(&mut self.added),
+                    _ => Middle::Reused(&self.added),
+                };
+                self.predictions += 1;
+                dit.forward_in(&x, step, &self.condition, kept, self.precision, middle)
+            }
+        };
+        Ok(v.map_err(GenError::failed)?.into_iter().map(f64::from).collect())
+    }
+}

@@ -1,0 +1,81 @@
+//! How well a source comes back when it is inverted and sampled again.
+
+use super::OccPipeline;
+use crate::contract::{GenError, GenParams, GenReport, Job, JobCtx, Named, Stage};
+use crate::region::Region;
+use diffusion::inversion::{Refinement, invert, round_trip_error};
+use diffusion::solver::{Guidance, Sampler};
+use nets::Heard;
+use scene::{Scene, Unobserved, VoxelGrid};
+
+/// What inverting and sampling again gave.
+#[derive(Clone, Copy, Debug)]
+pub struct RoundTrip {
+    /// Relative RMS error of the latent.
+    pub error: f64,
+    /// Standard deviation of the noise between.
+    pub noise_std: f64,
+}
+
+impl OccPipeline {
+    /// What the VAE makes of the occupancy of a scene's frame; its decoder hears the frame's draft and masks.
+    pub fn reconstruct(&mut self, scene: &Scene) -> Result<VoxelGrid, GenError> {
+        let frame = scene.frame();
+        let condition = self.condition(scene, &frame.layout, &frame.boxes, Named::default());
+        let observed = frame.inferred.unobserved.as_ref().map(Unobserved::observed);
+        let heard = Heard {
+            observed: observed.as_deref(),
+            ..condition.told()
+        };
+        let vae = &self.models.vae;
+        vae.encode(&frame.occupancy)
+            .and_then(|latent| vae.decode_told(&latent, &Region::full().cells, heard))
+            .map_err(GenError::failed)
+    }
+
+    /// Inverts the source of the job's frame and samples it again, with the solver that edits of it use.
+    pub fn round_trip(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<f64, GenError> {
+        let condition = self.condition_of_source(&job.scene);
+        let known = self.source(
+            &job.scene,
+            &condition,
+            &job.params,
+            &mut GenReport::default(),
+            ctx,
+        )?;
+        let mut network = self.network_of_source(&condition, &job.params)?;
+        let sampler = Sampler::standard(known.solver, job.params.steps as usize, Guidance::NONE)?;
+        round_trip_error(&sampler, &known.trajectory, &mut network, |k, n| {
+            ctx.progress(Stage::Denoise, k, n)
+        })
+    }
+
+    /// The same with exactly the solver asked for, where an edit would fall back to another; keeps nothing.
+    pub fn round_trip_of(
+        &mut self,
+        scene: &Scene,
+        params: &GenParams,
+        ctx: &JobCtx<'_>,
+    ) -> Result<RoundTrip, GenError> {
+        let latent = self.models.vae.encode(&scene.frame().source.occupancy);
+        let clean: Vec<f64> = latent
+            .map_err(GenError::failed)?
+            .into_iter()
+            .map(f64::from)
+            .collect();
+        let condition = self.condition_of_source(scene);
+        let mut network = self.network_of_source(&condition, params)?;
+        let sampler = Sampler::standard(params.solver, params.steps as usize, Guidance::NONE)?;
+        let refinement = Refinement::damped(params.inversion_iterations as usize);
+        let (trajectory, inversion) = invert(&sampler, &clean, refinement, &mut network, |k, n| {
+            ctx.progress(Stage::Invert, k, n)
+        })?;
+        let error = round_trip_error(&sampler, &trajectory, &mut network, |k, n| {
+            ctx.progress(Stage::Denoise, k, n)
+        })?;
+        Ok(RoundTrip {
+            error,
+            noise_std: inversion.std,
+        })
+    }
+}

@@ -1,0 +1,264 @@
+//! What an edit starts from: the trajectory that leads to the frame's source, from memory or inverted, or the source
+//! under fresh noise; and which trajectories are kept.
+
+use std::sync::Arc;
+
+use super::network::{Condition, Network, StepKeysValues, density_of_source};
+use super::{CHANNELS, OccPipeline};
+use crate::composite::label_hash;
+use crate::contract::{GenError, GenParams, GenReport, JobCtx, Named, Stage};
+use crate::region::CELLS;
+use diffusion::inversion::{InversionReport, Refinement, Trajectory, invert};
+use diffusion::solver::{Guidance, Sampler, SolverKind};
+use nets::KeysValues;
+use nn::Precision;
+use scene::{Scene, VoxelGrid};
+use world::draw::hash;
+
+/// Trajectories kept; each is about 2 MB at ten steps.
+const KEPT_TRAJECTORIES: usize = 24;
+/// Memory for them, but for the latest.
+const TRAJECTORY_BYTES: usize = 256 << 20;
+/// Memory for the keys and values of the latest of them.
+const KEYS_VALUES_BYTES: usize = 256 << 20;
+/// About what those of one step take.
+const STEP_BYTES: usize = 7_700_000;
+
+/// What a trajectory belongs to: labels under a layout. Which of the trajectories that lead there it is, such as
+/// what densities it was sampled with, does not matter to an edit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SourceKey {
+    occupancy: u64,
+    layout: u64,
+    draft: u64,
+    steps: u32,
+    iterations: u32,
+    exact: bool,
+    precision: Precision,
+}
+
+#[derive(Clone)]
+pub(super) struct Source {
+    pub(super) key: SourceKey,
+    /// What edits of it are to be sampled with: O-BELM continues only what it inverted itself.
+    pub(super) solver: SolverKind,
+    pub(super) trajectory: Arc<Trajectory>,
+    /// What the network made of the trajectory's states; none where memory did not allow it.
+    pub(super) keys_values: Option<Arc<StepKeysValues>>,
+    pub(super) report: Option<InversionReport>, // none for a trajectory that sampling made
+}
+
+/// Where keys and values go, if those of so many steps find room.
+pub(super) fn stored(steps: u32) -> Option<StepKeysValues> {
+    (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
+}
+
+/// The same; blocks that are not computed at every step leave none.
+pub(super) fn stored_for(params: &GenParams) -> Option<StepKeysValues> {
+    stored(params.steps).filter(|_| params.reuse_steps <= 1)
+}
+
+impl OccPipeline {
+    fn key(&self, occupancy: &VoxelGrid, condition: &Condition, params: &GenParams) -> SourceKey {
+        SourceKey {
+            occupancy: label_hash(occupancy),
+            layout: condition
+                .bev
+                .iter()
+                .zip(&condition.heading)
+                .fold(0, |h, (b, yaw)| hash(h ^ u64::from(*b) ^ u64::from(*yaw) << 32)),
+            draft: label_hash(&condition.draft) ^ u64::from(condition.given),
+            steps: params.steps,
+            iterations: params.inversion_iterations,
+            exact: params.solver == SolverKind::OBelm,
+            precision: params.precision,
+        }
+    }
+
+    /// What a frame's source is generated from.
+    pub(super) fn condition_of_source(&mut self, scene: &Scene) -> Condition {
+        let frame = scene.frame();
+        let named = Named::default().or(&density_of_source(frame));
+        self.condition(scene, &frame.source.layout, &frame.source.boxes, named)
+    }
+
+    pub(super) fn remember(&mut self, source: Source) {
+        self.sources.retain(|s| s.key != source.key);
+        self.sources.push_front(source);
+        self.sources.truncate(KEPT_TRAJECTORIES);
+        let mut bytes = 0;
+        let held = |s: &Source| s.trajectory.states.len() * CELLS * CHANNELS * size_of::<f64>();
+        let mut trajectory_bytes = 0;
+        let fit = self.sources.iter().take_while(|s| {
+            trajectory_bytes += held(s);
+            trajectory_bytes <= TRAJECTORY_BYTES
+        });
+        let fit = fit.count().max(1);
+        self.sources.truncate(fit);
+        for source in &mut self.sources {
+            let own = source.keys_values.iter().flat_map(|k| k.values());
+            bytes += own.map(KeysValues::bytes).sum::<usize>();
+            if bytes > KEYS_VALUES_BYTES {
+                source.keys_values = None;
+            }
+        }
+    }
+
+    /// The trajectory of a frame's source, generated from `condition`: from memory, or inverted now.
+    pub(super) fn source(
+        &mut self,
+        scene: &Scene,
+        condition: &Condition,
+        params: &GenParams,
+        report: &mut GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<Source, GenError> {
+        let old = &*scene.frame().source;
+        let key = self.key(&old.occupancy, condition, params);
+        if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
+            self.remember(known.clone()); // used last, forgotten last
+            return Ok(known);
+        }
+        ctx.progress(Stage::Encode, 0, 1)?;
+        let latent = report
+            .timed(Stage::Encode, |_| self.models.vae.encode(&old.occupancy))
+            .map_err(GenError::failed)?;
+        let clean: Vec<f64> = latent.into_iter().map(f64::from).collect();
+        let mut network = report.timed(Stage::Encode, |_| self.network_of_source(condition, params))?;
+        network.keys_values = stored(params.steps);
+        let refinement = Refinement::damped(params.inversion_iterations as usize);
+        let mut solver = params.solver;
+        let (trajectory, inversion) = loop {
+            let sampler = Sampler::standard(solver, params.steps as usize, Guidance::NONE)?;
+            let (trajectory, inversion) = report.timed(Stage::Invert, |_| {
+                invert(&sampler, &clean, refinement, &mut network, |k, n| {
+                    ctx.progress(Stage::Invert, k, n)
+                })
+            })?;
+            report.inversion_calls += inversion.calls;
+            if solver != SolverKind::OBelm || inversion.moments_ok() {
+                break (trajectory, inversion);
+            }
+            // Noise that no draw would give: edits from it look wrong. The plain inverse is approximate but
+            // tame, and replay needs no more.
+            report.notes.push(format!(
+                "exact inversion gave unusual noise (std {:.2}, max {:.1}): plain inversion was used",
+                inversion.std, inversion.max_abs
+            ));
+            solver = SolverKind::Ddim;
+            network.keys_values = stored(params.steps);
+        };
+        let keys_values = network.keys_values.take().map(Arc::new);
+        drop(network);
+        report.network_calls += report.inversion_calls;
+        let source = Source {
+            key,
+            solver,
+            trajectory: Arc::new(trajectory),
+            keys_values,
+            report: Some(inversion),
+        };
+        self.remember(source.clone());
+        Ok(source)
+    }
+
+    /// What an edit starts from: the noise that the source comes from.
+    pub(super) fn inverted(
+        &mut self,
+        scene: &Scene,
+        condition: &Condition,
+        params: &GenParams,
+        report: &mut GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<(Sampler, Source), GenError> {
+        let source = self.source(scene, condition, params, report, ctx)?;
+        if let Some(inversion) = &source.report {
+            report.noise_std = Some(inversion.std);
+            report.noise_max_abs = Some(inversion.max_abs);
+            if !inversion.moments_ok() {
+                report.notes.push(format!(
+                    "the inverted noise is unusual (std {:.2}, max {:.1})",
+                    inversion.std, inversion.max_abs
+                ));
+            }
+        }
+        let sampler = Sampler::standard(source.solver, params.steps as usize, params.guidance())?;
+        Ok((sampler, source))
+    }
+
+    /// What a region is drawn anew from: its source under fresh noise, from the step on that the strength asks for.
+    pub(super) fn noised(
+        &mut self,
+        scene: &Scene,
+        condition: &Condition,
+        params: &GenParams,
+        report: &mut GenReport,
+        ctx: &JobCtx<'_>,
+    ) -> Result<(Sampler, Source), GenError> {
+        let key = self.key(&scene.frame().source.occupancy, condition, params);
+        let clean: Vec<f64> = match self.sources.iter().find(|s| s.key == key) {
+            Some(known) => known.trajectory.latent().to_vec(),
+            None => {
+                ctx.progress(Stage::Encode, 0, 1)?;
+                let latent = report
+                    .timed(Stage::Encode, |_| {
+                        self.models.vae.encode(&scene.frame().source.occupancy)
+                    })
+                    .map_err(GenError::failed)?;
+                latent.into_iter().map(f64::from).collect()
+            }
+        };
+        // O-BELM samples well only what it inverted.
+        let solver = match params.solver {
+            SolverKind::OBelm => SolverKind::Ddim,
+            other => other,
+        };
+        let mut sampler = Sampler::standard(solver, params.steps as usize, params.guidance())?;
+        let steps = (params.strength * f64::from(params.steps)).round().max(1.0) as usize;
+        sampler.levels.drain(..sampler.steps() - steps);
+        let trajectory = Trajectory::noised(&clean, &sampler.levels, CHANNELS, params.seed);
+        let source = Source {
+            key,
+            solver,
+            trajectory: Arc::new(trajectory),
+            keys_values: None,
+            report: None,
+        };
+        Ok((sampler, source))
+    }
+
+    /// The network under the condition of a frame's source, for all tokens.
+    pub(super) fn network_of_source(
+        &mut self,
+        condition: &Condition,
+        params: &GenParams,
+    ) -> Result<Network, GenError> {
+        let (mask, context) = (vec![1.0; CELLS], vec![0.0; CELLS * CHANNELS]);
+        let params = GenParams {
+            guidance: 1.0,
+            reuse_steps: 1,
+            ..*params
+        };
+        self.network(condition, None, mask, context, &params)
+    }
+
+    /// A result's own trajectory is that of the scene that adopts it: no inversion next time.
+    pub(super) fn adopt(
+        &mut self,
+        occupancy: &VoxelGrid,
+        condition: &Condition,
+        params: &GenParams,
+        solver: SolverKind,
+        trajectory: Trajectory,
+        keys_values: Option<StepKeysValues>,
+    ) {
+        let key = self.key(occupancy, condition, params);
+        self.remember(Source {
+            key,
+            solver,
+            trajectory: Arc::new(trajectory),
+            keys_values: keys_values.map(Arc::new),
+            report: None,
+        });
+    }
+}

@@ -1,0 +1,438 @@
+//! Which part of a scene an edit touches: columns to be redrawn, latent cells to be regenerated.
+
+use nets::pieces::pieces;
+use scene::raster::box_cells;
+use scene::{Frame, GridSpec, SceneBox};
+
+/// Latent cells along x and along y.
+pub const CELLS_PER_SIDE: usize = 50;
+/// Latent cells in all.
+pub const CELLS: usize = CELLS_PER_SIDE * CELLS_PER_SIDE;
+/// Columns along one side of a latent cell.
+pub const COLUMNS_PER_CELL: usize = GridSpec::NX / CELLS_PER_SIDE;
+/// How far the voxels of an object may stand out of its box: one voxel.
+const OVERHANG_M: f64 = GridSpec::VOXEL_M;
+
+/// Columns of the grid to be redrawn, and latent cells to be regenerated for them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// `[x][y]`, 40,000: columns whose labels come from the generated grid.
+    pub columns: Vec<bool>,
+    /// `[i][j]`, 2,500: latent cells that hold such a column. Not their neighbours: columns there keep their labels, so what is
+    /// drawn must go on from those, not from others that nobody will see.
+    pub cells: Vec<bool>,
+    /// Lowest and highest x and y of the columns, both included; `None` if there are none.
+    pub bounds: Option<([usize; 2], [usize; 2])>,
+}
+
+impl Region {
+    /// Nothing.
+    pub fn empty() -> Self {
+        Self::of_columns(vec![false; GridSpec::COLUMNS])
+    }
+
+    /// Everything.
+    pub fn full() -> Self {
+        Self::of_columns(vec![true; GridSpec::COLUMNS])
+    }
+
+    /// Exactly these columns, `[x][y]`. Panics unless there are 40,000.
+    pub fn of_columns(columns: Vec<bool>) -> Self {
+        assert_eq!(columns.len(), GridSpec::COLUMNS, "one flag per column");
+        let mut touched = vec![false; CELLS];
+        let mut bounds: Option<([usize; 2], [usize; 2])> = None;
+        for (i, _) in columns.iter().enumerate().filter(|(_, c)| **c) {
+            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            touched[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL] = true;
+            let (lo, hi) = bounds.get_or_insert(([x, y], [x, y]));
+            *lo = [lo[0].min(x), lo[1].min(y)];
+            *hi = [hi[0].max(x), hi[1].max(y)];
+        }
+        Self {
+            cells: touched,
+            columns,
+            bounds,
+        }
+    }
+
+    /// What differs between a frame and the source of its occupancy: columns whose map layers changed,
+    /// and both footprints of every box that was added, removed, moved, resized or given another class;
+    /// all grown by `halo_columns`. Painted voxels do not count: they are laid over the composite.
+    ///
+    /// Columns of boxes that did not change stay out, so that no untouched object is cut.
+    pub fn of_edit(frame: &Frame, halo_columns: usize) -> Self {
+        let source = &*frame.source;
+        let mut changed: Vec<bool> = frame
+            .layout
+            .cells()
+            .iter()
+            .zip(source.layout.cells())
+            .map(|(now, before)| now != before)
+            .collect();
+        let mut footprints = vec![false; GridSpec::COLUMNS]; // of changed boxes, without overhang
+        let mut unchanged = Vec::new();
+        let mut mark = |b: &SceneBox| {
+            box_cells(b, OVERHANG_M, |x, y| changed[x * GridSpec::NY + y] = true);
+            box_cells(b, 0.0, |x, y| footprints[x * GridSpec::NY + y] = true);
+        };
+        for (id, now) in &frame.boxes {
+            match source.boxes.get(id) {
+                Some(before) if same_solid(now, before) => unchanged.push(now),
+                _ => mark(now),
+            }
+        }
+        // Columns that show a box that has left: boxes inferred from labels may overlap others.
+        let mut left = vec![false; GridSpec::COLUMNS];
+        for (id, before) in &source.boxes {
+            if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
+                mark(before);
+                box_cells(before, 0.0, |x, y| {
+                    left[x * GridSpec::NY + y] |= source.occupancy.column(x, y).contains(&before.class.id());
+                });
+            }
+        }
+        if !changed.contains(&true) {
+            return Self::empty();
+        }
+        let mut columns = dilate(&changed, GridSpec::NX, halo_columns);
+        for b in unchanged {
+            box_cells(b, 0.0, |x, y| {
+                let i = x * GridSpec::NY + y;
+                let own = || source.occupancy.column(x, y).contains(&b.class.id());
+                columns[i] &= left[i] && !own();
+            });
+            // Around it only what is visibly part of it, and not against a changed box's own ground.
+            box_cells(b, OVERHANG_M, |x, y| {
+                let i = x * GridSpec::NY + y;
+                if !footprints[i] && source.occupancy.column(x, y).contains(&b.class.id()) {
+                    columns[i] = false;
+                }
+            });
+        }
+        Self::of_columns(columns)
+    }
+
+    /// True if nothing is to be done.
+    pub fn is_empty(&self) -> bool {
+        self.bounds.is_none()
+    }
+
+    /// Number of columns.
+    pub fn column_count(&self) -> usize {
+        self.columns.iter().filter(|c| **c).count()
+    }
+
+    /// Share of all columns, 0 to 1.
+    pub fn share(&self) -> f64 {
+        self.column_count() as f64 / GridSpec::COLUMNS as f64
+    }
+
+    /// Number of latent cells.
+    pub fn cell_count(&self) -> usize {
+        self.cells.iter().filter(|c| **c).count()
+    }
+
+    /// Extent along x and y, m; zero if empty.
+    pub fn extent_m(&self) -> [f64; 2] {
+        self.bounds.map_or([0.0; 2], |(lo, hi)| {
+            [0, 1].map(|a| (hi[a] - lo[a] + 1) as f64 * GridSpec::VOXEL_M)
+        })
+    }
+
+    /// Lowest and highest x and y of the columns of each part that is generated by itself, both included.
+    pub fn parts(&self) -> Vec<([usize; 2], [usize; 2])> {
+        let mut out = Vec::new();
+        for cells in pieces(&self.cells, 0) {
+            let columns = self.columns.iter().enumerate().filter(|(i, c)| {
+                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                **c && cells[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL]
+            });
+            let places = columns.map(|(i, _)| [i / GridSpec::NY, i % GridSpec::NY]);
+            out.extend(places.fold(None, |bounds: Option<([usize; 2], [usize; 2])>, at| {
+                let (lo, hi) = bounds.unwrap_or((at, at));
+                Some((
+                    [lo[0].min(at[0]), lo[1].min(at[1])],
+                    [hi[0].max(at[0]), hi[1].max(at[1])],
+                ))
+            }));
+        }
+        out
+    }
+
+    /// Columns of the region within `width` columns of its border. The edge of the grid is no border.
+    pub fn seam(&self, width: usize) -> Vec<bool> {
+        let outside: Vec<bool> = self.columns.iter().map(|c| !c).collect();
+        let near_outside = dilate(&outside, GridSpec::NX, width);
+        let pairs = self.columns.iter().zip(near_outside);
+        pairs.map(|(inside, near)| *inside && near).collect()
+    }
+}
+
+/// Equal in everything that occupancy shows; velocity is not.
+fn same_solid(a: &SceneBox, b: &SceneBox) -> bool {
+    a.class == b.class && a.center_m == b.center_m && a.size_m == b.size_m && a.yaw_rad == b.yaw_rad
+}
+
+/// Sets every flag within `reach` of a set one, diagonals included, on a square of `side`; first
+/// along rows, then along columns.
+pub(super) fn dilate(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
+    if reach == 0 {
+        return flags.to_vec();
+    }
+    let mut along_y = vec![false; flags.len()];
+    let mut out = vec![false; flags.len()];
+    for i in (0..flags.len()).filter(|i| flags[*i]) {
+        let (row, y) = (i / side * side, i % side);
+        along_y[row + y.saturating_sub(reach)..=row + (y + reach).min(side - 1)].fill(true);
+    }
+    for x in 0..side {
+        for from in x.saturating_sub(reach)..=(x + reach).min(side - 1) {
+            let source = &along_y[from * side..(from + 1) * side];
+            for (o, s) in out[x * side..(x + 1) * side].iter_mut().zip(source) {
+                *o |= s;
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use glam::{DVec2, DVec3};
+
+    use super::*;
+    use crate::composite::composite;
+    use numeric::rng::philox4x32;
+    use scene::{BevLayer, BevLayout, BoxId, Class, VoxelGrid};
+
+    /// Numbers for tests, one after another.
+    pub struct Dice(pub u64, pub u32);
+
+    impl Dice {
+        pub fn below(&mut self, n: usize) -> usize {
+            self.1 += 1;
+            let bits = philox4x32([self.1, 0, 0, 99], [self.0 as u32, 7])[0];
+            (bits as usize * n) >> 32
+        }
+        pub fn within(&mut self, lo: f64, hi: f64) -> f64 {
+            lo + (hi - lo) * self.below(1 << 20) as f64 / f64::from(1 << 20)
+        }
+    }
+
+    #[test]
+    fn edits_far_apart_are_worked_on_apart() {
+        let square = |cells: &mut Vec<bool>, x: usize, y: usize| {
+            for i in 0..16 {
+                cells[(x + i / 4) * CELLS_PER_SIDE + y + i % 4] = true;
+            }
+        };
+        let mut cells = vec![false; CELLS];
+        square(&mut cells, 2, 3);
+        square(&mut cells, 40, 41);
+        let apart = pieces(&cells, 3);
+        assert_eq!(apart.len(), 2);
+        assert!(
+            (0..CELLS).all(|c| cells[c] == (apart[0][c] ^ apart[1][c])),
+            "each cell once"
+        );
+        // Those whose surroundings overlap are cheaper together.
+        square(&mut cells, 42, 46);
+        assert_eq!(pieces(&cells, 3).len(), 2);
+        assert!(pieces(&vec![false; CELLS], 3).is_empty());
+        assert_eq!(pieces(&vec![true; 100 * 100], 3).len(), 1, "of the fine latent");
+        let mut columns = vec![false; GridSpec::COLUMNS];
+        columns[8 * GridSpec::NY + 9] = true;
+        columns[180 * GridSpec::NY + 190] = true;
+        let parts = Region::of_columns(columns).parts();
+        assert_eq!(parts, [([8, 9], [8, 9]), ([180, 190], [180, 190])]);
+    }
+
+    pub fn car(id: u32, x_m: f64, y_m: f64, yaw_rad: f64) -> SceneBox {
+        SceneBox {
+            id: BoxId(id),
+            class: Class::Car,
+            center_m: DVec3::new(x_m, y_m, 0.8),
+            size_m: DVec3::new(4.6, 1.95, 1.7),
+            yaw_rad,
+            velocity_mps: DVec2::ZERO,
+            label: Default::default(),
+        }
+    }
+
+    pub fn random_grid(dice: &mut Dice) -> VoxelGrid {
+        let mut dense = vec![Class::FREE; GridSpec::VOXELS];
+        for column in dense.chunks_exact_mut(GridSpec::NZ) {
+            column[0] = 11 + dice.below(4) as u8;
+            let height = dice.below(24).saturating_sub(8);
+            let label = dice.below(17) as u8;
+            column[1..=height.min(15)].fill(label);
+        }
+        VoxelGrid::from_dense(&dense).expect("640,000")
+    }
+
+    /// Ground, and each box filled with its class from bin 0 up, standing out by one voxel.
+    pub fn frame_with(boxes: &[SceneBox]) -> Frame {
+        let mut grid = VoxelGrid::new();
+        let mut layout = BevLayout::default();
+        for x in 0..GridSpec::NX {
+            for y in 0..GridSpec::NY {
+                grid.set(x, y, 0, Class::DriveableSurface.id());
+                layout.set(BevLayer::DrivableArea, x, y, (60..140).contains(&y));
+            }
+        }
+        for b in boxes {
+            box_cells(b, OVERHANG_M, |x, y| {
+                (0..5).for_each(|z| grid.set(x, y, z, b.class.id()));
+            });
+        }
+        Frame::new(layout, boxes.iter().map(|b| (b.id, *b)).collect(), grid)
+    }
+
+    pub fn cells_of(b: &SceneBox, margin_m: f64) -> Vec<usize> {
+        let mut out = Vec::new();
+        box_cells(b, margin_m, |x, y| out.push(x * GridSpec::NY + y));
+        out
+    }
+
+    #[test]
+    fn nothing_changed_is_an_empty_region() {
+        let mut frame = frame_with(&[car(1, 5.0, 2.0, 0.1)]);
+        assert!(Region::of_edit(&frame, 2).is_empty());
+        // Velocity and paint are not for generation to redraw.
+        frame.boxes.get_mut(&BoxId(1)).expect("there").velocity_mps.x = 3.0;
+        frame.painted.set(3, 3, 3, 4);
+        let region = Region::of_edit(&frame, 2);
+        assert_eq!(region, Region::empty());
+        assert_eq!(
+            (region.share(), region.cell_count(), region.extent_m()),
+            (0.0, 0, [0.0; 2])
+        );
+        let full = Region::full();
+        assert_eq!(
+            (full.share(), full.cell_count(), full.extent_m()),
+            (1.0, CELLS, [80.0; 2])
+        );
+        assert!(!full.seam(2).contains(&true));
+    }
+
+    #[test]
+    fn every_kind_of_edit_is_seen() {
+        let start = frame_with(&[car(1, 5.0, 2.0, 0.1)]);
+        let covers = |frame: &Frame, b: &SceneBox| {
+            let region = Region::of_edit(frame, 2);
+            let all = cells_of(b, OVERHANG_M).into_iter().all(|c| region.columns[c]);
+            let expected = region.columns.iter().enumerate().all(|(c, on)| {
+                let cell = c / GridSpec::NY / 4 * CELLS_PER_SIDE + c % GridSpec::NY / 4;
+                !on || region.cells[cell]
+            });
+            all && expected && region.share() < 0.02
+        };
+        let old = car(1, 5.0, 2.0, 0.1);
+        let mut removed = start.clone();
+        removed.boxes.clear();
+        assert!(covers(&removed, &old));
+        let region = Region::of_edit(&removed, 2);
+        // 4.6 m along, 1.95 m across, 0.4 m overhang and 2 columns of halo on each side.
+        let [along, across] = region.extent_m();
+        assert!(
+            (6.8..=8.0).contains(&along) && (4.2..=5.6).contains(&across),
+            "{along} {across}"
+        );
+        let mut added = start.clone();
+        added.boxes.insert(BoxId(2), car(2, -12.0, -4.0, 1.0));
+        assert!(covers(&added, &car(2, -12.0, -4.0, 1.0)) && !covers(&added, &old));
+        let mut moved = start.clone();
+        moved.boxes.insert(BoxId(1), car(1, 9.0, 2.0, 0.1));
+        assert!(covers(&moved, &old) && covers(&moved, &car(1, 9.0, 2.0, 0.1)));
+        for change in [
+            |b: &mut SceneBox| b.class = Class::Truck,
+            |b: &mut SceneBox| b.size_m.z = 3.0,
+            |b: &mut SceneBox| b.yaw_rad = 0.2,
+        ] {
+            let mut other = start.clone();
+            change(other.boxes.get_mut(&BoxId(1)).expect("there"));
+            assert!(covers(&other, &old));
+        }
+        let mut painted = start.clone();
+        painted.layout.set(BevLayer::StopLine, 0, 199, true);
+        let region = Region::of_edit(&painted, 2);
+        assert_eq!(region.bounds, Some(([0, 197], [2, 199])));
+        assert_eq!(region.column_count(), 9);
+        assert_eq!(region.cell_count(), 1);
+    }
+
+    /// Boxes inferred from labels are as wide as they may be: the voxels decide whose a column is.
+    #[test]
+    fn what_a_removed_box_showed_goes_below_another_box_too() {
+        let (gone, mut wide) = (car(1, 5.0, 0.0, 0.0), car(2, 5.0, 2.8, 0.0));
+        wide.class = Class::Trailer;
+        wide.size_m.y = 5.0; // over y of 0.3 to 5.3: a third of the car
+        let mut frame = frame_with(&[gone]);
+        let [x, y] = GridSpec::column_at(5.0, 0.6).expect("inside");
+        frame.occupancy.set(x, y, 4, Class::Trailer.id());
+        let boxes = [gone, wide].map(|b| (b.id, b));
+        let mut frame = Frame::new(frame.layout.clone(), boxes.into(), frame.occupancy.clone());
+        frame.boxes.remove(&gone.id);
+        let region = Region::of_edit(&frame, 2);
+        let outside: Vec<usize> = cells_of(&gone, 0.0)
+            .into_iter()
+            .filter(|c| !region.columns[*c])
+            .collect();
+        assert_eq!(
+            outside,
+            [x * GridSpec::NY + y],
+            "only where the trailer shows itself"
+        );
+        let ground_of_the_other = GridSpec::column_at(5.0, 4.0).expect("inside");
+        assert!(!region.columns[ground_of_the_other[0] * GridSpec::NY + ground_of_the_other[1]]);
+    }
+
+    #[test]
+    fn objects_that_were_not_edited_are_not_cut() {
+        // Bumper to bumper 0.3 m apart, another beside, and one far away.
+        let (a, b, c) = (
+            car(1, 0.0, 0.0, 0.0),
+            car(2, 4.9, 0.0, 0.0),
+            car(3, 0.0, 2.6, 0.05),
+        );
+        let mut frame = frame_with(&[a, b, c]);
+        frame.boxes.remove(&BoxId(1));
+        let region = Region::of_edit(&frame, 2);
+        for kept in [&b, &c] {
+            assert!(cells_of(kept, 0.0).iter().all(|i| !region.columns[*i]));
+        }
+        // The removed car's own ground is redrawn down to the last column, and no voxel of the others changes.
+        assert!(cells_of(&a, 0.0).iter().all(|i| region.columns[*i]));
+        let bare = frame_with(&[]).occupancy;
+        let result = composite(&frame.source.occupancy, &bare, &region, &frame.painted);
+        for kept in [&b, &c] {
+            for i in cells_of(kept, 0.0) {
+                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                assert_eq!(result.column(x, y), frame.source.occupancy.column(x, y));
+            }
+        }
+        for i in cells_of(&a, 0.0) {
+            assert!(
+                !result
+                    .column(i / GridSpec::NY, i % GridSpec::NY)
+                    .contains(&Class::Car.id())
+            );
+        }
+    }
+
+    #[test]
+    fn dilation_is_a_square_neighbourhood() {
+        let mut dice = Dice(3, 0);
+        for reach in 0..4 {
+            let flags: Vec<bool> = (0..400).map(|_| dice.below(40) == 0).collect();
+            let slow: Vec<bool> = (0..400usize)
+                .map(|i| {
+                    flags.iter().enumerate().any(|(j, f)| {
+                        *f && (i / 20).abs_diff(j / 20) <= reach && (i % 20).abs_diff(j % 20) <= reach
+                    })
+                })
+                .collect();
+            assert_eq!(dilate(&flags, 20, reach), slow);
+        }
+    }
+}

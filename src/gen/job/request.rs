@@ -1,0 +1,175 @@
+//! What the user of a frame has asked for, as voxels: the boxes that are there now, painted voxels, and the columns
+//! whose boxes or ground an edit changed.
+
+use glam::DVec3;
+
+use super::region::Region;
+use scene::grid::NOT_PAINTED;
+use scene::raster::box_cells;
+use scene::{Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
+
+/// How far the voxels of an object may stand out of its box: one voxel.
+pub const OVERHANG_M: f64 = GridSpec::VOXEL_M;
+const OBJECTS: usize = Class::OBJECTS.len();
+
+/// Voxels that the frame's boxes and paint account for.
+pub struct Request<'a> {
+    frame: &'a Frame,
+    /// `[x][y]`: how many bins from the lowest up each object class (ids 1 to 10) may fill.
+    heights: Vec<[u8; OBJECTS]>,
+    /// `[x][y]`: columns in which a box of the source stood that is gone, moved or of another class.
+    left: Vec<bool>,
+    /// `[x][y]`: those, the columns of new and changed boxes, and those whose ground the layout changed.
+    edited: Vec<bool>,
+}
+
+impl<'a> Request<'a> {
+    /// Of a frame and the source that it was edited from.
+    pub fn of(frame: &'a Frame) -> Self {
+        let mut heights = vec![[0; OBJECTS]; GridSpec::COLUMNS];
+        for b in frame.boxes.values() {
+            let Some(slot) = slot(b.class.id()) else { continue };
+            let bins = bins_of(b);
+            box_cells(b, OVERHANG_M, |x, y| {
+                let height = &mut heights[x * GridSpec::NY + y][slot];
+                *height = bins.max(*height);
+            });
+        }
+        let (mut left, mut edited) = (vec![false; GridSpec::COLUMNS], vec![false; GridSpec::COLUMNS]);
+        let source = &*frame.source;
+        for (id, b) in &source.boxes {
+            if frame.boxes.get(id) != Some(b) {
+                box_cells(b, OVERHANG_M, |x, y| left[x * GridSpec::NY + y] = true);
+            }
+        }
+        edited.copy_from_slice(&left);
+        for (id, b) in &frame.boxes {
+            if source.boxes.get(id) != Some(b) {
+                box_cells(b, OVERHANG_M, |x, y| edited[x * GridSpec::NY + y] = true);
+            }
+        }
+        let layouts = frame.layout.cells().iter().zip(source.layout.cells());
+        for (edited, (now, before)) in edited.iter_mut().zip(layouts) {
+            *edited |= draft::ground_class(*now) != draft::ground_class(*before);
+        }
+        Self {
+            frame,
+            heights,
+            left,
+            edited,
+        }
+    }
+
+    /// True if a label at a voxel belongs to a box that is there now, or is the user's paint.
+    pub fn holds(&self, x: usize, y: usize, z: usize, label: u8) -> bool {
+        let boxed = slot(label).is_some_and(|s| z < usize::from(self.heights[x * GridSpec::NY + y][s]));
+        boxed || self.frame.painted.get(x, y, z) != NOT_PAINTED
+    }
+
+    /// True for a column (index `[x][y]`) in which a box stood that is not there any more.
+    pub fn left_by_a_box(&self, column: usize) -> bool {
+        self.left[column]
+    }
+
+    /// True for a column (index `[x][y]`) in which a box came, went or changed, or the ground did.
+    pub fn edited(&self, column: usize) -> bool {
+        self.edited[column]
+    }
+
+    /// Voxels of the region's columns whose labels stand above the ground and that were in neither the source nor
+    /// the request: calls `visit` with place and label of each.
+    pub fn each_invented(
+        &self,
+        after: &VoxelGrid,
+        region: &Region,
+        mut visit: impl FnMut(usize, usize, usize, u8),
+    ) {
+        let source = &self.frame.source.occupancy;
+        for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
+            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let labels = source.column(x, y).iter().zip(after.column(x, y));
+            for (z, (before, now)) in labels.enumerate() {
+                if now != before && stands(*now) && !self.holds(x, y, z, *now) {
+                    visit(x, y, z, *now);
+                }
+            }
+        }
+    }
+}
+
+/// True for labels of things that stand on the ground: all but free and the four ground classes.
+pub fn stands(label: u8) -> bool {
+    Class::from_id(label).is_some_and(|c| c != Class::Free && !c.is_ground())
+}
+
+/// Voxels that a box accounts for: those of its class in its columns and a voxel around them, up to a voxel above it.
+pub fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> usize {
+    let (mut count, bins) = (0, usize::from(bins_of(b)));
+    box_cells(b, OVERHANG_M, |x, y| {
+        let column = grid.column(x, y)[..bins].iter();
+        count += column.filter(|l| **l == b.class.id()).count();
+    });
+    count
+}
+
+fn slot(label: u8) -> Option<usize> {
+    let class = Class::from_id(label).filter(|c| c.is_object())?;
+    Some(usize::from(class.id()) - 1)
+}
+
+/// Bins from the lowest one up to a voxel above the box's top.
+fn bins_of(b: &SceneBox) -> u8 {
+    let top_m = b.center_m.z + b.size_m.z / 2.0 + OVERHANG_M;
+    let bins = GridSpec::to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z.ceil();
+    // A box under the ground is drawn one voxel high.
+    bins.clamp(1.0, GridSpec::NZ as f64) as u8
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::region::tests::car;
+    use scene::{BevLayer, BevLayout, BoxId};
+
+    /// A road over the whole map with two cars, of which the second was just removed.
+    pub fn removal() -> Frame {
+        let mut layout = BevLayout::default();
+        for c in 0..GridSpec::COLUMNS {
+            layout.set(BevLayer::DrivableArea, c / GridSpec::NY, c % GridSpec::NY, true);
+        }
+        let cars = [car(1, -10.0, 0.0, 0.0), car(2, 10.0, 0.0, 0.0)];
+        let before = draft::draft(&layout, cars.iter());
+        let boxes: BTreeMap<BoxId, SceneBox> = cars.into_iter().map(|b| (b.id, b)).collect();
+        let mut frame = Frame::new(layout, boxes, before);
+        frame.boxes.remove(&BoxId(2));
+        frame
+    }
+
+    #[test]
+    fn boxes_and_paint_are_asked_for_and_what_was_removed_is_not() {
+        let mut frame = removal();
+        frame.painted.set(5, 5, 5, Class::Vegetation.id());
+        let request = Request::of(&frame);
+        let [x, y] = GridSpec::column_at(-10.0, 0.0).expect("inside");
+        assert!(request.holds(x, y, 3, Class::Car.id()));
+        assert!(!request.holds(x, y, 3, Class::Truck.id()), "a car was asked for");
+        assert!(!request.holds(x, y, 12, Class::Car.id()), "far above its roof");
+        assert!(!request.holds(x, y + 9, 3, Class::Car.id()), "beside it");
+        assert!(request.holds(5, 5, 5, Class::Vegetation.id()));
+        assert!(!request.left_by_a_box(x * GridSpec::NY + y) && !request.edited(x * GridSpec::NY + y));
+        let [x, y] = GridSpec::column_at(10.0, 0.0).expect("inside");
+        assert!(!request.holds(x, y, 3, Class::Car.id()));
+        assert!(request.left_by_a_box(x * GridSpec::NY + y) && request.edited(x * GridSpec::NY + y));
+        let mut found = Vec::new();
+        let mut after = VoxelGrid::new();
+        after.set(x, y, 6, Class::Vegetation.id());
+        after.set(x, y, 0, Class::DriveableSurface.id());
+        let region = Region::of_edit(&frame, 2);
+        request.each_invented(&after, &region, |x, y, z, label| {
+            found.push([x, y, z, label.into()])
+        });
+        assert_eq!(found, [[x, y, 6, Class::Vegetation.id().into()]]);
+    }
+}

@@ -1,0 +1,57 @@
+//! Figures of merit, each with its definition.
+
+pub mod agreement;
+mod components;
+pub mod extractor;
+pub mod frechet;
+pub mod iou;
+pub mod kernel;
+pub mod layout;
+pub mod lidar;
+pub mod local;
+pub mod logistic;
+pub mod maps;
+pub mod occupancy;
+pub mod placement;
+#[cfg(test)]
+mod reference;
+pub mod scenewise;
+pub mod shape;
+pub mod stats;
+pub mod sweep;
+pub mod two_sample;
+
+use thiserror::Error;
+
+/// Samples that no figure can be made from.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum MetricError {
+    /// Fewer than two samples.
+    #[error("{which} has {found} samples, expected at least 2")]
+    TooFew {
+        /// Which set.
+        which: &'static str,
+        /// Its size.
+        found: usize,
+    },
+    /// Samples of different length.
+    #[error("a sample has {found} numbers, expected {expected}")]
+    Width {
+        /// Its length.
+        found: usize,
+        /// That of the first sample.
+        expected: usize,
+    },
+    /// Fewer than four scenes, or scenes without windows.
+    #[error("{found} scenes in each set, expected at least 4 with windows")]
+    TooFewScenes {
+        /// Scenes of the smaller set.
+        found: usize,
+    },
+    /// NaN or infinity.
+    #[error("{which} holds a number that is not finite")]
+    NotFinite {
+        /// Which set.
+        which: &'static str,
+    },
+}

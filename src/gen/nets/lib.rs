@@ -1,0 +1,217 @@
+//! The two networks of occupancy generation, run on the CPU in f32. Trained by `training/`, whose
+//! files have the same names and the same order of blocks.
+
+pub mod candle_dit;
+pub mod candle_vae;
+pub mod column_heights;
+pub mod encoder;
+pub mod layout;
+pub mod lidar;
+pub mod occ_dit;
+pub mod occ_vae;
+pub mod pieces;
+pub mod refiner;
+pub mod scenery;
+pub mod text;
+
+#[cfg(test)]
+#[path = "../nn/golden.rs"]
+mod golden;
+
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use thiserror::Error;
+
+pub use column_heights::{ColumnHeights, GROUPS, column_heights};
+pub use nn::map::Window;
+pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
+pub use occ_vae::{Heard, OccVae, VaeConfig};
+pub use refiner::Refiner;
+
+use nn::weights::{self, WeightFile, WeightsError};
+
+/// Latent cells along x and along y.
+pub const SIDE: usize = 50;
+/// Latent cells in all.
+pub const CELLS: usize = SIDE * SIDE;
+/// Numbers per latent cell.
+pub const CHANNELS: usize = 8;
+/// Numbers in a latent: `[x][y][channel]`.
+pub const LATENT: usize = CELLS * CHANNELS;
+
+/// File names of the two networks.
+pub const FILES: [&str; 2] = ["occ_vae.safetensors", "occ_dit.safetensors"];
+
+/// File name of the fine VAE.
+const FINE: &str = "occ_vae_fine.safetensors";
+
+/// What a network refuses, or cannot promise any more.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ModelError {
+    /// An input of the wrong size.
+    #[error("{what} has {found} values, expected {expected}")]
+    Length {
+        /// Which input.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it must have.
+        expected: usize,
+    },
+    /// NaN, infinity, or so large that the network would overflow.
+    #[error("{what}: value {index} is {value}, expected finite numbers below 1e30")]
+    NotFinite {
+        /// Which input or output.
+        what: &'static str,
+        /// Index of the first such value.
+        index: usize,
+        /// That value.
+        value: f32,
+    },
+    /// A label that is no class.
+    #[error("voxel ({x}, {y}, {z}) has label {found}, expected 0 to 17")]
+    Label {
+        /// Index of the voxel.
+        x: usize,
+        /// Index of the voxel.
+        y: usize,
+        /// Index of the voxel.
+        z: usize,
+        /// The label.
+        found: u8,
+    },
+    /// A time outside the schedule.
+    #[error("timestep is {0}, expected 0 to 999")]
+    Timestep(f32),
+}
+
+/// The VAE of 100x100x16 latents that ships with the program: it keeps nearly every label. [`refiner`] generates its latents.
+pub fn fine_vae() -> Result<OccVae, WeightsError> {
+    OccVae::new(fine_file()?)
+}
+
+fn fine_file() -> Result<WeightFile<'static>, WeightsError> {
+    WeightFile::parse(FINE, assets::weights::OCC_VAE_FINE)
+}
+
+fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), ModelError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(ModelError::Length {
+            what,
+            found,
+            expected,
+        })
+    }
+}
+
+fn check_finite(what: &'static str, values: &[f32]) -> Result<(), ModelError> {
+    match values.iter().position(|v| v.is_nan() || v.abs() >= 1e30) {
+        None => Ok(()),
+        Some(index) => Err(ModelError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
+/// Names the weights in reports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModelCard {
+    /// Steps and samples they were trained on, as their files say.
+    pub name: String,
+    /// FNV-1a of the VAE's file, of the DiT's and of the refiner's with its fine VAE (0 without one).
+    pub hashes: [u64; 3],
+}
+
+/// Both networks, which belong together: the DiT knows only this VAE's latents.
+pub struct OccModels {
+    /// Labels to latents and back.
+    pub vae: OccVae,
+    /// Latents from noise and a layout.
+    pub dit: OccDit,
+    /// Draws what the coarse latent has no room for; a folder of weights may lack it.
+    pub refiner: Option<Arc<Refiner>>,
+    /// Which weights these are.
+    pub card: ModelCard,
+}
+
+impl OccModels {
+    /// The weights that ship with the program; unpacked once.
+    pub fn bundled() -> Result<Arc<Self>, WeightsError> {
+        static MODELS: OnceLock<Arc<OccModels>> = OnceLock::new();
+        if let Some(models) = MODELS.get() {
+            return Ok(models.clone());
+        }
+        let models = Self::parse(
+            assets::weights::OCC_VAE,
+            assets::weights::OCC_DIT,
+            Some(Refiner::bundled()?),
+        )?;
+        Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
+    }
+
+    /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and `refiner.safetensors` with `occ_vae_fine.safetensors` where it
+    /// has them.
+    pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
+        let [vae, dit] = FILES.map(|f| weights::read(&folder.join(f)));
+        let refiner = match folder.join(refiner::FILE).exists() {
+            true => {
+                let [net, fine] = [refiner::FILE, FINE].map(|f| weights::read(&folder.join(f)));
+                let (net, fine) = (net?, fine?);
+                let net = WeightFile::parse(refiner::FILE, &net)?;
+                Some(Arc::new(Refiner::new(net, WeightFile::parse(FINE, &fine)?)?))
+            }
+            false => None,
+        };
+        Ok(Arc::new(Self::parse(&vae?, &dit?, refiner)?))
+    }
+
+    fn parse(vae: &[u8], dit: &[u8], refiner: Option<Arc<Refiner>>) -> Result<Self, WeightsError> {
+        let (vae, dit) = (
+            WeightFile::parse(FILES[0], vae)?,
+            WeightFile::parse(FILES[1], dit)?,
+        );
+        let told = |w: &WeightFile<'_>| w.metadata("samples").unwrap_or("?").to_owned();
+        let card = ModelCard {
+            name: format!(
+                "occ_vae ({} samples) + occ_dit ({} samples)",
+                told(&vae),
+                told(&dit)
+            ),
+            hashes: [vae.hash(), dit.hash(), refiner.as_ref().map_or(0, |r| r.hash)],
+        };
+        let (made, found) = (vae.metadata("name"), dit.metadata("vae"));
+        if made.is_some() && made != found {
+            let reason = format!(
+                "expected {}, the name of {}, found {}",
+                made.unwrap_or(""),
+                vae.name(),
+                found.unwrap_or("none")
+            );
+            return Err(dit.config_error("vae", reason));
+        }
+        let expected = [SIDE, CHANNELS];
+        let vae_name = vae.name().to_owned();
+        let vae = OccVae::new(vae)?;
+        let found = [vae.config().side(), vae.config().latent];
+        if found != expected {
+            return Err(dit.config_error(
+                "vae",
+                format!("expected latents of {expected:?} (side, numbers), found {found:?} in {vae_name}"),
+            ));
+        }
+        Ok(Self {
+            vae,
+            dit: OccDit::new(dit)?,
+            refiner,
+            card,
+        })
+    }
+
+    /// Tokens of a whole map.
+    pub const TOKENS: usize = occ_dit::TOKENS;
+}

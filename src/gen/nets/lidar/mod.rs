@@ -1,0 +1,371 @@
+//! The learned LiDAR: occupied voxels through a sparse 3-D UNet, a signed distance field sampled where it pays, NeuS
+//! weights, echo strength and lost echoes (UniScene, section 3.3). The UNet sees the scene and no sensor: its features
+//! stay when a sensor moves or another pattern looks. Trained by training/models/lidar.py.
+
+pub mod field;
+pub mod neus;
+pub mod prior;
+pub mod sites;
+pub mod sparse;
+pub mod update;
+
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+use serde::Deserialize;
+
+use self::field::{
+    APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all,
+};
+use self::prior::Cells;
+use self::sites::{CHILDREN, Sites, Volume, physical, surface};
+use self::sparse::{Block, Convolution};
+use super::{ModelError, check_finite};
+use nn::layers::{Linear, Norm};
+use nn::weights::{self, WeightFile, WeightsError};
+use scene::{Class, GridSpec, VoxelGrid};
+
+/// File name of the weights.
+pub const FILE: &str = "lidar.safetensors";
+/// Shape of the finest level.
+const SHAPE: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+/// Classes that are not free.
+const CLASSES: usize = Class::FREE as usize;
+/// Rows that go through a linear layer in one piece.
+const PIECE: usize = 512;
+/// Rays that one thread works on in a row.
+const RAYS: usize = 128;
+/// Width of the two hidden layers behind a ray.
+const RAY_WIDTH: usize = 32;
+
+/// Sizes, as in the weight file's metadata.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LidarConfig {
+    /// Channels of the three levels.
+    pub widths: [usize; sites::LEVELS],
+    /// False for the ablation: a voxel knows only its class and height.
+    pub unet: bool,
+}
+
+/// Convolutions between the embedding and the heads.
+struct Unet {
+    enter: [Block; 2],
+    middle: [Block; 2],
+    leave: [Block; 2], // level 1, level 0
+    down: [Convolution; 2],
+    up: [Convolution; 2], // to level 1, to level 0
+}
+
+/// The network.
+pub struct LidarNet {
+    config: LidarConfig,
+    class_table: Vec<f32>,
+    height_table: Vec<f32>,
+    unet: Option<Unet>,
+    norm: Norm,
+    geometry: Linear,
+    appearance: Linear,
+    head: SdfHead,
+    ray: [Linear; 3],
+    trained: String,
+}
+
+/// One ray's answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LearnedRay {
+    /// What it met, and where.
+    pub met: Met,
+    /// Strength of the echo, 0 to 255.
+    pub intensity: f32,
+    /// A real sensor gets no echo if this is 0 or more, says the network.
+    pub drop_logit: f32,
+}
+
+impl LearnedRay {
+    /// True if at least half of the pulse met a surface.
+    pub fn is_hit(&self) -> bool {
+        self.met.log_pass <= -std::f32::consts::LN_2
+    }
+
+    /// Share of such echoes that a real sensor loses; 1/2 for NaN.
+    pub fn drop_probability(&self) -> f32 {
+        drop_probability(self.drop_logit)
+    }
+}
+
+/// 1 / (1 + e^-logit), finite for every logit; 1/2 for NaN.
+pub fn drop_probability(logit: f32) -> f32 {
+    if logit.is_nan() {
+        return 0.5;
+    }
+    let e = (-logit.abs()).exp();
+    if logit >= 0.0 {
+        1.0 / (1.0 + e)
+    } else {
+        e / (1.0 + e)
+    }
+}
+
+impl LidarNet {
+    /// The weights that ship with the program; unpacked once.
+    pub fn bundled() -> Result<Arc<Self>, WeightsError> {
+        static NET: OnceLock<Arc<LidarNet>> = OnceLock::new();
+        if let Some(net) = NET.get() {
+            return Ok(net.clone());
+        }
+        let bytes = assets::weights::LIDAR;
+        let net = Self::new(WeightFile::parse(FILE, bytes)?)?;
+        Ok(NET.get_or_init(|| Arc::new(net)).clone())
+    }
+
+    /// The ablation that ships beside it, trained without the UNet.
+    pub fn without_unet() -> Result<Self, WeightsError> {
+        let bytes = assets::weights::LIDAR_FLAT;
+        Self::new(WeightFile::parse("lidar_flat.safetensors", bytes)?)
+    }
+
+    /// `lidar.safetensors` of a folder.
+    pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
+        let bytes = weights::read(&folder.join(FILE))?;
+        Ok(Arc::new(Self::new(WeightFile::parse(FILE, &bytes)?)?))
+    }
+
+    /// Takes every tensor of the file.
+    pub fn new(mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
+        let config: LidarConfig = w.config("config")?;
+        let w0 = config.widths[0];
+        if config.widths.iter().any(|v| !(1..=1024).contains(v)) {
+            return Err(w.config_error(
+                "config",
+                format!("widths are {:?}, expected 1 to 1024", config.widths),
+            ));
+        }
+        let unet = match config.unet {
+            true => Some(Unet::new(&mut w, config.widths)?),
+            false => None,
+        };
+        let array = |values: Vec<f32>| -> [f32; HIDDEN] { std::array::from_fn(|i| values[i]) };
+        let first = w.take("sdf1.weight", &[HIDDEN, HIDDEN])?;
+        let head = SdfHead {
+            support: array(w.take("support", &[HIDDEN])?),
+            first: std::array::from_fn(|i| std::array::from_fn(|o| first[o * HIDDEN + i])),
+            first_bias: array(w.take("sdf1.bias", &[HIDDEN])?),
+            second: array(w.take("sdf2.weight", &[1, HIDDEN])?),
+            second_bias: w.take("sdf2.bias", &[1])?[0],
+            s: w.take("log_s", &[1])?[0].exp(),
+        };
+        if !(head.s > 0.0 && head.s.is_finite()) {
+            let reason = format!(
+                "the steepness exp(log_s) is {}, expected finite and above 0",
+                head.s
+            );
+            return Err(w.config_error("log_s", reason));
+        }
+        let net = Self {
+            class_table: w.take("class_table", &[CLASSES, w0])?,
+            height_table: w.take("height_table", &[GridSpec::NZ, w0])?,
+            unet,
+            norm: Norm::new(&mut w, "norm", w0)?,
+            geometry: Linear::new(&mut w, "geometry", w0, HIDDEN + 4, &[])?,
+            appearance: Linear::new(&mut w, "appearance", w0, APPEARANCE, &[])?,
+            head,
+            ray: [
+                Linear::new(&mut w, "ray0", RAY_INPUTS, RAY_WIDTH, &[])?,
+                Linear::new(&mut w, "ray1", RAY_WIDTH, RAY_WIDTH, &[])?,
+                Linear::new(&mut w, "ray2", RAY_WIDTH, 2, &[])?,
+            ],
+            trained: format!("lidar ({} steps)", w.metadata("steps").unwrap_or("?")),
+            config,
+        };
+        w.finish()?;
+        Ok(net)
+    }
+
+    /// Which weights these are.
+    pub fn name(&self) -> &str {
+        &self.trained
+    }
+
+    /// Steepness of the NeuS weights, 1/m.
+    pub fn steepness(&self) -> f32 {
+        self.head.s
+    }
+
+    /// The field of a scene in the vertical convention of labels. It depends on the voxels alone: keep it for other
+    /// poses and patterns. Labels beyond the table count as `others`.
+    pub fn field(&self, grid: &VoxelGrid) -> Result<Field, ModelError> {
+        let (keys, classes) = voxels(grid);
+        self.field_of(keys, classes)
+    }
+
+    /// The same of sorted, unique voxels at their physical height, and their classes.
+    pub fn field_of(&self, keys: Vec<u32>, classes: Vec<u8>) -> Result<Field, ModelError> {
+        let mut field = Field {
+            hidden: vec![Line([0.0; HIDDEN]); keys.len() + 1],
+            planes: vec![[0.0; 4]; keys.len() + 1],
+            appearance: vec![Line([0.0; APPEARANCE]); keys.len() + 1],
+            cells: Cells::new(&keys, &classes),
+            volume: Volume::new(SHAPE, &keys),
+            keys,
+            classes,
+        };
+        let Field {
+            keys,
+            classes,
+            hidden,
+            planes,
+            appearance,
+            ..
+        } = &mut field;
+        self.fill(keys, classes, [hidden, appearance], planes)?;
+        Ok(field)
+    }
+
+    /// What the field holds of each voxel: hidden numbers and appearance, planes. The lists may be longer.
+    fn fill(
+        &self,
+        keys: &[u32],
+        classes: &[u8],
+        [hidden, appearance]: [&mut [Line]; 2],
+        planes: &mut [[f32; 4]],
+    ) -> Result<(), ModelError> {
+        let x = self.features(keys, classes);
+        let width = self.config.widths[0];
+        x.par_chunks(PIECE * width)
+            .zip(hidden.par_chunks_mut(PIECE))
+            .zip(appearance.par_chunks_mut(PIECE))
+            .zip(planes.par_chunks_mut(PIECE))
+            .try_for_each_init(
+                || (vec![0.0; PIECE * width], vec![0.0; PIECE * (HIDDEN + 4)]),
+                |(normed, out), (((x, hidden), appearance), planes)| {
+                    let (rows, normed) = (x.len() / width, &mut normed[..x.len()]);
+                    self.norm.rows(x, normed);
+                    check_finite("features of the LiDAR's voxels", normed)?;
+                    self.geometry.rows(normed, &mut out[..rows * (HIDDEN + 4)]);
+                    let rows_of = out.chunks_exact(HIDDEN + 4).zip(&mut *hidden).zip(planes);
+                    for ((row, hidden), plane) in rows_of.take(rows) {
+                        hidden.0.copy_from_slice(&row[..HIDDEN]);
+                        plane.copy_from_slice(&row[HIDDEN..]);
+                    }
+                    self.appearance.rows(normed, &mut out[..rows * APPEARANCE]);
+                    let rows_of = out.chunks_exact(APPEARANCE).zip(&mut *appearance);
+                    for (row, looks) in rows_of.take(rows) {
+                        looks.0.copy_from_slice(row);
+                    }
+                    Ok(())
+                },
+            )
+    }
+
+    /// What the UNet makes of the voxels, `[site][channel]`.
+    fn features(&self, keys: &[u32], classes: &[u8]) -> Vec<f32> {
+        let width = self.config.widths[0];
+        let mut x = vec![0.0; keys.len() * width];
+        x.par_chunks_mut(PIECE * width)
+            .zip(keys.par_chunks(PIECE))
+            .zip(classes.par_chunks(PIECE))
+            .for_each(|((x, keys), classes)| {
+                for ((x, key), class) in x.chunks_exact_mut(width).zip(keys).zip(classes) {
+                    let z = *key as usize % SHAPE[2];
+                    let of_class = &self.class_table[usize::from(*class) * width..][..width];
+                    let of_height = &self.height_table[z * width..][..width];
+                    for ((x, a), b) in x.iter_mut().zip(of_class).zip(of_height) {
+                        *x = a + b;
+                    }
+                }
+            });
+        match &self.unet {
+            Some(unet) if !keys.is_empty() => unet.apply(x, &Sites::new(SHAPE, keys.to_vec())),
+            _ => x,
+        }
+    }
+
+    /// What rays meet, in their order, on all cores; the same on any number of threads.
+    pub fn shoot(&self, field: &Field, rays: &[Ray], sampling: Sampling) -> Vec<LearnedRay> {
+        let piece = |rays: &[Ray]| -> Vec<LearnedRay> {
+            let mut met = vec![Met::default(); rays.len()];
+            shoot_all(field, &self.head, rays, sampling, &mut Room::default(), &mut met);
+            self.heads(&met)
+        };
+        rays.par_chunks(RAYS).flat_map_iter(piece).collect()
+    }
+
+    /// Signed distances at positions along a ray and what it meets there; for tests and pictures.
+    pub fn probe(&self, field: &Field, ray: &Ray, t: &[f32]) -> (Vec<f32>, LearnedRay) {
+        let [o, d] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
+        let f: Vec<f32> = t
+            .iter()
+            .map(|t| field.sdf(&self.head, std::array::from_fn(|a| o[a] + d[a] * t)))
+            .collect();
+        let tails: Vec<f32> = f.iter().map(|f| neus::tail(self.head.s * f)).collect();
+        let met = field.render(self.head.s, [o, d], [t, &f, &tails], &mut Vec::new());
+        (f, self.heads(&[met])[0])
+    }
+
+    /// Echo strength and drops of some rays.
+    fn heads(&self, met: &[Met]) -> Vec<LearnedRay> {
+        let mut x: Vec<f32> = met.iter().flat_map(|m| m.inputs).collect();
+        for (i, (layer, width)) in self.ray.iter().zip([RAY_WIDTH, RAY_WIDTH, 2]).enumerate() {
+            let mut out = vec![0.0; met.len() * width];
+            layer.rows(&x, &mut out);
+            if i < 2 {
+                out.iter_mut().for_each(|v| *v = v.max(0.0));
+            }
+            x = out;
+        }
+        met.iter()
+            .zip(x.chunks_exact(2))
+            .map(|(met, out)| LearnedRay {
+                met: *met,
+                intensity: (out[0].clamp(0.0, 1.0).powi(2)) * 255.0,
+                drop_logit: out[1],
+            })
+            .collect()
+    }
+}
+
+/// The voxels that the network works on, in rising order, and their classes.
+fn voxels(grid: &VoxelGrid) -> (Vec<u32>, Vec<u8>) {
+    let labels = physical(grid);
+    let keys = surface(&labels);
+    let classes = keys
+        .iter()
+        .map(|k| labels[*k as usize].min(CLASSES as u8 - 1))
+        .collect();
+    (keys, classes)
+}
+
+impl Unet {
+    fn new(w: &mut WeightFile<'_>, [w0, w1, w2]: [usize; 3]) -> Result<Self, WeightsError> {
+        let strided = |w: &mut WeightFile<'_>, name: &str, from: usize, to: usize| {
+            Convolution::new(w, name, [CHILDREN, from, to], &[CHILDREN, from, to])
+        };
+        Ok(Self {
+            enter: [Block::new(w, "enter0", w0)?, Block::new(w, "enter1", w1)?],
+            middle: [Block::new(w, "middle0", w2)?, Block::new(w, "middle1", w2)?],
+            leave: [Block::new(w, "leave1", w1)?, Block::new(w, "leave0", w0)?],
+            down: [strided(w, "down0", w0, w1)?, strided(w, "down1", w1, w2)?],
+            up: [strided(w, "up1", w2, w1)?, strided(w, "up0", w1, w0)?],
+        })
+    }
+
+    fn apply(&self, mut x0: Vec<f32>, sites: &Sites) -> Vec<f32> {
+        let [l0, l1, l2] = &sites.levels;
+        // One buffer for all norms: fresh memory costs as much as what is written into it.
+        let mut room = Vec::new();
+        self.enter[0].apply(&mut x0, &l0.around, &mut room);
+        let mut x1 = self.down[0].apply(&x0, &l1.children);
+        self.enter[1].apply(&mut x1, &l1.around, &mut room);
+        let mut x2 = self.down[1].apply(&x1, &l2.children);
+        for block in &self.middle {
+            block.apply(&mut x2, &l2.around, &mut room);
+        }
+        self.up[0].add(&x2, &l1.parent, &mut x1);
+        self.leave[0].apply(&mut x1, &l1.around, &mut room);
+        self.up[1].add(&x1, &l0.parent, &mut x0);
+        self.leave[1].apply(&mut x0, &l0.around, &mut room);
+        x0
+    }
+}

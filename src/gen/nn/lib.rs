@@ -1,0 +1,14 @@
+//! What networks are built from: weight files, blocks, and the processor's kernels.
+
+#[cfg(test)]
+mod golden;
+pub mod int8;
+pub mod int8_attention;
+pub mod kernels;
+pub mod layers;
+pub mod map;
+pub mod packed_matrix;
+mod precision;
+pub mod weights;
+
+pub use precision::Precision;

@@ -1,0 +1,3 @@
+//! Numbers that every room shares: random numbers, hashes, quantiles.
+
+pub mod rng;

@@ -1,0 +1,128 @@
+//! Camera pictures of the graphics card against those of the processor, on whatever adapter there is, software included;
+//! without any, these tests fail.
+
+use std::collections::HashSet;
+use std::sync::{Mutex, MutexGuard, OnceLock};
+
+use scene::look::LookData;
+use scene::{Camera, Frame, SensorRig, VoxelGrid};
+use sensors::appearance::{CameraImage, Conditions, Look, Quality, TimeOfDay, Weather};
+use viewport::{LookRenderer, headless_device};
+use world::World;
+use world::voxelize::{Vertical, complete};
+
+const SIZE: [u32; 2] = [120, 68];
+
+/// One renderer for all tests of this file.
+fn gpu() -> MutexGuard<'static, LookRenderer> {
+    static RENDERER: OnceLock<Mutex<LookRenderer>> = OnceLock::new();
+    let renderer = RENDERER.get_or_init(|| {
+        let (info, device, queue) = headless_device().expect("a graphics adapter, software or not");
+        println!("{} ({:?}, {:?})", info.name, info.device_type, info.backend);
+        Mutex::new(LookRenderer::new(&device, &queue).expect("an adapter that can compute"))
+    });
+    renderer.lock().unwrap_or_else(|e| e.into_inner())
+}
+
+fn frame() -> Frame {
+    let world = World::random(5);
+    let grid = complete(&world, Vertical::Occ3d);
+    Frame::new(world.layout.clone(), world.boxes.clone(), grid)
+}
+
+/// Mean absolute difference of the bytes, and the share of pixels of which no channel differs by more than 8.
+fn agreement(a: &CameraImage, b: &CameraImage) -> (f64, f64) {
+    assert_eq!(
+        (a.width, a.height, a.rgba.len()),
+        (b.width, b.height, b.rgba.len())
+    );
+    let (mut sum, mut near) = (0.0, 0usize);
+    for (p, q) in a.rgba.chunks_exact(4).zip(b.rgba.chunks_exact(4)) {
+        let gaps = [0, 1, 2].map(|c| p[c].abs_diff(q[c]));
+        sum += gaps.iter().map(|g| f64::from(*g)).sum::<f64>() / 3.0;
+        near += usize::from(gaps.iter().all(|g| *g <= 8));
+    }
+    let pixels = (a.rgba.len() / 4) as f64;
+    (sum / pixels, near as f64 / pixels)
+}
+
+/// Where `SCENELOOM_KEEP` names a folder, both pictures are left there to be looked at.
+fn keep(name: &str, image: &CameraImage) {
+    let Some(folder) = std::env::var_os("SCENELOOM_KEEP") else {
+        return;
+    };
+    let path = std::path::Path::new(&folder).join(format!("{name}.png"));
+    let (w, h) = (image.width as u32, image.height as u32);
+    image::save_buffer(path, &image.rgba, w, h, image::ColorType::Rgba8).expect("a picture");
+}
+
+/// Every time and weather: at most 2/255 apart on average, and 97 % of the pixels within 8/255 in every channel.
+#[test]
+fn pictures_agree_with_the_processor() {
+    let (frame, rig) = (frame(), SensorRig::default());
+    let mut far = Vec::new();
+    for (name, time, weather) in [
+        ("day", TimeOfDay::Day, Weather::Clear),
+        ("night", TimeOfDay::Night, Weather::Clear),
+        ("rain", TimeOfDay::Day, Weather::Rain),
+        ("night rain", TimeOfDay::Night, Weather::Rain),
+        ("snow", TimeOfDay::Day, Weather::Snow),
+        ("fog", TimeOfDay::Day, Weather::Fog),
+        ("dusk", TimeOfDay::Dusk, Weather::Clear),
+        ("dawn, overcast", TimeOfDay::Dawn, Weather::Overcast),
+        ("sandstorm", TimeOfDay::Day, Weather::Sandstorm),
+    ] {
+        let conditions = Conditions {
+            time,
+            weather,
+            seed: 3,
+        };
+        let look = Look::new(&frame, &rig, &conditions);
+        let mut gpu = gpu();
+        gpu.set_look(&look.data()).expect("room");
+        for camera in [&rig.cameras[0], &rig.cameras[4]] {
+            let light = gpu.light(camera, SIZE, true).expect("a picture");
+            let here = look.picture(camera, SIZE[0], SIZE[1], &light);
+            let there = look.render(camera, SIZE[0], SIZE[1], Quality::Full);
+            let colours: HashSet<&[u8]> = there.rgba.chunks_exact(4).collect();
+            assert!(colours.len() > 50, "{name}: there is something to compare");
+            let (mean, near) = agreement(&here, &there);
+            println!(
+                "{name}, {}: mean {mean:.3}/255, within 8/255: {:.2} %",
+                camera.name,
+                near * 100.0
+            );
+            keep(&format!("{name} {} gpu", camera.name), &here);
+            keep(&format!("{name} {} cpu", camera.name), &there);
+            // Written so that NaN counts as far apart.
+            if !(mean <= 2.0 && near >= 0.97) {
+                far.push(format!("{name}, {}: {mean:.3}, {near:.4}", camera.name));
+            }
+        }
+    }
+    assert!(far.is_empty(), "{far:?}");
+}
+
+/// An empty scene, no look, sizes of nothing, cameras without a place: pictures or errors, and the renderer goes on.
+#[test]
+fn extremes_are_survived() {
+    let rig = SensorRig::default();
+    let mut gpu = gpu();
+    assert!(gpu.set_look(&LookData::default()).is_ok(), "words may be empty");
+    let world = World::random(5);
+    let frame = Frame::new(world.layout, Default::default(), VoxelGrid::new());
+    let look = Look::new(&frame, &rig, &Conditions::default());
+    gpu.set_look(&look.data()).expect("room");
+    for size in [[0, 0], [0, 5], [1, 1], [7, 3]] {
+        let light = gpu.light(&rig.cameras[0], size, true).expect("a picture");
+        assert_eq!(light.len(), (size[0] * size[1]) as usize);
+        assert!(light.as_flattened().iter().all(|v| v.is_finite() && *v >= 0.0));
+    }
+    let bad = Camera {
+        translation_m: [f64::NAN; 3],
+        ..rig.cameras[0].clone()
+    };
+    let light = gpu.light(&bad, [4, 4], true).expect("a picture");
+    assert!(light.as_flattened().iter().all(|v| *v == 0.0));
+    assert!(gpu.light(&rig.cameras[0], [1 << 15, 1 << 15], true).is_err());
+}

@@ -1,0 +1,542 @@
+//! Project files: what is saved comes back, equal scenes give equal bytes, and no bad file does harm.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read, Write};
+use std::sync::Arc;
+
+use editor::{Document, Edit, Shape};
+use formats::project::{self, ProjectError};
+use glam::{DVec2, DVec3};
+use proptest::prelude::*;
+use scene::draft::draft;
+use scene::{
+    BevLayer, BevLayout, BoxId, Class, Frame, Polyline, PolylineKind, Pose, Scene, SceneBox, SensorRig,
+    VoxelGrid,
+};
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
+
+/// Three frames: one settled, one with edits since its source, one with paint and another pose.
+fn clip() -> Scene {
+    let mut layout = BevLayout::default();
+    for x in 0..200 {
+        for y in 80..120 {
+            layout.set(BevLayer::DrivableArea, x, y, true);
+            layout.set(BevLayer::LaneDivider, x, y, y == 100);
+        }
+    }
+    layout.polylines = Arc::new(vec![Polyline {
+        kind: PolylineKind::LaneDivider,
+        points_m: vec![
+            DVec2::new(-40.0, 0.2),
+            DVec2::new(0.1 + 0.2, 1.0 / 3.0),
+            DVec2::new(40.0, -0.0),
+        ],
+    }]);
+    let car = SceneBox {
+        id: BoxId(4),
+        class: Class::Car,
+        center_m: DVec3::new(10.0 / 3.0, -std::f64::consts::PI, 0.85),
+        size_m: DVec3::new(4.6, 1.95, 1.7),
+        yaw_rad: 0.123_456_789_012_345_68,
+        velocity_mps: DVec2::new(5e-324, -1.0),
+        label: Default::default(),
+    };
+    let boxes: BTreeMap<_, _> = [(car.id, car)].into();
+    let occupancy = draft(&layout, boxes.values());
+    let settled = Frame::new(layout, boxes, occupancy);
+    let mut scene = Scene::single(
+        "Ümläut \"quoted\"\n",
+        settled.clone(),
+        Arc::new(SensorRig::default()),
+        u64::MAX,
+    );
+    scene.prompt = "night, rain".into();
+    scene.frames.push(Arc::new(Frame {
+        time_s: 0.5,
+        ..settled.clone()
+    }));
+    scene.frames.push(Arc::new(Frame {
+        time_s: 1.0 / 3.0,
+        world_from_ego: Pose::from_wxyz([0.7, -0.1, 0.2, -0.6], [1e5 / 3.0, -2.0, 0.1]),
+        ..settled
+    }));
+    scene.current = 1;
+    for edit in [
+        Edit::RemoveBox { id: BoxId(4) },
+        Edit::PaintBev {
+            layer: BevLayer::Walkway,
+            shape: Shape::Disc {
+                center_m: DVec2::new(3.0, 9.0),
+                radius_m: 2.0,
+            },
+            value: true,
+        },
+    ] {
+        edit.apply(&mut scene).expect("sound");
+    }
+    scene.current = 2;
+    let paint = Edit::PaintVoxels {
+        cells: vec![[0, 0, 0], [199, 199, 15], [100, 100, 8]],
+        class: Class::Manmade,
+    };
+    paint.apply(&mut scene).expect("inside");
+    let erase = Edit::PaintVoxels {
+        cells: vec![[100, 100, 0]],
+        class: Class::Free,
+    };
+    erase.apply(&mut scene).expect("inside");
+    // A source whose lines differ from the frame's.
+    scene.frame_mut().layout.polylines = Arc::default();
+    scene
+}
+
+fn assert_same(a: &Scene, b: &Scene) {
+    assert_eq!(
+        (&a.name, &a.prompt, a.current, a.seed),
+        (&b.name, &b.prompt, b.current, b.seed)
+    );
+    assert_eq!(a.rig, b.rig);
+    assert_eq!(a.frames.len(), b.frames.len());
+    for (a, b) in a.frames.iter().zip(&b.frames) {
+        assert!(a == b, "a frame differs");
+    }
+}
+
+fn bytes() -> Vec<u8> {
+    project::to_bytes(&clip()).expect("sound")
+}
+
+/// The entries of a project, to be changed and packed again.
+fn unpack(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+    let mut zip = ZipArchive::new(Cursor::new(bytes)).expect("a zip");
+    (0..zip.len())
+        .map(|i| {
+            let mut entry = zip.by_index(i).expect("listed");
+            let mut content = Vec::new();
+            entry.read_to_end(&mut content).expect("whole");
+            (entry.name().expect("a name").into_owned(), content)
+        })
+        .collect()
+}
+
+fn pack(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, content) in entries {
+        zip.start_file(name.as_str(), SimpleFileOptions::default())
+            .expect("written");
+        zip.write_all(content).expect("written");
+    }
+    zip.finish().expect("written").into_inner()
+}
+
+/// What is said about a project in which one entry was changed (`None`: left out).
+fn refusal(entry: &str, change: impl FnOnce(Vec<u8>) -> Option<Vec<u8>>) -> String {
+    let mut entries = unpack(&bytes());
+    let at = entries
+        .iter()
+        .position(|(name, _)| name == entry)
+        .expect("an entry of the clip");
+    let (name, content) = entries.remove(at);
+    if let Some(content) = change(content) {
+        entries.insert(at, (name, content));
+    }
+    text_of(project::from_bytes(&pack(&entries)))
+}
+
+fn text_of(result: Result<Scene, ProjectError>) -> String {
+    let text = match result {
+        Err(e) => e.to_string(),
+        Ok(_) => panic!("expected an error"),
+    };
+    assert!(!text.contains('\n') && !text.is_empty(), "one line: {text:?}");
+    text
+}
+
+/// The same with a piece of text replaced.
+fn json_refusal(entry: &str, from: &str, to: &str) -> String {
+    refusal(entry, |content| {
+        let text = String::from_utf8(content).expect("JSON is UTF-8");
+        assert!(text.contains(from), "{from} in {entry}");
+        Some(text.replacen(from, to, 1).into_bytes())
+    })
+}
+
+#[test]
+fn what_is_saved_comes_back() {
+    let scene = clip();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("clip.loom");
+    let written = project::save(&path, &scene).expect("saved");
+    assert_eq!(written, std::fs::metadata(&path).expect("there").len());
+    let loaded = project::load(&path).expect("loaded");
+    assert_same(&scene, &loaded);
+    assert_ne!(scene.rev, loaded.rev);
+    println!("three frames: {written} bytes");
+    // What was one memory is one memory again: a fresh project redraws nothing.
+    let settled = &loaded.frames[0];
+    assert!(
+        settled
+            .source
+            .occupancy
+            .changed_bricks(&settled.occupancy)
+            .is_empty()
+    );
+    let edited = &loaded.frames[1];
+    let bricks = edited.source.occupancy.changed_bricks(&edited.occupancy).len();
+    assert!(
+        (1..10).contains(&bricks),
+        "{bricks} bricks of a removed car and a dab"
+    );
+}
+
+#[test]
+fn equal_scenes_give_equal_bytes() {
+    let first = bytes();
+    assert_eq!(first, bytes());
+    let loaded = project::from_bytes(&first).expect("sound");
+    assert_eq!(first, project::to_bytes(&loaded).expect("sound"));
+    // And after a detour of edits that are undone.
+    let mut document = Document::new(loaded);
+    document
+        .apply("Prompt", &Edit::SetPrompt { prompt: "x".into() })
+        .expect("sound");
+    document.apply("Clear", &Edit::ClearPaint {}).expect("sound");
+    document.undo();
+    document.undo();
+    assert_eq!(first, project::to_bytes(document.scene()).expect("sound"));
+}
+
+#[test]
+fn only_what_differs_is_stored() {
+    let names: Vec<String> = unpack(&bytes()).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(
+        names,
+        [
+            "manifest.json",
+            "scene.json",
+            "frames/00000/layout.u32",
+            "frames/00000/occupancy.u8",
+            "frames/00001/layout.u32",
+            "frames/00001/occupancy.u8",
+            "frames/00001/source_layout.u32",
+            "frames/00001/source_occupancy.u8",
+            "frames/00002/layout.u32",
+            "frames/00002/occupancy.u8",
+            "frames/00002/painted.u8",
+            "frames/00002/source_occupancy.u8",
+        ]
+    );
+    // Packing by another tool, in another order, is as good.
+    let mut entries = unpack(&bytes());
+    entries.reverse();
+    assert_same(&project::from_bytes(&pack(&entries)).expect("sound"), &clip());
+}
+
+/// Row 62 of the extremes table: a file cut short anywhere.
+#[test]
+fn row_62_truncated() {
+    let whole = bytes();
+    let lengths = (0..64)
+        .chain((64..whole.len()).step_by(97))
+        .chain(whole.len().saturating_sub(600)..whole.len());
+    for length in lengths {
+        text_of(project::from_bytes(&whole[..length]));
+    }
+    assert_eq!(
+        text_of(project::from_bytes(b"")).split(" (").next(),
+        Some("not a .loom project, or cut short")
+    );
+    text_of(project::from_bytes(b"{\"format\": \"sceneloom\"}"));
+    text_of(project::from_bytes(&[0xff; 4096]));
+}
+
+/// Row 62: any flipped bit is noticed, or lies where it means nothing (a time stamp, say).
+#[test]
+fn row_62_flipped_bits() {
+    let mut scene = clip();
+    scene.frames.truncate(1);
+    scene.current = 0;
+    let whole = project::to_bytes(&scene).expect("sound");
+    let (mut noticed, mut harmless) = (0, 0);
+    // The ends are the zip's own records, with the largest share of bytes that say nothing.
+    let tail = whole.len() - 400;
+    let places = (0..200).chain((200..tail).step_by(23)).chain(tail..whole.len());
+    for (i, at) in places.enumerate() {
+        let mut bad = whole.clone();
+        bad[at] ^= 1 << (i % 8);
+        match project::from_bytes(&bad) {
+            Ok(loaded) => {
+                assert_same(&loaded, &scene);
+                harmless += 1;
+            }
+            Err(e) => {
+                assert!(!e.to_string().contains('\n'));
+                noticed += 1;
+            }
+        }
+    }
+    println!("{noticed} flips noticed, {harmless} harmless");
+    assert!(noticed > 3 * harmless);
+}
+
+/// Row 62: entries that lie about their size or are far larger than a scene can be.
+#[test]
+fn row_62_bombs() {
+    let zeros = |n: usize| refusal("frames/00000/occupancy.u8", move |_| Some(vec![0; n]));
+    assert_eq!(
+        zeros(50_000_000),
+        "entry \"frames/00000/occupancy.u8\" has the wrong size: expected 640000 voxels, found 50000000"
+    );
+    // 65 MiB of blanks pack into 64 KiB.
+    let mut blanks = vec![b' '; 65 << 20];
+    blanks[0] = b'{';
+    assert_eq!(
+        refusal("scene.json", |_| Some(blanks)),
+        format!(
+            "the size of scene.json is {}, expected at most {}",
+            65 << 20,
+            64 << 20
+        )
+    );
+    // The declared size understates the content: the stream is longer than the header says.
+    let whole = bytes();
+    let declared = 640_000u32.to_le_bytes();
+    let mut lied = whole.clone();
+    let mut at = 0;
+    while let Some(found) = lied[at..].windows(4).position(|w| w == declared) {
+        at += found;
+        lied[at..at + 4].copy_from_slice(&600_000u32.to_le_bytes());
+        at += 4;
+    }
+    assert!(text_of(project::from_bytes(&lied)).contains("occupancy.u8"));
+    // More frames than allowed, said in 60 bytes.
+    let many = json_refusal("manifest.json", "\"frames\":3", "\"frames\":10001");
+    assert_eq!(many, "the number of frames is 10001, expected at most 10000");
+    // A deep nest of brackets ends in an error, not in the stack's end.
+    let text = refusal("scene.json", |_| Some(vec![b'['; 1 << 20]));
+    assert!(text.contains("scene.json"), "{text}");
+}
+
+/// Row 62: values that no grid or number may have.
+#[test]
+fn row_62_values() {
+    let label = refusal("frames/00000/occupancy.u8", |mut v| {
+        v[(7 * 200 + 3) * 16 + 5] = 18;
+        Some(v)
+    });
+    assert_eq!(
+        label,
+        "entry \"frames/00000/occupancy.u8\": voxel [7, 3, 5] holds 18, expected 0 to 17"
+    );
+    let paint = refusal("frames/00002/painted.u8", |mut v| {
+        v[0] = 254;
+        Some(v)
+    });
+    assert!(
+        paint.contains("voxel [0, 0, 0] holds 254, expected 0 to 17 or 255"),
+        "{paint}"
+    );
+    let short = refusal("frames/00001/layout.u32", |v| Some(v[..4000].to_vec()));
+    assert_eq!(
+        short,
+        "entry \"frames/00001/layout.u32\" has the wrong size: expected 40000 cells, found 1000"
+    );
+    let long = refusal("frames/00001/layout.u32", |mut v| {
+        v.extend([0; 4]);
+        Some(v)
+    });
+    assert!(long.contains("expected 40000 cells, found 40001"), "{long}");
+    let object_bit = refusal("frames/00000/layout.u32", |mut v| {
+        v[4 * 203 + 1] = 1;
+        Some(v)
+    });
+    assert!(object_bit.contains("cell [1, 3] holds 256"), "{object_bit}");
+    let nan = json_refusal(
+        "scene.json",
+        "\"yaw_rad\":0.12345678901234568",
+        "\"yaw_rad\":null",
+    );
+    assert!(nan.contains("scene.json") && nan.contains("null"), "{nan}");
+    let huge = json_refusal(
+        "scene.json",
+        "\"yaw_rad\":0.12345678901234568",
+        "\"yaw_rad\":1e999",
+    );
+    assert!(huge.contains("number out of range"), "{huge}");
+    let flat = json_refusal("scene.json", "[4.6,1.95,1.7]", "[4.6,0.0,1.7]");
+    assert!(
+        flat.contains("frame 0: box 4: size_m is [4.6, 0, 1.7], expected above 0"),
+        "{flat}"
+    );
+    let class = json_refusal("scene.json", "\"class\":\"car\"", "\"class\":\"terrain\"");
+    assert!(class.contains("class is \"terrain\""), "{class}");
+    let pose = json_refusal("scene.json", "[0.0,0.0,0.0,1.0]", "[0.0,0.0,0.0,0.0]");
+    assert!(pose.contains("quaternion of length 0, expected 1"), "{pose}");
+    let rig = json_refusal("scene.json", "\"width\":1600", "\"width\":0");
+    assert!(rig.contains("rig: camera CAM_FRONT_LEFT: size is 0x900"), "{rig}");
+    let current = json_refusal("scene.json", "\"current\":2", "\"current\":3");
+    assert!(
+        current.contains("current is 3, expected below the number of frames, 3"),
+        "{current}"
+    );
+}
+
+#[test]
+fn what_is_missing_or_unknown_is_named() {
+    for (name, _) in unpack(&bytes()) {
+        assert_eq!(refusal(&name, |_| None), format!("entry {name:?} is missing"));
+    }
+    let mut entries = unpack(&bytes());
+    entries.push(("frames/00003/layout.u32".into(), vec![]));
+    assert_eq!(
+        text_of(project::from_bytes(&pack(&entries))),
+        "entry \"frames/00003/layout.u32\" is not known"
+    );
+    let key = json_refusal("scene.json", "\"seed\":", "\"sead\":1,\"seed\":");
+    assert!(key.contains("unknown field `sead`"), "{key}");
+    let key = json_refusal("scene.json", "\"painted\":", "\"colour\":1,\"painted\":");
+    assert!(key.contains("unknown field `colour`"), "{key}");
+    let key = json_refusal("manifest.json", "\"frames\":3", "\"frames\":3,\"made_by\":\"me\"");
+    assert!(key.contains("unknown field `made_by`"), "{key}");
+    let missing = json_refusal("scene.json", "\"seed\":18446744073709551615,", "");
+    assert!(missing.contains("missing field `seed`"), "{missing}");
+    let count = json_refusal("manifest.json", "\"frames\":3", "\"frames\":2");
+    assert!(count.contains("3 frames, expected 2"), "{count}");
+    let version = json_refusal("manifest.json", "\"version\":2,", "\"version\":3,\"new_key\":0,");
+    assert_eq!(
+        version,
+        "manifest.json: version is 3, expected 2; open it with the sceneloom that wrote it"
+    );
+    let format = json_refusal("manifest.json", "\"sceneloom\"", "\"krita\"");
+    assert_eq!(
+        format,
+        "manifest.json: format is \"krita\", expected \"sceneloom\""
+    );
+    // A zip of another kind.
+    let other = pack(&[("word/document.xml".into(), vec![1, 2, 3])]);
+    assert_eq!(
+        text_of(project::from_bytes(&other)),
+        "entry \"manifest.json\" is missing"
+    );
+}
+
+#[test]
+fn errors_name_the_file_and_an_old_file_survives() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("a.loom");
+    let text = text_of(project::load(&path));
+    assert!(text.starts_with(&path.display().to_string()), "{text}");
+    std::fs::write(&path, b"not a zip").expect("written");
+    let text = text_of(project::load(&path));
+    assert!(text.contains("a.loom: not a .loom project"), "{text}");
+    project::save(&path, &clip()).expect("saved");
+    let good = std::fs::read(&path).expect("there");
+    // A scene that cannot be stored is refused before the file is touched.
+    let mut broken = clip();
+    broken.frame_mut().time_s = f64::NAN;
+    let text = project::save(&path, &broken).expect_err("NaN").to_string();
+    assert!(
+        text.contains("frame 2: time_s is NaN, expected a finite number"),
+        "{text}"
+    );
+    let mut broken = clip();
+    broken.frame_mut().occupancy.set(1, 2, 3, 40);
+    let text = project::save(&path, &broken)
+        .expect_err("no such label")
+        .to_string();
+    assert!(text.contains("voxel [1, 2, 3] holds 40"), "{text}");
+    let mut broken = clip();
+    broken.frames.clear();
+    project::to_bytes(&broken).expect_err("no frame");
+    assert_eq!(std::fs::read(&path).expect("there"), good);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 1);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..Default::default() })]
+
+    /// Any numbers and any voxels come back to the last bit.
+    #[test]
+    fn round_trip(
+        numbers in prop::array::uniform9(-999.0..999.0f64),
+        tiny in prop::num::f64::SUBNORMAL,
+        voxels in prop::collection::vec((0usize..200, 0usize..200, 0usize..16, 0u8..18), 0..200),
+        seed in any::<u64>(),
+        name in "\\PC{0,12}",
+    ) {
+        let b = SceneBox {
+            id: BoxId(seed as u32),
+            class: Class::Bus,
+            center_m: DVec3::new(numbers[0], numbers[1], numbers[2]),
+            size_m: DVec3::new(numbers[3], numbers[4], numbers[5]).abs() + 1e-3,
+            yaw_rad: numbers[6],
+            velocity_mps: DVec2::new(numbers[7], tiny),
+            label: Default::default(),
+        };
+        let mut grid = VoxelGrid::new();
+        for (x, y, z, class) in &voxels {
+            grid.set(*x, *y, *z, *class);
+        }
+        let mut frame = Frame::new(BevLayout::default(), [(b.id, b)].into(), grid);
+        frame.time_s = numbers[8];
+        frame.world_from_ego = Pose::planar(numbers[0] * 1e3, numbers[1], numbers[2]);
+        let scene = Scene::single(&name, frame, Arc::new(SensorRig::default()), seed);
+        let bytes = project::to_bytes(&scene).expect("sound");
+        assert_same(&project::from_bytes(&bytes).expect("sound"), &scene);
+    }
+}
+
+/// Background and relief, of the frame and of its source, come back bit for bit; a file of version 1 opens without either.
+#[test]
+fn background_and_relief_come_back_and_version_1_opens() {
+    use scene::background::{Background, Form, Line, LineKind, Tree, TreeKind};
+    use scene::{Relief, Thing, ThingId};
+    let mut scene = clip();
+    let mut background = Background::default();
+    background.add(Form::Tree(Tree {
+        position_m: DVec2::new(1.0 / 3.0, -7.1),
+        height_m: 6.3,
+        crown_radius_m: 1.7,
+        kind: TreeKind::Conifer,
+    }));
+    let points_m = vec![DVec2::new(-3.0, 9.0), DVec2::new(8.0, 0.1 + 0.2)];
+    background.insert(Thing {
+        id: ThingId(9),
+        form: Form::Line(Line::typical(LineKind::GuardRail, points_m)),
+        look: 77,
+    });
+    scene.background = Arc::new(background);
+    let frame = Arc::make_mut(&mut scene.frames[1]);
+    frame.layout.relief = Relief::from_fn(|p| 0.031 * p.x - 0.4);
+    let frame = Arc::make_mut(&mut scene.frames[2]);
+    Arc::make_mut(&mut frame.source).layout.relief = Relief::from_fn(|p| 0.01 * p.y);
+    let bytes = project::to_bytes(&scene).expect("sound");
+    let back = project::from_bytes(&bytes).expect("its own");
+    assert_eq!(back.background, scene.background);
+    assert_eq!(back.frames, scene.frames);
+    assert_eq!(project::to_bytes(&back).expect("sound"), bytes);
+
+    let mut entries = unpack(&project::to_bytes(&clip()).expect("sound"));
+    let manifest = &mut entries
+        .iter_mut()
+        .find(|e| e.0 == "manifest.json")
+        .expect("there")
+        .1;
+    let text = String::from_utf8(manifest.clone()).expect("JSON");
+    assert!(text.contains("\"version\":2"), "{text}");
+    *manifest = text.replace("\"version\":2", "\"version\":1").into_bytes();
+    let old = project::from_bytes(&pack(&entries)).expect("version 1 opens");
+    assert!(old.background.is_empty() && old.frames[0].layout.relief.is_flat());
+
+    // What is not sound is one line.
+    let with = |change: &dyn Fn(&mut Vec<u8>)| {
+        let mut entries = unpack(&bytes);
+        let relief = entries.iter_mut().find(|e| e.0.ends_with("00001/relief.f32"));
+        change(&mut relief.expect("there").1);
+        text_of(project::from_bytes(&pack(&entries)))
+    };
+    assert!(with(&|b| b.truncate(7)).contains("relief.f32"));
+    assert!(with(&|b| b[..4].copy_from_slice(&f32::NAN.to_le_bytes())).contains("relief: height NaN"));
+    assert!(with(&|b| b[..4].copy_from_slice(&1e6f32.to_le_bytes())).contains("1000000"));
+}

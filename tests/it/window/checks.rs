@@ -1,0 +1,120 @@
+//! The list of what the quality checks found: beside what it speaks of, and marking it.
+
+use app::Command;
+use app::dock::Dock;
+use app::settings::Settings;
+use app::state::Pane;
+use editor::Edit;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use scene::{BoxId, Class, GridSpec};
+
+use super::bench::Bench;
+
+impl Bench {
+    fn command(&mut self, command: Command) {
+        let ctx = self.harness.ctx.clone();
+        self.app().execute(command, &ctx);
+        self.steps(3);
+    }
+
+    fn shows(&self, label: &str) -> bool {
+        self.harness.query_by_label_contains(label).is_some()
+    }
+
+    fn all_checked(&mut self) {
+        self.wait_until("the checks", |b| {
+            let rev = b.app().document.scene().rev;
+            !b.app().checking.is_stale(rev)
+        });
+        self.steps(3);
+    }
+}
+
+#[test]
+fn findings_stand_beside_the_views_and_mark_what_they_mean() {
+    let mut bench = Bench::new();
+    bench.off();
+    // Three voxels in the air, beside the road.
+    let [x, y] = GridSpec::column_at(-20.0, 30.0).expect("inside");
+    let cells = vec![[x, y, 9], [x, y, 10], [x + 1, y, 10]];
+    let class = Class::Manmade;
+    let paint = Edit::PaintVoxels {
+        cells: cells.clone(),
+        class,
+    };
+    bench.command(Command::Apply("Paint voxels", vec![paint]));
+    bench.all_checked();
+    bench.command(Command::ToggleChecks);
+    assert!(bench.shows("Fix all ("));
+    let floats = "Warning: 3 voxels of manmade float 2.6 m above the ground";
+    let row = bench.harness.get_by_label(floats).rect();
+    for view in ["Bird's-eye view", "3D view"] {
+        let view = bench.pane(view);
+        assert!(view.height() > 300.0 && !view.intersects(row), "{view:?} {row:?}");
+    }
+    let meant = |b: &mut Bench| b.app().state.meant.as_deref().cloned();
+    assert_eq!(meant(&mut bench), None);
+    bench.harness.hover_at(row.center());
+    bench.steps(3);
+    assert_eq!(meant(&mut bench).expect("pointed at").cells, cells);
+    let turned = "Error: car 7 faces against its lane, 180 degrees from it";
+    let turned = match bench.harness.query_by_label(turned) {
+        Some(_) => turned,
+        None => "Warning: car 7 faces against its lane, 180 degrees from it",
+    };
+    let other = bench.harness.get_by_label(turned).rect().center();
+    bench.harness.hover_at(other);
+    bench.steps(3);
+    assert_eq!(meant(&mut bench).expect("pointed at").box_id, Some(BoxId(7)));
+    // A click keeps the mark when the pointer leaves.
+    bench.click(floats);
+    let away = bench.bev(0.0, 0.0);
+    bench.harness.hover_at(away);
+    bench.steps(3);
+    assert_eq!(meant(&mut bench).expect("clicked").cells, cells);
+    bench.key(Modifiers::CTRL, Key::Z);
+    bench.all_checked();
+    assert_eq!(meant(&mut bench), None, "it is gone, and so is its mark");
+    bench.command(Command::ToggleChecks);
+    assert!(!bench.shows("All is well") && !bench.shows("Fix all ("));
+}
+
+#[test]
+fn a_kept_dock_gains_the_panes_that_are_new() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("settings.json");
+    let mut old = Dock::default();
+    let tile = old.find(Pane::History).expect("there");
+    old.close(tile);
+    let keep = |known: &[Pane]| {
+        let settings = Settings {
+            start_screen: false,
+            dock: Some(old.tree().clone()),
+            panes_known: known.to_vec(),
+            ..Settings::default()
+        };
+        std::fs::write(&file, serde_json::to_string(&settings).expect("JSON")).expect("written");
+    };
+    keep(&[]);
+    let bench = Bench::with_settings(&file);
+    assert!(bench.shows("History 0 Open"), "settings of a version without it");
+    drop(bench);
+    // Closed by the user, it stays closed; a tick in the menu brings it back and takes it away.
+    keep(&Pane::CHOICES);
+    let mut bench = Bench::with_settings(&file);
+    assert!(!bench.shows("History 0 Open"));
+    for shown in [true, false] {
+        // The bar's own comes first, then that of the 3D view.
+        let menu = bench.harness.query_all_by_label("View").next().expect("the bar");
+        menu.click();
+        bench.steps(3);
+        let panes = bench.harness.get_by_label_contains("Panes").rect().center();
+        bench.harness.hover_at(panes);
+        bench.steps(20);
+        bench.click("History");
+        assert_eq!(bench.shows("History 0 Open"), shown);
+        bench.key(Modifiers::NONE, Key::Escape);
+        bench.steps(3);
+    }
+}

@@ -1,0 +1,133 @@
+//! Failures, saving, opening, closing.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use app::state::Tool;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use formats::project;
+
+use super::bench::{Bench, Do, scene};
+
+#[test]
+fn a_failure_is_told_once_and_live_stops() {
+    let mut bench = Bench::new();
+    bench.click("Box 7 car");
+    bench.key(Modifiers::NONE, Key::C);
+    bench.wait_until("the job", |b| !b.started.is_empty());
+    bench.orders.send(Do::Fail).expect("listens");
+    bench.wait_until("its end", |b| b.app().live.running.is_none());
+    bench.steps(5);
+    assert!(!bench.app().live.on);
+    let told = "Generation failed: weights are missing. Live is off now.";
+    assert!(bench.harness.query_by_label(told).is_some());
+    assert!(
+        bench
+            .harness
+            .query_by_label("Edited, not generated: live is off")
+            .is_some()
+    );
+    assert_eq!(bench.started.len(), 1, "never a loop");
+    bench.key(Modifiers::CTRL, Key::Space);
+    assert!(bench.app().live.on);
+    bench.wait_until("another try", |b| b.started.len() == 2);
+}
+
+#[test]
+fn a_scene_is_saved_and_opened_again_by_the_path_field() {
+    let mut bench = Bench::new();
+    bench.off();
+    let path = bench.open_path();
+    bench.click("Box 7 car");
+    bench.key(Modifiers::NONE, Key::ArrowLeft);
+    let saved = bench.frame();
+    assert!(bench.app().document.is_dirty());
+    bench.key(Modifiers::CTRL, Key::S);
+    bench.give_path(&path, "Save file");
+    assert!(path.is_file() && !bench.app().document.is_dirty());
+    assert_eq!(bench.app().path(), Some(path.as_path()));
+    // Letters typed into the field are no shortcuts.
+    assert_eq!(bench.app().state.tool, Tool::Select);
+
+    bench.key(Modifiers::NONE, Key::Delete);
+    assert_ne!(bench.frame(), saved);
+    bench.key(Modifiers::CTRL, Key::O);
+    assert!(bench.harness.query_by_label("Unsaved changes").is_some());
+    bench.click("Keep editing");
+    assert!(bench.harness.query_by_label("Unsaved changes").is_none());
+    bench.key(Modifiers::CTRL, Key::O);
+    bench.click("Discard changes");
+    bench.give_path(&path, "Open file");
+    bench.wait_until("the scene", |b| b.app().document.history().len() == 1);
+    assert_eq!(bench.frame().boxes, saved.boxes);
+    assert_eq!(bench.frame().occupancy, saved.occupancy);
+    assert_eq!(bench.frame().layout, saved.layout);
+    // Saved again without a question, now that there is a file.
+    bench.click("Box 7 car");
+    bench.key(Modifiers::NONE, Key::ArrowLeft);
+    bench.key(Modifiers::CTRL, Key::S);
+    assert!(!bench.app().document.is_dirty());
+    // A file that is none is one line, and the scene stays.
+    std::fs::write(&path, b"PK rubbish").expect("written");
+    let stays = bench.frame();
+    bench.key(Modifiers::CTRL, Key::O);
+    bench.give_path(&path, "Open file");
+    bench.wait_until("the error", |b| {
+        b.app().toasts.last().is_some_and(|t| t.contains("scene.loom"))
+    });
+    assert_eq!(bench.frame(), stays);
+    assert!(bench.app().toasts.last().is_some_and(|t| !t.contains('\n')));
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_file_opens_and_closing_asks_first() {
+    let mut bench = Bench::new();
+    bench.off();
+    let path = bench.open_path();
+    let mut other = scene();
+    other.name = "Dropped".into();
+    project::save(&path, &other).expect("saved");
+    bench
+        .harness
+        .input_mut()
+        .dropped_files
+        .push(Arc::new(Dropped(path)));
+    bench.steps(1);
+    bench.harness.input_mut().dropped_files.clear();
+    bench.wait_until("the scene", |b| &*b.app().document.scene().name == "Dropped");
+
+    let close = |bench: &mut Bench| {
+        let viewports = &mut bench.harness.input_mut().viewports;
+        viewports.entry(egui::ViewportId::ROOT).or_default().events = vec![egui::ViewportEvent::Close];
+        bench.steps(1);
+        let viewports = &mut bench.harness.input_mut().viewports;
+        viewports
+            .entry(egui::ViewportId::ROOT)
+            .or_default()
+            .events
+            .clear();
+        let output = &bench.harness.output().viewport_output[&egui::ViewportId::ROOT];
+        output.commands.contains(&egui::ViewportCommand::CancelClose)
+    };
+    assert!(!close(&mut bench), "nothing is unsaved");
+    bench.click("Box 7 car");
+    bench.key(Modifiers::NONE, Key::Delete);
+    assert!(close(&mut bench), "changes are unsaved");
+    bench.steps(2);
+    bench.click("Discard changes");
+    assert!(!close(&mut bench), "the user has decided");
+}

@@ -1,0 +1,134 @@
+//! Words: typed into the prompt, they change the scene or make another one, and all of it can be undone.
+
+use app::state::CameraMode;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+
+use super::bench::Bench;
+
+fn say(bench: &mut Bench, words: &str) {
+    bench.key(Modifiers::NONE, Key::Slash);
+    bench.steps(3);
+    bench.harness.get_by_label("Prompt").type_text(words);
+    bench.steps(3);
+}
+
+#[test]
+fn a_sentence_names_its_step_and_the_next_one_replaces_it() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "make it night");
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "“make it night”"]);
+    assert_eq!(
+        bench.app().state.camera_mode,
+        CameraMode::Picture,
+        "night is seen in pictures"
+    );
+    // The field keeps the keyboard: undo is still that of the scene, letters are no shortcuts.
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_eq!(bench.app().document.position(), 0);
+    bench
+        .harness
+        .get_by_label("Prompt")
+        .type_text("add a bus 20 m ahead");
+    bench.steps(3);
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "“add a bus 20 m ahead”"]);
+    let bus = bench
+        .frame()
+        .boxes
+        .values()
+        .find(|b| b.class.name() == "bus")
+        .map(|b| b.id);
+    assert!(
+        bus.is_some() && bench.app().state.selected == bus,
+        "what came is chosen"
+    );
+}
+
+#[test]
+fn tab_completes_the_word_at_the_caret() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "add two pede");
+    bench.harness.get_by_label("Complete with pedestrians");
+    bench.key(Modifiers::NONE, Key::Tab);
+    bench.harness.get_by_label("Prompt").type_text("20 m ahead");
+    bench.steps(3);
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open", "“add two pedestrians 20 m ahead”"]);
+}
+
+#[test]
+fn a_scene_of_words_can_be_undone() {
+    let mut bench = Bench::new();
+    bench.off();
+    let before = bench.frame().boxes.len();
+    say(&mut bench, "straight street, three parked cars, a bus 20 m ahead");
+    bench.key(Modifiers::CTRL, Key::Enter);
+    bench.wait_until("the scene", |b| b.history().len() == 2);
+    assert_eq!(bench.history(), ["Open", "Scene from words"]);
+    assert!(bench.app().document.is_dirty(), "it is in no file");
+    assert_eq!(bench.app().path(), None, "saving asks where to");
+    assert_eq!(bench.frame().boxes.len(), 4);
+    // Another roll is another step.
+    bench.click("Re-roll");
+    bench.wait_until("another scene", |b| b.history().len() == 3);
+    bench.app().document.jump_to(0);
+    assert_eq!(bench.frame().boxes.len(), before);
+}
+
+#[test]
+fn variants_and_what_memory_goes_by_are_pictures() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.harness.get_by_label("Prompt").click();
+    bench.steps(2);
+    bench
+        .harness
+        .get_by_label("Prompt")
+        .type_text("two cars ahead at a junction");
+    bench.steps(3);
+    bench.click("Memory");
+    bench.wait_until("the remembered scene", |b| {
+        b.harness.query_by_label_contains("Remembered scene: ").is_some()
+    });
+    assert!(bench.harness.query_by_label_contains("similarity 0.").is_some());
+    bench.harness.get_by_label("Variants").scroll_to_me();
+    bench.steps(30);
+    bench.click("Variants");
+    bench.steps(3);
+    let first = bench.harness.get_by_label("Variant of seed 0").rect();
+    assert!(
+        first.width() > 100.0 && (first.width() - first.height()).abs() < 0.5,
+        "{first:?}"
+    );
+    bench.harness.get_by_label("Variant of seed 0").scroll_to_me();
+    bench.steps(30);
+    let says = "A click makes this scene";
+    bench.wait_until("the enlarged variant", |b| {
+        let at = b.harness.get_by_label("Variant of seed 0").rect().center();
+        b.harness.hover_at(at);
+        // It shows when the pointer rests.
+        b.steps(60);
+        b.harness.query_by_label(says).is_some()
+    });
+}
+
+#[test]
+fn what_was_carried_out_is_not_said_to_be_not_understood() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "remove the cars ahead of me");
+    bench.key(Modifiers::NONE, Key::Enter);
+    bench.steps(3);
+    assert_eq!(bench.history(), ["Open", "“remove the cars ahead of me”"]);
+    assert_eq!(
+        bench
+            .harness
+            .query_all_by_label_contains("Not understood")
+            .count(),
+        0
+    );
+}
