@@ -90,7 +90,7 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
         random ^= random >> 7;
         random ^= random << 17;
         let mut child = Command::new(std::env::current_exe().expect("this test"))
-            .args(["--exact", "child", "--ignored", "--nocapture"])
+            .args(["--exact", "recovery::child", "--ignored", "--nocapture"])
             .env(FOLDER, folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -3,9 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use scene::{GridSpec, raster};
-
-use super::EditError;
+use crate::edit::EditError;
+use crate::{GridSpec, raster};
 
 /// An area on the ground, ego frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,7 +119,7 @@ fn not_negative(field: &'static str, value: f64) -> Result<(), EditError> {
 }
 
 /// Errors unless a list holds enough.
-pub(super) fn at_least(field: &'static str, found: usize, expected: usize) -> Result<(), EditError> {
+pub fn at_least(field: &'static str, found: usize, expected: usize) -> Result<(), EditError> {
     if found >= expected {
         return Ok(());
     }
