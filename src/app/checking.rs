@@ -207,6 +207,7 @@ impl SceneloomApp {
 
 #[cfg(test)]
 mod tests {
+    use editor::Apply;
     use std::time::{Duration, Instant};
 
     use super::*;

@@ -1,5 +1,6 @@
 //! `sceneloom check`: the quality checks of a scene, and what of it can be repaired.
 
+use editor::Apply;
 use std::path::PathBuf;
 use std::time::Instant;
 
