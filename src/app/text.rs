@@ -5,13 +5,11 @@ use std::collections::BTreeMap;
 use anyhow::bail;
 
 use super::prompting::{How, Laid, lay_out};
-use editor::{Edit, Shape};
+use editor::Edit;
 use place::description::Description;
-use scene::{BevLayer, Frame, Polyline, PolylineKind, Scene};
+use scene::{Frame, Scene};
 use words::answer::answer;
-use words::beside::edits::{
-    OpenBackground, ThingEdit, ThingOutcome, carry_out as carry_out_beside, means_barriers,
-};
+use words::beside::edits::{OpenBackground, ThingOutcome, carry_out as carry_out_beside, means_barriers};
 use words::beside::wishes::scenery;
 use words::carry_out::carry_out;
 use words::describe::{Described, describe};
@@ -19,7 +17,6 @@ use words::hear::{Heard, hear, hear_objects};
 use words::reader::Mode;
 use words::reading::Reading;
 use words::stage::{OpenScene, Outcome};
-use words::text_edit::TextEdit;
 use world::World;
 
 /// A scene made from a description.
@@ -146,8 +143,7 @@ pub struct Edited {
 impl Edited {
     /// All edits, in order: those of the background after those of boxes and map.
     pub fn edits(&self) -> Vec<Edit> {
-        let things = self.things.edits.iter().map(thing_edit);
-        self.outcome.edits.iter().flat_map(edits).chain(things).collect()
+        [self.outcome.edits.as_slice(), &self.things.edits].concat()
     }
 
     /// True if something must be answered first.
@@ -209,7 +205,7 @@ pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
 
 /// Words place things on level ground: what they add stands on the ground of the frame, what they move keeps its height
 /// above it.
-fn put_on_ground(edits: &mut [TextEdit], frame: &Frame) {
+fn put_on_ground(edits: &mut [Edit], frame: &Frame) {
     let relief = &frame.layout.relief;
     if relief.is_flat() {
         return;
@@ -217,28 +213,17 @@ fn put_on_ground(edits: &mut [TextEdit], frame: &Frame) {
     let ground_m = |center_m: glam::DVec3| relief.height_m(center_m.truncate());
     for edit in edits {
         match edit {
-            TextEdit::Add { object } | TextEdit::Replace { object, .. } => {
-                object.center_m.z = ground_m(object.center_m) + object.size_m.z / 2.0;
-            }
-            TextEdit::Move { id, center_m, .. } => {
+            Edit::AddBox { center_m, size_m, .. } => center_m.z = ground_m(*center_m) + size_m.z / 2.0,
+            Edit::MoveBox {
+                id,
+                center_m: Some(center_m),
+                ..
+            } => {
                 let was_m = frame.boxes.get(id).map_or(0.0, |b| ground_m(b.center_m));
                 center_m.z += ground_m(*center_m) - was_m;
             }
             _ => {}
         }
-    }
-}
-
-fn thing_edit(edit: &ThingEdit) -> Edit {
-    match edit.clone() {
-        ThingEdit::Add { forms } => Edit::AddThings { forms },
-        ThingEdit::Remove { ids } => Edit::RemoveThings { ids },
-        ThingEdit::Raise { ids, by_m } => Edit::RaiseThings { ids, by_m },
-        ThingEdit::Move { ids, by_m } => Edit::MoveThings {
-            ids,
-            by_m,
-            turn_deg: 0.0,
-        },
     }
 }
 
@@ -249,54 +234,6 @@ pub fn open_scene(scene: &Scene) -> OpenScene<'_> {
         boxes: &frame.boxes,
         layout: &frame.layout,
         prompt: &scene.prompt,
-    }
-}
-
-/// The editor's own edits for a text edit.
-pub fn edits(edit: &TextEdit) -> Vec<Edit> {
-    let add = |b: &scene::SceneBox| Edit::AddBox {
-        class: b.class,
-        center_m: b.center_m,
-        size_m: b.size_m,
-        yaw_deg: b.yaw_rad.to_degrees(),
-        velocity_mps: Some(b.velocity_mps),
-        id: Some(b.id),
-        label: b.label,
-    };
-    match edit {
-        TextEdit::Remove { id } => vec![Edit::RemoveBox { id: *id }],
-        TextEdit::Add { object } => vec![add(object)],
-        TextEdit::Move {
-            id,
-            center_m,
-            yaw_rad,
-        } => vec![Edit::MoveBox {
-            id: *id,
-            center_m: Some(*center_m),
-            yaw_deg: Some(yaw_rad.to_degrees()),
-            size_m: None,
-        }],
-        TextEdit::Replace { id, object } => vec![Edit::RemoveBox { id: *id }, add(object)],
-        TextEdit::Label { id, label } => vec![Edit::LabelBox {
-            id: *id,
-            label: *label,
-        }],
-        TextEdit::Crossing { outline_m } => vec![Edit::AddPolylines {
-            lines: vec![Polyline {
-                kind: PolylineKind::PedCrossing,
-                points_m: outline_m.clone(),
-            }],
-        }],
-        TextEdit::EraseCrossing { outline_m } => vec![Edit::PaintBev {
-            layer: BevLayer::PedCrossing,
-            shape: Shape::Polygon {
-                points_m: outline_m.clone(),
-            },
-            value: false,
-        }],
-        TextEdit::Style { prompt } => vec![Edit::SetPrompt {
-            prompt: prompt.clone(),
-        }],
     }
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::grid::GridSpec;
 use crate::shape::Shape;
-use crate::{BevLayer, BoxId, BoxLabel, Class, Form, Polyline, SensorRig, ThingId, VoxelGrid};
+use crate::{BevLayer, BoxId, BoxLabel, Class, Form, Polyline, SceneBox, SensorRig, ThingId, VoxelGrid};
 
 /// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
@@ -294,6 +294,30 @@ pub enum EditError {
 }
 
 impl Edit {
+    /// The box that [`Edit::AddBox`] puts in, where the edit names its number.
+    pub fn added_box(&self) -> Option<SceneBox> {
+        match self {
+            Self::AddBox {
+                class,
+                center_m,
+                size_m,
+                yaw_deg,
+                velocity_mps,
+                id: Some(id),
+                label,
+            } => Some(SceneBox {
+                id: *id,
+                class: *class,
+                center_m: *center_m,
+                size_m: *size_m,
+                yaw_rad: yaw_deg.to_radians(),
+                velocity_mps: velocity_mps.unwrap_or_default(),
+                label: *label,
+            }),
+            _ => None,
+        }
+    }
+
     /// True if it changes things of the background.
     pub fn is_of_things(&self) -> bool {
         matches!(
@@ -304,5 +328,20 @@ impl Edit {
                 | Self::RaiseThings { .. }
                 | Self::ChangeThing { .. }
         )
+    }
+}
+
+impl From<SceneBox> for Edit {
+    /// Puts this very box in, with its id.
+    fn from(b: SceneBox) -> Self {
+        Self::AddBox {
+            class: b.class,
+            center_m: b.center_m,
+            size_m: b.size_m,
+            yaw_deg: b.yaw_rad.to_degrees(),
+            velocity_mps: Some(b.velocity_mps),
+            id: Some(b.id),
+            label: b.label,
+        }
     }
 }

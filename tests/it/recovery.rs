@@ -1,6 +1,7 @@
 //! Killed in the middle of a save: the file on disk is a whole scene, old or new, and no more than the work of one
 //! interval is lost.
 
+use editor::Apply;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};

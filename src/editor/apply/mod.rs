@@ -6,7 +6,6 @@ mod correct;
 mod map;
 mod voxels;
 
-use crate::Apply;
 use std::sync::Arc;
 
 use scene::{Edit, EditError, Frame, Scene, SensorRig, Shape};

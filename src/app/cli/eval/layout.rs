@@ -450,11 +450,10 @@ fn changed(
             wrong.push(format!("asked {asked:?}, expected {:?}", case.asks));
         }
     }
-    let list: Vec<_> = outcome.edits.iter().flat_map(text::edits).collect();
     let before = in_short(&scene);
     let mut document = Document::new(scene);
     document
-        .apply_all("Edit by text", &list)
+        .apply_all("Edit by text", &outcome.edits)
         .with_context(|| format!("{:?}", case.text))?;
     let told = || Told {
         // (which of several was taken, or that it is so already, is no doubt)
