@@ -11,8 +11,8 @@ use super::trade::plot::{percent, seconds};
 use job::redraw;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
-use metrics::stats::median;
 use nets::{OccModels, tokens_of};
+use numeric::quantile::median;
 use scene::Scene;
 use trade::{Stop, Stops};
 

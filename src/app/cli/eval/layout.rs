@@ -14,7 +14,7 @@ use crate::cli::progress::Progress;
 use crate::prompting::{How, Laid, lay_out};
 use crate::text;
 use editor::Document;
-use metrics::stats::median;
+use numeric::quantile::median;
 use place::description::Description;
 use scene::{Frame, Scene, SceneBox, SensorRig};
 use words::account::missing;

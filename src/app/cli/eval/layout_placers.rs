@@ -9,7 +9,7 @@ use super::{Eval, TEST_SEED};
 use crate::cli::progress::Progress;
 use crate::prompting::{How, Placer};
 use metrics::layout::{LayoutFigures, diversity};
-use metrics::stats::median;
+use numeric::quantile::median;
 use scene::SceneBox;
 use scene::road_map::RoadMap;
 

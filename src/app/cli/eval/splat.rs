@@ -9,7 +9,7 @@ use super::{Bar, Eval, TEST_SEED, with_interval};
 use crate::cli::progress::Progress;
 use dataset::world_of;
 use metrics::maps::{LabelledDepth, MapAgreement, OUTLINE_PX};
-use metrics::stats::median;
+use numeric::quantile::median;
 use scene::raster::bev_channels;
 use scene::{Camera, CameraMaps, Class, GridSpec, SensorRig};
 use sensors::cloud::GaussianCloud;

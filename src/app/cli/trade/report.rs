@@ -8,7 +8,7 @@ use crate::trade::edits::Outcome;
 use crate::trade::plot;
 use crate::trade::sensors::Measured;
 use crate::trade::settings::Setting;
-use metrics::stats::{median, quantile};
+use numeric::quantile::{median, quantile};
 use trade::{Cost, Placed, SizedTime, bootstrap_median};
 
 /// What the report says of a setting.

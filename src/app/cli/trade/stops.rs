@@ -10,8 +10,9 @@ use crate::trade::cases;
 use crate::trade::edits::Outcome;
 use crate::trade::load::{Load, machine};
 use job::GenParams;
-use metrics::stats::{mean_ci95, median, quantile};
+use metrics::stats::mean_ci95;
 use nets::OccModels;
+use numeric::quantile::{median, quantile};
 use trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
 
 impl Trade {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::super::with_interval;
 use super::tried::Brought;
 use job::request::voxels_of;
-use metrics::stats::{median, quantile};
+use numeric::quantile::{median, quantile};
 use scene::{Class, Frame};
 
 /// Voxels of the objects of each class.

@@ -11,7 +11,8 @@ use crate::cli::progress::Progress;
 use crate::cli::trials::{KINDS, Reached, Trial};
 use job::pipeline::OccPipeline;
 use job::{GenParams, GenReport, Job, JobCtx};
-use metrics::stats::{mean_ci95, median};
+use metrics::stats::mean_ci95;
+use numeric::quantile::median;
 use scene::GridSpec;
 
 /// What was measured of one kind of edit.
