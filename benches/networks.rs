@@ -4,13 +4,13 @@
 use std::time::Instant;
 
 use dataset::occupancy_frame;
-use metrics::stats::median;
 use nets::candle_dit::CandleDit;
 use nets::candle_vae::CandleVae;
 use nets::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccModels};
 use nn::Precision;
 use nn::layers::{View, matmul};
 use nn::packed_matrix::{PackedMatrix, Start};
+use numeric::quantile::median;
 
 const RUNS: usize = 15;
 

@@ -2,7 +2,6 @@
 
 pub mod actions;
 pub mod application;
-mod around;
 mod bev_image;
 pub mod bookmarks;
 mod by_words;
@@ -32,9 +31,7 @@ mod keys;
 pub mod live;
 mod meant;
 mod measuring;
-pub mod memory;
 mod modelled;
-pub mod open;
 pub mod paint;
 mod pane_views;
 pub mod panels;
@@ -43,21 +40,18 @@ pub mod picture;
 mod pipeline;
 mod pointer;
 pub mod priority;
-pub mod prompting;
 mod recovering;
 pub mod recovery;
 pub mod roads;
-pub mod scenery;
 pub mod sensing;
 pub mod settings;
 mod software_ui;
 pub mod staged;
 pub mod state;
-pub mod text;
 pub mod theme;
 pub mod tools;
 pub mod trace;
-pub mod trade;
+pub mod trade_plot;
 pub mod tuning;
 pub mod versions;
 pub mod view3d;
@@ -65,6 +59,8 @@ mod view3d_tools;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+
+pub use authoring::{memory, open, prompting, scenery, text};
 
 pub use application::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
 pub use command::Command;
@@ -82,7 +78,7 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -
         path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
         build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
         params: GenParams::default(),
-        full_params: cli::full_params(),
+        full_params: GenParams::whole_scene(),
         warm_up: true,
         open: Arc::new(open::scene),
         save: Arc::new(|scene, path| {

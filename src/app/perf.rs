@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::trace::Trace;
 use job::Stage;
+use numeric::quantile::Sorted;
 
 /// Frames longer than this hold the input up noticeably, s.
 pub const BLOCKED_S: f64 = 0.05;
@@ -54,11 +55,10 @@ impl Samples {
 
     /// Nearest-rank quantiles of the newest samples, and the largest ever; all 0 without any.
     pub fn quantiles(&self) -> Quantiles {
-        let mut sorted: Vec<f64> = self.newest.iter().copied().collect();
-        sorted.sort_by(f64::total_cmp);
-        let at = |part: f64| {
-            let rank = (part * sorted.len() as f64).ceil() as usize;
-            sorted.get(rank.max(1) - 1).copied().unwrap_or(0.0)
+        let sorted = Sorted::new(self.newest.iter().copied());
+        let at = |part: f64| match self.newest.is_empty() {
+            true => 0.0,
+            false => sorted.quantile(part),
         };
         Quantiles {
             n: self.n,

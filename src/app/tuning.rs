@@ -5,14 +5,14 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::trade::calibrate::{Background, News, Refine, Task, build};
-use super::trade::load::machine;
-use super::trade::plot::{percent, seconds};
 use job::redraw;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
-use metrics::stats::median;
+use judge::machine::machine;
+use judge::stops::calibrate::{Background, News, Refine, Task, build};
+use judge::stops::figures::{percent, seconds};
 use nets::{OccModels, tokens_of};
+use numeric::quantile::median;
 use scene::Scene;
 use trade::{Stop, Stops};
 
@@ -208,7 +208,7 @@ impl Tuning {
         let Some(file) = &self.file else { return Ok(()) };
         let write = || -> anyhow::Result<()> {
             std::fs::create_dir_all(file.parent().unwrap_or(Path::new(".")))?;
-            super::cli::trade::write_stops(file, &self.stops)
+            judge::stops::plan::write_stops(file, &self.stops)
         };
         write().map_err(|e| e.to_string())
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 use serde_json::json;
 
-use super::generate::{models, run_and_adopt};
+use super::generate::run_and_adopt;
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, Stop, output};
 use crate::open;
@@ -14,6 +14,7 @@ use formats::project;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
+use nets::OccModels;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -54,7 +55,7 @@ impl EditCommand {
         document
             .apply_all("Edit", &edits)
             .with_context(|| self.edits.display().to_string())?;
-        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
         let round_trip = if self.verify {
             let job = Job {
                 scene: before,

@@ -19,13 +19,10 @@ mod region_arg;
 mod render;
 mod scenery;
 mod shot;
-pub(crate) mod trade;
-pub(crate) mod trials;
+mod trade;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-pub(crate) use generate::full_params;
 
 use clap::{Args, Parser, Subcommand};
 

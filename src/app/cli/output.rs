@@ -7,6 +7,7 @@ use anyhow::Context;
 use serde_json::Value;
 
 use super::Common;
+pub use judge::machine::peak_rss_mb;
 
 /// Prints the report: as JSON if asked, else the given text.
 pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
@@ -84,14 +85,6 @@ pub fn write_png16(path: &Path, width: usize, height: usize, values: &[u16]) -> 
     )
     .with_context(|| format!("encode {}", path.display()))?;
     write_file(path, &bytes)
-}
-
-/// Largest memory this process has held, MB; `None` where the system does not tell.
-pub fn peak_rss_mb() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
-    let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some((kb / 102.4).round() / 10.0)
 }
 
 /// A line on stdout. Nobody is left to be told if its reader has closed it (`| head`).

@@ -5,10 +5,12 @@ use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
 use crate::command::Command;
 use crate::theme;
-use crate::trade::load::{Load, machine};
-use crate::trade::plot::{Mark, front_plot, percent, seconds};
+use crate::trade_plot::front_plot;
 use crate::tuning::{LastEdit, Measuring, Tuning, foretold};
 use job::GenParams;
+use judge::machine::{Load, machine};
+use judge::stops::figures::{percent, seconds};
+use judge::stops::plan::Mark;
 use trade::Stop;
 
 /// Draws the panel. `params` are those of the next edit.

@@ -149,6 +149,20 @@ type Bits = ([u32; 6], [u64; 4], [Option<u32>; 4], Choices);
 type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
+    /// For all of a scene from its layout and boxes alone.
+    pub fn whole_scene() -> Self {
+        Self {
+            region: RegionMode::Full,
+            steps: 20,
+            guidance: 1.5,
+            named: Named {
+                completeness: Some(1.0),
+                ..Named::default()
+            },
+            ..Self::default()
+        }
+    }
+
     /// Everything as bits: the basis of equality and hashing.
     fn bits(&self) -> Bits {
         // Adding 0 turns -0 into 0.

@@ -154,6 +154,11 @@ impl OccModels {
         Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
     }
 
+    /// Those of a folder, or the bundled ones without one.
+    pub fn of(folder: Option<&Path>) -> Result<Arc<Self>, WeightsError> {
+        folder.map_or_else(Self::bundled, Self::from_dir)
+    }
+
     /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and `refiner.safetensors` with `occ_vae_fine.safetensors` where it
     /// has them.
     pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {

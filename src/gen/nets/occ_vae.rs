@@ -13,7 +13,7 @@ use nn::kernels;
 use nn::layers::{Linear, Norm};
 use nn::map::{Map, Window};
 use nn::weights::{WeightFile, WeightsError};
-use numeric::rng::{self, Stream};
+use numeric::philox::{self, Stream};
 use scene::{Class, GridSpec, VoxelGrid};
 
 /// Numbers per voxel before the class table.
@@ -172,7 +172,7 @@ impl OccVae {
     /// same latent.
     pub fn encode_sampled(&self, grid: &VoxelGrid, seed: u64) -> Result<Vec<f32>, ModelError> {
         let (mut latent, spread) = self.encode_window(grid, Window::whole(self.config.side()))?;
-        let noise = rng::normal_field(seed, Stream::Encoder, self.cells(), self.config.latent);
+        let noise = philox::normal_field(seed, Stream::Encoder, self.cells(), self.config.latent);
         for ((value, spread), noise) in latent.iter_mut().zip(&spread).zip(&noise) {
             *value += spread * *noise as f32;
         }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
+use numeric::hash::fnv1a_64;
 use safetensors::{Dtype, SafeTensors};
 use thiserror::Error;
 
@@ -119,7 +120,7 @@ impl<'data> WeightFile<'data> {
             tensors,
             metadata,
             taken: BTreeMap::new(),
-            hash: fnv1a(bytes),
+            hash: fnv1a_64(bytes),
         })
     }
 
@@ -231,12 +232,6 @@ pub fn read(path: &Path) -> Result<Vec<u8>, WeightsError> {
     std::fs::read(path).map_err(|source| WeightsError::Read {
         path: path.to_owned(),
         source,
-    })
-}
-
-fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| {
-        (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
 

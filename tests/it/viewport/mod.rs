@@ -7,6 +7,7 @@ mod street;
 
 use std::time::Instant;
 
+use numeric::quantile::{median, quantile};
 use scene::SensorRig;
 use viewport::{
     Background, BrushCells, LayoutPlane, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset,
@@ -180,7 +181,7 @@ fn pictures_of_a_street() {
             };
             let mut camera = start;
             let cpu = cpu_ms();
-            let mut times: Vec<f64> = (0..6)
+            let times: Vec<f64> = (0..6)
                 .map(|_| {
                     camera.orbit(0.01, 0.0);
                     let begin = Instant::now();
@@ -190,10 +191,10 @@ fn pictures_of_a_street() {
                 })
                 .collect();
             let cpu = (cpu_ms() - cpu) / times.len() as f64;
-            times.sort_by(f64::total_cmp);
             println!(
                 "{name}, {samples} samples: median {:.0} ms, best {:.0} ms, {cpu:.0} ms of CPU",
-                times[3], times[0]
+                median(&times),
+                quantile(&times, 0.0)
             );
         }
     }

@@ -29,7 +29,7 @@ use diffusion::replay::edit_with_replay;
 use diffusion::solver::Sampler;
 use nets::{DitCondition, GROUPS, Heard, OccModels, tokens_of};
 use network::{Condition, Network, density_of_source};
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
 use source::{Source, stored_for};
 use standing::Standing;

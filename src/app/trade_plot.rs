@@ -1,0 +1,188 @@
+//! The plot of time against error: in the window, and as a picture drawn without one.
+
+use egui::{Align2, Color32, RichText, Ui, Vec2, vec2};
+use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
+
+use crate::picture::Picture;
+use crate::theme;
+use judge::stops::figures::{percent, seconds};
+use judge::stops::plan::Mark;
+
+/// Published wall times to be seen beside ours, s: all on graphics cards.
+pub const ANCHORS: [(f64, &str); 1] = [(3.25, "X-Scene, 20 steps\non an A6000: 3.25 s")];
+/// Errors below this are drawn here: the reference has none.
+const LEAST_ERROR: f64 = 1e-4;
+
+fn log(v: f64) -> f64 {
+    v.clamp(LEAST_ERROR, 1e6).log10()
+}
+
+/// Decades and, within them, 2 and 5.
+fn decades(low: f64, high: f64) -> Vec<GridMark> {
+    let mut marks = Vec::new();
+    for decade in low.floor() as i32 - 1..=high.ceil() as i32 {
+        for (factor, size) in [(1.0, 1.0), (2.0f64, 0.3), (5.0, 0.3)] {
+            let value = f64::from(decade) + factor.log10();
+            if (low..=high).contains(&value) {
+                marks.push(GridMark {
+                    value,
+                    step_size: size,
+                });
+            }
+        }
+    }
+    marks
+}
+
+/// Width of the plot from which on names of stops carry their numbers, points.
+const ROOM_FOR_NUMBERS: f32 = 520.0;
+/// Height of such a name in decades of the error.
+const LABEL_DECADES: f64 = 0.14;
+
+/// Draws the plot; `current` is the stop in use, `last` what the last edit took and, if it was measured, its error.
+pub fn front_plot(
+    ui: &mut Ui,
+    marks: &[Mark],
+    current: Option<&str>,
+    last: Option<(f64, Option<f64>)>,
+    size: Vec2,
+) {
+    let plot = Plot::new("trade")
+        .width(size.x)
+        .height(size.y)
+        .allow_scroll(false)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .show_crosshair(false)
+        .x_grid_spacer(|input| decades(input.bounds.0, input.bounds.1))
+        .y_grid_spacer(|input| decades(input.bounds.0, input.bounds.1))
+        .x_axis_formatter(|mark, _| seconds(10f64.powf(mark.value)))
+        .y_axis_formatter(|mark, _| percent(10f64.powf(mark.value)))
+        .x_axis_label(RichText::new("time of an edit").small())
+        .y_axis_label(RichText::new("voxels that differ from the reference").small())
+        .y_axis_min_width(44.0)
+        .grid_spacing(6.0..=120.0)
+        .grid_color(theme::text_weak().gamma_multiply(0.35))
+        .include_x(ANCHORS[0].0.log10() + 0.12)
+        .include_x(marks.iter().map(|m| log(m.wall_s[0])).fold(-1.0, f64::min) - 0.45)
+        .include_y(LEAST_ERROR.log10())
+        .set_margin_fraction(vec2(0.05, 0.09));
+    let (weak, strong, accent) = (theme::text_weak(), theme::text_strong(), theme::accent());
+    plot.show(ui, |plot| {
+        for (s, name) in ANCHORS {
+            plot.vline(
+                VLine::new(name, log(s))
+                    .color(weak.gamma_multiply(0.5))
+                    .width(1.0),
+            );
+            let top = marks
+                .iter()
+                .map(|m| log(m.error[2]))
+                .fold(f64::NEG_INFINITY, f64::max);
+            let at = PlotPoint::new(log(s) - 0.02, top);
+            plot.text(
+                Text::new(name, at, RichText::new(name).small())
+                    .color(weak)
+                    .anchor(Align2::RIGHT_TOP),
+            );
+        }
+        let whisker = |from: [f64; 2], to: [f64; 2], color: Color32| {
+            Line::new("interval", PlotPoints::from(vec![from, to]))
+                .color(color)
+                .width(1.0)
+                .allow_hover(false)
+        };
+        // Names of stops stand above and below the line by turns.
+        let mut nth = 0u32;
+        for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
+            let color = if mark.on_front {
+                accent
+            } else {
+                weak.gamma_multiply(0.6)
+            };
+            let [s, s_low, s_high] = mark.wall_s.map(log);
+            let [e, e_low, e_high] = mark.error.map(log);
+            let faint = color.gamma_multiply(0.5);
+            plot.line(whisker([s_low, e], [s_high, e], faint));
+            plot.line(whisker([s, e_low], [s, e_high], faint));
+            let radius = if mark.stop.is_some() { 5.0 } else { 2.5 };
+            plot.points(
+                Points::new(mark.name.clone(), vec![[s, e]])
+                    .color(color)
+                    .radius(radius),
+            );
+            if let Some(stop) = &mark.stop {
+                let here = current == Some(stop.as_str());
+                if here {
+                    let ring = Points::new(stop.clone(), vec![[s, e]])
+                        .filled(false)
+                        .color(strong)
+                        .radius(8.0);
+                    plot.points(ring);
+                }
+                // The list of stops tells the numbers where there is no room for them.
+                let text = RichText::new(match size.x < ROOM_FOR_NUMBERS {
+                    true => stop.clone(),
+                    false => format!("{stop}\n{}, {}", seconds(mark.wall_s[0]), percent(mark.error[0])),
+                });
+                let text = if here { text.small().strong() } else { text.small() };
+                // Where the name has room: to the left of the last ones.
+                let right = marks
+                    .iter()
+                    .map(|m| log(m.wall_s[0]))
+                    .fold(ANCHORS[0].0.log10(), f64::max);
+                let late = s > right - 0.35;
+                // Two that stand below lie beside each other: the second one a line lower.
+                let (below, lower) = (nth % 2 == 1, f64::from(nth / 2) * LABEL_DECADES);
+                nth += 1;
+                let (dx, dy, anchor) = match (late, below) {
+                    (true, _) => (-0.03, 0.02, Align2::RIGHT_BOTTOM),
+                    (_, true) => (-0.03, -0.02 - lower, Align2::RIGHT_TOP),
+                    _ => (0.03, 0.02, Align2::LEFT_BOTTOM),
+                };
+                let at = PlotPoint::new(s + dx, e + dy);
+                plot.text(
+                    Text::new(stop.clone(), at, text)
+                        .color(if here { strong } else { theme::text() })
+                        .anchor(anchor),
+                );
+            }
+        }
+        let mut front: Vec<[f64; 2]> = marks
+            .iter()
+            .filter(|m| m.stop.is_some())
+            .map(|m| [log(m.wall_s[0]), log(m.error[0])])
+            .collect();
+        front.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        plot.line(
+            Line::new("front", PlotPoints::from(front))
+                .color(accent.gamma_multiply(0.5))
+                .width(1.5)
+                .allow_hover(false),
+        );
+        if let Some((s, error)) = last {
+            match error {
+                Some(e) => plot.points(
+                    Points::new("last edit", vec![[log(s), log(e)]])
+                        .color(theme::warn())
+                        .radius(5.0),
+                ),
+                None => plot.vline(VLine::new("last edit", log(s)).color(theme::warn()).width(1.5)),
+            }
+        }
+    });
+}
+
+/// The same as a picture of `points` size, twice as many pixels.
+pub fn picture(marks: &[Mark], points: [f32; 2]) -> Picture {
+    let ctx = egui::Context::default();
+    theme::apply(&ctx, theme::Look::Light);
+    crate::paint::picture(&ctx, points, 2.0, |ui| {
+        let frame = egui::Frame::new().fill(theme::panel()).inner_margin(10.0);
+        frame.show(ui, |ui| {
+            let size = vec2(points[0] - 20.0, points[1] - 20.0);
+            front_plot(ui, marks, None, None, size);
+        });
+    })
+}
