@@ -310,6 +310,9 @@ impl SceneloomApp {
     /// Everything that happens without drawing: news of the worker, of sensing, of files.
     pub fn update(&mut self, ctx: &egui::Context) {
         self.sensing.drain();
+        if let Some(problem) = self.sensing.take_problem() {
+            self.fail(format!("The sensors show an older scene: {problem}"));
+        }
         self.tuning.update();
         if self.document.history_limit() != self.settings.history_bytes() {
             self.document.set_history_limit(self.settings.history_bytes());

@@ -3,15 +3,15 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::thread::JoinHandle;
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
 use glam::{DVec2, DVec3};
 
 use super::application::SceneloomApp;
 use super::camera_views::march;
 use super::command::Command;
 use editor::checks::{self, Finding, Seen};
+use job::guard::Panicked;
+use job::product::{Ctx, Product, Worker};
 use scene::raster::box_cells;
 use scene::{BoxId, BoxLabel, Class, GridSpec, Scene, SceneBox, SceneRev};
 use sensors::lidar;
@@ -87,31 +87,52 @@ pub fn check(scene: &Scene) -> Vec<Finding> {
 
 /// The newest findings, and the thread that makes them.
 pub struct Checking {
-    requests: Option<Sender<Arc<Scene>>>, // None only while dropping
-    answers: Receiver<(SceneRev, Vec<Finding>)>,
-    thread: Option<JoinHandle<()>>,
+    worker: Worker<Arc<Scene>, Checked>,
     changed: Option<(SceneRev, f64)>,
     asked: Option<SceneRev>,
     last: Option<(SceneRev, Arc<Vec<Finding>>)>,
+    problem: Option<String>,
+}
+
+/// How a check ended.
+enum Checked {
+    Found(SceneRev, Vec<Finding>),
+    GivenUp,
+    Failed(Panicked),
+}
+
+/// Findings as a product.
+struct Checker;
+
+impl Product for Checker {
+    type Request = Arc<Scene>;
+    type Update = Checked;
+
+    fn make(&mut self, scene: &Arc<Scene>, _: &Ctx<'_, Checked>) -> Checked {
+        Checked::Found(scene.rev, check(scene))
+    }
+
+    fn reset(&mut self) {}
+
+    fn given_up() -> Checked {
+        Checked::GivenUp
+    }
+
+    fn panicked(panic: Panicked) -> Checked {
+        Checked::Failed(panic)
+    }
+
+    fn is_terminal(_: &Checked) -> bool {
+        true
+    }
 }
 
 impl Checking {
     /// Starts the thread `checks`; `wake` is called when there are new findings. Errors if the system gives no thread.
-    pub fn spawn(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let (requests, requests_in) = unbounded::<Arc<Scene>>();
-        let (answers_out, answers) = unbounded();
-        let thread = std::thread::Builder::new().name("checks".into()).spawn(move || {
-            while let Ok(first) = requests_in.recv() {
-                let scene = requests_in.try_iter().last().unwrap_or(first);
-                // The receiver lives as long as the thread, except at the very end.
-                let _ = answers_out.send((scene.rev, check(&scene)));
-                wake();
-            }
-        })?;
+    pub fn spawn(wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         Ok(Self {
-            requests: Some(requests),
-            answers,
-            thread: Some(thread),
+            worker: Worker::start("checks", || Checker, Arc::new(wake))?,
+            problem: None,
             changed: None,
             asked: None,
             last: None,
@@ -121,8 +142,12 @@ impl Checking {
     /// Takes in what has arrived, and has the scene checked once it has rested. Call it every frame; the answer is
     /// after how many seconds it wants to be called again, if nothing else happens. `now_s` never runs backward.
     pub fn update(&mut self, scene: &Arc<Scene>, dragging: bool, now_s: f64) -> Option<f64> {
-        if let Some((rev, findings)) = self.answers.try_iter().last() {
-            self.last = Some((rev, Arc::new(findings)));
+        for checked in self.worker.updates().try_iter().map(|event| event.update) {
+            match checked {
+                Checked::Found(rev, findings) => self.last = Some((rev, Arc::new(findings))),
+                Checked::GivenUp => {}
+                Checked::Failed(panic) => self.problem = Some(panic.to_string()),
+            }
         }
         if self.changed.is_none_or(|(rev, _)| rev != scene.rev) {
             self.changed = Some((scene.rev, now_s));
@@ -135,11 +160,13 @@ impl Checking {
             return Some(ready_s - now_s);
         }
         self.asked = Some(scene.rev);
-        if let Some(requests) = &self.requests {
-            // The thread ends only when this sender is gone.
-            let _ = requests.send(scene.clone());
-        }
+        self.worker.submit(scene.clone());
         None
+    }
+
+    /// Why a scene could not be checked, told once. Later scenes are checked again.
+    pub fn take_problem(&mut self) -> Option<String> {
+        self.problem.take()
     }
 
     /// The newest findings, errors first; none before the first check is done.
@@ -153,16 +180,6 @@ impl Checking {
     }
 }
 
-impl Drop for Checking {
-    fn drop(&mut self) {
-        self.requests = None;
-        if let Some(thread) = self.thread.take() {
-            // An error would be a panic in the thread; there is nobody left to tell.
-            let _ = thread.join();
-        }
-    }
-}
-
 impl SceneloomApp {
     /// Asks for a check of the settled scene when it is time.
     pub(super) fn update_checks(&mut self, ctx: &egui::Context) {
@@ -170,6 +187,9 @@ impl SceneloomApp {
         let scene = self.document.settled_scene();
         if let Some(seconds) = self.checking.update(scene, self.document.is_dragging(), now_s) {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
+        }
+        if let Some(problem) = self.checking.take_problem() {
+            self.fail(format!("The scene was not checked: {problem}"));
         }
     }
 

@@ -152,7 +152,7 @@ impl Compare {
         before: Option<Arc<Scene>>,
         wanted: Wanted,
         senses: bool,
-        wake: impl Fn() + Send + 'static,
+        wake: impl Fn() + Send + Sync + 'static,
     ) {
         self.before = before;
         let Some(scene) = &self.before else { return };

@@ -35,9 +35,10 @@ impl SceneloomApp {
         }
         let (send, edits) = bounded(1);
         let (wanted, scene) = (wish.clone(), before.clone());
-        let thread = std::thread::Builder::new().name("scenery".into()).spawn(move || {
+        let draw = move || wanted.edits(&scene);
+        let thread = job::guard::spawn("scenery", draw, move |edits| {
             // Nobody listens if other scenery was asked for meanwhile.
-            let _ = send.send(wanted.edits(&scene));
+            let _ = send.send(edits.unwrap_or_else(|panic| Err(GenError::failed(panic))));
         });
         match thread {
             Ok(_) => {

@@ -89,9 +89,10 @@ impl SceneloomApp {
         let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());
         let progress = Arc::<ExportProgress>::default();
         let told = progress.clone();
-        let thread = std::thread::Builder::new().name("export".into()).spawn(move || {
+        let write = move || export_all(&scene, &formats, &options, &path, &told);
+        let thread = job::guard::spawn("export", write, move |written| {
             // Nobody listens if the window has closed.
-            let _ = send.send(export_all(&scene, &formats, &options, &path, &told));
+            let _ = send.send(written.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();
         });
         match thread {

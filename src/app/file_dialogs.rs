@@ -139,14 +139,12 @@ impl FileDialogs {
             } else {
                 Box::pin(dialog.pick_file())
             };
-        let thread = std::thread::Builder::new()
-            .name("file-dialog".into())
-            .spawn(move || {
-                let path = pollster::block_on(chosen).map(|file| file.path().to_path_buf());
-                // Nobody listens if the window has closed.
-                let _ = send.send(path);
-                wake.request_repaint();
-            });
+        let wait = move || pollster::block_on(chosen).map(|file| file.path().to_path_buf());
+        let thread = job::guard::spawn("file-dialog", wait, move |path| {
+            // Nobody listens if the window has closed. After a panic there is no answer, as if it had been dismissed.
+            let _ = send.send(path.unwrap_or_default());
+            wake.request_repaint();
+        });
         if thread.is_err() {
             self.open_field(purpose, suggestion);
             return;

@@ -15,12 +15,16 @@ use serde::{Deserialize, Serialize};
 
 use editor::Document;
 use formats::{atomic, project};
+use job::guard::{Handed, guarded};
 use scene::{Scene, SceneRev};
 
 /// Time between two copies, s.
 pub const EVERY_S: f64 = 30.0;
 /// A folder without a scene that is older than this was left by a session that never needed it.
 const EMPTY_AFTER: Duration = Duration::from_secs(60);
+
+/// Name of the thread.
+const NAME: &str = "recovery";
 
 const SCENE: &str = "scene.loom";
 const ABOUT: &str = "about.json";
@@ -47,7 +51,7 @@ pub struct Recovery {
     folder: PathBuf,
     lock: Option<File>, // None only while dropping
     every_s: f64,
-    jobs: Option<Sender<Job>>, // None only while dropping
+    jobs: Option<Sender<Handed<Job>>>, // None only while dropping
     done: Receiver<Result<(), String>>,
     thread: Option<JoinHandle<()>>,
     asked: Option<SceneRev>,
@@ -94,21 +98,27 @@ impl Recovery {
         fs::create_dir_all(&folder)?;
         let lock = File::create(folder.join(LOCK))?;
         lock.lock()?;
-        let (jobs, jobs_in) = unbounded::<Job>();
+        let (jobs, jobs_in) = unbounded::<Handed<Job>>();
         let (done_out, done) = unbounded();
         let place = folder.clone();
         let thread = std::thread::Builder::new()
-            .name("recovery".into())
+            .name(NAME.into())
             .spawn(move || {
                 for job in jobs_in {
-                    match job {
-                        Job::Write(scene, original) => {
-                            let written = write(&place, &scene, original).map_err(|e| e.to_string());
-                            // The receiver lives as long as the thread, except at the very end.
-                            let _ = done_out.send(written);
-                            wake();
+                    let is_copy = matches!(job.request(), Job::Write(..));
+                    let done = job.run(|job| match job {
+                        Job::Write(scene, original) => write(&place, &scene, original),
+                        Job::Remove => {
+                            remove_copy(&place);
+                            Ok(())
                         }
-                        Job::Remove => remove_copy(&place),
+                    });
+                    let done = done.unwrap_or_else(|panic| Err(panic.into())).map_err(|e| e.to_string());
+                    if is_copy {
+                        // The receiver lives as long as the thread, except at the very end.
+                        let _ = done_out.send(done);
+                        // A wake-up that panics must not end the thread.
+                        let _ = guarded(NAME, &wake);
                     }
                 }
             })?;
@@ -207,7 +217,7 @@ impl Recovery {
     fn send(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
             // The thread ends only when this sender is gone.
-            let _ = jobs.send(job);
+            let _ = jobs.send(Handed::new(NAME, job));
         }
     }
 }
@@ -432,6 +442,24 @@ mod tests {
         }
         assert_eq!(told.len(), 1, "{told:?}");
         assert!(!told[0].contains('\n'));
+    }
+
+    #[test]
+    fn a_panic_is_told_and_the_next_copy_is_written() {
+        let root = tempfile::tempdir().expect("a folder");
+        let mut recovery = Recovery::start(root.path(), 1.0, || panic!("a wake-up")).expect("a session");
+        let (mut document, copy) = (document(), recovery.folder.join(SCENE));
+        say(&mut document, "one");
+        job::guard::panic_next(NAME);
+        recovery.tick(&document, None, 0.0);
+        let done = recovery.done.recv().expect("an answer");
+        let told = recovery.note(done);
+        assert_eq!(told.as_deref(), Some("recovery panicked: asked for by a test"));
+        assert!(!copy.exists());
+        recovery.tick(&document, None, 10.0);
+        let done = recovery.done.recv().expect("an answer");
+        assert_eq!((done.clone(), recovery.note(done)), (Ok(()), None));
+        assert_eq!(prompt_in(&copy), "one");
     }
 
     #[test]

@@ -39,10 +39,9 @@ impl Trace {
         let (orders, orders_in) = unbounded();
         let active_ms = Arc::new(AtomicU64::new(0));
         let seen = active_ms.clone();
-        let thread = std::thread::Builder::new()
-            .name("trace".into())
-            .spawn(move || write(out, &orders_in, &seen, clock))
-            .context("trace")?;
+        let work = move || write(out, &orders_in, &seen, clock);
+        // A panic is on the terminal by then; the editor goes on without a trace, as on a full disk.
+        let thread = job::guard::spawn("trace", work, drop).context("trace")?;
         Ok(Self {
             orders,
             active_ms,
@@ -174,6 +173,11 @@ mod tests {
             assert!(kinds("cpu") >= 1);
             assert!(lines.last().expect("lines")["cpu_share"].is_number());
         }
+        // A thread that panics costs the trace and nothing else.
+        job::guard::panic_next("trace");
+        let trace = Trace::start(&path, clock, &json!({"kind": "start"})).expect("started");
+        trace.line(&json!({}));
+        trace.finish(json!({"kind": "summary"}));
         let nowhere = folder.path().join("no").join("such").join("folder");
         let error = Trace::start(&nowhere, clock, &json!({})).err().expect("refused");
         assert!(format!("{error:#}").contains("trace "), "{error:#}");

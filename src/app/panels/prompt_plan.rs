@@ -14,6 +14,7 @@ use crate::command::Command;
 use crate::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
 use crate::theme;
 use editor::Edit;
+use job::guard::Panicked;
 use place::description::Description;
 use place::to_graph::{Graphed, to_graph};
 
@@ -90,8 +91,9 @@ enum Stays {
 
 struct Variants {
     of: Ask,
-    coming: Receiver<(u64, Laid)>,
+    coming: Receiver<Result<(u64, Laid), Panicked>>,
     found: BTreeMap<u64, Laid>,
+    problem: Option<Panicked>,
 }
 
 /// What is wanted of the words beyond the words.
@@ -374,32 +376,45 @@ impl Plan {
         if button.clicked() {
             let (send, coming) = channel();
             let (work, wake) = (ask.clone(), ui.ctx().clone());
-            let thread = std::thread::Builder::new()
-                .name("variants".into())
-                .spawn(move || {
-                    for k in 0..VARIANTS {
-                        let ask = Ask {
-                            seed: work.seed.wrapping_add(k),
-                            ..work.clone()
-                        };
-                        // Nobody listens once others are asked for.
-                        if send.send((ask.seed, ask.lay_out())).is_err() {
-                            break;
-                        }
-                        wake.request_repaint();
+            let (tell, wake_last) = (send.clone(), wake.clone());
+            let lay_out = move || {
+                for k in 0..VARIANTS {
+                    let ask = Ask {
+                        seed: work.seed.wrapping_add(k),
+                        ..work.clone()
+                    };
+                    // Nobody listens once others are asked for.
+                    if send.send(Ok((ask.seed, ask.lay_out()))).is_err() {
+                        break;
                     }
-                });
+                    wake.request_repaint();
+                }
+            };
+            let thread = job::guard::spawn("variants", lay_out, move |ended| {
+                if let Err(panic) = ended {
+                    let _ = tell.send(Err(panic));
+                    wake_last.request_repaint();
+                }
+            });
             self.variants = thread.ok().map(|_| Variants {
                 of: ask.clone(),
                 coming,
                 found: BTreeMap::new(),
+                problem: None,
             });
         }
         let Some(variants) = &mut self.variants else {
             return None;
         };
-        while let Ok((seed, laid)) = variants.coming.try_recv() {
-            variants.found.insert(seed, laid);
+        for came in variants.coming.try_iter() {
+            match came {
+                Ok((seed, laid)) => drop(variants.found.insert(seed, laid)),
+                Err(panic) => variants.problem = Some(panic),
+            }
+        }
+        if let Some(panic) = &variants.problem {
+            let text = format!("No more variants: {panic}");
+            ui.label(egui::RichText::new(text).small().color(theme::warn()));
         }
         // Square, as the map is.
         let width = ((ui.available_width() - 8.0) / 2.0).clamp(80.0, 260.0);

@@ -8,6 +8,7 @@ use super::thumbnail;
 use crate::memory::layout_of;
 use crate::prompting::{Ask, Remembered, recall};
 use crate::theme;
+use job::guard::Panicked;
 use scene::{BevLayout, SceneBox};
 
 /// Side of the map, points.
@@ -68,11 +69,14 @@ fn shortened(text: &str) -> String {
     format!("{whole}…")
 }
 
+/// Words, and what was found for them or why nothing could be looked up.
+type Found = (String, Result<Option<Recalled>, Panicked>);
+
 /// Looks up the remembered scene for words that are being typed, on a thread of its own.
 #[derive(Default)]
 pub struct Recall {
-    shown: Option<(String, Option<Recalled>)>,
-    coming: Option<Receiver<(String, Option<Recalled>)>>,
+    shown: Option<Found>,
+    coming: Option<Receiver<Found>>,
 }
 
 impl Recall {
@@ -85,17 +89,25 @@ impl Recall {
         if !known && self.coming.is_none() {
             let (send, coming) = channel();
             let (ask, wake) = (ask.clone(), ui.ctx().clone());
-            let thread = std::thread::Builder::new().name("recall".into()).spawn(move || {
+            let words = ask.prompt.clone();
+            let look = move || {
                 let found = recall(&ask.prompt, &ask.description, ask.seed);
+                found.as_ref().and_then(Recalled::of)
+            };
+            let thread = job::guard::spawn("recall", look, move |found| {
                 // Nobody listens once the pane is gone.
-                let _ = send.send((ask.prompt, found.as_ref().and_then(Recalled::of)));
+                let _ = send.send((words, found));
                 wake.request_repaint();
             });
             self.coming = thread.ok().map(|_| coming);
         }
         match &self.shown {
-            Some((_, Some(found))) => found.show(ui, "Memory goes by"),
-            Some((_, None)) => {
+            Some((_, Ok(Some(found)))) => found.show(ui, "Memory goes by"),
+            Some((_, Err(panic))) => {
+                let text = format!("Memory could not be looked into: {panic}");
+                ui.label(egui::RichText::new(text).small().color(theme::warn()));
+            }
+            Some((_, Ok(None))) => {
                 ui.label(egui::RichText::new("Memory knows no scene like it").small());
             }
             None => {

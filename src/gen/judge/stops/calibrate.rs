@@ -68,21 +68,27 @@ impl Background {
         let (out, news) = unbounded();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = stop.clone();
-        std::thread::Builder::new()
-            .name("measure".into())
-            .spawn(move || {
-                let told = Told { out, wake: &wake };
-                let should_stop = || stopped.load(Ordering::Relaxed);
-                let answer = match task {
-                    Task::Calibrate(stops) => calibrate(stops, &should_stop, &told),
-                    Task::Refine(refine) => refined(&refine, &should_stop, &told),
-                };
-                match answer {
-                    Ok(news) => told.say(news),
-                    Err(GenError::Superseded) => {}
-                    Err(error) => told.say(News::Failed(error.to_string())),
-                }
-            })?;
+        let wake = Arc::new(wake);
+        let (out_last, wake_last) = (out.clone(), wake.clone());
+        let measure = move || {
+            let told = Told { out, wake: &*wake };
+            let should_stop = || stopped.load(Ordering::Relaxed);
+            match task {
+                Task::Calibrate(stops) => calibrate(stops, &should_stop, &told),
+                Task::Refine(refine) => refined(&refine, &should_stop, &told),
+            }
+        };
+        job::guard::spawn("measure", measure, move |answer| {
+            let told = Told {
+                out: out_last,
+                wake: &*wake_last,
+            };
+            match answer.unwrap_or_else(|panic| Err(GenError::failed(panic))) {
+                Ok(news) => told.say(news),
+                Err(GenError::Superseded) => {}
+                Err(error) => told.say(News::Failed(error.to_string())),
+            }
+        })?;
         Ok(Self { news, stop })
     }
 
