@@ -5,11 +5,11 @@ use egui::Context;
 use super::application::SceneloomApp;
 use super::panels::toasts::Level;
 use super::prompting::Ask;
-use super::state::CameraMode;
 use super::tools::Choose;
 use editor::Edit;
 use scene::{BoxId, Frame};
 use sensors::appearance::Conditions;
+use sensors::cameras::pictures;
 
 /// Most boxes that are chosen after an edit; of more one sees no more than of none.
 const MOST_CHOSEN: usize = 12;
@@ -32,8 +32,8 @@ impl SceneloomApp {
         if !changed.is_empty() && changed.len() <= MOST_CHOSEN {
             self.state.choose(&changed, Choose::Only);
         }
-        if other_light && self.state.camera_mode != CameraMode::Picture {
-            self.state.camera_mode = CameraMode::Picture;
+        if other_light && self.state.camera_view != pictures::VIEW.id {
+            self.state.camera_view = pictures::VIEW.id;
             let now_s = self.now_s();
             let text = "Time and weather changed: the cameras show pictures now".to_owned();
             self.toasts.push(Level::Info, text, now_s);

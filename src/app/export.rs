@@ -6,17 +6,19 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use anyhow::{Context, anyhow, bail};
 use serde_json::json;
 
-use super::camera_views::march;
+use super::camera_views::camera_input;
 use super::checking;
 use super::picture::{ShotOptions, View3d};
-use super::state::{CameraSource, LidarModel};
+use super::state::LidarModel;
 use formats::{atomic, box_list, occ3d, png, point_cloud};
 use nets::lidar::LidarNet;
 use scene::sensor_data::{RENDER_IDS, RenderId};
 use scene::{CameraMaps, Class, LidarSweep, Scene, SensorRig};
-use sensors::appearance::{Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use sensors::appearance::Quality;
+use sensors::cameras::{
+    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
+};
 use sensors::learned::{self, Drops};
-use sensors::splat::{self, GaussianCloud, SplatOptions};
 use sensors::{color, lidar};
 use viewport::{ViewCamera, ViewPreset};
 
@@ -106,7 +108,7 @@ pub struct ExportOptions {
     /// Size of camera pictures and maps in pixels.
     pub camera_size: [u32; 2],
     /// What classes and depths are rendered from.
-    pub source: CameraSource,
+    pub source: SourceId,
     /// How the LiDAR sweep comes about.
     pub lidar: LidarModel,
     /// How the picture of the 3D view is taken.
@@ -117,7 +119,7 @@ impl Default for ExportOptions {
     fn default() -> Self {
         Self {
             camera_size: [800, 450],
-            source: CameraSource::default(),
+            source: SourceId::default(),
             lidar: LidarModel::default(),
             shot: ShotOptions::default(),
         }
@@ -164,25 +166,35 @@ impl ExportProgress {
         }
     }
 
-    /// Makes something for each camera of a rig, in their order; asks before each whether to go on.
-    fn each_camera<T>(
+    /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made; asks before
+    /// each whether to go on.
+    fn each_camera(
         &self,
-        rig: &SensorRig,
-        mut make: impl FnMut(&SensorRig) -> anyhow::Result<Vec<T>>,
-    ) -> anyhow::Result<Vec<T>> {
+        scene: &Scene,
+        (view, options): (ViewId, &ExportOptions),
+        mut take: impl FnMut(CameraPicture) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        let rig = &scene.rig;
         if rig.cameras.is_empty() {
             bail!("the rig {:?} has no camera", rig.name);
         }
-        let mut all = Vec::new();
+        let source = cameras::source_of(view, options.source);
+        bounds::check(options.camera_size, source.bytes_per_pixel(), 0)?;
+        let ready = Ready::new(source, &camera_input(scene, Detail::Full));
+        let options = RenderOptions {
+            size: options.camera_size,
+            quality: Quality::Full,
+        };
         for camera in &rig.cameras {
             self.go_on()?;
-            all.extend(make(&SensorRig {
-                cameras: vec![camera.clone()],
-                ..rig.clone()
-            })?);
+            let context = RenderContext {
+                cancelled: &|| self.is_cancelled(),
+                ..RenderContext::processor()
+            };
+            take(ready.render(camera, &options, context)?)?;
             self.done.fetch_add(1, Ordering::Relaxed);
         }
-        Ok(all)
+        Ok(())
     }
 }
 
@@ -266,13 +278,12 @@ fn make_ready(
         }
         Format::Ply => out.file(format, point_cloud::ply(&sweep(scene, options.lidar)?)),
         Format::Semantic => {
-            for m in camera_maps(scene, options, progress)? {
-                let labels = labels(&m);
-                out.picture(
-                    &format!("{}_semantic.png", m.camera),
-                    png::indexed(m.width, m.height, &labels, &palette())?,
-                );
-            }
+            progress.each_camera(scene, (ViewId::SEMANTIC, options), |picture| {
+                let m = maps_of(picture)?;
+                let png = png::indexed(m.width, m.height, &labels(&m), &palette())?;
+                out.picture(&format!("{}_semantic.png", m.camera), png);
+                Ok(())
+            })?;
             let classes: Vec<_> = (0..=RENDER_IDS as u8)
                 .map(|id| json!({ "index": id, "name": label_name(id), "rgb": palette()[usize::from(id)] }))
                 .collect();
@@ -280,34 +291,22 @@ fn make_ready(
             out.beside("classes.json", text.into_bytes());
         }
         Format::Depth => {
-            for m in camera_maps(scene, options, progress)? {
-                let mm = color::depth_mm(&m.depth_m);
-                out.picture(
-                    &format!("{}_depth_mm.png", m.camera),
-                    png::grey16(m.width, m.height, &mm)?,
-                );
-            }
+            progress.each_camera(scene, (ViewId::DEPTH, options), |picture| {
+                let m = maps_of(picture)?;
+                let png = png::grey16(m.width, m.height, &color::depth_mm(&m.depth_m))?;
+                out.picture(&format!("{}_depth_mm.png", m.camera), png);
+                Ok(())
+            })?;
         }
         Format::Pictures => {
-            let images = progress.each_camera(&scene.rig, |rig| {
-                Ok(RayMarched.synthesize(&SynthesisInput {
-                    frame,
-                    rig,
-                    size: options.camera_size,
-                    prompt: &scene.prompt,
-                    conditions: Conditions {
-                        seed: scene.seed,
-                        ..Conditions::from_prompt(&scene.prompt)
-                    },
-                    quality: Quality::Full,
-                })?)
+            progress.each_camera(scene, (pictures::VIEW.id, options), |picture| {
+                let CameraPicture::Picture(image) = picture else {
+                    bail!("the source of pictures gives something else");
+                };
+                let png = png::rgba(image.width, image.height, &image.rgba)?;
+                out.picture(&format!("{}.png", image.camera), png);
+                Ok(())
             })?;
-            for image in images {
-                out.picture(
-                    &format!("{}.png", image.camera),
-                    png::rgba(image.width, image.height, &image.rgba)?,
-                );
-            }
         }
         Format::View => {
             let shot = View3d::new()?.shot(scene, &options.shot)?;
@@ -396,25 +395,11 @@ fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
     }
 }
 
-fn camera_maps(
-    scene: &Scene,
-    options: &ExportOptions,
-    progress: &ExportProgress,
-) -> anyhow::Result<Vec<CameraMaps>> {
-    let [width, height] = options.camera_size;
-    let frame = scene.frame();
-    match options.source {
-        CameraSource::Splats => {
-            let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
-            let splats = SplatOptions::default();
-            progress.each_camera(&scene.rig, |rig| {
-                Ok(splat::render_rig(&cloud, rig, width, height, &splats))
-            })
-        }
-        source => {
-            let world = march(scene, source == CameraSource::Shapes);
-            progress.each_camera(&scene.rig, |rig| Ok(world.render_rig(rig, width, height)))
-        }
+/// The classes and depths of a picture.
+fn maps_of(picture: CameraPicture) -> anyhow::Result<CameraMaps> {
+    match picture {
+        CameraPicture::Maps(maps) => Ok(maps),
+        _ => bail!("the source of classes and depths gives something else"),
     }
 }
 

@@ -10,6 +10,9 @@ use viewport::{
     headless_device, lidar_colors,
 };
 
+/// What is between the pictures of a sheet, sRGB.
+pub const SHEET_COLOR: [u8; 3] = [24, 26, 31];
+
 /// RGBA8, row-major, top row first.
 #[derive(Clone, Debug)]
 pub struct Picture {
@@ -54,7 +57,7 @@ impl Picture {
         let width = |row: &Vec<Picture>| row.iter().map(|p| p.width + margin).sum::<usize>() + margin;
         let height = |row: &Vec<Picture>| row.iter().map(|p| p.height).max().unwrap_or(0) + margin;
         let w = rows.iter().map(width).max().unwrap_or(margin);
-        let mut out = Picture::filled(w, rows.iter().map(height).sum::<usize>() + margin, [24, 26, 31]);
+        let mut out = Picture::filled(w, rows.iter().map(height).sum::<usize>() + margin, SHEET_COLOR);
         let mut y = margin;
         for row in rows {
             let mut x = margin;

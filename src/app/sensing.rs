@@ -4,13 +4,15 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
+use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Wanted, camera_input};
 use super::graphics::Graphics;
-use super::state::{CameraMode, LidarModel};
+use super::state::LidarModel;
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Worker};
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
+use sensors::appearance::Quality;
+use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
@@ -260,20 +262,29 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         kept.swept = Some(swept);
     }
     let key = (scene.rev, wanted.pictures());
-    let (mut prepared, graphics) = (None, &mut kept.graphics);
-    let mut view = |camera, size, quick| {
-        let (prepared, on_card) = prepared.get_or_insert_with(|| {
-            let prepared = Prepared::new(scene, wanted.mode, wanted.source);
-            let card = prepared
-                .suits_card()
-                .then(|| graphics.get_or_insert_with(Graphics::find));
-            let on_card = card.and_then(Option::as_mut).is_some_and(|c| prepared.upload(c));
-            (prepared, on_card)
+    let (mut ready, graphics) = (None, &mut kept.graphics);
+    let source = wanted.camera_source();
+    // Errors are pictures that are too large for the bounds, which these sizes never are.
+    let mut view = |camera: usize, size, quick| -> Option<CameraView> {
+        let (ready, on_card) = ready.get_or_insert_with(|| {
+            let ready = Ready::new(source, &camera_input(scene, Detail::Live));
+            let on_card = ready.upload_to(|| {
+                let card = graphics.get_or_insert_with(Graphics::find).as_mut();
+                card.map(|card| card as &mut dyn Card)
+            });
+            (ready, on_card)
         });
         let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        prepared
-            .view(scene, camera, size, quick, card)
-            .colored(wanted.mode)
+        let options = RenderOptions {
+            size,
+            quality: if quick { Quality::Preview } else { Quality::Full },
+        };
+        let context = RenderContext {
+            card: card.map(|card| card as &mut dyn Card),
+            ..RenderContext::processor()
+        };
+        let picture = ready.render(rig.cameras.get(camera)?, &options, context).ok()?;
+        Some(CameraView::new(camera, picture).colored(source))
     };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {
@@ -285,7 +296,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
             if !quick && ctx.should_stop() {
                 return None;
             }
-            views.push(view(i, size, quick));
+            views.push(view(i, size, quick)?);
         }
         Some(views)
     };
@@ -295,7 +306,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         Some(views) => views,
         None => {
             // Camera pictures take their time: a coarse one comes first.
-            if (*preview || wanted.mode == CameraMode::Picture)
+            if (*preview || source.previews())
                 && let Some(views) = render(true)
             {
                 ctx.tell(News::Cameras(scene.rev, *wanted, views));
@@ -312,8 +323,9 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     let enlarged = wanted.enlarged.filter(|i| rig.cameras.len() > *i && shown(i));
     if let Some(large) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))
         && !ctx.should_stop()
+        && let Some(view) = view(large.camera, LARGE_SIZE, false)
     {
-        *large = view(large.camera, LARGE_SIZE, false);
+        *large = view;
         ctx.tell(News::Cameras(scene.rev, *wanted, views));
     }
 }
@@ -324,6 +336,7 @@ mod tests {
 
     use super::*;
     use scene::{Frame, draft};
+    use sensors::cameras;
     use world::World;
 
     #[test]
@@ -351,33 +364,33 @@ mod tests {
         std::thread::sleep(Duration::from_millis(50));
         sensing.drain();
         assert_eq!(sensing.version(), version);
-        // Another kind of picture of the same scene is news; hidden cameras are not rendered.
-        for mode in [
-            CameraMode::Depth,
-            CameraMode::Planes,
-            CameraMode::Layout,
-            CameraMode::Picture,
-        ] {
+        // Pictures of another source of the same scene are news; hidden cameras are not rendered.
+        for source in cameras::all() {
             let wanted = Wanted {
-                mode,
+                source: source.id(),
                 hidden: 0b101,
                 ..Wanted::default()
             };
             sensing.ask(&Arc::new(scene.clone()), wanted, true);
             assert!(sensing.cameras_stale(scene.rev));
             while sensing.cameras_stale(scene.rev) {
-                assert!(start.elapsed() < Duration::from_secs(120), "no news of {mode:?}");
+                assert!(
+                    start.elapsed() < Duration::from_secs(120),
+                    "no news of {}",
+                    source.title()
+                );
                 std::thread::sleep(Duration::from_millis(5));
                 sensing.drain();
             }
             let views = sensing.cameras().expect("pictures");
             assert_eq!(views.iter().map(|v| v.camera).collect::<Vec<_>>(), [1, 3, 4, 5]);
-            for view in views.iter() {
-                let ([w, h], rgba) = view.picture.rgba(mode, 12.0);
+            for (of_camera, view) in views.iter().flat_map(|v| source.views().iter().map(move |s| (v, s))) {
+                let ([w, h], rgba) = of_camera.picture.rgba(view.id, 12.0);
                 assert_eq!(rgba.len(), w * h * 4);
                 assert!(
                     rgba.chunks(4).any(|c| c != &rgba[..4]),
-                    "{mode:?}: all of one colour"
+                    "{}: all of one colour",
+                    view.title
                 );
             }
         }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use editor::Edit;
 use job::Named;
 use scene::{BevLayer, BoxId, Class};
+use sensors::cameras::{self, CameraSource, SourceId, ViewId};
 use viewport::LidarColorMode;
 
 use super::compare::CompareMode;
@@ -149,34 +150,6 @@ impl Pane {
     }
 }
 
-/// What the camera strip shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CameraMode {
-    /// Classes.
-    #[default]
-    Semantic,
-    /// Distance along the optical axis.
-    Depth,
-    /// What a camera would see, by day or night and in any weather.
-    Picture,
-    /// One plane of a multi-plane image.
-    Planes,
-    /// Boxes and lanes in perspective, hidden or not.
-    Layout,
-}
-
-/// What classes and depths are rendered from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CameraSource {
-    /// Gaussians at voxel centres, as the papers do.
-    Splats,
-    /// The voxels themselves.
-    Voxels,
-    /// The voxels, and the shapes of boxes where they stand.
-    #[default]
-    Shapes,
-}
-
 /// How the LiDAR sweep comes about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LidarModel {
@@ -254,9 +227,9 @@ pub struct UiState {
     /// Colour of LiDAR returns.
     pub lidar_colors: LidarColorMode,
     /// What the camera strip shows.
-    pub camera_mode: CameraMode,
-    /// What its classes and depths are rendered from.
-    pub camera_source: CameraSource,
+    pub camera_view: ViewId,
+    /// What it is rendered from, where several sources give it.
+    pub camera_source: SourceId,
     /// Depth of the plane that is shown, m.
     pub plane_m: f64,
     /// Bit per camera that is not rendered.
@@ -307,6 +280,11 @@ impl UiState {
     /// True if a camera of the rig is not rendered.
     pub fn camera_hidden(&self, camera: usize) -> bool {
         camera < 32 && self.cameras_hidden >> camera & 1 == 1
+    }
+
+    /// The source of what the camera strip shows.
+    pub fn shown_source(&self) -> &'static dyn CameraSource {
+        cameras::source_of(self.camera_view, self.camera_source)
     }
 
     /// After a camera was taken away, those behind it move up.
@@ -377,8 +355,8 @@ impl Default for UiState {
             correcting: false,
             named: Named::default(),
             lidar_colors: LidarColorMode::Range,
-            camera_mode: CameraMode::Semantic,
-            camera_source: CameraSource::default(),
+            camera_view: ViewId::SEMANTIC,
+            camera_source: SourceId::default(),
             plane_m: 12.0,
             cameras_hidden: 0,
             lidar_model: LidarModel::default(),

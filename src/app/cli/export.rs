@@ -6,12 +6,13 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
-use super::render::size;
+use super::render::{size, source};
 use super::{Common, Outcome, output};
 use crate::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
 use crate::open;
 use crate::picture::ShotOptions;
-use crate::state::{CameraSource, LidarModel};
+use crate::state::LidarModel;
+use sensors::cameras::SourceId;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -28,8 +29,8 @@ pub struct Export {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
     /// What classes and depths are rendered from.
-    #[arg(long, value_name = "NAME", value_parser = ["splats", "voxels", "shapes"], default_value = "shapes")]
-    source: String,
+    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "shapes")]
+    source: SourceId,
     /// How the LiDAR sweep comes about.
     #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
     lidar: String,
@@ -75,11 +76,7 @@ impl Export {
         let scene = open::scene(&self.scene.context("the scene to read is missing")?)?;
         let options = ExportOptions {
             camera_size: self.size,
-            source: match self.source.as_str() {
-                "splats" => CameraSource::Splats,
-                "voxels" => CameraSource::Voxels,
-                _ => CameraSource::Shapes,
-            },
+            source: self.source,
             lidar: match self.lidar.as_str() {
                 "learned" => LidarModel::Learned,
                 _ => LidarModel::Exact,

@@ -4,38 +4,13 @@ use egui::Ui;
 
 use crate::command::Command;
 use crate::icons;
-use crate::state::{CameraMode, CameraSource, UiState};
+use crate::state::UiState;
 use crate::theme;
 use editor::Edit;
 use sensors::appearance::{Conditions, TimeOfDay, Weather};
+use sensors::cameras::{self, Knob};
 
 use super::cameras::{CamerasInput, thousands};
-
-const MODES: [(CameraMode, &str, &str); 5] = [
-    (CameraMode::Semantic, "Semantic", "classes"),
-    (CameraMode::Depth, "Depth", "2 m warm to 60 m cold"),
-    (CameraMode::Picture, "Picture", "what a camera would see"),
-    (CameraMode::Planes, "Planes", "one plane of the multi-plane image"),
-    (
-        CameraMode::Layout,
-        "Boxes, lanes",
-        "in perspective, hidden or not",
-    ),
-];
-
-const SOURCES: [(CameraSource, &str, &str); 3] = [
-    (
-        CameraSource::Splats,
-        "Splats",
-        "Gaussians at voxel centres, as the papers render",
-    ),
-    (CameraSource::Voxels, "Voxels", "exact rays to the voxels"),
-    (
-        CameraSource::Shapes,
-        "Shapes",
-        "exact rays; boxes as the shapes they stand for",
-    ),
-];
 
 /// Width that the button of the sensors takes, points.
 const SENSORS_BUTTON: f32 = 84.0;
@@ -51,21 +26,27 @@ pub fn header(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
-        icons::segments(ui, &mut state.camera_mode, &MODES);
+        let views = cameras::views();
+        let choices: Vec<_> = views.iter().map(|v| (v.id, v.title, v.hint)).collect();
+        icons::segments(ui, &mut state.camera_view, &choices);
         ui.add_space(8.0);
-        match state.camera_mode {
-            CameraMode::Semantic | CameraMode::Depth => {
-                icons::segments(ui, &mut state.camera_source, &SOURCES);
-            }
-            CameraMode::Picture => conditions(ui, input.prompt, commands),
-            CameraMode::Planes => {
+        let sources = cameras::sources_of(state.camera_view);
+        if sources.len() > 1 {
+            let choices: Vec<_> = sources.iter().map(|s| (s.id(), s.title(), s.hint())).collect();
+            icons::segments(ui, &mut state.camera_source, &choices);
+        }
+        if state.shown_source().needs().conditions {
+            conditions(ui, input.prompt, commands);
+        }
+        match views.iter().find(|v| v.id == state.camera_view).and_then(|v| v.knob) {
+            Some(Knob::PlaneDepth) => {
                 let slider = egui::Slider::new(&mut state.plane_m, 0.2..=51.0)
                     .suffix(" m")
                     .fixed_decimals(1);
                 ui.spacing_mut().slider_width = 220.0;
                 ui.add(slider).on_hover_text("Depth of the plane");
             }
-            CameraMode::Layout => {}
+            None => {}
         }
         if stale {
             ui.add_space(4.0);

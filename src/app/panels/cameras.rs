@@ -13,9 +13,10 @@ use super::camera_header::header;
 use super::lit;
 use crate::camera_views::{CameraView, march};
 use crate::command::Command;
-use crate::state::{CameraMode, UiState};
+use crate::state::UiState;
 use crate::theme;
 use scene::{Camera, Class, Scene, SceneRev};
+use sensors::cameras::ViewId;
 use sensors::march::{MarchHit, MarchScene};
 
 /// Textures of the pictures.
@@ -23,7 +24,7 @@ use sensors::march::{MarchHit, MarchScene};
 pub struct CameraStrip {
     /// One for each camera that was ever shown.
     textures: Vec<Option<TextureHandle>>,
-    made_from: Option<(Arc<Vec<CameraView>>, CameraMode, f64)>,
+    made_from: Option<(Arc<Vec<CameraView>>, ViewId, f64)>,
     probe: Option<(SceneRev, MarchScene)>,
     stale_since_s: Option<f64>,
     /// Pictures of another state, shown up to this part of the width of each.
@@ -151,24 +152,24 @@ impl CameraStrip {
 
     fn refresh(&mut self, ui: &Ui, views: Option<&Arc<Vec<CameraView>>>, state: &UiState) {
         let Some(views) = views else { return };
-        let (mode, plane_m) = (state.camera_mode, state.plane_m);
+        let (view, plane_m) = (state.camera_view, state.plane_m);
         if self
             .made_from
             .as_ref()
-            .is_some_and(|(of, in_mode, at_m)| Arc::ptr_eq(of, views) && *in_mode == mode && *at_m == plane_m)
+            .is_some_and(|(of, shown, at_m)| Arc::ptr_eq(of, views) && *shown == view && *at_m == plane_m)
         {
             return;
         }
         let count = views.iter().map(|v| v.camera + 1).max().unwrap_or(0);
         self.textures.resize(count, None);
-        for view in views.iter() {
-            let image = view.colors(mode, plane_m);
-            match &mut self.textures[view.camera] {
+        for of_camera in views.iter() {
+            let image = of_camera.colors(view, plane_m);
+            match &mut self.textures[of_camera.camera] {
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
                 empty => *empty = Some(ui.ctx().load_texture("camera", image, TextureOptions::LINEAR)),
             }
         }
-        self.made_from = Some((views.clone(), mode, plane_m));
+        self.made_from = Some((views.clone(), view, plane_m));
     }
 
     fn hit(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> Option<MarchHit> {

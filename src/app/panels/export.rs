@@ -5,7 +5,8 @@ use std::path::Path;
 use egui::{DragValue, Ui};
 
 use crate::export::{ExportOptions, ExportProgress, Format};
-use crate::state::{CameraSource, LidarModel};
+use crate::state::LidarModel;
+use sensors::cameras::{self, ViewId};
 use crate::theme;
 
 /// What the dialog shows of the application.
@@ -205,9 +206,10 @@ fn options(ui: &mut Ui, panel: &mut ExportPanel) {
             size(ui, &mut options.camera_size);
             ui.horizontal(|ui| {
                 ui.label("From");
-                ui.radio_value(&mut options.source, CameraSource::Shapes, "shapes");
-                ui.radio_value(&mut options.source, CameraSource::Voxels, "voxels");
-                ui.radio_value(&mut options.source, CameraSource::Splats, "splats");
+                // The usual one first.
+                for source in cameras::sources_of(ViewId::SEMANTIC).into_iter().rev() {
+                    ui.radio_value(&mut options.source, source.id(), source.id().name());
+                }
             });
         }
         Format::Pictures => {

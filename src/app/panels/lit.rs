@@ -3,9 +3,10 @@
 use egui::{Color32, Painter, Pos2, Rect, Stroke, pos2};
 use glam::DVec3;
 
-use crate::state::{CameraMode, CameraSource, UiState};
+use crate::state::UiState;
 use crate::theme;
 use scene::{Camera, Scene, SceneBox};
+use sensors::march::GroundHeight;
 use sensors::perspective::clip_near;
 use viewport::GROUND_TOP_M;
 
@@ -28,10 +29,9 @@ const EDGES: [[usize; 2]; 12] = [
 /// How far below the physical ground the picture shows what stands on it, m: pictures of voxels have the ground where
 /// labels have it.
 pub fn drop_m(state: &UiState) -> f64 {
-    match (state.camera_mode, state.camera_source) {
-        (CameraMode::Picture | CameraMode::Layout, _) => 0.0,
-        (CameraMode::Semantic | CameraMode::Depth, CameraSource::Shapes) => 0.0,
-        _ => -GROUND_TOP_M,
+    match state.shown_source().ground() {
+        GroundHeight::Physical => 0.0,
+        GroundHeight::AsLabelled => -GROUND_TOP_M,
     }
 }
 

@@ -4,8 +4,9 @@ use egui::Ui;
 
 use crate::command::Command;
 use crate::icons::{self, Icon};
-use crate::state::{CameraMode, LidarModel, UiState, Underlay};
+use crate::state::{LidarModel, UiState, Underlay};
 use crate::theme;
+use sensors::cameras;
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 
 /// Of the bird's-eye view.
@@ -45,20 +46,14 @@ pub fn view3d_controls(
 
 /// Of a single camera.
 pub fn camera_controls(ui: &mut Ui, state: &mut UiState) {
-    let modes = [
-        (CameraMode::Semantic, "Semantic"),
-        (CameraMode::Depth, "Depth"),
-        (CameraMode::Picture, "Picture"),
-        (CameraMode::Planes, "Planes"),
-        (CameraMode::Layout, "Boxes, lanes"),
-    ];
-    let shown = modes.iter().find(|(mode, _)| *mode == state.camera_mode);
-    egui::ComboBox::from_id_salt("camera mode")
-        .selected_text(shown.map_or("", |(_, name)| name))
+    let views = cameras::views();
+    let shown = views.iter().find(|v| v.id == state.camera_view);
+    egui::ComboBox::from_id_salt("camera view")
+        .selected_text(shown.map_or("", |v| v.title))
         .width(96.0)
         .show_ui(ui, |ui| {
-            for (mode, name) in modes {
-                ui.selectable_value(&mut state.camera_mode, mode, name);
+            for view in &views {
+                ui.selectable_value(&mut state.camera_view, view.id, view.title);
             }
         })
         .response
