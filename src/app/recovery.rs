@@ -14,7 +14,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use serde::{Deserialize, Serialize};
 
 use editor::Document;
-use formats::{atomic, project};
+use formats::{atomic, input, project};
 use scene::{Scene, SceneRev};
 
 /// Time between two copies, s.
@@ -313,7 +313,7 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
         }
         return None;
     };
-    let about: Option<About> = fs::read(folder.join(ABOUT))
+    let about: Option<About> = input::read(&folder.join(ABOUT), input::LARGEST_TEXT)
         .ok()
         .and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let (original, name) = about.map_or((None, "a scene".into()), |a| (a.original, a.name));

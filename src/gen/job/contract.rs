@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use diffusion::schedule::ScheduleError;
 use diffusion::solver::SolverError;
+use scene::message::one_line;
 use scene::{Scene, SceneRev, VoxelGrid};
 
 pub use super::params::{GenParams, Named, Quality, RegionMode};
@@ -222,11 +223,6 @@ impl From<ScheduleError> for GenError {
     fn from(error: ScheduleError) -> Self {
         Self::Solver(error.into())
     }
-}
-
-fn one_line(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
-    lines.join("; ")
 }
 
 /// News about a job.

@@ -14,6 +14,7 @@ use crate::cli::progress::Progress;
 use crate::prompting::{How, Laid, lay_out};
 use crate::text;
 use editor::Document;
+use formats::input;
 use metrics::stats::median;
 use place::description::Description;
 use scene::{Frame, Scene, SceneBox, SensorRig};
@@ -44,9 +45,8 @@ fn sets(path: &Path) -> anyhow::Result<Vec<(String, String)>> {
         anyhow::ensure!(!files.is_empty(), "{}: no .jsonl files in it", path.display());
     }
     let read = |file: PathBuf| {
-        let text = std::fs::read_to_string(&file);
-        let text =
-            text.with_context(|| format!("read {} (--prompts names other sentences)", file.display()))?;
+        let text = input::read_text(&file, input::LARGEST_TEXT);
+        let text = text.context("sentences (--prompts names others)")?;
         Ok((file.display().to_string(), text))
     };
     files.into_iter().map(read).collect()

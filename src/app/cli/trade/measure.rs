@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Progress, Trade};
 use crate::trade::cases::Case;
 use crate::trade::edits::{Bench, Outcome};
+use formats::input;
 use job::JobCtx;
 use nets::OccModels;
 
@@ -96,7 +97,7 @@ impl Trade {
             if !ended.success() {
                 bail!("process {i} ended with {ended}");
             }
-            let text = std::fs::read_to_string(&file).with_context(|| format!("read {}", file.display()))?;
+            let text = input::read_text(&file, input::LARGEST_TEXT)?;
             let raw: Raw = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
             match &mut all {
                 None => all = Some(raw),
