@@ -2,6 +2,7 @@
 //! the command line all ask this table.
 
 pub mod boxes;
+mod cloud;
 pub mod loom;
 pub mod occ3d;
 pub mod opendrive;

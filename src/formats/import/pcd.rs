@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use scene::message::quoted;
-use scene::{BevLayout, Class, Frame, GridSpec, Scene, SensorRig, VoxelGrid};
+use scene::{BevLayout, Frame, Scene, SensorRig};
 
+use super::cloud::Cloud;
 use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
 use crate::{FormatError, Holds};
 
@@ -99,8 +100,10 @@ fn read(source: &Source<'_>) -> Result<Content, PcdError> {
     let (axes, label) = ([axis("x")?, axis("y")?, axis("z")?], header.field(&LABELS));
     let mut cloud = Cloud::default();
     let wanted: Vec<usize> = axes.into_iter().chain(label).collect();
-    header.each_point(body, &wanted, |values| cloud.add(values))?;
-    if cloud.voxels.is_empty() {
+    header.each_point(body, &wanted, |v| {
+        cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())
+    })?;
+    if cloud.is_empty() {
         return Err(PcdError::Elsewhere {
             points: header.points,
         });
@@ -130,81 +133,6 @@ fn read(source: &Source<'_>) -> Result<Content, PcdError> {
         inferred,
         skipped,
     })))
-}
-
-/// Points on the map, each as its voxel and class in one number.
-#[derive(Default)]
-struct Cloud {
-    voxels: Vec<u32>,
-    not_finite: usize,
-    elsewhere: usize,
-    unknown: usize,
-}
-
-/// Classes that a number can hold beside its voxel.
-const CLASSES: u32 = 32;
-
-impl Cloud {
-    /// One point: x, y, z and perhaps a label.
-    fn add(&mut self, values: &[f64]) {
-        let at = DVec3::new(values[0], values[1], values[2]);
-        if !at.is_finite() {
-            self.not_finite += 1;
-            return;
-        }
-        let Some([x, y, z]) = GridSpec::voxel_at(at) else {
-            self.elsewhere += 1;
-            return;
-        };
-        let class = match values.get(3) {
-            Some(label) if (0.0..f64::from(Class::FREE)).contains(label) && label.fract() == 0.0 => {
-                *label as u32
-            }
-            Some(_) => {
-                self.unknown += 1;
-                u32::from(Class::Others.id())
-            }
-            None => u32::from(Class::Others.id()),
-        };
-        let voxel = (x * GridSpec::NY + y) * GridSpec::NZ + z;
-        self.voxels.push(voxel as u32 * CLASSES + class);
-    }
-
-    /// Each voxel by the vote of its points; of equally many the lowest class, "others" last.
-    fn grid(mut self) -> VoxelGrid {
-        self.voxels.sort_unstable();
-        let mut grid = VoxelGrid::new();
-        for points in self.voxels.chunk_by(|a, b| a / CLASSES == b / CLASSES) {
-            let votes = points.chunk_by(|a, b| a == b);
-            let winner = votes.max_by_key(|v| {
-                let class = v[0] % CLASSES;
-                (
-                    v.len(),
-                    class != u32::from(Class::Others.id()),
-                    std::cmp::Reverse(class),
-                )
-            });
-            let Some(winner) = winner else { continue };
-            let voxel = (winner[0] / CLASSES) as usize;
-            let (x, y, z) = (
-                voxel / (GridSpec::NY * GridSpec::NZ),
-                voxel / GridSpec::NZ % GridSpec::NY,
-                voxel % GridSpec::NZ,
-            );
-            grid.set(x, y, z, (winner[0] % CLASSES) as u8);
-        }
-        grid
-    }
-
-    fn skipped(&self) -> BTreeMap<String, usize> {
-        let counts = [
-            ("points that are not finite", self.not_finite),
-            ("points beside the map", self.elsewhere),
-            ("labels above 16, taken as others", self.unknown),
-        ];
-        let some = counts.into_iter().filter(|(_, n)| *n > 0);
-        some.map(|(what, n)| (what.to_owned(), n)).collect()
-    }
 }
 
 /// One field of a point.

@@ -1,6 +1,7 @@
 //! Tests of the reader of point clouds.
 
 use super::*;
+use scene::{Class, GridSpec};
 
 /// Three points in two voxels and one beside the map, with labels.
 pub(super) fn sample() -> Vec<u8> {
