@@ -420,14 +420,7 @@ pub(super) fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Se
     }
 }
 
-/// An error with its causes on one line.
-pub(super) fn one_line(error: &anyhow::Error) -> String {
-    format!("{error:#}")
-        .lines()
-        .map(str::trim)
-        .collect::<Vec<_>>()
-        .join("; ")
-}
+pub(super) use crate::cli::output::one_line;
 
 impl eframe::App for SceneloomApp {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {

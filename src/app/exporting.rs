@@ -83,7 +83,7 @@ impl SceneloomApp {
     ) {
         let (send, written) = bounded(1);
         let name = match formats.as_slice() {
-            [format] => format.name(),
+            [format] => format.id,
             _ => "everything",
         };
         let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());

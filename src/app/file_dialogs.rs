@@ -114,7 +114,7 @@ impl FileDialogs {
         let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
         dialog = match purpose {
             Purpose::Open => dialog
-                .add_filter("Scenes, roads, labels", &["loom", "xodr", "npz"])
+                .add_filter("Scenes and what becomes one", &formats::import::extensions())
                 .add_filter("All files", &["*"]),
             Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
             Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),

@@ -85,10 +85,10 @@ impl Settings {
     /// Reads them; those of a new user if there is no file. Errors in one line if the file cannot be read: it is then
     /// left as it is, and the standard settings are used.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
-        let text = match std::fs::read_to_string(path) {
+        let text = match formats::input::read_text(path, formats::input::LARGEST_TEXT) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
-            Err(error) => return Err(error).with_context(|| format!("settings {}", path.display())),
+            Err(error) if error.is_not_found() => return Ok(Self::default()),
+            Err(error) => return Err(error).context("settings"),
         };
         let mut read: Self =
             serde_json::from_str(&text).with_context(|| format!("settings {}", path.display()))?;

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use formats::input;
 use job::redraw;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
@@ -113,7 +114,9 @@ impl Tuning {
             .and_then(Path::parent)
             .map(|f| f.join("calibration.json"));
         let shipped = Stops::bundled();
-        let text = file.as_ref().and_then(|f| std::fs::read_to_string(f).ok());
+        let text = file
+            .as_ref()
+            .and_then(|f| input::read_text(f, input::LARGEST_TEXT).ok());
         let kept = text.and_then(|t| Stops::parse(&t, shipped.weights).ok());
         let ours = kept.filter(|s| s.machine == machine() && s.build == build());
         Self {

@@ -15,6 +15,7 @@ pub mod infer;
 pub mod inferred;
 pub mod layout;
 pub mod look;
+pub mod message;
 pub mod pose;
 pub mod raster;
 pub mod relations;

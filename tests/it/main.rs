@@ -4,6 +4,7 @@ mod appearance_gpu;
 mod bounded_memory;
 mod candle;
 mod cli;
+mod cli_formats;
 mod cli_tools;
 mod diffusion;
 mod fuzz;

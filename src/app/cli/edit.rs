@@ -10,7 +10,7 @@ use super::progress::Progress;
 use super::{Common, Gen, Outcome, Stop, output};
 use crate::open;
 use editor::{Document, Edit};
-use formats::project;
+use formats::{input, project};
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
@@ -40,7 +40,7 @@ pub struct EditCommand {
 /// A JSON list of edits.
 pub fn read_edits(path: &std::path::Path) -> anyhow::Result<Vec<Edit>> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("read {name}"))?;
+    let text = input::read_text(path, input::LARGEST_TEXT)?;
     serde_json::from_str(&text).with_context(|| name.to_string())
 }
 

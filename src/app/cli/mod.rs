@@ -38,7 +38,7 @@ use job::{GenParams, Named, Precision, RegionMode};
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Scene to open in the editor (.loom or .xodr); without one the bundled scene opens.
+    #[arg(help = format!("File to open in the editor: {}; without one the bundled scene opens", formats::import::in_words()))]
     scene: Option<PathBuf>,
     /// Write how fast the editor is (frames, edits, the worker's stages, processor time) as JSON lines, with a summary.
     #[arg(long, value_name = "FILE")]
@@ -51,7 +51,7 @@ enum Command {
     Demo(demo::Demo),
     /// A scene from a procedural world.
     New(new::New),
-    /// A scene from a road network (OpenDRIVE).
+    /// A scene from a file of another program: roads, labels, a point cloud, boxes.
     Import(import::Import),
     /// A scene from words, or an edit of a scene by words.
     Prompt(prompt::Prompt),

@@ -202,7 +202,7 @@ impl Trade {
             if !ended.success() {
                 bail!("process {i} ended with {ended}");
             }
-            let text = std::fs::read_to_string(&file).with_context(|| format!("read {}", file.display()))?;
+            let text = formats::input::read_text(&file, formats::input::LARGEST_TEXT)?;
             let raw: Raw = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
             match &mut all {
                 None => all = Some(raw),

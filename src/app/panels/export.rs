@@ -6,8 +6,9 @@ use egui::{DragValue, Ui};
 
 use crate::export::{ExportOptions, ExportProgress, Format};
 use crate::state::LidarModel;
-use sensors::cameras::{self, ViewId};
 use crate::theme;
+use formats::export::Product;
+use sensors::cameras::{self, ViewId};
 
 /// What the dialog shows of the application.
 pub struct ExportInput<'a> {
@@ -53,7 +54,7 @@ impl ExportPanel {
             .to_string_lossy()
             .into_owned();
         let mut panel = Self {
-            format: Some(Format::Occ3d),
+            format: formats::export::all().first().copied(),
             written: String::new(),
             options: ExportOptions::default(),
             path: String::new(),
@@ -66,7 +67,7 @@ impl ExportPanel {
 
     /// A place for the chosen format: a file, or a folder for the formats that fill one.
     fn suggested(&self) -> String {
-        let name = match self.format.map(|f| (f.file_name(), f.name())) {
+        let name = match self.format.map(|f| (f.file_name, f.id)) {
             Some((Some(file), _)) => format!("{}_{file}", self.stem),
             Some((None, name)) => format!("{}_{name}", self.stem),
             None => format!("{}_export", self.stem),
@@ -76,7 +77,7 @@ impl ExportPanel {
 
     /// True if the path names a folder, which is filled.
     pub fn fills_a_folder(&self) -> bool {
-        self.format.is_none_or(|f| f.file_name().is_none())
+        self.format.is_none_or(|f| f.file_name.is_none())
     }
 }
 
@@ -96,7 +97,7 @@ pub fn export_window(
         .resizable(false)
         .show(ui.ctx(), |ui| {
             ui.set_width(500.0);
-            formats(ui, panel);
+            kinds(ui, panel);
             ui.separator();
             options(ui, panel);
             let folder = panel.fills_a_folder();
@@ -134,7 +135,7 @@ pub fn export_window(
                 let enabled = input.busy.is_none() && !panel.path.trim().is_empty();
                 let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
-                    let all = || Format::ALL.to_vec();
+                    let all = || formats::export::all().to_vec();
                     asked = Some(Asked::Write(panel.format.map_or_else(all, |f| vec![f])));
                 }
                 if let Some(progress) = input.busy {
@@ -174,10 +175,10 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     }
 }
 
-fn formats(ui: &mut Ui, panel: &mut ExportPanel) {
+fn kinds(ui: &mut Ui, panel: &mut ExportPanel) {
     let before = panel.format;
-    for format in Format::ALL {
-        ui.radio_value(&mut panel.format, Some(format), format.what());
+    for format in formats::export::all() {
+        ui.radio_value(&mut panel.format, Some(*format), format.title);
     }
     ui.radio_value(&mut panel.format, None, "Everything above, into one folder");
     if panel.format != before {
@@ -201,44 +202,46 @@ fn options(ui: &mut Ui, panel: &mut ExportPanel) {
         ui.weak("Cameras of this size; everything else as it is set for its kind.");
         return;
     };
-    match format {
-        Format::Semantic | Format::Depth => {
-            size(ui, &mut options.camera_size);
-            ui.horizontal(|ui| {
-                ui.label("From");
-                // The usual one first.
-                for source in cameras::sources_of(ViewId::SEMANTIC).into_iter().rev() {
-                    ui.radio_value(&mut options.source, source.id(), source.id().name());
-                }
-            });
+    for product in format.needs {
+        match product {
+            Product::CameraMaps => {
+                size(ui, &mut options.camera_size);
+                ui.horizontal(|ui| {
+                    ui.label("From");
+                    // The usual one first.
+                    for source in cameras::sources_of(ViewId::SEMANTIC).into_iter().rev() {
+                        ui.radio_value(&mut options.source, source.id(), source.id().name());
+                    }
+                });
+            }
+            Product::Pictures => {
+                size(ui, &mut options.camera_size);
+                ui.weak("Some twenty seconds for six pictures of 800 x 450.");
+            }
+            Product::Sweep => {
+                ui.horizontal(|ui| {
+                    ui.label("Sweep");
+                    ui.radio_value(&mut options.lidar, LidarModel::Exact, "exact");
+                    ui.radio_value(
+                        &mut options.lidar,
+                        LidarModel::Learned,
+                        "learned, with intensity and lost echoes",
+                    );
+                });
+            }
+            Product::View => {
+                size(ui, &mut options.shot.size);
+                ui.horizontal(|ui| {
+                    ui.label("Samples per axis");
+                    ui.add(DragValue::new(&mut options.shot.supersample).range(1..=8))
+                        .accessible_name("Samples per axis");
+                    ui.checkbox(&mut options.shot.transparent, "Transparent");
+                    ui.checkbox(&mut options.shot.boxes, "Boxes");
+                    ui.checkbox(&mut options.shot.lidar, "LiDAR");
+                });
+                ui.weak("Seen as the 3D view shows it now.");
+            }
+            Product::Seen => {}
         }
-        Format::Pictures => {
-            size(ui, &mut options.camera_size);
-            ui.weak("Some twenty seconds for six pictures of 800 x 450.");
-        }
-        Format::NuscenesLidar | Format::Ply => {
-            ui.horizontal(|ui| {
-                ui.label("Sweep");
-                ui.radio_value(&mut options.lidar, LidarModel::Exact, "exact");
-                ui.radio_value(
-                    &mut options.lidar,
-                    LidarModel::Learned,
-                    "learned, with intensity and lost echoes",
-                );
-            });
-        }
-        Format::View => {
-            size(ui, &mut options.shot.size);
-            ui.horizontal(|ui| {
-                ui.label("Samples per axis");
-                ui.add(DragValue::new(&mut options.shot.supersample).range(1..=8))
-                    .accessible_name("Samples per axis");
-                ui.checkbox(&mut options.shot.transparent, "Transparent");
-                ui.checkbox(&mut options.shot.boxes, "Boxes");
-                ui.checkbox(&mut options.shot.lidar, "LiDAR");
-            });
-            ui.weak("Seen as the 3D view shows it now.");
-        }
-        Format::Occ3d | Format::Boxes => {}
     }
 }

@@ -25,7 +25,11 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
     let modal = Modal::new(Id::unique("start")).frame(theme::dialog_frame(ui.style()));
     let shown = modal.show(ui.ctx(), |ui| {
         ui.set_width(640.0);
-        ui.label(egui::RichText::new("Sceneloom").size(24.0).color(theme::text_strong()));
+        ui.label(
+            egui::RichText::new("Sceneloom")
+                .size(24.0)
+                .color(theme::text_strong()),
+        );
         let text = "Paint a street, place what stands on it, and see what the sensors would see.";
         ui.label(egui::RichText::new(text).color(theme::text_weak()));
         ui.add_space(2.0 * theme::GAP);
@@ -43,8 +47,10 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
             left.add_space(theme::GAP);
             crate::icons::section(left, "Recent");
             if settings.recent.is_empty() {
-                let text = "Scenes that you open or save appear here. Files can also be dropped on the window: \
-                            .loom scenes, OpenDRIVE roads (.xodr), Occ3D labels (.npz).";
+                let text = format!(
+                    "Scenes that you open or save appear here. Files can also be dropped on the window: {}.",
+                    formats::import::in_words()
+                );
                 // Columns justify what is in them; words do not want that.
                 left.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
                     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));

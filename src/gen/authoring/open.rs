@@ -8,9 +8,10 @@ use anyhow::{Context, bail};
 use glam::DVec2;
 
 use super::around;
-use formats::opendrive::{self, RoadNetwork};
-use formats::{atomic, occ3d, project};
-use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, draft, infer};
+use formats::import::{self, Content};
+use formats::opendrive::RoadNetwork;
+use formats::{atomic, input, project};
+use scene::{Frame, Scene, SensorRig, draft};
 use world::scenery::{self, Setting, Side, Style};
 use world::terrain::Terrain;
 use world::voxelize::{Vertical, complete};
@@ -18,9 +19,6 @@ use world::{World, template, traffic};
 
 /// A file with fewer things beside the road in view says nothing about the place: scenery is drawn.
 const ENOUGH_THINGS: usize = 5;
-
-/// Largest text file that is read, bytes.
-const LARGEST_TEXT: u64 = 256 << 20;
 
 /// The scene that ships with the program.
 pub fn bundled() -> anyhow::Result<Scene> {
@@ -31,7 +29,7 @@ pub fn bundled() -> anyhow::Result<Scene> {
 /// A sensor rig from a JSON file.
 pub fn rig(path: &Path) -> anyhow::Result<SensorRig> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("read {name}"))?;
+    let text = input::read_text(path, input::LARGEST_TEXT)?;
     let rig: SensorRig = serde_json::from_str(&text).with_context(|| name.to_string())?;
     match rig.problem() {
         Some(problem) => bail!("{name}: {problem}"),
@@ -45,85 +43,22 @@ pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
     atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
 }
 
-/// What a file is, found by content.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A `.loom` project.
-    Project,
-    /// A frame of Occ3D labels.
-    Occ3d,
-    /// An OpenDRIVE road network.
-    OpenDrive,
-}
-
-/// The kind of a file; anything that is no archive is taken for a road network.
-pub fn kind(path: &Path) -> anyhow::Result<Kind> {
-    let name = path.display();
-    let mut head = Vec::new();
-    let file = std::fs::File::open(path).with_context(|| format!("open {name}"))?;
-    std::io::Read::read_to_end(&mut std::io::Read::take(file, 4), &mut head)
-        .with_context(|| format!("read {name}"))?;
-    let has_extension = |wanted: &str| path.extension().is_some_and(|e| e == wanted);
-    let is_archive = head.starts_with(b"PK");
-    Ok(
-        if has_extension("npz") || (is_archive && !has_extension("loom") && is_npz(path)?) {
-            Kind::Occ3d
-        } else if is_archive || has_extension("loom") {
-            Kind::Project
-        } else {
-            Kind::OpenDrive
-        },
-    )
-}
-
-fn is_npz(path: &Path) -> anyhow::Result<bool> {
-    let bytes = std::fs::read(path).with_context(|| format!("read {}", path.display()))?;
-    Ok(occ3d::is_npz(&bytes))
-}
-
-/// A scene from a file of any kind.
+/// A scene from a file of any format that is read, see [`formats::import`].
 pub fn scene(path: &Path) -> anyhow::Result<Scene> {
-    match kind(path)? {
-        Kind::Project => Ok(project::load(path)?),
-        Kind::Occ3d => labels(path),
-        Kind::OpenDrive => Ok(import(path, &Placement::default())?.scene),
+    match import::read(path)?.1 {
+        Content::Scene(loaded) => Ok(loaded.scene),
+        Content::Roads(network) => {
+            Ok(on_roads(*network, &import::scene_name(path), &Placement::default()).scene)
+        }
     }
 }
 
-/// A scene from labels: their voxels as they are, layout, boxes and background inferred.
+/// A scene from Occ3D labels: their voxels as they are, layout, boxes and background inferred.
 pub fn labels(path: &Path) -> anyhow::Result<Scene> {
-    let frame = occ3d::load(path).with_context(|| path.display().to_string())?;
-    let (layout, boxes) = (infer::layout(&frame.labels), infer::boxes(&frame.labels));
-    let background = infer::background(&frame.labels, &layout);
-    // Data sets name the folder after the frame and the file `labels`.
-    let stem = path.file_stem().map(|s| s.to_string_lossy());
-    let folder = path
-        .parent()
-        .and_then(Path::file_name)
-        .map(|s| s.to_string_lossy());
-    let name = match (&stem, &folder) {
-        (Some(stem), Some(folder)) if stem == "labels" => folder,
-        (Some(stem), _) => stem,
-        (None, _) => &std::borrow::Cow::Borrowed("import"),
-    };
-    // A voxel was seen if any sensor that the file tells of saw it.
-    let seen = match (frame.lidar_observed, frame.camera_observed) {
-        (Some(lidar), Some(camera)) => Some(lidar.iter().zip(&camera).map(|(a, b)| *a || *b).collect()),
-        (one, other) => one.or(other),
-    };
-    let inferred = Inferred {
-        layout: true,
-        boxes: boxes.keys().copied().collect(),
-        background: !background.is_empty(),
-        unobserved: seen.and_then(|seen: Vec<bool>| Unobserved::from_observed(&seen)),
-    };
-    let frame = Frame {
-        inferred,
-        ..Frame::new(layout, boxes, frame.labels)
-    };
-    let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
-    scene.background = Arc::new(background);
-    Ok(scene)
+    match import::read_as(&import::occ3d::IMPORTER, path)? {
+        Content::Scene(loaded) => Ok(loaded.scene),
+        Content::Roads(_) => bail!("{}: roads, expected labels", path.display()),
+    }
 }
 
 /// Where and how a road network becomes a scene.
@@ -163,22 +98,25 @@ pub struct Imported {
 
 /// Reads an OpenDRIVE file.
 pub fn road_network(path: &Path) -> anyhow::Result<RoadNetwork> {
-    let name = path.display();
-    let size = std::fs::metadata(path)
-        .with_context(|| format!("open {name}"))?
-        .len();
-    if size > LARGEST_TEXT {
-        bail!("{name}: {size} bytes, expected at most {LARGEST_TEXT}");
+    match import::read_as(&import::opendrive::IMPORTER, path)? {
+        Content::Roads(network) => Ok(*network),
+        Content::Scene(_) => bail!("{}: a scene, expected roads", path.display()),
     }
-    let bytes = std::fs::read(path).with_context(|| format!("read {name}"))?;
-    opendrive::read(&bytes).with_context(|| name.to_string())
 }
 
-/// Imports a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
+/// Imports a road network from a file, see [`on_roads`].
+pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
+    Ok(on_roads(
+        road_network(path)?,
+        &import::scene_name(path),
+        placement,
+    ))
+}
+
+/// A scene on a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
 /// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
 /// scenery out, and the occupancy is the draft until it is generated.
-pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
-    let network = road_network(path)?;
+pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Imported {
     let (at, lane_heading) = match placement.at_m {
         Some(at) => network
             .pose_on_lane_near(at)
@@ -195,11 +133,10 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     let seed = placement.seed;
     let boxes = traffic::place(&import.layout, seed, &spec);
     let things_of_file = import.background.len() - import.bridge_count;
-    let stem = path.file_stem().map_or("import".into(), |s| s.to_string_lossy());
     let mut scene = if placement.bare {
         let occupancy = draft::draft(&import.layout, boxes.values());
         let frame = Frame::new(import.layout, boxes, occupancy);
-        let mut scene = Scene::single(&stem, frame, Arc::new(SensorRig::default()), seed);
+        let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), seed);
         scene.background = Arc::new(import.background);
         scene
     } else {
@@ -212,11 +149,11 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
         };
         of_world(
             &World::with_background(import.layout, boxes, background, seed),
-            &stem,
+            name,
         )
     };
     scene.seed = seed;
-    Ok(Imported {
+    Imported {
         scene,
         roads: import.road_count,
         lanes: import.lane_count,
@@ -225,7 +162,7 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
         things_of_file,
         skipped: import.skipped,
         pose: (at, heading),
-    })
+    }
 }
 
 /// A complete procedural world of a template: layout, traffic, occupancy. `None` for an unknown name.

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::*;
 use editor::{Document, Edit};
+use scene::infer;
 use scene::raster::{disc_cells, polygon_cells};
 use scene::solid::fill::fill;
 use scene::{Background, Class, Form, GridSpec, VoxelGrid};

@@ -11,9 +11,9 @@ use thiserror::Error;
 
 use diffusion::schedule::ScheduleError;
 use diffusion::solver::SolverError;
+use scene::message::one_line;
 use scene::{Scene, SceneRev, VoxelGrid};
 
-use crate::guard::one_line;
 use crate::product::Event;
 
 pub use super::params::{GenParams, Named, Quality, RegionMode};

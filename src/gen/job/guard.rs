@@ -26,15 +26,9 @@ impl Panicked {
             .or_else(|| payload.downcast_ref::<String>().map(String::as_str));
         Self {
             thread: thread.to_owned(),
-            message: one_line(text.unwrap_or("no message")),
+            message: scene::message::one_line(text.unwrap_or("no message")),
         }
     }
-}
-
-/// The lines of a text on one, without empty ones.
-pub(crate) fn one_line(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
-    lines.join("; ")
 }
 
 /// Runs work on this thread; a panic becomes an error. What the work left half-done is the caller's to throw away.

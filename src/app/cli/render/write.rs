@@ -6,8 +6,9 @@ use anyhow::Context;
 
 use crate::cli::output;
 use crate::picture::{self, Picture, SHEET_COLOR};
-use formats::npz::{self, Array};
-use formats::{multi_plane, point_cloud};
+use formats::export::ply;
+use formats::multi_plane;
+use formats::npz::{self, Array, Values};
 use scene::{CameraMaps, LidarSweep, MultiPlaneImage, PerspectiveMap};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
@@ -105,15 +106,13 @@ impl Writer {
         let shape = [h, w];
         let floats = |name, values: &[f32]| Array {
             name,
-            descr: "<f4",
             shape: &shape,
-            bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            values: Values::F32(values.to_vec()),
         };
         let labels = Array {
             name: "semantic",
-            descr: "|u1",
             shape: &shape,
-            bytes: m.semantic.clone(),
+            values: Values::U8(m.semantic.clone()),
         };
         let arrays = [
             labels,
@@ -122,7 +121,7 @@ impl Writer {
             floats("median_depth_m", &m.median_m),
             floats("coverage", &m.coverage),
         ];
-        self.bytes(&format!("{name}_maps.npz"), &npz::to_bytes(&arrays))
+        self.bytes(&format!("{name}_maps.npz"), &npz::to_bytes(&arrays)?)
     }
 
     /// The files of one camera's picture: what it shows of these views. `place` is the camera's number of how many.
@@ -189,7 +188,7 @@ impl Writer {
 
     /// Points, and a picture from above.
     pub fn lidar(&mut self, sweep: &LidarSweep) -> anyhow::Result<()> {
-        self.bytes("lidar.ply", &point_cloud::ply(sweep))?;
+        self.bytes("lidar.ply", &ply::to_bytes(sweep))?;
         self.picture("lidar.png", &picture::lidar_top(sweep, 4))
     }
 }

@@ -10,9 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cases::Case;
 use super::settings::Setting;
-use crate::machine::forget_peak_memory;
-use crate::machine::peak_rss_mb;
-use formats::atomic;
+use crate::machine::{forget_peak_memory, peak_rss_mb};
+use formats::{atomic, input};
 use job::composite::label_hash;
 use job::invented::Invented;
 use job::pipeline::OccPipeline;
@@ -26,6 +25,8 @@ use world::draw::{Draw, hash};
 
 /// Settings whose sources stand ready side by side while their runs take turns.
 const SIDE_BY_SIDE: usize = 8;
+/// Largest file of a kept reference, bytes: labels and a latent, with room.
+const LARGEST_REFERENCE: u64 = 64 << 20;
 
 /// What every setting is compared with.
 #[derive(Clone)]
@@ -132,7 +133,9 @@ impl Bench {
             dir.join(format!("{:016x}.ref", of.iter().fold(key, |h, v| hash(h ^ v))))
         });
         if let Some(path) = &path
-            && let Some(read) = std::fs::read(path).ok().and_then(|bytes| unpack(&bytes))
+            && let Some(read) = input::read(path, LARGEST_REFERENCE)
+                .ok()
+                .and_then(|bytes| unpack(&bytes))
         {
             return Ok(read);
         }

@@ -18,6 +18,7 @@ use authoring::prompting::{How, Laid, lay_out};
 use authoring::text;
 use check::Judge;
 use editor::Document;
+use formats::input;
 use numeric::quantile::median;
 use place::description::Description;
 use scene::{Frame, Scene, SceneBox, SensorRig};
@@ -48,9 +49,8 @@ fn sets(path: &Path) -> anyhow::Result<Vec<(String, String)>> {
         anyhow::ensure!(!files.is_empty(), "{}: no .jsonl files in it", path.display());
     }
     let read = |file: PathBuf| {
-        let text = std::fs::read_to_string(&file);
-        let text =
-            text.with_context(|| format!("read {} (--prompts names other sentences)", file.display()))?;
+        let text = input::read_text(&file, input::LARGEST_TEXT);
+        let text = text.context("sentences (--prompts names others)")?;
         Ok((file.display().to_string(), text))
     };
     files.into_iter().map(read).collect()

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use scene::message::one_line;
 use scene::{Frame, Scene};
 
 use super::archive::within;
@@ -12,7 +13,7 @@ const LARGEST_M: f64 = 1e5;
 
 /// Errors on the first thing that is not sound; JSON could not even hold a NaN.
 pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
-    let unsound = |text: String| Err(ProjectError::Unsound(format!("scene.json: {text}")));
+    let unsound = |text: String| Err(ProjectError::Unsound(one_line(&format!("scene.json: {text}"))));
     within(
         "the number of frames",
         scene.frames.len() as u64,

@@ -1,6 +1,6 @@
 //! The zip of a project: entries of known size, in and out, none larger than it may be.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Cursor, Read, Seek, Write};
 use std::sync::Arc;
 
@@ -11,9 +11,10 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use scene::grid::{BrickGrid, NOT_PAINTED};
+use scene::message::{one_line, quoted};
 use scene::{BevLayer, BevLayout, Class, GridSpec, Polyline, VoxelGrid};
 
-use super::ProjectError;
+use super::{LARGEST_FILE, ProjectError};
 
 /// Largest JSON entry, bytes.
 pub(super) const MAX_JSON: u64 = 64 << 20;
@@ -69,8 +70,9 @@ impl Writer {
     }
 
     pub(super) fn finish(self) -> Result<Vec<u8>, ProjectError> {
-        let cursor = self.zip.finish().map_err(io::Error::other)?;
-        Ok(cursor.into_inner())
+        let bytes = self.zip.finish().map_err(io::Error::other)?.into_inner();
+        within("the size of the project file", bytes.len() as u64, LARGEST_FILE)?;
+        Ok(bytes)
     }
 }
 
@@ -78,6 +80,8 @@ impl Writer {
 pub(super) struct Reader<R> {
     zip: ZipArchive<R>,
     unread: BTreeSet<String>,
+    /// Entries that a migration made; they go before those of the zip.
+    made: BTreeMap<String, Vec<u8>>,
 }
 
 impl<R: Read + Seek> Reader<R> {
@@ -97,13 +101,21 @@ impl<R: Read + Seek> Reader<R> {
             unread.insert(String::from_utf8_lossy(entry.name_raw()).into_owned());
         }
         within("the size of the unpacked project", unpacked, MAX_UNPACKED)?;
-        Ok(Self { zip, unread })
+        Ok(Self {
+            zip,
+            unread,
+            made: BTreeMap::new(),
+        })
     }
 
     /// Everything in an entry, unpacked, if that is at most `limit` bytes. The size the zip declares
     /// is checked first, but memory grows only with what is really there.
     pub(super) fn bytes(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError> {
         self.unread.remove(entry);
+        if let Some(bytes) = self.made.remove(entry) {
+            within(&format!("the size of {entry}"), bytes.len() as u64, limit)?;
+            return Ok(bytes);
+        }
         let damaged = |detail: String| ProjectError::Damaged {
             entry: entry.into(),
             detail,
@@ -120,6 +132,12 @@ impl<R: Read + Seek> Reader<R> {
         read.map_err(|e| damaged(one_line(&e)))?;
         within(&what, bytes.len() as u64, limit)?;
         Ok(bytes)
+    }
+
+    /// Puts an entry in place of one of that name, if there is one.
+    pub(super) fn put(&mut self, entry: &str, bytes: Vec<u8>) {
+        self.unread.insert(entry.to_owned());
+        self.made.insert(entry.to_owned(), bytes);
     }
 
     /// Everything in an entry of known size.
@@ -195,7 +213,9 @@ impl<R: Read + Seek> Reader<R> {
 
     pub(super) fn expect_all_read(&self) -> Result<(), ProjectError> {
         match self.unread.first() {
-            Some(entry) => Err(ProjectError::UnknownEntry { entry: entry.clone() }),
+            Some(entry) => Err(ProjectError::UnknownEntry {
+                entry: quoted(entry, 80),
+            }),
             None => Ok(()),
         }
     }
@@ -206,10 +226,6 @@ pub(super) fn parse<T: DeserializeOwned>(entry: &str, bytes: &[u8]) -> Result<T,
         entry: entry.into(),
         detail: one_line(&e),
     })
-}
-
-pub(super) fn one_line(error: &impl ToString) -> String {
-    error.to_string().replace(['\n', '\r'], " ")
 }
 
 pub(super) fn within(what: &str, found: u64, limit: u64) -> Result<(), ProjectError> {

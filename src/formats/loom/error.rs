@@ -4,6 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::{FORMAT, VERSION};
+use crate::input::InputError;
 
 /// Why a project could not be read or written. One line each; nothing was written, nothing opened.
 #[derive(Debug, thiserror::Error)]
@@ -16,6 +17,9 @@ pub enum ProjectError {
         /// What is wrong with it.
         problem: Box<ProjectError>,
     },
+    /// The file was not read: there is none, it is no regular file, or too large.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// The file system refused.
     #[error("{0}")]
     Io(#[from] io::Error),
@@ -28,7 +32,7 @@ pub enum ProjectError {
         /// What the manifest says.
         found: String,
     },
-    /// Made by another version of sceneloom.
+    /// Made by a newer version of sceneloom, or one that never was.
     #[error(
         "manifest.json: version is {found}, expected {VERSION}; open it with the sceneloom that wrote it"
     )]
