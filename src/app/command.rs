@@ -7,8 +7,8 @@ use editor::Edit;
 use scene::{BoxId, Class, SceneRev};
 use viewport::ViewPreset;
 
-use super::dock::Workspace;
 use super::state::{Pane, Tool, VoxelVerb};
+use crate::shell::dock::Workspace;
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +68,7 @@ pub enum Command {
     /// Draws what stands beside the roads anew, by what is chosen in the list.
     DrawScenery,
     /// What becomes of a result that waits.
-    Decide(super::staged::Verdict),
+    Decide(crate::shell::staged::Verdict),
     /// Ends a whole generation with what it shows now.
     StopHere,
     /// Stops the generation that runs.

@@ -7,9 +7,9 @@ use anyhow::{Context, anyhow, bail};
 use serde_json::json;
 
 use super::camera_views::march;
-use super::checking;
 use super::picture::{ShotOptions, View3d};
 use super::state::{CameraSource, LidarModel};
+use crate::shell::checking;
 use formats::{atomic, box_list, occ3d, png, point_cloud};
 use nets::lidar::LidarNet;
 use scene::sensor_data::{RENDER_IDS, RenderId};

@@ -5,8 +5,8 @@ use egui::{Color32, Painter, Rect, Stroke, StrokeKind, pos2};
 use glam::dvec2;
 
 use super::canvas::ScreenMap;
-use super::compare::tag;
-use super::tuning::LastEdit;
+use crate::panes::compare::tag;
+use crate::shell::tuning::LastEdit;
 use scene::GridSpec;
 use scene::grid::{BRICK, BRICKS};
 use sensors::learned_caster::Sampled;

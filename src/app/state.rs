@@ -9,8 +9,8 @@ use job::Named;
 use scene::{BevLayer, BoxId, Class};
 use viewport::LidarColorMode;
 
-use super::compare::CompareMode;
 use super::tools::things::ThingTool;
+use crate::panes::compare::CompareMode;
 
 /// What the primary button does on a canvas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -3,8 +3,8 @@
 use egui::Context;
 use glam::DVec2;
 
-use crate::application::SceneloomApp;
-use crate::panels::toasts::Level;
+use crate::shell::app::SceneloomApp;
+use crate::shell::toasts::Level;
 use crate::state::{Pane, Tool};
 use editor::arrange::{self, Added, Clipboard};
 use editor::{Edit, Shape, voxel_ops};

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use crate::application::SceneloomApp;
+use crate::shell::app::SceneloomApp;
 use crate::state::Pane;
 use crate::tools::ToolCommand;
 use editor::arrange::{self, Clipboard};

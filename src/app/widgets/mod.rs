@@ -1,0 +1,6 @@
+//! Small parts that several panes and windows draw.
+
+pub(crate) mod chip;
+pub mod fields;
+pub(crate) mod icons;
+pub(crate) mod thumbnail;
