@@ -7,8 +7,9 @@ use editor::Edit;
 use scene::{BoxId, Class, SceneRev};
 use viewport::ViewPreset;
 
-use super::state::{Pane, Tool, VoxelVerb};
-use crate::shell::dock::Workspace;
+use super::state::{Tool, VoxelVerb};
+use crate::panes::id::PaneId;
+use crate::shell::workspace::Workspace;
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -138,9 +139,9 @@ pub enum Command {
     /// Swaps the bird's-eye view and the 3D view.
     SwapPanes,
     /// Brings a pane to the front, or opens it.
-    ShowPane(Pane),
+    ShowPane(PaneId),
     /// Brings a pane into sight, or takes it off the screen.
-    TogglePane(Pane),
+    TogglePane(PaneId),
     /// Shows the pane under the pointer alone, or all of them again.
     MaximizePane,
     /// Arranges the panes for one kind of work.

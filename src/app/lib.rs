@@ -39,4 +39,4 @@ pub use command::Command;
 pub use panes::compare;
 pub use shell::app::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
 pub use shell::run::{run_window, run_window_with};
-pub use shell::{dock, live, recovery, settings};
+pub use shell::{dock, keymap, live, recovery, settings};

@@ -5,9 +5,12 @@ use egui::accesskit::Role;
 use egui::{Color32, CursorIcon, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
 use glam::DVec3;
 
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
 use crate::theme;
+use crate::widgets::icons::Icon;
 use editor::Edit;
 use scene::{Class, GridSpec, LidarSweep, Scene, SceneBox};
 use viewport::GROUND_TOP_M;
@@ -59,13 +62,32 @@ struct Held {
     scale: f64,
 }
 
-/// The pane's own state.
+/// The chosen box from three sides, and the edge of it that is held.
 #[derive(Default)]
-pub struct BoxViewsPane {
+pub struct BoxViews {
     held: Option<Held>,
 }
 
-impl BoxViewsPane {
+impl Pane for BoxViews {
+    fn id(&self) -> PaneId {
+        PaneId::BOX_VIEWS
+    }
+
+    fn title(&self) -> String {
+        "Box views".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Sides
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let sweep = cx.sensing.lidar().map(|l| &**l);
+        self.show(ui, cx.scene, sweep, cx.state, commands);
+    }
+}
+
+impl BoxViews {
     /// Draws the three views side by side, in a narrow pane one over the other.
     pub fn show(
         &mut self,

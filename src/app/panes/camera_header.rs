@@ -9,7 +9,7 @@ use crate::widgets::icons;
 use editor::Edit;
 use sensors::appearance::{Conditions, TimeOfDay, Weather};
 
-use super::cameras::{CamerasInput, thousands};
+use super::camera_strip::{CamerasInput, thousands};
 
 const MODES: [(CameraMode, &str, &str); 5] = [
     (CameraMode::Semantic, "Semantic", "classes"),

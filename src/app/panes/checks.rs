@@ -3,12 +3,56 @@
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
+use std::sync::Arc;
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use crate::meant::Meant;
 use crate::theme;
+use crate::widgets::icons::Icon;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
 use scene::{BoxId, Frame};
+
+/// What the quality checks found.
+pub struct Checks;
+
+impl Pane for Checks {
+    fn id(&self) -> PaneId {
+        PaneId::CHECKS
+    }
+
+    fn title(&self) -> String {
+        "Checks".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Tick
+    }
+
+    fn place(&self) -> Place {
+        Place::BelowViews
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let settled = cx.document.settled_scene();
+        let input = ChecksInput {
+            findings: cx.checking.findings().map(|f| f.as_slice()),
+            stale: cx.checking.is_stale(settled.rev),
+            selected: cx.state.selected,
+            frame: settled.frame(),
+        };
+        let meant = theme::panel_frame()
+            .show(ui, |ui| checks_ui(ui, &input, commands))
+            .inner;
+        if cx.state.meant.as_deref() != meant.as_ref() {
+            cx.state.meant = meant.map(Arc::new);
+            // The views are drawn before this pane or after it.
+            ui.ctx().request_repaint();
+        }
+    }
+}
 
 /// What the panel shows.
 pub struct ChecksInput<'a> {

@@ -7,45 +7,17 @@ use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2}
 
 use scene::{GridSpec, Scene, SceneRev, VoxelGrid};
 
-use super::cameras::CameraStrip;
-use super::lidar::SweepPane;
+use super::camera_strip::CameraStrip;
+use super::lidar::SweepPicture;
 use crate::bev_image::{SIZE, column_of};
 use crate::camera_views::Wanted;
 use crate::canvas::Canvas;
 use crate::sensing::Sensing;
+pub use crate::state::CompareMode;
+use crate::state::UiState;
 use crate::theme;
 use crate::view3d::View3d;
 use viewport::BrushCells;
-
-/// How two states are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CompareMode {
-    /// Only the present state is shown.
-    #[default]
-    Off,
-    /// Before on the left of a line, after on its right.
-    Wipe,
-    /// Before beside after.
-    Side,
-    /// Voxels that differ are marked.
-    Difference,
-}
-
-impl CompareMode {
-    /// Every mode with its name and what it does.
-    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
-        (CompareMode::Off, "Off", "only the present state"),
-        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
-        (CompareMode::Side, "Side", "before beside after"),
-        (CompareMode::Difference, "Diff", "voxels that differ"),
-    ];
-
-    /// The next one.
-    pub fn next(self) -> Self {
-        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
-        Self::ALL[(at + 1) % Self::ALL.len()].0
-    }
-}
 
 /// What differs between two grids.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -140,7 +112,7 @@ pub struct Compare {
     pub(crate) canvas: Canvas,
     pub(crate) view3d: Option<View3d>,
     pub(crate) strip: CameraStrip,
-    pub(crate) sweep: SweepPane,
+    pub(crate) sweep: SweepPicture,
     pub(crate) sensing: Option<Sensing>,
     difference: Option<(SceneRev, SceneRev, Difference, egui::TextureHandle)>,
 }
@@ -185,6 +157,19 @@ impl Compare {
         self.difference
             .as_ref()
             .map(|(_, _, found, texture)| (found, texture.id()))
+    }
+
+    /// The way to compare, if there is something to compare with and no key is held that shows it alone.
+    pub(crate) fn mode(&self, state: &UiState) -> CompareMode {
+        match &self.before {
+            Some(_) if !state.holding_before => state.compare,
+            _ => CompareMode::Off,
+        }
+    }
+
+    /// The state before is shown alone: its key is held.
+    pub(crate) fn shows_before(&self, state: &UiState, scene: &Arc<Scene>) -> bool {
+        state.holding_before && self.before.as_ref().is_some_and(|b| Arc::ptr_eq(b, scene))
     }
 }
 

@@ -2,12 +2,49 @@
 
 use egui::Ui;
 
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use crate::theme;
+use crate::widgets::icons::Icon;
 use editor::Document;
 
 /// Height of a line, with the gap.
 const HISTORY_ROW: f32 = theme::ROW - 3.0;
+
+/// The steps that can be undone.
+pub struct History;
+
+impl Pane for History {
+    fn id(&self) -> PaneId {
+        PaneId::HISTORY
+    }
+
+    fn title(&self) -> String {
+        "History".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Undo
+    }
+
+    fn place(&self) -> Place {
+        Place::ColumnAtOnce
+    }
+
+    fn column_points(&self) -> f32 {
+        266.0
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let text = history_title(cx.document);
+        ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| history_ui(ui, cx.document, commands));
+    }
+}
 
 /// What the history takes of the memory that it may, for the header of its pane.
 pub fn history_title(document: &Document) -> String {

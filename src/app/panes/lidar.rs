@@ -6,21 +6,107 @@ use egui::accesskit::Role;
 use egui::{Color32, ColorImage, Rect, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2};
 use glam::DVec3;
 
+use super::areas::{clipped, in_rect, left_part, upper_and_lower};
+use super::compare::{CompareMode, wipe_line};
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
+use crate::command::Command;
 use crate::state::UiState;
 use crate::theme;
+use crate::widgets::icons::Icon;
 use scene::{LidarSweep, Scene};
 use viewport::{LidarColorMode, lidar_colors};
 
 /// Columns of the picture.
 const COLUMNS: usize = 1080;
 
+/// The newest sweep.
+#[derive(Default)]
+pub struct Lidar {
+    sweep: SweepPicture,
+}
+
+impl Pane for Lidar {
+    fn id(&self) -> PaneId {
+        PaneId::LIDAR
+    }
+
+    fn title(&self) -> String {
+        "LiDAR sweep".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Sweep
+    }
+
+    fn shows_before(&self) -> bool {
+        true
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let colors = [
+            (LidarColorMode::Range, "Range"),
+            (LidarColorMode::Class, "Class"),
+            (LidarColorMode::Ring, "Ring"),
+            (LidarColorMode::Intensity, "Echo"),
+            (LidarColorMode::Drop, "Loss"),
+        ];
+        let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar_colors);
+        egui::ComboBox::from_id_salt("sweep colours")
+            .selected_text(shown.map_or("Range", |(_, name)| name))
+            .width(84.0)
+            .show_ui(ui, |ui| {
+                for (mode, name) in colors {
+                    ui.selectable_value(&mut cx.state.lidar_colors, mode, name);
+                }
+            })
+            .response
+            .accessible_name("LiDAR colour");
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let area = ui.available_rect_before_wrap();
+        let scene = cx.scene;
+
+        let mode = cx.compare.mode(cx.state);
+        let before = cx.compare.before.clone();
+        let other = cx.compare.sensing.as_ref().and_then(|s| s.lidar()).cloned();
+        if let (true, Some(before)) = (cx.state.holding_before, &before) {
+            let sweep = &mut cx.compare.sweep;
+            sweep.show(ui, before, other.as_ref(), cx.state);
+            return;
+        }
+        let (top, bottom) = upper_and_lower(area);
+        let rect = if mode == CompareMode::Side { bottom } else { area };
+        in_rect(ui, rect, |ui| {
+            self.sweep.show(ui, scene, cx.sensing.lidar(), cx.state);
+        });
+        let Some(before) = before else { return };
+        match mode {
+            CompareMode::Side => in_rect(ui, top, |ui| {
+                cx.compare.sweep.show(ui, &before, other.as_ref(), cx.state);
+            }),
+            CompareMode::Wipe => {
+                let part = left_part(area, cx.state.wipe_at);
+                clipped(ui, part, |ui| {
+                    in_rect(ui, area, |ui| {
+                        cx.compare.sweep.show(ui, &before, other.as_ref(), cx.state);
+                    });
+                });
+                wipe_line(ui, area, &mut cx.state.wipe_at);
+            }
+            _ => {}
+        }
+    }
+}
+
 /// The picture and what it was made from.
 #[derive(Default)]
-pub struct SweepPane {
+pub struct SweepPicture {
     texture: Option<(Arc<LidarSweep>, LidarColorMode, usize, TextureHandle)>,
 }
 
-impl SweepPane {
+impl SweepPicture {
     /// Draws the sweep into all the space there is.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene, sweep: Option<&Arc<LidarSweep>>, state: &mut UiState) {
         let rect = ui.available_rect_before_wrap();

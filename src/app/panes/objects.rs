@@ -3,6 +3,8 @@
 use egui::{DragValue, Ui};
 use glam::DVec3;
 
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::command::Command;
 use crate::panes::label::label_ui;
@@ -10,10 +12,40 @@ use crate::state::UiState;
 use crate::theme;
 use crate::tools::{Choose, ToolCommand};
 use crate::widgets::fields::{caption, field, fields, number, numbers};
-use crate::widgets::icons::{self, Icon, section};
+use crate::widgets::icons::Icon;
+use crate::widgets::icons::{self, section};
 use editor::transform::Orientation;
 use editor::{Document, Edit, arrange};
 use scene::{BoxId, Class, Frame, SceneBox, Thing};
+
+/// The chosen box in numbers, all boxes.
+pub struct Objects;
+
+impl Pane for Objects {
+    fn id(&self) -> PaneId {
+        PaneId::OBJECTS
+    }
+
+    fn title(&self) -> String {
+        "Objects".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::List
+    }
+
+    fn place(&self) -> Place {
+        Place::ColumnAtOnce
+    }
+
+    fn column_points(&self) -> f32 {
+        266.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| objects_ui(ui, cx.document, cx.state, commands));
+    }
+}
 
 /// Draws the panel.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {

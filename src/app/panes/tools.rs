@@ -3,6 +3,8 @@
 use egui::accesskit::Role;
 use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
 use crate::bev_image::DRAW_ORDER;
 use crate::command::Command;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
@@ -10,8 +12,35 @@ use crate::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::theme;
 use crate::tools::things::{self, ThingCommand};
 use crate::tools::{PaintShape, ToolCommand, panel as tools};
-use crate::widgets::icons::{self, Icon, section};
+use crate::widgets::icons::Icon;
+use crate::widgets::icons::{self, section};
 use scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
+
+/// Options of the tool in hand, map layers.
+pub struct Tools;
+
+impl Pane for Tools {
+    fn id(&self) -> PaneId {
+        PaneId::TOOLS
+    }
+
+    fn title(&self) -> String {
+        "Tools".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Brush
+    }
+
+    fn column_points(&self) -> f32 {
+        230.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let frame = cx.document.scene().frame();
+        theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, cx.state, commands));
+    }
+}
 
 /// Draws the panel.
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {

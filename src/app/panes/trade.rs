@@ -3,13 +3,41 @@
 
 use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::shell::tuning::{LastEdit, Measuring, Tuning, foretold};
 use crate::theme;
 use crate::trade::load::{Load, machine};
 use crate::trade::plot::{Mark, front_plot, percent, seconds};
+use crate::widgets::icons::Icon;
 use job::GenParams;
 use trade::Stop;
+
+/// The quality slider, its measurements, the receipt of the last edit.
+pub struct Trade;
+
+impl Pane for Trade {
+    fn id(&self) -> PaneId {
+        PaneId::TRADE
+    }
+
+    fn title(&self) -> String {
+        "Speed and accuracy".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Live
+    }
+
+    fn column_points(&self) -> f32 {
+        400.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| trade_ui(ui, cx.tuning, cx.params, commands));
+    }
+}
 
 /// Draws the panel. `params` are those of the next edit.
 pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {

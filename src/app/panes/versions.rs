@@ -3,6 +3,8 @@
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, TextureOptions, Ui, WidgetInfo, pos2, vec2};
 
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
 use crate::bev_image;
 use crate::command::Command;
 use crate::panes::compare::CompareMode;
@@ -10,7 +12,43 @@ use crate::shell::versions::Versions;
 use crate::state::UiState;
 use crate::theme;
 use crate::widgets::icons;
+use crate::widgets::icons::Icon;
 use scene::SceneRev;
+
+/// What was generated so far.
+pub struct VersionsPane;
+
+impl Pane for VersionsPane {
+    fn id(&self) -> PaneId {
+        PaneId::VERSIONS
+    }
+
+    fn title(&self) -> String {
+        "Versions".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Stack
+    }
+
+    fn place(&self) -> Place {
+        Place::ColumnAtOnce
+    }
+
+    fn column_points(&self) -> f32 {
+        266.0
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        versions_controls(ui, cx.state);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let shown = cx.document.settled_scene().rev;
+        let before = cx.compare.before.as_ref().map(|s| s.rev);
+        theme::panel_frame().show(ui, |ui| versions_ui(ui, cx.versions, shown, before, commands));
+    }
+}
 
 /// Height of an entry, points.
 const ENTRY: f32 = 52.0;

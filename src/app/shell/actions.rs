@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use viewport::ViewPreset;
 
-use super::dock::Workspace;
 use super::staged::Verdict;
+use super::workspace::Workspace;
 use crate::command::Command;
 use crate::state::{Tool, UiState, VoxelVerb};
 use crate::tools::things::{ThingCommand, ThingTool};

@@ -29,13 +29,13 @@ use super::toasts::{Level, Toasts};
 use super::tuning::Tuning;
 use super::versions::Versions;
 use crate::canvas::Canvas;
-use crate::panes::box_views::BoxViewsPane;
-use crate::panes::cameras::{CameraStrip, CamerasInput};
+use crate::panes;
+use crate::panes::camera_strip::CameraStrip;
 use crate::panes::compare::Compare;
-use crate::panes::lidar::SweepPane;
-use crate::panes::prompt::PromptPane;
+use crate::panes::pane::Pane;
+use crate::panes::prompt::field::PromptField;
 use crate::sensing::Sensing;
-use crate::state::{Pane, UiState};
+use crate::state::UiState;
 use crate::theme;
 use crate::view3d::View3d;
 use crate::windows::palette::Palette;
@@ -146,14 +146,13 @@ pub struct SceneloomApp {
     pub(crate) gate: UpdateGate,
     pub(crate) sensing: Sensing,
     pub(crate) strip: CameraStrip,
-    pub(crate) sweep: SweepPane,
-    pub(crate) box_views: BoxViewsPane,
+    pub(crate) panes: Vec<Box<dyn Pane>>,
     pub(crate) dock: Dock,
     /// What was generated so far.
     pub versions: Versions,
     pub(crate) compare: Compare,
     pub(crate) staged: Option<Staged>,
-    pub(crate) prompt: PromptPane,
+    pub(crate) prompt: PromptField,
     pub(crate) render_state: Option<egui_wgpu::RenderState>,
     pub(crate) palette: Palette,
     /// What is kept between sessions.
@@ -242,8 +241,7 @@ impl SceneloomApp {
             gate: UpdateGate::default(),
             sensing: Sensing::spawn(sensing_grace, wake)?,
             strip: CameraStrip::default(),
-            sweep: SweepPane::default(),
-            box_views: BoxViewsPane::default(),
+            panes: panes::all(),
             dock: settings
                 .dock
                 .clone()
@@ -257,7 +255,7 @@ impl SceneloomApp {
             staged: None,
             words: None,
             drawn_first: None,
-            prompt: PromptPane::default(),
+            prompt: PromptField::default(),
             render_state,
             shortcuts: Shortcuts::default(),
             kept: (config.settings_file, settings.clone(), 0.0),
@@ -358,7 +356,7 @@ impl SceneloomApp {
     fn write_settings(&mut self, ctx: &egui::Context) {
         self.settings.ui_scale = ctx.zoom_factor();
         self.settings.dock = Some(self.dock.tree().clone());
-        self.settings.panes_known = Pane::CHOICES.to_vec();
+        self.settings.panes_known = panes::infos().iter().map(|p| p.id).collect();
         self.settings.key_preset.clone_from(&self.keymap.preset);
         self.settings.keys.clone_from(&self.keymap.own);
         let now_s = self.now_s();
@@ -401,16 +399,6 @@ fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync +
                 ctx.request_repaint();
             }
         }
-    }
-}
-
-pub(crate) fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> CamerasInput<'a> {
-    CamerasInput {
-        scene,
-        views: sensing.cameras(),
-        prompt: &scene.prompt,
-        stale: sensing.cameras_stale(rev),
-        lidar_points: sensing.lidar().map(|l| l.points.len()),
     }
 }
 

@@ -4,40 +4,11 @@
 use std::collections::HashSet;
 
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
-use serde::{Deserialize, Serialize};
 
-use crate::state::Pane;
-
-/// An arrangement made for one kind of work.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Workspace {
-    /// Bird's-eye view and 3D view side by side, cameras below.
-    #[default]
-    Edit,
-    /// A large bird's-eye view.
-    Paint,
-    /// A large 3D view.
-    Voxels,
-    /// Six cameras and the unrolled LiDAR sweep.
-    Sensors,
-    /// The chosen box from three sides, beside bird's-eye and 3D view.
-    Label,
-    /// The quality slider and its measurements beside the views.
-    Trade,
-}
-
-impl Workspace {
-    /// Every workspace with its name.
-    pub const ALL: [(Workspace, &'static str); 6] = [
-        (Workspace::Edit, "Edit"),
-        (Workspace::Paint, "Paint"),
-        (Workspace::Voxels, "Voxels"),
-        (Workspace::Sensors, "Sensors"),
-        (Workspace::Label, "Label"),
-        (Workspace::Trade, "Trade"),
-    ];
-}
+pub use super::workspace::Workspace;
+use crate::panes;
+use crate::panes::id::PaneId;
+use crate::panes::pane::Place;
 
 /// Which way a pane is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +25,7 @@ const WIDEST: f32 = 1.4;
 /// The panes of the window.
 #[derive(Clone, PartialEq)]
 pub struct Dock {
-    pub(crate) tree: Tree<Pane>,
+    pub(crate) tree: Tree<PaneId>,
     /// Alone on screen, if any.
     pub(crate) maximized: Option<TileId>,
     /// Width that the side columns were fitted to, points.
@@ -76,16 +47,16 @@ impl Dock {
         let mut t = Tiles::default();
         let root = match workspace {
             Workspace::Edit => {
-                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
-                let strip = t.insert_pane(Pane::Cameras);
+                let views = row(&mut t, Horizontal, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
+                let strip = t.insert_pane(PaneId::CAMERAS);
                 let center = join(&mut t, Vertical, &[(views, 700.0), (strip, 150.0)]);
                 framed(&mut t, center)
             }
             Workspace::Paint => {
                 let (bev, view, strip) = (
-                    t.insert_pane(Pane::Bev),
-                    t.insert_pane(Pane::View3d),
-                    t.insert_pane(Pane::Camera(1)), // of the rigs that ship: to the front
+                    t.insert_pane(PaneId::BEV),
+                    t.insert_pane(PaneId::VIEW3D),
+                    t.insert_pane(PaneId::of_camera(1)), // of the rigs that ship: to the front
                 );
                 let side = join(&mut t, Vertical, &[(view, 1.0), (strip, 1.0)]);
                 let center = join(&mut t, Horizontal, &[(bev, 2.0), (side, 1.0)]);
@@ -93,9 +64,9 @@ impl Dock {
             }
             Workspace::Voxels => {
                 let (bev, view, boxes) = (
-                    t.insert_pane(Pane::Bev),
-                    t.insert_pane(Pane::View3d),
-                    t.insert_pane(Pane::BoxViews),
+                    t.insert_pane(PaneId::BEV),
+                    t.insert_pane(PaneId::VIEW3D),
+                    t.insert_pane(PaneId::BOX_VIEWS),
                 );
                 let side = join(&mut t, Vertical, &[(bev, 1.0), (boxes, 1.0)]);
                 let center = join(&mut t, Horizontal, &[(view, 2.2), (side, 1.0)]);
@@ -103,18 +74,18 @@ impl Dock {
             }
             Workspace::Sensors => {
                 let rows: Vec<TileId> = [[0, 1, 2], [5, 4, 3]] // in the order of the rig: forward, then back
-                    .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (Pane::Camera(c), 1.0))))
+                    .map(|cameras| row(&mut t, Horizontal, &cameras.map(|c| (PaneId::of_camera(c), 1.0))))
                     .to_vec();
-                let sweep = t.insert_pane(Pane::Lidar);
-                let views = row(&mut t, Vertical, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
+                let sweep = t.insert_pane(PaneId::LIDAR);
+                let views = row(&mut t, Vertical, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
                 let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.8)]);
                 join(&mut t, Horizontal, &[(cameras, 2.0), (views, 1.0)])
             }
             Workspace::Trade => {
-                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
-                let strip = t.insert_pane(Pane::Cameras);
+                let views = row(&mut t, Horizontal, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
+                let strip = t.insert_pane(PaneId::CAMERAS);
                 let center = join(&mut t, Vertical, &[(views, 700.0), (strip, 150.0)]);
-                let (tools, trade) = (t.insert_pane(Pane::Tools), t.insert_pane(Pane::Trade));
+                let (tools, trade) = (t.insert_pane(PaneId::TOOLS), t.insert_pane(PaneId::TRADE));
                 join(
                     &mut t,
                     Horizontal,
@@ -122,9 +93,9 @@ impl Dock {
                 )
             }
             Workspace::Label => {
-                let views = row(&mut t, Horizontal, &[(Pane::Bev, 1.0), (Pane::View3d, 1.0)]);
-                let boxes = t.insert_pane(Pane::BoxViews);
-                let strip = t.insert_pane(Pane::Cameras);
+                let views = row(&mut t, Horizontal, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
+                let boxes = t.insert_pane(PaneId::BOX_VIEWS);
+                let strip = t.insert_pane(PaneId::CAMERAS);
                 let center = join(
                     &mut t,
                     Vertical,
@@ -142,10 +113,19 @@ impl Dock {
     }
 
     /// From what was kept of an earlier session; none if it is not sound: empty, a pane twice, or no tree (a tile
-    /// within itself would be walked without end), or a share that is no number.
-    pub fn from_kept(tree: Tree<Pane>) -> Option<Self> {
+    /// within itself would be walked without end), or a share that is no number. Panes that this version does not
+    /// have are left out.
+    pub fn from_kept(mut tree: Tree<PaneId>) -> Option<Self> {
         if !is_tree(&tree) {
             return None;
+        }
+        let is_unknown = |(id, tile): (&TileId, &Tile<PaneId>)| match tile {
+            Tile::Pane(pane) if panes::info(*pane).is_none() => Some(*id),
+            _ => None,
+        };
+        let unknown: Vec<TileId> = tree.tiles.iter().filter_map(is_unknown).collect();
+        for tile in unknown {
+            tree.remove_recursively(tile);
         }
         let dock = Self {
             tree,
@@ -153,8 +133,8 @@ impl Dock {
             fitted: 0.0,
             fresh: false,
         };
-        let panes: Vec<Pane> = dock.all().map(|(_, pane)| pane).collect();
-        let distinct: HashSet<Pane> = panes.iter().copied().collect();
+        let panes: Vec<PaneId> = dock.all().map(|(_, pane)| pane).collect();
+        let distinct: HashSet<PaneId> = panes.iter().copied().collect();
         (!panes.is_empty() && distinct.len() == panes.len() && dock.tree.root.is_some()).then_some(dock)
     }
 
@@ -215,12 +195,8 @@ impl Dock {
         let mut needed: f32 = 0.0;
         while let Some(id) = open.pop() {
             match self.tree.tiles.get(id) {
-                Some(Tile::Pane(pane)) => match pane {
-                    Pane::Tools => needed = needed.max(230.0),
-                    Pane::Objects | Pane::Prompt | Pane::Versions | Pane::History => {
-                        needed = needed.max(266.0)
-                    }
-                    Pane::Trade => needed = needed.max(400.0),
+                Some(Tile::Pane(pane)) => match panes::info(*pane).map_or(0.0, |p| p.column_points) {
+                    points if points > 0.0 => needed = needed.max(points),
                     _ => return 0.0,
                 },
                 Some(Tile::Container(c)) => open.extend(c.children()),
@@ -231,12 +207,12 @@ impl Dock {
     }
 
     /// The tree, to be kept.
-    pub fn tree(&self) -> &Tree<Pane> {
+    pub fn tree(&self) -> &Tree<PaneId> {
         &self.tree
     }
 
-    fn all(&self) -> impl Iterator<Item = (TileId, Pane)> + '_ {
-        let pane = |(id, tile): (&TileId, &Tile<Pane>)| match tile {
+    fn all(&self) -> impl Iterator<Item = (TileId, PaneId)> + '_ {
+        let pane = |(id, tile): (&TileId, &Tile<PaneId>)| match tile {
             Tile::Pane(pane) => Some((*id, *pane)),
             Tile::Container(_) => None,
         };
@@ -244,12 +220,12 @@ impl Dock {
     }
 
     /// The tile that holds a pane.
-    pub fn find(&self, pane: Pane) -> Option<TileId> {
+    pub fn find(&self, pane: PaneId) -> Option<TileId> {
         self.all().find(|(_, p)| *p == pane).map(|(id, _)| id)
     }
 
     /// True if the pane is on screen: not behind another tab, nor behind a maximized pane.
-    pub fn is_shown(&self, pane: Pane) -> bool {
+    pub fn is_shown(&self, pane: PaneId) -> bool {
         self.find(pane).is_some_and(|id| match self.maximized {
             Some(large) => large == id,
             None => self.tree.active_tiles().contains(&id),
@@ -257,7 +233,7 @@ impl Dock {
     }
 
     /// Puts a pane into a tile. If it stands elsewhere the two change places.
-    pub fn put(&mut self, tile: TileId, pane: Pane) {
+    pub fn put(&mut self, tile: TileId, pane: PaneId) {
         let other = self.find(pane).filter(|id| *id != tile);
         let Some(Tile::Pane(here)) = self.tree.tiles.get_mut(tile) else {
             return;
@@ -269,7 +245,7 @@ impl Dock {
     }
 
     /// Lets two panes change places; one that is not there takes the other's place.
-    pub fn swap(&mut self, a: Pane, b: Pane) {
+    pub fn swap(&mut self, a: PaneId, b: PaneId) {
         match (self.find(a), self.find(b)) {
             (Some(tile), _) => self.put(tile, b),
             (None, Some(tile)) => self.put(tile, a),
@@ -278,7 +254,7 @@ impl Dock {
     }
 
     /// Divides a tile; the new half shows a pane that is nowhere else.
-    pub fn split(&mut self, tile: TileId, split: Split, pane: Pane) {
+    pub fn split(&mut self, tile: TileId, split: Split, pane: PaneId) {
         if self.find(pane).is_some() {
             return;
         }
@@ -311,21 +287,22 @@ impl Dock {
 
     /// Brings a pane to the front, or opens it: a panel in the column of its like, a list of findings below the views, all
     /// else below the largest view.
-    pub fn open(&mut self, pane: Pane) {
+    pub fn open(&mut self, pane: PaneId) {
         self.maximized = None;
         if self.find(pane).is_some() {
             self.tree
                 .make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == pane));
             return;
         }
-        let opened = match pane {
-            Pane::Checks => self.open_below_views(pane),
-            _ => SIDE.contains(&pane) && self.open_in_column(pane),
+        let opened = match panes::info(pane).map(|p| p.place) {
+            Some(Place::BelowViews) => self.open_below_views(pane),
+            Some(Place::Column | Place::ColumnAtOnce) => self.open_in_column(pane),
+            Some(Place::BelowView) | None => false,
         };
         if opened {
             return;
         }
-        let beside = [Pane::View3d, Pane::Bev, Pane::Cameras]
+        let beside = [PaneId::VIEW3D, PaneId::BEV, PaneId::CAMERAS]
             .into_iter()
             .find_map(|p| self.find(p));
         if let Some(tile) = beside.or_else(|| self.all().next().map(|(id, _)| id)) {
@@ -334,7 +311,7 @@ impl Dock {
     }
 
     /// Brings a pane into sight, or takes it off the screen if it is in sight.
-    pub fn toggle(&mut self, pane: Pane) {
+    pub fn toggle(&mut self, pane: PaneId) {
         match self.find(pane).filter(|_| self.is_shown(pane)) {
             Some(tile) => self.close(tile),
             None => self.open(pane),
@@ -343,21 +320,32 @@ impl Dock {
 
     /// Adds the panels that there were not yet when this dock was kept, if it has the column for them: an arrangement of
     /// views alone stays one.
-    pub fn with_new_panes(mut self, known: &[Pane]) -> Self {
+    pub fn with_new_panes(mut self, known: &[PaneId]) -> Self {
         // Docks of the first versions do not say what they knew.
         let known = if known.is_empty() { &FIRST } else { known };
-        for pane in SIDE.into_iter().filter(|p| !known.contains(p)) {
-            if self.find(pane).is_none() {
-                self.open_in_column(pane);
+        for pane in panes::infos() {
+            let is_new = pane.place == Place::ColumnAtOnce && !known.contains(&pane.id);
+            if is_new && self.find(pane.id).is_none() {
+                self.open_in_column(pane.id);
             }
         }
         self
     }
 
     /// In a column that holds panels of the right side already.
-    fn open_in_column(&mut self, pane: Pane) -> bool {
-        let of_column = |p: &Pane| self.find(*p).and_then(|id| self.vertical_over(id));
-        let Some((column, beside)) = SIDE.iter().rev().find_map(of_column) else {
+    fn open_in_column(&mut self, pane: PaneId) -> bool {
+        let in_column = |p: &&panes::pane::PaneInfo| p.place.is_column();
+        let places: Vec<(TileId, TileId)> = panes::infos()
+            .iter()
+            .filter(in_column)
+            .filter_map(|p| self.find(p.id).and_then(|id| self.vertical_over(id)))
+            .collect();
+        // Under the lowest of them.
+        let row = |(column, child): &(TileId, TileId)| match self.tree.tiles.get(*column) {
+            Some(Tile::Container(c)) => c.children().position(|id| id == child),
+            _ => None,
+        };
+        let Some((column, beside)) = places.into_iter().max_by_key(row) else {
             return false;
         };
         self.insert_after(column, beside, pane, 0.22);
@@ -365,9 +353,9 @@ impl Dock {
     }
 
     /// Under the row of large views, so that it hides nothing of what it speaks of.
-    fn open_below_views(&mut self, pane: Pane) -> bool {
-        let of_views = |p: &Pane| self.find(*p).and_then(|id| self.vertical_over(id));
-        let Some((column, views)) = [Pane::Bev, Pane::View3d].iter().find_map(of_views) else {
+    fn open_below_views(&mut self, pane: PaneId) -> bool {
+        let of_views = |p: PaneId| self.find(p).and_then(|id| self.vertical_over(id));
+        let Some((column, views)) = [PaneId::BEV, PaneId::VIEW3D].into_iter().find_map(of_views) else {
             return false;
         };
         self.insert_after(column, views, pane, 0.24);
@@ -389,7 +377,7 @@ impl Dock {
     }
 
     /// Puts a pane under another child of a column, with that share of its height.
-    fn insert_after(&mut self, column: TileId, child: TileId, pane: Pane, share: f32) {
+    fn insert_after(&mut self, column: TileId, child: TileId, pane: PaneId, share: f32) {
         let new = self.tree.tiles.insert_pane(pane);
         let Some(Tile::Container(Container::Linear(linear))) = self.tree.tiles.get_mut(column) else {
             return;
@@ -419,17 +407,20 @@ impl Dock {
     }
 
     /// A pane of this list that is nowhere yet.
-    pub fn first_absent(&self) -> Option<Pane> {
-        Pane::CHOICES.into_iter().find(|p| self.find(*p).is_none())
+    pub fn first_absent(&self) -> Option<PaneId> {
+        panes::infos()
+            .iter()
+            .map(|p| p.id)
+            .find(|id| self.find(*id).is_none())
     }
 }
 
-fn row<const N: usize>(tiles: &mut Tiles<Pane>, dir: LinearDir, panes: &[(Pane, f32); N]) -> TileId {
+fn row<const N: usize>(tiles: &mut Tiles<PaneId>, dir: LinearDir, panes: &[(PaneId, f32); N]) -> TileId {
     let ids = panes.map(|(pane, share)| (tiles.insert_pane(pane), share));
     join(tiles, dir, &ids)
 }
 
-fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> TileId {
+fn join(tiles: &mut Tiles<PaneId>, dir: LinearDir, parts: &[(TileId, f32)]) -> TileId {
     let mut linear = Linear::new(dir, parts.iter().map(|(id, _)| *id).collect());
     for (id, share) in parts {
         linear.shares.set_share(*id, *share);
@@ -438,11 +429,14 @@ fn join(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> Til
 }
 
 /// Tools on the left and objects on the right of what stands in the middle.
-fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
-    let tools = tiles.insert_pane(Pane::Tools);
-    let (objects, prompt) = (tiles.insert_pane(Pane::Objects), tiles.insert_pane(Pane::Prompt));
+fn framed(tiles: &mut Tiles<PaneId>, center: TileId) -> TileId {
+    let tools = tiles.insert_pane(PaneId::TOOLS);
+    let (objects, prompt) = (
+        tiles.insert_pane(PaneId::OBJECTS),
+        tiles.insert_pane(PaneId::PROMPT),
+    );
     // One of the two at a time: the objects and the prompt need the height.
-    let past = [Pane::History, Pane::Versions].map(|pane| tiles.insert_pane(pane));
+    let past = [PaneId::HISTORY, PaneId::VERSIONS].map(|pane| tiles.insert_pane(pane));
     let past = tiles.insert_tab_tile(past.to_vec());
     let column = join(
         tiles,
@@ -453,13 +447,11 @@ fn framed(tiles: &mut Tiles<Pane>, center: TileId) -> TileId {
     join(tiles, LinearDir::Horizontal, &parts)
 }
 
-/// Panels that stand in a column of their own.
-const SIDE: [Pane; 4] = [Pane::Objects, Pane::Prompt, Pane::History, Pane::Versions];
-/// Those of them that there always were.
-const FIRST: [Pane; 3] = [Pane::Objects, Pane::Prompt, Pane::Versions];
+/// Panes of the column that there always were.
+const FIRST: [PaneId; 3] = [PaneId::OBJECTS, PaneId::PROMPT, PaneId::VERSIONS];
 
 /// True if every tile is reached from the root once at most, and every child is there.
-fn is_tree(tree: &Tree<Pane>) -> bool {
+fn is_tree(tree: &Tree<PaneId>) -> bool {
     let (mut seen, mut open) = (HashSet::new(), Vec::from_iter(tree.root));
     while let Some(id) = open.pop() {
         match tree.tiles.get(id) {
@@ -495,9 +487,19 @@ mod tests {
             );
         }
         let mut twice = Dock::default();
-        let tile = twice.find(Pane::Bev).expect("there");
-        twice.tree.tiles.insert(tile, Tile::Pane(Pane::View3d));
+        let tile = twice.find(PaneId::BEV).expect("there");
+        twice.tree.tiles.insert(tile, Tile::Pane(PaneId::VIEW3D));
         assert!(Dock::from_kept(twice.tree).is_none());
+    }
+
+    #[test]
+    fn a_pane_of_another_version_is_left_out() {
+        let mut tree = Dock::default().tree;
+        let tile = Dock::default().find(PaneId::CAMERAS).expect("there");
+        tree.tiles.insert(tile, Tile::Pane(PaneId::named("of_tomorrow")));
+        let dock = Dock::from_kept(tree).expect("the others stay");
+        assert!(dock.find(PaneId::named("of_tomorrow")).is_none());
+        assert!(dock.find(PaneId::BEV).is_some() && dock.find(PaneId::CAMERAS).is_none());
     }
 
     #[test]
@@ -544,37 +546,37 @@ mod tests {
         c.add_child(root);
         assert!(Dock::from_kept(dock.tree).is_none());
         let mut dock = Dock::default();
-        dock.tree.tiles.remove(dock.find(Pane::Bev).expect("there"));
+        dock.tree.tiles.remove(dock.find(PaneId::BEV).expect("there"));
         assert!(Dock::from_kept(dock.tree).is_none(), "a child is missing");
     }
 
     #[test]
     fn panes_change_places_split_and_close() {
         let mut dock = Dock::default();
-        let (bev, view) = (dock.find(Pane::Bev), dock.find(Pane::View3d));
-        dock.swap(Pane::Bev, Pane::View3d);
-        assert_eq!((dock.find(Pane::View3d), dock.find(Pane::Bev)), (bev, view));
-        assert!(!dock.is_shown(Pane::Lidar));
-        dock.open(Pane::Lidar);
-        assert!(dock.is_shown(Pane::Lidar));
-        let sweep = dock.find(Pane::Lidar).expect("opened");
+        let (bev, view) = (dock.find(PaneId::BEV), dock.find(PaneId::VIEW3D));
+        dock.swap(PaneId::BEV, PaneId::VIEW3D);
+        assert_eq!((dock.find(PaneId::VIEW3D), dock.find(PaneId::BEV)), (bev, view));
+        assert!(!dock.is_shown(PaneId::LIDAR));
+        dock.open(PaneId::LIDAR);
+        assert!(dock.is_shown(PaneId::LIDAR));
+        let sweep = dock.find(PaneId::LIDAR).expect("opened");
         dock.toggle_maximized(sweep);
-        assert!(dock.is_shown(Pane::Lidar) && !dock.is_shown(Pane::Bev));
+        assert!(dock.is_shown(PaneId::LIDAR) && !dock.is_shown(PaneId::BEV));
         dock.close(sweep);
-        assert!(dock.is_shown(Pane::Bev) && dock.find(Pane::Lidar).is_none());
+        assert!(dock.is_shown(PaneId::BEV) && dock.find(PaneId::LIDAR).is_none());
         for pane in [
-            Pane::Tools,
-            Pane::Objects,
-            Pane::Prompt,
-            Pane::Versions,
-            Pane::History,
-            Pane::Cameras,
-            Pane::Bev,
-            Pane::View3d,
+            PaneId::TOOLS,
+            PaneId::OBJECTS,
+            PaneId::PROMPT,
+            PaneId::VERSIONS,
+            PaneId::HISTORY,
+            PaneId::CAMERAS,
+            PaneId::BEV,
+            PaneId::VIEW3D,
         ] {
             let tile = dock.find(pane).expect("still there");
             dock.close(tile);
         }
-        assert!(dock.find(Pane::View3d).is_some(), "the last pane stays");
+        assert!(dock.find(PaneId::VIEW3D).is_some(), "the last pane stays");
     }
 }

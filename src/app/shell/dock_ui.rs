@@ -11,8 +11,10 @@ use scene::Scene;
 use super::app::SceneloomApp;
 use super::dock::Split;
 use crate::command::Command;
-use crate::panes::cameras::camera_label;
-use crate::state::Pane;
+use crate::panes;
+use crate::panes::compare::tag;
+use crate::panes::id::PaneId;
+use crate::panes::pane::{Pane, PaneContext};
 use crate::theme;
 use crate::widgets::icons::{self, Icon};
 
@@ -24,25 +26,25 @@ const BESIDE_TABS: f32 = 104.0;
 
 /// What the user asked of the dock; done after it was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum DockAction {
-    Put(TileId, Pane),
+enum DockAction {
+    Put(TileId, PaneId),
     Split(TileId, Split),
     Maximize(TileId),
     Close(TileId),
 }
 
 /// Draws panes for the tree.
-pub(crate) struct Panes<'a> {
-    pub app: &'a mut SceneloomApp,
-    pub scene: &'a Arc<Scene>,
-    pub commands: &'a mut Vec<Command>,
-    pub actions: Vec<DockAction>,
-    pub maximized: bool,
-    pub tabbed: HashSet<TileId>,
+struct Drawer<'a> {
+    panes: &'a mut [Box<dyn Pane>],
+    cx: PaneContext<'a>,
+    commands: &'a mut Vec<Command>,
+    actions: Vec<DockAction>,
+    maximized: bool,
+    tabbed: HashSet<TileId>,
 }
 
-impl Behavior<Pane> for Panes<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, tile: TileId, pane: &mut Pane) -> UiResponse {
+impl Behavior<PaneId> for Drawer<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, tile: TileId, pane: &mut PaneId) -> UiResponse {
         let rect = ui.max_rect();
         ui.set_clip_rect(ui.clip_rect().intersect(rect));
         ui.spacing_mut().item_spacing.y = 0.0;
@@ -50,7 +52,7 @@ impl Behavior<Pane> for Panes<'_> {
         let on_a_tab = !self.maximized && self.tabbed.contains(&tile);
         let dragged = !on_a_tab && self.header(ui, tile, *pane);
         ui.spacing_mut().item_spacing.y = 4.0;
-        self.app.pane(ui, *pane, self.scene, self.commands);
+        self.pane(ui, *pane);
         if dragged {
             UiResponse::DragStarted
         } else {
@@ -58,13 +60,13 @@ impl Behavior<Pane> for Panes<'_> {
         }
     }
 
-    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
-        title(*pane, self.scene).into()
+    fn tab_title_for_pane(&mut self, pane: &PaneId) -> WidgetText {
+        self.title(*pane).into()
     }
 
     fn top_bar_right_ui(
         &mut self,
-        tiles: &Tiles<Pane>,
+        tiles: &Tiles<PaneId>,
         ui: &mut Ui,
         _tile: TileId,
         tabs: &egui_tiles::Tabs,
@@ -78,7 +80,7 @@ impl Behavior<Pane> for Panes<'_> {
             ui.scope(|ui| {
                 // The tabs need the room: choices fold into a list.
                 ui.set_max_width(BESIDE_TABS);
-                self.app.pane_controls(ui, pane, self.scene, self.commands);
+                self.controls(ui, pane);
             });
         }
     }
@@ -104,9 +106,36 @@ impl Behavior<Pane> for Panes<'_> {
     }
 }
 
-impl Panes<'_> {
+impl Drawer<'_> {
+    /// Title of a pane; cameras carry the names that the rig gives them.
+    fn title(&self, id: PaneId) -> String {
+        let pane = self.panes.iter().find(|p| p.id() == id);
+        pane.map_or_else(|| id.name().to_owned(), |p| p.title_in(self.cx.scene))
+    }
+
+    fn controls(&mut self, ui: &mut Ui, id: PaneId) {
+        if let Some(pane) = self.panes.iter_mut().find(|p| p.id() == id) {
+            pane.controls(ui, &mut self.cx, self.commands);
+        }
+    }
+
+    /// Draws a pane below its header.
+    fn pane(&mut self, ui: &mut Ui, id: PaneId) {
+        let Some(pane) = self.panes.iter_mut().find(|p| p.id() == id) else {
+            return;
+        };
+        let area = ui.available_rect_before_wrap();
+        pane.ui(ui, &mut self.cx, self.commands);
+        if self.cx.state.holding_before && pane.shows_before() {
+            tag(ui, area.left_top() + vec2(8.0, 8.0), "before", false);
+        }
+        if ui.rect_contains_pointer(area) {
+            self.cx.state.hovered_pane = Some(id);
+        }
+    }
+
     /// Title with its menu on the left, what the pane offers on the right. True if the user begins to drag it away.
-    fn header(&mut self, ui: &mut Ui, tile: TileId, pane: Pane) -> bool {
+    fn header(&mut self, ui: &mut Ui, tile: TileId, pane: PaneId) -> bool {
         let size = vec2(ui.available_width(), HEADER);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         ui.scope_builder(
@@ -115,10 +144,10 @@ impl Panes<'_> {
                 ui.set_clip_rect(ui.clip_rect().intersect(rect));
                 ui.horizontal_centered(|ui| {
                     ui.spacing_mut().item_spacing.x = 4.0;
-                    let title = title(pane, self.scene);
+                    let title = self.title(pane);
                     self.menu(ui, tile, pane, &title);
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        self.app.pane_controls(ui, pane, self.scene, self.commands);
+                        self.controls(ui, pane);
                     });
                 });
             },
@@ -129,9 +158,17 @@ impl Panes<'_> {
         response.drag_started() && !self.maximized
     }
 
-    fn menu(&mut self, ui: &mut Ui, tile: TileId, pane: Pane, name: &str) {
+    fn menu(&mut self, ui: &mut Ui, tile: TileId, pane: PaneId, name: &str) {
         let text = egui::RichText::new(format!("{name}     ")).color(theme::text());
         let button = egui::Button::new(text).fill(egui::Color32::TRANSPARENT);
+        let cameras = self.cx.scene.rig.cameras.len();
+        let is_there = |p: &PaneId| p.camera().is_none_or(|i| i < cameras);
+        let others: Vec<(PaneId, String)> = panes::infos()
+            .iter()
+            .map(|info| info.id)
+            .filter(|id| *id != pane && is_there(id))
+            .map(|id| (id, self.title(id)))
+            .collect();
         let (opened, _) = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_min_width(190.0);
             let mut act = |ui: &mut Ui, name: &str, action: DockAction| {
@@ -151,15 +188,12 @@ impl Panes<'_> {
             act(ui, "Close", DockAction::Close(tile));
             ui.separator();
             ui.label(egui::RichText::new("Show here").small().color(theme::text_weak()));
-            for choice in Pane::CHOICES {
-                let there = matches!(choice, Pane::Camera(i) if i >= self.scene.rig.cameras.len());
-                if choice != pane && !there {
-                    act(ui, &title(choice, self.scene), DockAction::Put(tile, choice));
-                }
+            for (choice, title) in others {
+                act(ui, &title, DockAction::Put(tile, choice));
             }
         });
         if name.is_empty() {
-            let label = format!("Menu of {}", title(pane, self.scene));
+            let label = format!("Menu of {}", self.title(pane));
             opened.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));
         }
         // The fonts have no small triangle.
@@ -173,36 +207,42 @@ impl Panes<'_> {
     }
 }
 
-/// Title of a pane; cameras carry the names that the rig gives them.
-fn title(pane: Pane, scene: &Scene) -> String {
-    match pane {
-        Pane::Camera(i) => scene.rig.cameras.get(i).map_or_else(
-            || pane.name(),
-            |camera| format!("Camera: {}", camera_label(&camera.name)),
-        ),
-        pane => pane.name(),
-    }
-}
-
 impl SceneloomApp {
     /// Draws all panes and does what was asked of the dock.
     pub(crate) fn dock_ui(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
-        let mut dock = std::mem::take(&mut self.dock);
+        let dock = &mut self.dock;
         dock.fit(ui.available_width());
         let maximized = dock.maximized;
-        let mut panes = Panes {
-            app: self,
-            scene,
+        let mut drawer = Drawer {
+            panes: &mut self.panes,
+            cx: PaneContext {
+                scene,
+                document: &self.document,
+                state: &mut self.state,
+                canvas: &mut self.canvas,
+                view3d: &mut self.view3d,
+                strip: &mut self.strip,
+                prompt: &mut self.prompt,
+                compare: &mut self.compare,
+                versions: &mut self.versions,
+                tuning: &mut self.tuning,
+                sensing: &self.sensing,
+                checking: &self.checking,
+                params: &self.live.params,
+                unsettled: &self.unsettled,
+                generating: self.live.running.is_some(),
+                render_state: self.render_state.as_ref(),
+            },
             commands,
             actions: Vec::new(),
             maximized: maximized.is_some(),
             tabbed: dock.tabbed(),
         };
         match maximized.and_then(|tile| Some((tile, *dock.tree.tiles.get_pane(&tile)?))) {
-            Some((tile, mut pane)) => drop(panes.pane_ui(ui, tile, &mut pane)),
-            None => dock.tree.ui(&mut panes, ui),
+            Some((tile, mut pane)) => drop(drawer.pane_ui(ui, tile, &mut pane)),
+            None => dock.tree.ui(&mut drawer, ui),
         }
-        let actions = panes.actions;
+        let actions = drawer.actions;
         for action in actions {
             match action {
                 DockAction::Put(tile, pane) => dock.put(tile, pane),
@@ -216,6 +256,5 @@ impl SceneloomApp {
             }
             ui.ctx().request_repaint();
         }
-        self.dock = dock;
     }
 }

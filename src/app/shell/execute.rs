@@ -16,8 +16,9 @@ use super::toasts::Level;
 use crate::command::Command;
 use crate::open;
 use crate::panes::compare::CompareMode;
+use crate::panes::id::PaneId;
 use crate::panes::objects::neighbour;
-use crate::state::{Pane, Tool};
+use crate::state::Tool;
 use crate::tools::things::Draft;
 use crate::tools::{Choose, ToolCommand};
 
@@ -146,8 +147,8 @@ impl SceneloomApp {
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::FrameSelection => self.frame_selection(),
             Command::FrameAll => match self.state.hovered_pane {
-                Some(Pane::View3d) => self.view3d.camera.focus_all(),
-                Some(Pane::Bev) => self.canvas.frame_all_again(),
+                Some(PaneId::VIEW3D) => self.view3d.camera.focus_all(),
+                Some(PaneId::BEV) => self.canvas.frame_all_again(),
                 _ => {
                     self.view3d.camera.focus_all();
                     self.canvas.frame_all_again();
@@ -156,11 +157,11 @@ impl SceneloomApp {
             Command::ToggleExport => self.toggle_export(),
             Command::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             Command::FixAll => self.fix_all(ctx),
-            Command::ToggleChecks => self.dock.toggle(Pane::Checks),
+            Command::ToggleChecks => self.dock.toggle(PaneId::CHECKS),
             Command::View(preset) => self.view3d.preset(preset),
             Command::LookThrough(index) => self.look_through(index),
             Command::Inspect(camera) => self.state.inspected = camera,
-            Command::SwapPanes => self.dock.swap(Pane::Bev, Pane::View3d),
+            Command::SwapPanes => self.dock.swap(PaneId::BEV, PaneId::VIEW3D),
             Command::ShowPane(pane) => self.dock.open(pane),
             Command::TogglePane(pane) => self.dock.toggle(pane),
             Command::Quality(stop) => self.set_quality(stop),
@@ -199,7 +200,7 @@ impl SceneloomApp {
             Command::ToggleStart => self.state.start_open = !self.state.start_open,
             Command::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
             Command::FocusPrompt => {
-                self.dock.open(Pane::Prompt);
+                self.dock.open(PaneId::PROMPT);
                 self.prompt.focus();
             }
             Command::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
@@ -339,10 +340,10 @@ impl SceneloomApp {
         let Some(b) = self.selected_box() else {
             return self.frame_things();
         };
-        if self.state.hovered_pane != Some(Pane::View3d) {
+        if self.state.hovered_pane != Some(PaneId::VIEW3D) {
             self.canvas.frame_box(&b);
         }
-        if self.state.hovered_pane != Some(Pane::Bev) {
+        if self.state.hovered_pane != Some(PaneId::BEV) {
             self.view3d.frame_box(&b);
         }
     }

@@ -68,7 +68,7 @@ impl SceneloomApp {
                 };
                 self.dialogs.ask(purpose, &path, ui.ctx());
             }
-            Some(Asked::Checks) => self.dock.open(crate::state::Pane::Checks),
+            Some(Asked::Checks) => self.dock.open(crate::panes::id::PaneId::CHECKS),
             None => {}
         }
         self.exporting.panel = open.then_some(panel);

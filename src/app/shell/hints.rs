@@ -1,6 +1,7 @@
 //! What the pointer does with the tool in hand, for the status bar.
 
-use crate::state::{Pane, Tool, UiState, VoxelVerb};
+use crate::panes::id::PaneId;
+use crate::state::{Tool, UiState, VoxelVerb};
 use crate::tools::things::ThingTool;
 use crate::tools::{PaintShape, RegionShape, VoxelMode};
 use editor::transform::Kind;
@@ -10,7 +11,7 @@ pub fn hint(state: &UiState) -> String {
     if state.holding_before {
         return "The state before; nothing can be changed while the key is held".into();
     }
-    let over_3d = state.hovered_pane == Some(Pane::View3d);
+    let over_3d = state.hovered_pane == Some(PaneId::VIEW3D);
     let mut parts: Vec<&str> = match state.tool {
         Tool::Select => select(state, over_3d),
         Tool::Brush => brush(state),
@@ -31,8 +32,8 @@ pub fn hint(state: &UiState) -> String {
         ],
     };
     parts.extend(match state.hovered_pane {
-        Some(Pane::View3d) => &["Middle orbits", "Right flies", "Wheel zooms"][..],
-        Some(Pane::Bev) => &["Middle pans", "Wheel zooms"],
+        Some(PaneId::VIEW3D) => &["Middle orbits", "Right flies", "Wheel zooms"][..],
+        Some(PaneId::BEV) => &["Middle pans", "Wheel zooms"],
         _ => &[],
     });
     parts.join("  ·  ")
@@ -120,7 +121,7 @@ mod tests {
     fn every_tool_says_what_the_buttons_do() {
         let mut state = UiState::default();
         let mut seen = std::collections::BTreeSet::new();
-        for pane in [Pane::Bev, Pane::View3d] {
+        for pane in [PaneId::BEV, PaneId::VIEW3D] {
             state.hovered_pane = Some(pane);
             for (tool, ..) in Tool::ALL {
                 state.tool = tool;

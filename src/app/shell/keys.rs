@@ -6,7 +6,8 @@ use egui::{Context, Key, Modifiers};
 use super::actions::{When, nudge_direction};
 use super::keymap::{Chord, Keymap};
 use crate::command::Command;
-use crate::state::{Pane, Tool, UiState};
+use crate::panes::id::PaneId;
+use crate::state::{Tool, UiState};
 use crate::tools::things::ThingTool;
 
 /// Actions that do not wait for the end of a drag.
@@ -47,7 +48,7 @@ pub fn commands(
             commands.push(nudge);
             continue;
         }
-        let over_3d = state.hovered_pane == Some(Pane::View3d);
+        let over_3d = state.hovered_pane == Some(PaneId::VIEW3D);
         // With a brush in hand its own letters count.
         let brush = matches!(
             state.tool,
@@ -202,7 +203,7 @@ mod tests {
             of(Key::B, Modifiers::NONE, &mut state, false),
             [Command::Tools(ToolCommand::Shape(PaintShape::Stroke))]
         );
-        state.hovered_pane = Some(Pane::View3d);
+        state.hovered_pane = Some(PaneId::VIEW3D);
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
             [Command::Tool(Tool::Voxel)]

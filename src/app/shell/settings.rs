@@ -9,9 +9,9 @@ use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
 use super::bookmarks::Bookmark;
-use super::dock::Workspace;
 use super::keymap::Chords;
-use crate::state::Pane;
+use super::workspace::Workspace;
+use crate::panes::id::PaneId;
 use crate::theme::Look;
 use editor::Document;
 use scene::classes::Palette;
@@ -40,9 +40,9 @@ pub struct Settings {
     /// Name of the stop of the quality slider.
     pub quality: String,
     /// Where the panes stand.
-    pub dock: Option<Tree<Pane>>,
+    pub dock: Option<Tree<PaneId>>,
     /// Panes that there were when it was kept; what is new since then is added.
-    pub panes_known: Vec<Pane>,
+    pub panes_known: Vec<PaneId>,
     /// Views that were kept, by number.
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Memory that the history may take, MB.

@@ -7,7 +7,7 @@ use egui::{Align2, Order, Rect, RichText, Ui};
 use super::app::SceneloomApp;
 use super::toasts::Level;
 use crate::command::Command;
-use crate::panes::cameras::thousands;
+use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::{Tool, UiState};

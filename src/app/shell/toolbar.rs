@@ -6,9 +6,11 @@ use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
 use crate::command::Command;
+use crate::panes;
+use crate::panes::id::PaneId;
 use crate::shell::bookmarks::SLOTS;
-use crate::shell::dock::Workspace;
-use crate::state::{Pane, Tool, UiState};
+use crate::shell::workspace::Workspace;
+use crate::state::{Tool, UiState};
 use crate::theme;
 use crate::tools::ToolCommand;
 use crate::tools::things::{ThingCommand, ThingTool};
@@ -38,7 +40,7 @@ pub struct ToolbarInput<'a> {
     /// Voxels that the user painted.
     pub has_paint: bool,
     /// Panes on screen.
-    pub shown: Vec<Pane>,
+    pub shown: Vec<PaneId>,
     /// Cameras of the rig.
     pub cameras: usize,
     /// The workspace chosen last.
@@ -267,13 +269,13 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         }
         ui.separator();
         ui.menu_button("Panes", |ui| {
-            for pane in Pane::CHOICES {
-                if matches!(pane, Pane::Camera(i) if i >= input.cameras) {
+            for pane in panes::infos() {
+                if pane.id.camera().is_some_and(|i| i >= input.cameras) {
                     continue;
                 }
-                let mut shown = input.shown.contains(&pane);
-                let tick = ui.checkbox(&mut shown, pane.name());
-                on(tick.changed(), Command::TogglePane(pane));
+                let mut shown = input.shown.contains(&pane.id);
+                let tick = ui.checkbox(&mut shown, &pane.title);
+                on(tick.changed(), Command::TogglePane(pane.id));
             }
         });
         ui.menu_button("Kept views", |ui| {

@@ -4,13 +4,17 @@ use std::sync::Arc;
 
 use egui::{Rect, Ui};
 
-use super::app::{Next, SceneloomApp, cameras_input};
+use super::app::{Next, SceneloomApp};
+use crate::camera_views::Wanted;
 use crate::command::Command;
+use crate::panes;
+use crate::panes::camera_strip::CamerasInput;
+use crate::panes::id::PaneId;
 use crate::shell::keys;
 use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
-use crate::state::Pane;
+use crate::state::CompareMode;
 use crate::theme;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
@@ -44,7 +48,7 @@ impl SceneloomApp {
         if !dialog && !self.state.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
-                flying: secondary && self.state.hovered_pane == Some(Pane::View3d),
+                flying: secondary && self.state.hovered_pane == Some(PaneId::VIEW3D),
                 dragging: primary && (self.canvas.is_dragging() || self.view3d.is_dragging()),
             };
             keys::commands(ui.ctx(), &self.keymap, &mut self.state, hands, &mut commands);
@@ -95,9 +99,10 @@ impl SceneloomApp {
             bookmarks: self.settings.bookmarks.keys().copied().collect(),
             has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.settings.workspace,
-            shown: Pane::CHOICES
-                .into_iter()
-                .filter(|p| self.dock.is_shown(*p))
+            shown: panes::infos()
+                .iter()
+                .map(|p| p.id)
+                .filter(|id| self.dock.is_shown(*id))
                 .collect(),
             cameras: scene.rig.cameras.len(),
             stops: self.tuning.foretold(),
@@ -147,15 +152,39 @@ impl SceneloomApp {
         self.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
         // What nobody lists is not pointed at.
-        if !self.dock.is_shown(Pane::Checks) {
+        if !self.dock.is_shown(PaneId::CHECKS) {
             self.state.meant = None;
         }
         self.live.named = self.state.named;
     }
 
+    /// Decides what the present state is compared with, in this frame.
+    pub(crate) fn prepare_compare(&mut self, ui: &Ui) {
+        // Not in the middle of a drag: the pointer answers to nothing while the state before is shown.
+        let held = !ui.ctx().text_edit_focused()
+            && ui.input(|i| {
+                let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
+                down && (self.state.holding_before || !i.pointer.any_down())
+            });
+        self.state.holding_before = held;
+        let rev = self.document.settled_scene().rev;
+        let active = held || self.state.compare != CompareMode::Off;
+        let chosen = self.compare.chosen.as_ref().filter(|s| s.rev != rev);
+        let before = chosen
+            .or_else(|| self.versions.before(rev))
+            .filter(|_| active)
+            .cloned();
+        let senses = held || matches!(self.state.compare, CompareMode::Wipe | CompareMode::Side);
+        let ctx = ui.ctx().clone();
+        self.compare
+            .prepare(before, Wanted::of(&self.state), senses, move || {
+                ctx.request_repaint()
+            });
+    }
+
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
-        let cameras = cameras_input(scene, self.document.scene().rev, &self.sensing);
+        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.sensing);
         self.strip
             .enlarged(ui, self.center, &cameras, &mut self.state, commands);
         self.toasts.log_window(ui, self.center, &mut self.state.log_open);

@@ -2,5 +2,7 @@
 
 pub(crate) mod chip;
 pub mod fields;
+mod icon;
+mod icon_shapes;
 pub(crate) mod icons;
 pub(crate) mod thumbnail;

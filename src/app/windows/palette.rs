@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use egui::{Id, Key, Modal, Ui, vec2};
 
 use crate::command::Command;
+use crate::panes;
 use crate::shell::actions::ACTIONS;
 use crate::shell::keymap::Keymap;
-use crate::state::{Pane, UiState};
+use crate::state::UiState;
 use crate::theme;
 use crate::tools::ToolCommand;
 use crate::tools::things::panel::TREES;
@@ -144,8 +145,12 @@ fn items(keymap: &Keymap, recent: &[PathBuf]) -> Vec<Item> {
             does: Does::Command(command),
         });
     };
-    for pane in Pane::CHOICES {
-        add(format!("Pane: {}", pane.name()), "pane", Command::ShowPane(pane));
+    for pane in panes::infos() {
+        add(
+            format!("Pane: {}", pane.title),
+            "pane",
+            Command::ShowPane(pane.id),
+        );
     }
     for class in Class::OBJECTS {
         let title = format!("Place a box: {}", class.label());

@@ -4,7 +4,7 @@ use egui::Ui;
 use glam::DVec3;
 
 use crate::command::Command;
-use crate::panes::cameras::camera_label;
+use crate::panes::camera_strip::camera_label;
 use crate::state::{SensorChoice, UiState};
 use crate::theme;
 use crate::widgets::fields::{caption, field, number, numbers};

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
 
-use super::PromptPane;
+use super::field::PromptField;
 use super::heard;
 use crate::command::Command;
 use crate::theme;
@@ -18,7 +18,7 @@ use words::answer::{answer, sentence, thing};
 use words::hear::Heard;
 use words::reading::{Reading, What};
 
-impl PromptPane {
+impl PromptField {
     /// Each part of what was read: to be changed, locked, re-rolled or taken out. Of a change that was carried out nothing is
     /// left to change.
     pub(super) fn chips(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {

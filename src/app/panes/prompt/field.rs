@@ -5,16 +5,9 @@ use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{Key, Modifiers, Ui, WidgetInfo};
 
-mod completion;
-mod graph;
-mod heard;
-pub mod plan;
-pub mod recalled;
-mod said;
-
-use self::completion::Completion;
-use self::heard::Both;
-use self::plan::{Plan, Told};
+use super::completion::Completion;
+use super::heard::Both;
+use super::plan::{Plan, Told};
 use crate::command::Command;
 use crate::text::doubts;
 use crate::theme;
@@ -34,30 +27,30 @@ const EXAMPLES: [&str; 5] = [
 
 /// What is typed, and what came of it.
 #[derive(Default)]
-pub struct PromptPane {
-    prompt: String,
-    seed: u64,
-    history: Vec<String>,
-    back: usize, // steps back in the history; 0 is what is typed
-    draft: String,
-    read: Option<Both>,
+pub struct PromptField {
+    pub(super) prompt: String,
+    pub(super) seed: u64,
+    pub(super) history: Vec<String>,
+    pub(super) back: usize, // steps back in the history; 0 is what is typed
+    pub(super) draft: String,
+    pub(super) read: Option<Both>,
     /// What came of the words that were carried out last, and what must be answered first.
-    done: Option<String>,
-    asks: bool,
+    pub(super) done: Option<String>,
+    pub(super) asks: bool,
     /// Enter was pressed on words that describe a scene: which of the two is meant?
-    offers: bool,
-    notes: Vec<String>,
-    wants_focus: bool,
-    offered: Option<Completion>,
-    is_sent: bool, // and not changed since
-    plan: Plan,
+    pub(super) offers: bool,
+    pub(super) notes: Vec<String>,
+    pub(super) wants_focus: bool,
+    pub(super) offered: Option<Completion>,
+    pub(super) is_sent: bool, // and not changed since
+    pub(super) plan: Plan,
 }
 
 fn field_id() -> egui::Id {
     egui::Id::unique("prompt field")
 }
 
-impl PromptPane {
+impl PromptField {
     /// The next frame gives the field the focus.
     pub fn focus(&mut self) {
         self.wants_focus = true;
@@ -85,7 +78,7 @@ impl PromptPane {
             });
     }
 
-    fn field(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+    pub(super) fn field(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let has_focus = ui.memory(|m| m.has_focus(field_id()));
         if let (true, Some(first)) = (has_focus, self.offered.as_ref().map(|o| o.ends[0]))
             && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab))
@@ -185,13 +178,13 @@ impl PromptPane {
     }
 
     /// The words are others now: nothing that came of those before holds.
-    fn touched(&mut self) {
+    pub(super) fn touched(&mut self) {
         (self.done, self.asks, self.offers, self.is_sent) = (None, false, false, false);
         self.notes.clear();
     }
 
     /// The two things that words can do; where they describe a scene, with what each would do. Which was clicked.
-    fn choices(&self, ui: &mut Ui) -> (bool, bool) {
+    pub(super) fn choices(&self, ui: &mut Ui) -> (bool, bool) {
         let some = !self.prompt.trim().is_empty();
         let button = |ui: &mut Ui, name: &str, hint: &str, first: bool| {
             let mut button = egui::Button::new(name);
@@ -229,7 +222,7 @@ impl PromptPane {
     }
 
     /// Reads what is typed, if it is not read yet.
-    fn listen(&mut self, scene: &Scene) {
+    pub(super) fn listen(&mut self, scene: &Scene) {
         if self.prompt.trim().is_empty() {
             self.read = None;
             return;
@@ -245,7 +238,7 @@ impl PromptPane {
         }
     }
 
-    fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
+    pub(super) fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
         match self.read.as_ref().map(|r| &r.prompted) {
             Some(Ok(prompted)) => {
                 let ask = self
@@ -262,7 +255,7 @@ impl PromptPane {
     }
 
     /// Variants, how the last scene came about, and the scene graph.
-    fn beyond_words(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+    pub(super) fn beyond_words(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let Some(Ok(prompted)) = self.read.as_ref().map(|r| &r.prompted) else {
             return;
         };
@@ -282,7 +275,7 @@ impl PromptPane {
     }
 
     /// Offers ends of the word at the caret; Tab takes the first.
-    fn completions(&mut self, ui: &mut Ui) {
+    pub(super) fn completions(&mut self, ui: &mut Ui) {
         let Some(offered) = &self.offered else { return };
         let mut taken = None;
         ui.horizontal_wrapped(|ui| {
@@ -309,7 +302,7 @@ impl PromptPane {
     }
 
     /// The words were taken: the next ones replace them as they are typed.
-    fn sent(&mut self, ctx: &egui::Context) {
+    pub(super) fn sent(&mut self, ctx: &egui::Context) {
         (self.offered, self.is_sent) = (None, true);
         let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
         let all = CCursorRange::two(
@@ -320,7 +313,7 @@ impl PromptPane {
         state.store(ctx, field_id());
     }
 
-    fn complete(&mut self, ctx: &egui::Context, end: &str) {
+    pub(super) fn complete(&mut self, ctx: &egui::Context, end: &str) {
         let Some(offered) = self.offered.take() else {
             return;
         };
@@ -332,7 +325,7 @@ impl PromptPane {
         state.store(ctx, field_id());
     }
 
-    fn recent(&mut self, ui: &mut Ui) {
+    pub(super) fn recent(&mut self, ui: &mut Ui) {
         if self.history.is_empty() {
             return;
         }
@@ -348,7 +341,7 @@ impl PromptPane {
     }
 
     /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
-    fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
+    pub(super) fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
         self.remember();
         self.listen(scene);
         if let Some(read) = &mut self.read {
@@ -372,7 +365,7 @@ impl PromptPane {
         }
     }
 
-    fn remember(&mut self) {
+    pub(super) fn remember(&mut self) {
         self.history.retain(|p| *p != self.prompt);
         self.history.push(self.prompt.clone());
         if self.history.len() > HISTORY {
@@ -381,7 +374,7 @@ impl PromptPane {
         self.back = 0;
     }
 
-    fn recall(&mut self, step: i32) {
+    pub(super) fn recall(&mut self, step: i32) {
         let back = (self.back as i64 + i64::from(step)).clamp(0, self.history.len() as i64) as usize;
         if back != self.back {
             if self.back == 0 {
@@ -396,7 +389,7 @@ impl PromptPane {
         }
     }
 
-    fn examples(&mut self, ui: &mut Ui) {
+    pub(super) fn examples(&mut self, ui: &mut Ui) {
         section(ui, "Examples");
         for example in EXAMPLES {
             let text = egui::RichText::new(example).small().color(theme::text());
