@@ -69,7 +69,7 @@ pub enum Command {
     /// Draws what stands beside the roads anew, by what is chosen in the list.
     DrawScenery,
     /// What becomes of a result that waits.
-    Decide(crate::shell::staged::Verdict),
+    Decide(Verdict),
     /// Ends a whole generation with what it shows now.
     StopHere,
     /// Stops the generation that runs.
@@ -176,4 +176,28 @@ pub enum Command {
     ToggleStart,
     /// Shows or hides the sheet of keys.
     ToggleKeys,
+}
+
+/// What is taken of a staged result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// What lies in the marked region.
+    Region,
+    /// The places of chosen boxes and things.
+    Chosen,
+    /// What comes or goes of a class.
+    Class(Class),
+}
+
+/// What the user decides about a staged result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It stays.
+    Accept,
+    /// The state before comes back.
+    Decline,
+    /// The same again from other noise, in its place.
+    NextSeed,
+    /// Only this part of it stays.
+    Take(Taken),
 }

@@ -13,7 +13,6 @@ pub mod export;
 pub mod graphics;
 mod meant;
 pub mod memory;
-mod modelled;
 pub mod open;
 pub mod paint;
 pub mod panes;

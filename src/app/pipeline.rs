@@ -1,8 +1,35 @@
-//! The generation that the window runs: the bundled networks, warmed up while nobody waits.
+//! The generation that window and command line run: its networks, its parameters, and how it gets ready while nobody
+//! waits.
+
+use std::path::Path;
+use std::sync::Arc;
 
 use job::pipeline::OccPipeline;
 use job::redraw;
-use job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
+use job::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, RegionMode};
+use nets::OccModels;
+
+/// Parameters of a generation from the layout alone.
+pub fn full_params() -> GenParams {
+    GenParams {
+        region: RegionMode::Full,
+        steps: 20,
+        guidance: 1.5,
+        named: Named {
+            completeness: Some(1.0),
+            ..Named::default()
+        },
+        ..GenParams::default()
+    }
+}
+
+/// The networks of `--weights`, or the bundled ones.
+pub fn models(weights: Option<&Path>) -> anyhow::Result<Arc<OccModels>> {
+    Ok(match weights {
+        Some(dir) => OccModels::from_dir(dir)?,
+        None => OccModels::bundled()?,
+    })
+}
 
 /// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
 /// so that the first edit finds both ready.

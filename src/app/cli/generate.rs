@@ -1,7 +1,6 @@
 //! `sceneloom generate`: occupancy from layout and boxes, then the sensors.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use serde_json::json;
@@ -9,13 +8,13 @@ use serde_json::json;
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, output};
 use crate::open;
+pub(crate) use crate::pipeline::{full_params, models};
 use crate::scenery::SceneryWish;
 use editor::Document;
 use formats::project;
 use job::pipeline::OccPipeline;
-use job::{GenParams, GenResult, Job, Named, Pipeline, RegionMode};
+use job::{GenParams, GenResult, Job, Pipeline, RegionMode};
 use metrics::agreement::layout_agreement;
-use nets::OccModels;
 use scene::Scene;
 use sensors::cloud::GaussianCloud;
 use sensors::{lidar, splat};
@@ -36,28 +35,6 @@ pub struct Generate {
     generation: Gen,
     #[command(flatten)]
     common: Common,
-}
-
-/// Parameters of a generation from the layout alone.
-pub fn full_params() -> GenParams {
-    GenParams {
-        region: RegionMode::Full,
-        steps: 20,
-        guidance: 1.5,
-        named: Named {
-            completeness: Some(1.0),
-            ..Named::default()
-        },
-        ..GenParams::default()
-    }
-}
-
-/// The networks of `--weights`, or the bundled ones.
-pub fn models(weights: Option<&Path>) -> anyhow::Result<Arc<OccModels>> {
-    Ok(match weights {
-        Some(dir) => OccModels::from_dir(dir)?,
-        None => OccModels::bundled()?,
-    })
 }
 
 /// Runs the pipeline on a document's scene and adopts the result.

@@ -66,7 +66,7 @@ impl Pane for Bev {
             canvas.show(ui, &input, state, commands);
         });
         if let (true, Some(last), Some(map)) = (cx.tuning.show_modelled, &cx.tuning.last, &cx.canvas.map) {
-            crate::modelled::draw(ui, rect, map, last, cx.sensing.sampled());
+            super::modelled::draw(ui, rect, map, last, cx.sensing.sampled());
         }
         let (Some(before), Some(map)) = (cx.compare.before.clone(), cx.canvas.map) else {
             return;

@@ -15,6 +15,7 @@ pub mod id;
 mod label;
 pub mod lidar;
 pub mod lit;
+mod modelled;
 pub mod objects;
 pub mod pane;
 pub mod prompt;

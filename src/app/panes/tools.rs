@@ -12,6 +12,7 @@ use crate::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::theme;
 use crate::tools::things::{self, ThingCommand};
 use crate::tools::{PaintShape, ToolCommand, panel as tools};
+use crate::widgets::hint::caption;
 use crate::widgets::icons::Icon;
 use crate::widgets::icons::{self, section};
 use scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
@@ -140,11 +141,6 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
             *value = Some(shown);
         }
     });
-}
-
-/// A hint in small letters.
-pub fn caption(ui: &mut Ui, text: &str) {
-    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
 fn brush_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use viewport::ViewPreset;
 
-use super::staged::Verdict;
 use super::workspace::Workspace;
 use crate::command::Command;
+use crate::command::Verdict;
 use crate::state::{Tool, UiState, VoxelVerb};
 use crate::tools::things::{ThingCommand, ThingTool};
 use crate::tools::{PaintShape, ToolCommand, VoxelMode};

@@ -6,14 +6,12 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use super::app::SceneloomApp;
 use crate::camera_views::march;
-use crate::command::Command;
 use editor::checks::{self, Finding, Seen};
 use scene::raster::box_cells;
-use scene::{BoxId, BoxLabel, Class, GridSpec, Scene, SceneBox, SceneRev};
+use scene::{BoxId, GridSpec, Scene, SceneBox, SceneRev};
 use sensors::lidar;
 use sensors::splat::PREVIEW_SIZE;
 
@@ -163,48 +161,6 @@ impl Drop for Checking {
     }
 }
 
-impl SceneloomApp {
-    /// Asks for a check of the settled scene when it is time.
-    pub(crate) fn update_checks(&mut self, ctx: &egui::Context) {
-        let now_s = self.now_s();
-        let scene = self.document.settled_scene();
-        if let Some(seconds) = self.checking.update(scene, self.document.is_dragging(), now_s) {
-            ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
-        }
-    }
-
-    /// Repairs all that can be repaired, as one undo step.
-    pub(crate) fn fix_all(&mut self, ctx: &egui::Context) {
-        let scene = self.document.settled_scene();
-        let Some(findings) = self
-            .checking
-            .findings()
-            .filter(|_| !self.checking.is_stale(scene.rev))
-        else {
-            return;
-        };
-        let edits = checks::fix_all(scene, findings);
-        if !edits.is_empty() {
-            self.execute(Command::Apply("Fix all findings", edits), ctx);
-        }
-    }
-
-    /// Brings a place into the middle of both large views.
-    pub(crate) fn frame_at(&mut self, p_in_ego: DVec3) {
-        let around = SceneBox {
-            id: BoxId(0),
-            class: Class::Car,
-            center_m: p_in_ego,
-            size_m: DVec3::splat(4.0),
-            yaw_rad: 0.0,
-            velocity_mps: DVec2::ZERO,
-            label: BoxLabel::default(),
-        };
-        self.canvas.frame_box(&around);
-        self.view3d.frame_box(&around);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::time::{Duration, Instant};
@@ -212,6 +168,7 @@ mod tests {
     use super::*;
     use crate::open;
     use editor::Edit;
+    use scene::{BoxLabel, Class};
 
     #[test]
     fn sensors_see_near_boxes_and_not_those_inside_a_wall() {

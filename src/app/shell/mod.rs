@@ -23,6 +23,7 @@ pub mod perf;
 pub mod priority;
 mod recovering;
 pub mod recovery;
+mod repair;
 pub mod run;
 pub mod settings;
 pub(crate) mod software_ui;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::app::{AppConfig, SceneloomApp};
 use super::{priority, settings, software_ui};
-use crate::{cli, open, pipeline};
+use crate::{open, pipeline};
 use formats::project;
 use job::GenParams;
 use scene::Scene;
@@ -19,7 +19,7 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -
         path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
         build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
         params: GenParams::default(),
-        full_params: cli::full_params(),
+        full_params: pipeline::full_params(),
         warm_up: true,
         open: Arc::new(open::scene),
         save: Arc::new(|scene, path| {

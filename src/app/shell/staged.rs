@@ -6,7 +6,7 @@ use egui::{Align2, Order, Rect, RichText, Ui};
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
-use crate::command::Command;
+use crate::command::{Command, Taken, Verdict};
 use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
@@ -23,30 +23,6 @@ use scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
 
 /// Classes that the menu of parts lists.
 const MOST_CLASSES: usize = 8;
-
-/// What is taken of a staged result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taken {
-    /// What lies in the marked region.
-    Region,
-    /// The places of chosen boxes and things.
-    Chosen,
-    /// What comes or goes of a class.
-    Class(Class),
-}
-
-/// What the user decides about a staged result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// It stays.
-    Accept,
-    /// The state before comes back.
-    Decline,
-    /// The same again from other noise, in its place.
-    NextSeed,
-    /// Only this part of it stays.
-    Take(Taken),
-}
 
 /// How a result was made.
 #[derive(Clone, Debug, PartialEq)]

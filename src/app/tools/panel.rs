@@ -3,9 +3,9 @@
 use egui::Ui;
 
 use crate::command::Command;
-use crate::panes::tools::caption;
 use crate::state::UiState;
 use crate::theme;
+use crate::widgets::hint::caption;
 use crate::widgets::icons::{self, section};
 use editor::arrange::Pivot;
 use editor::flood::FillBounds;

@@ -2,6 +2,7 @@
 
 pub(crate) mod chip;
 pub mod fields;
+pub mod hint;
 mod icon;
 mod icon_shapes;
 pub(crate) mod icons;

@@ -2,10 +2,10 @@
 
 use egui::Ui;
 
-use crate::panes::tools::caption;
 use crate::state::UiState;
 use crate::theme;
 use crate::tools::panel::slider;
+use crate::widgets::hint::caption;
 use crate::widgets::icons::{self, section};
 use scene::background::{Facade, LineKind, PostKind, Roof, TreeKind};
 

@@ -4,8 +4,8 @@
 use egui::{Color32, Painter, Rect, Stroke, StrokeKind, pos2};
 use glam::dvec2;
 
-use super::canvas::ScreenMap;
-use crate::panes::compare::tag;
+use super::compare::tag;
+use crate::canvas::ScreenMap;
 use crate::shell::tuning::LastEdit;
 use scene::GridSpec;
 use scene::grid::{BRICK, BRICKS};
