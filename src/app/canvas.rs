@@ -20,11 +20,11 @@ use super::canvas_draw::{
 };
 use super::canvas_tools::Gesture;
 use super::command::Command;
-use super::live::Bounds;
 use super::pointer::{self, Held, Step};
 use super::state::{Tool, UiState, Underlay};
 use super::theme;
 use super::tools::things::draw;
+use crate::shell::live::Bounds;
 
 /// From the ego frame to the screen and back.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,8 +7,9 @@ use editor::Edit;
 use scene::{BoxId, Class, SceneRev};
 use viewport::ViewPreset;
 
-use super::dock::Workspace;
-use super::state::{Pane, Tool, VoxelVerb};
+use super::state::{Tool, VoxelVerb};
+use crate::panes::id::PaneId;
+use crate::shell::workspace::Workspace;
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +69,7 @@ pub enum Command {
     /// Draws what stands beside the roads anew, by what is chosen in the list.
     DrawScenery,
     /// What becomes of a result that waits.
-    Decide(super::staged::Verdict),
+    Decide(Verdict),
     /// Ends a whole generation with what it shows now.
     StopHere,
     /// Stops the generation that runs.
@@ -138,9 +139,9 @@ pub enum Command {
     /// Swaps the bird's-eye view and the 3D view.
     SwapPanes,
     /// Brings a pane to the front, or opens it.
-    ShowPane(Pane),
+    ShowPane(PaneId),
     /// Brings a pane into sight, or takes it off the screen.
-    TogglePane(Pane),
+    TogglePane(PaneId),
     /// Shows the pane under the pointer alone, or all of them again.
     MaximizePane,
     /// Arranges the panes for one kind of work.
@@ -175,4 +176,28 @@ pub enum Command {
     ToggleStart,
     /// Shows or hides the sheet of keys.
     ToggleKeys,
+}
+
+/// What is taken of a staged result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// What lies in the marked region.
+    Region,
+    /// The places of chosen boxes and things.
+    Chosen,
+    /// What comes or goes of a class.
+    Class(Class),
+}
+
+/// What the user decides about a staged result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It stays.
+    Accept,
+    /// The state before comes back.
+    Decline,
+    /// The same again from other noise, in its place.
+    NextSeed,
+    /// Only this part of it stays.
+    Take(Taken),
 }

@@ -2,7 +2,6 @@
 //! here is saved with a scene.
 
 use glam::DVec2;
-use serde::{Deserialize, Serialize};
 
 use editor::Edit;
 use job::Named;
@@ -10,7 +9,7 @@ use scene::{BevLayer, BoxId, Class};
 use sensors::cameras::{self, CameraSource, SourceId, ViewId};
 use viewport::LidarColorMode;
 
-use super::compare::CompareMode;
+use super::panes::id::PaneId;
 use super::tools::things::ThingTool;
 
 /// What the primary button does on a canvas.
@@ -75,81 +74,6 @@ impl VoxelVerb {
     ];
 }
 
-/// What a part of the window shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Pane {
-    /// Bird's-eye view.
-    Bev,
-    /// 3D view.
-    View3d,
-    /// All cameras in a row.
-    Cameras,
-    /// One camera of the rig, by index.
-    Camera(usize),
-    /// The newest sweep, unrolled: azimuth by beam.
-    Lidar,
-    /// The chosen box from above, from its side and from behind.
-    BoxViews,
-    /// Words that become a scene, or change it.
-    Prompt,
-    /// What was generated so far.
-    Versions,
-    /// Options of the tool in hand, map layers.
-    Tools,
-    /// The chosen box in numbers, all boxes.
-    Objects,
-    /// The steps that can be undone.
-    History,
-    /// The quality slider, its measurements, the receipt of the last edit.
-    Trade,
-    /// What the quality checks found.
-    Checks,
-}
-
-impl Pane {
-    /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 18] = [
-        Pane::Bev,
-        Pane::View3d,
-        Pane::Cameras,
-        Pane::Lidar,
-        Pane::BoxViews,
-        Pane::Prompt,
-        Pane::Versions,
-        Pane::Tools,
-        Pane::Objects,
-        Pane::History,
-        Pane::Trade,
-        Pane::Checks,
-        Pane::Camera(0),
-        Pane::Camera(1),
-        Pane::Camera(2),
-        Pane::Camera(3),
-        Pane::Camera(4),
-        Pane::Camera(5),
-    ];
-
-    /// Name for a person; that of a camera is its number until the rig names it.
-    pub fn name(self) -> String {
-        match self {
-            Pane::Bev => "Bird's-eye view".into(),
-            Pane::View3d => "3D view".into(),
-            Pane::Cameras => "Cameras".into(),
-            Pane::Camera(i) => format!("Camera {}", i + 1),
-            Pane::Lidar => "LiDAR sweep".into(),
-            Pane::BoxViews => "Box views".into(),
-            Pane::Prompt => "Prompt".into(),
-            Pane::Versions => "Versions".into(),
-            Pane::Tools => "Tools".into(),
-            Pane::Objects => "Objects".into(),
-            Pane::History => "History".into(),
-            Pane::Trade => "Speed and accuracy".into(),
-            Pane::Checks => "Checks".into(),
-        }
-    }
-}
-
 /// How the LiDAR sweep comes about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LidarModel {
@@ -158,6 +82,36 @@ pub enum LidarModel {
     Exact,
     /// The network: ranges within voxels, intensity, lost echoes.
     Learned,
+}
+
+/// How two states are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CompareMode {
+    /// Only the present state is shown.
+    #[default]
+    Off,
+    /// Before on the left of a line, after on its right.
+    Wipe,
+    /// Before beside after.
+    Side,
+    /// Voxels that differ are marked.
+    Difference,
+}
+
+impl CompareMode {
+    /// Every mode with its name and what it does.
+    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
+        (CompareMode::Off, "Off", "only the present state"),
+        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
+        (CompareMode::Side, "Side", "before beside after"),
+        (CompareMode::Difference, "Diff", "voxels that differ"),
+    ];
+
+    /// The next one.
+    pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
+        Self::ALL[(at + 1) % Self::ALL.len()].0
+    }
 }
 
 /// A sensor of the rig.
@@ -251,7 +205,7 @@ pub struct UiState {
     /// Camera that is enlarged.
     pub inspected: Option<usize>,
     /// Pane under the pointer in the last frame.
-    pub hovered_pane: Option<Pane>,
+    pub hovered_pane: Option<PaneId>,
     /// What the pane under the pointer says about it; shown in the status bar.
     pub readout: String,
     /// The log is open.

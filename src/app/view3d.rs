@@ -17,12 +17,12 @@ use viewport::{
 
 use super::command::Command;
 use super::pointer::{self, Held, Step};
-use super::software_ui;
 use super::state::{Tool, UiState, VoxelVerb, position_text};
 use super::theme;
 use super::tools::VoxelMode;
 use super::tools::view3d::ViewGesture;
 use super::view3d_tools::Gesture3d;
+use crate::shell::software_ui;
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;

@@ -66,7 +66,10 @@ impl Products for Small {
         })
     }
 
-    fn camera_maps(&mut self) -> Result<Vec<CameraMaps>, FormatError> {
+    fn camera_maps(
+        &mut self,
+        take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
         let maps = |camera: &str| CameraMaps {
             camera: camera.into(),
             width: 2,
@@ -77,11 +80,15 @@ impl Products for Small {
             median_m: vec![-1.0; 4],
             coverage: vec![0.0, 1.0, 1.0, 1.0],
         };
-        Ok(vec![maps("FRONT"), maps("../BACK")])
+        take(maps("FRONT"))?;
+        take(maps("../BACK"))
     }
 
-    fn pictures(&mut self) -> Result<Vec<Picture>, FormatError> {
-        Ok(vec![self.view()?])
+    fn pictures(
+        &mut self,
+        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        take(self.view()?)
     }
 
     fn view(&mut self) -> Result<Picture, FormatError> {

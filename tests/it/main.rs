@@ -23,5 +23,6 @@ mod shaders;
 mod splat_gpu;
 mod splat_reference;
 mod threads;
+mod tidy;
 mod viewport;
 mod window;

@@ -3,9 +3,10 @@
 use egui::Context;
 use glam::DVec2;
 
-use crate::application::SceneloomApp;
-use crate::panels::toasts::Level;
-use crate::state::{Pane, Tool};
+use crate::panes::id::PaneId;
+use crate::shell::app::SceneloomApp;
+use crate::shell::toasts::Level;
+use crate::state::Tool;
 use editor::arrange::{self, Added, Clipboard};
 use editor::{Edit, Shape, voxel_ops};
 use job::redraw::RedrawMask;
@@ -56,7 +57,7 @@ impl SceneloomApp {
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
             ToolCommand::Paste => {
-                let over_bev = self.state.hovered_pane == Some(Pane::Bev);
+                let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
                 let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
                 let added = arrange::paste(&frame, &self.state.tools.clipboard, at_m);
                 let label = of(&added.ids, "Paste box", "Paste boxes");

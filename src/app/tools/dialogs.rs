@@ -3,10 +3,10 @@
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
-use crate::icons;
-use crate::panels::fields::{caption, number};
 use crate::state::UiState;
 use crate::theme;
+use crate::widgets::fields::{caption, number};
+use crate::widgets::icons;
 use editor::arrange::{self, MAX_COPIES, RowAlong};
 use scene::{Frame, SceneBox};
 

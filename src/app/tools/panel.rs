@@ -3,10 +3,10 @@
 use egui::Ui;
 
 use crate::command::Command;
-use crate::icons::{self, section};
-use crate::panels::layers::caption;
 use crate::state::UiState;
 use crate::theme;
+use crate::widgets::hint::caption;
+use crate::widgets::icons::{self, section};
 use editor::arrange::Pivot;
 use editor::flood::FillBounds;
 use editor::lane_strip::LaneStrip;

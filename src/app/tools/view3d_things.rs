@@ -190,7 +190,7 @@ pub(crate) fn draw(ui: &Ui, view: &View3d, input: &View3dInput<'_>, state: &UiSt
     let painter = ui.painter().with_clip_rect(view.rect);
     let pointer = ui
         .input(|i| i.pointer.latest_pos())
-        .filter(|p| view.rect.contains(*p) && state.hovered_pane == Some(crate::state::Pane::View3d));
+        .filter(|p| view.rect.contains(*p) && state.hovered_pane == Some(crate::panes::id::PaneId::VIEW3D));
     let drawing = matches!(state.tool, Tool::Thing(_));
     let at_m = pointer.filter(|_| drawing).and_then(|p| ground_m(view, input, p));
     let project = |p: DVec3| view.project(p);

@@ -2,8 +2,9 @@
 
 use app::compare::CompareMode;
 use app::dock::Workspace;
+use app::panes::id::PaneId;
 use app::settings::Settings;
-use app::state::{Pane, Tool};
+use app::state::Tool;
 use app::theme::Look;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
@@ -163,7 +164,7 @@ fn settings_are_kept() {
     assert!(again.harness.query_by_label("LiDAR sweep").is_some());
     again.app().settings.look = Look::Dark; // the colours of a theme are the process's
     again.steps(3);
-    assert_eq!(again.app().state.hovered_pane, None::<Pane>);
+    assert_eq!(again.app().state.hovered_pane, None::<PaneId>);
 }
 
 #[test]

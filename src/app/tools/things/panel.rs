@@ -2,11 +2,11 @@
 
 use egui::Ui;
 
-use crate::icons::{self, section};
-use crate::panels::layers::caption;
 use crate::state::UiState;
 use crate::theme;
 use crate::tools::panel::slider;
+use crate::widgets::hint::caption;
+use crate::widgets::icons::{self, section};
 use scene::background::{Facade, LineKind, PostKind, Roof, TreeKind};
 
 use super::{ThingState, ThingTool};
@@ -123,7 +123,7 @@ pub fn list<T: Copy + PartialEq>(
 ) -> bool {
     let before = *chosen;
     ui.horizontal(|ui| {
-        crate::panels::fields::caption(ui, title);
+        crate::widgets::fields::caption(ui, title);
         let name = choices.iter().find(|c| c.0 == before).map_or("", |c| c.1);
         egui::ComboBox::from_id_salt(title)
             .selected_text(name)

@@ -1,0 +1,38 @@
+//! The shell: the application object, what it owns, and how a command is carried out.
+
+pub mod actions;
+pub mod app;
+pub mod bookmarks;
+mod by_words;
+pub mod checking;
+mod damage;
+pub mod dock;
+mod dock_ui;
+mod drawing;
+mod execute;
+mod exporting;
+mod file_dialogs;
+pub mod guard;
+mod hints;
+pub mod keymap;
+mod keys;
+pub mod live;
+mod measuring;
+mod news;
+pub mod perf;
+pub mod priority;
+mod recovering;
+pub mod recovery;
+mod repair;
+pub mod run;
+pub mod settings;
+pub(crate) mod software_ui;
+pub mod staged;
+pub mod status;
+pub mod toasts;
+mod toolbar;
+pub mod trace;
+pub mod tuning;
+pub mod versions;
+mod window;
+pub mod workspace;
