@@ -37,6 +37,18 @@ pub fn rig(path: &Path) -> anyhow::Result<SensorRig> {
     }
 }
 
+/// A folder of weights in which every file is a regular one of a sane size: networks read them whole.
+pub fn weights(dir: &Path) -> anyhow::Result<&Path> {
+    let entries = std::fs::read_dir(dir).with_context(|| format!("read {}", dir.display()))?;
+    for entry in entries {
+        let path = entry.with_context(|| format!("read {}", dir.display()))?.path();
+        if path.extension().is_some_and(|e| e == "safetensors") {
+            input::check(&path, input::LARGEST_WEIGHTS)?;
+        }
+    }
+    Ok(dir)
+}
+
 /// Writes a sensor rig as JSON.
 pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
     let text = serde_json::to_string_pretty(rig).context("the sensors")?;

@@ -295,7 +295,7 @@ fn better_road(
 
 fn network(how: &How) -> anyhow::Result<Arc<LayoutNet>> {
     Ok(match &how.weights {
-        Some(folder) => LayoutNet::from_dir(folder)?,
+        Some(folder) => LayoutNet::from_dir(crate::open::weights(folder)?)?,
         None => LayoutNet::bundled()?,
     })
 }

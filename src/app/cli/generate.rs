@@ -55,7 +55,7 @@ pub fn full_params() -> GenParams {
 /// The networks of `--weights`, or the bundled ones.
 pub fn models(weights: Option<&Path>) -> anyhow::Result<Arc<OccModels>> {
     Ok(match weights {
-        Some(dir) => OccModels::from_dir(dir)?,
+        Some(dir) => OccModels::from_dir(open::weights(dir)?)?,
         None => OccModels::bundled()?,
     })
 }

@@ -333,7 +333,7 @@ impl Eval {
     /// Complete worlds, and labels as a drive through them would give.
     pub(super) fn lidar(&self, progress: &Progress) -> anyhow::Result<(Value, Vec<Bar>)> {
         let net = match &self.common.weights {
-            Some(dir) => LidarNet::from_dir(dir)?,
+            Some(dir) => LidarNet::from_dir(crate::open::weights(dir)?)?,
             None => LidarNet::bundled()?,
         };
         let flat = LidarNet::without_unet()?;
