@@ -117,7 +117,6 @@ pub fn project_file(bytes: &[u8]) {
 
 /// `labels.npz`, and with it npy.
 pub fn occ3d_file(bytes: &[u8]) {
-    occ3d::is_npz(bytes);
     match occ3d::read(bytes) {
         Err(error) => one_line(error),
         Ok(frame) => {

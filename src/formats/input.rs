@@ -12,6 +12,9 @@ pub const LARGEST_TEXT: u64 = 64 << 20;
 /// Characters of a path in a message.
 const LONGEST_PATH: usize = 160;
 
+/// Largest file of networks' weights, bytes.
+pub const LARGEST_WEIGHTS: u64 = 4 << 30;
+
 /// Why a file was not read. Each is one line and names the file.
 #[derive(Debug, thiserror::Error)]
 pub enum InputError {
@@ -90,6 +93,11 @@ pub fn head(path: &Path, most: u64) -> Result<Vec<u8>, InputError> {
     let read = file.take(most).read_to_end(&mut bytes);
     read.map_err(|source| failed(path, source))?;
     Ok(bytes)
+}
+
+/// Whether a file that others open would be read: it is regular and not too large.
+pub fn check(path: &Path, limit: u64) -> Result<(), InputError> {
+    open(path, limit).map(|_| ())
 }
 
 fn open(path: &Path, limit: u64) -> Result<(File, u64), InputError> {
@@ -194,6 +202,7 @@ mod tests {
             "{line}"
         );
         assert_eq!(head(&path, 3).expect("zeros"), [0; 3]);
+        assert!(check(&path, 1 << 30).is_err() && check(&path, 1 << 41).is_ok());
     }
 
     #[cfg(unix)]

@@ -6,7 +6,7 @@ use super::xml::{OpenDriveError, Result, shown};
 /// Attributes of one element; the standard has none with more than about twenty.
 pub const MOST_ATTRIBUTES: usize = 200;
 /// Elements of a file. A city of 10,000 roads has about half a million.
-pub const MOST_ELEMENTS: usize = 4_000_000;
+pub const MOST_ELEMENTS: usize = 2_000_000;
 /// Elements around one another; the standard nests about ten.
 pub const MOST_NESTED: usize = 200;
 /// Declarations of namespaces in a file; the standard has one.
@@ -157,7 +157,7 @@ mod tests {
             "<a> (line 1): more than 64 namespaces"
         );
         let line = refused(&format!("<r>{}</r>", "<a/>".repeat(MOST_ELEMENTS)));
-        assert_eq!(line, "<a> (line 1): more than 4000000 elements");
+        assert_eq!(line, "<a> (line 1): more than 2000000 elements");
     }
 
     #[test]
