@@ -355,7 +355,10 @@ mod tests {
             }
             let views = sensing.cameras().expect("pictures");
             assert_eq!(views.iter().map(|v| v.camera).collect::<Vec<_>>(), [1, 3, 4, 5]);
-            for (of_camera, view) in views.iter().flat_map(|v| source.views().iter().map(move |s| (v, s))) {
+            for (of_camera, view) in views
+                .iter()
+                .flat_map(|v| source.views().iter().map(move |s| (v, s)))
+            {
                 let ([w, h], rgba) = of_camera.picture.rgba(view.id, 12.0);
                 assert_eq!(rgba.len(), w * h * 4);
                 assert!(

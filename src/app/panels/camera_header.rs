@@ -38,7 +38,11 @@ pub fn header(
         if state.shown_source().needs().conditions {
             conditions(ui, input.prompt, commands);
         }
-        match views.iter().find(|v| v.id == state.camera_view).and_then(|v| v.knob) {
+        match views
+            .iter()
+            .find(|v| v.id == state.camera_view)
+            .and_then(|v| v.knob)
+        {
             Some(Knob::PlaneDepth) => {
                 let slider = egui::Slider::new(&mut state.plane_m, 0.2..=51.0)
                     .suffix(" m")

@@ -6,8 +6,8 @@ use egui::{DragValue, Ui};
 
 use crate::export::{ExportOptions, ExportProgress, Format};
 use crate::state::LidarModel;
-use sensors::cameras::{self, ViewId};
 use crate::theme;
+use sensors::cameras::{self, ViewId};
 
 /// What the dialog shows of the application.
 pub struct ExportInput<'a> {

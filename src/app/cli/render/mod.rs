@@ -101,12 +101,19 @@ impl Render {
         time_s += start.elapsed().as_secs_f64();
         let options = RenderOptions {
             size: self.size,
-            quality: if self.preview { Quality::Preview } else { Quality::Full },
+            quality: if self.preview {
+                Quality::Preview
+            } else {
+                Quality::Full
+            },
         };
         for (i, camera) in scene.rig.cameras.iter().enumerate() {
             let start = Instant::now();
             let context = RenderContext {
-                card: card.as_mut().filter(|_| on_card).map(|card| card as &mut dyn Card),
+                card: card
+                    .as_mut()
+                    .filter(|_| on_card)
+                    .map(|card| card as &mut dyn Card),
                 ..RenderContext::processor()
             };
             let picture = ready.render(camera, &options, context)?;

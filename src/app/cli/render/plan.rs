@@ -65,7 +65,9 @@ impl Plan {
             let sheet = sheet_bytes(render.size, count);
             bounds::check(render.size, of.source.bytes_per_pixel(), sheet).context("--size")?;
         }
-        let lidar = wants("lidar").then(|| LidarModel::of(render, scene)).transpose()?;
+        let lidar = wants("lidar")
+            .then(|| LidarModel::of(render, scene))
+            .transpose()?;
         Ok(Self {
             cameras,
             lidar,

@@ -52,11 +52,7 @@ pub fn check([width, height]: [u32; 2], bytes_per_pixel: u64, kept_bytes: u64) -
     }
     let bytes = (pixels * bytes_per_pixel).saturating_add(kept_bytes);
     match bytes > MAX_RUN_BYTES {
-        true => Err(CameraError::Memory {
-            width,
-            height,
-            bytes,
-        }),
+        true => Err(CameraError::Memory { width, height, bytes }),
         false => Ok(()),
     }
 }

@@ -8,11 +8,7 @@ use crate::appearance::Look;
 use scene::Camera;
 
 /// What it shows.
-pub const VIEW: View = View::new(
-    ViewId::new("appearance"),
-    "Picture",
-    "what a camera would see",
-);
+pub const VIEW: View = View::new(ViewId::new("appearance"), "Picture", "what a camera would see");
 
 /// The source.
 pub struct Pictures;

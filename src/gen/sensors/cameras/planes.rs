@@ -12,11 +12,7 @@ use scene::sensor_data::Planes;
 /// What it shows.
 pub const VIEW: View = View {
     knob: Some(Knob::PlaneDepth),
-    ..View::new(
-        ViewId::new("mpi"),
-        "Planes",
-        "one plane of the multi-plane image",
-    )
+    ..View::new(ViewId::new("mpi"), "Planes", "one plane of the multi-plane image")
 };
 
 /// The source.
