@@ -138,7 +138,7 @@ mod tests {
             }
             drawn_by_card.push(source.id().name());
             let camera = &scene.rig.cameras[1];
-            let mut by = |card| {
+            let by = |card| {
                 let context = RenderContext {
                     card,
                     ..RenderContext::processor()

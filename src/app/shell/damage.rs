@@ -4,7 +4,7 @@
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Pos2, Rect, TextureId, pos2};
 
-use viewport::panels::{PanelMesh, PanelVertex};
+use viewport::ui_mesh::{UiMesh, UiVertex};
 
 /// Rectangles up to which they are kept apart; more are joined.
 const MOST: usize = 8;
@@ -12,10 +12,10 @@ const MOST: usize = 8;
 /// All triangles of a frame.
 #[derive(Clone, Default)]
 pub(crate) struct Frame {
-    pub vertices: Vec<PanelVertex>,
+    pub vertices: Vec<UiVertex>,
     pub indices: Vec<u32>,
     /// Triangles of one texture each in a rectangle, points.
-    pub parts: Vec<(Rect, TextureId, PanelMesh)>,
+    pub parts: Vec<(Rect, TextureId, UiMesh)>,
 }
 
 /// A texture that was written to: all of it, or a part, as shares of its width and height.
@@ -29,13 +29,13 @@ impl Frame {
                 continue;
             };
             let (first, base_vertex) = (out.indices.len() as u32, out.vertices.len() as i32);
-            out.vertices.extend(mesh.vertices.iter().map(|v| PanelVertex {
+            out.vertices.extend(mesh.vertices.iter().map(|v| UiVertex {
                 position: [v.pos.x, v.pos.y],
                 at: [v.uv.x, v.uv.y],
                 color: v.color.to_array(),
             }));
             out.indices.extend_from_slice(&mesh.indices);
-            let mesh_of = PanelMesh {
+            let mesh_of = UiMesh {
                 scissor: [0; 4],
                 indices: first..out.indices.len() as u32,
                 base_vertex,
@@ -97,7 +97,7 @@ impl Frame {
 struct Part<'a> {
     clip: Rect,
     texture: TextureId,
-    vertices: &'a [PanelVertex],
+    vertices: &'a [UiVertex],
     indices: &'a [u32],
 }
 

@@ -11,16 +11,16 @@ use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor}
 
 use super::damage::{Frame, Touched};
 use crate::theme;
-use viewport::panels::{PanelMesh, Panels};
+use viewport::ui_mesh::{UiMesh, UiPainter};
 
 /// Puts itself between egui and its renderer. Only where it pays, and where the target is not sRGB-converting.
 pub fn install(ctx: &Context, render_state: &RenderState) {
     let software = render_state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     if software && !render_state.target_format.is_srgb() {
-        let panels = Panels::new(&render_state.device, render_state.target_format);
+        let painter = UiPainter::new(&render_state.device, render_state.target_format);
         ctx.add_plugin(SoftwareUi {
             shared: Arc::new(Mutex::new(Shared {
-                panels,
+                painter,
                 waiting: Damage::All,
             })),
             render_state: render_state.clone(),
@@ -59,7 +59,7 @@ impl Damage {
 }
 
 struct Shared {
-    panels: Panels,
+    painter: UiPainter,
     /// Not drawn yet.
     waiting: Damage,
 }
@@ -193,9 +193,9 @@ impl CallbackTrait for Painted {
         let size = screen.size_in_pixels.map(|s| s as f32 / screen.pixels_per_point);
         let mut shared = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
         let frame = &self.frame;
-        let panels = &mut shared.panels;
-        panels.upload(device, queue, size, self.clear, (&frame.vertices, &frame.indices));
-        if panels.fit(device, screen.size_in_pixels) {
+        let painter = &mut shared.painter;
+        painter.upload(device, queue, size, self.clear, (&frame.vertices, &frame.indices));
+        if painter.fit(device, screen.size_in_pixels) {
             shared.waiting = Damage::All;
         }
         Vec::new()
@@ -230,13 +230,13 @@ impl CallbackTrait for Painted {
             })
             .collect();
         let (device, queue) = (&self.render_state.device, &self.render_state.queue);
-        shared.panels.draw(device, queue, &damage, |rect| {
+        shared.painter.draw(device, queue, &damage, |rect| {
             placed
                 .iter()
                 .filter_map(|(mesh, clip, covered, group)| {
                     common(*covered, rect)?;
                     let scissor = common(*clip, rect)?;
-                    let mesh = PanelMesh {
+                    let mesh = UiMesh {
                         scissor,
                         ..(*mesh).clone()
                     };
@@ -244,7 +244,7 @@ impl CallbackTrait for Painted {
                 })
                 .collect()
         });
-        shared.panels.show(pass, size);
+        shared.painter.show(pass, size);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Draws the panels of the window: triangles with a texture, as egui makes them, by `shaders/panels.wgsl`. For software
+//! Draws the meshes of the window's UI: triangles with a texture, as egui makes them, by `shaders/ui_mesh.wgsl`. For software
 //! rasterisers, which take six times as long with egui's own shader.
 
 use super::shaders::SHADERS;
@@ -6,7 +6,7 @@ use super::shaders::SHADERS;
 /// A corner of a triangle, as egui lays it out: position and texture coordinate in points and parts, RGBA.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct PanelVertex {
+pub struct UiVertex {
     /// Points.
     pub position: [f32; 2],
     /// 0 to 1.
@@ -15,11 +15,11 @@ pub struct PanelVertex {
     pub color: [u8; 4],
 }
 
-const _: () = assert!(size_of::<PanelVertex>() == 20);
+const _: () = assert!(size_of::<UiVertex>() == 20);
 
 /// Part of a frame: triangles of one texture in one rectangle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PanelMesh {
+pub struct UiMesh {
     /// Left, top, width, height, pixels, inside the target.
     pub scissor: [u32; 4],
     /// Of the frame's indices.
@@ -30,7 +30,7 @@ pub struct PanelMesh {
 
 /// Pipelines, buffers, and the picture of the window.
 #[derive(Debug)]
-pub struct Panels {
+pub struct UiPainter {
     pipeline: wgpu::RenderPipeline,
     wipe: wgpu::RenderPipeline,
     copy: wgpu::RenderPipeline,
@@ -72,111 +72,126 @@ fn uniform(size: u64) -> wgpu::BindingType {
     }
 }
 
-impl Panels {
-    /// For a target of that format, which must not be sRGB-converting. Textures come as bind groups of egui's renderer:
-    /// the layout here is the same entry by entry.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+/// What the shader binds: the uniforms of the window, and a texture as egui's renderer binds it.
+struct Layouts {
+    screen: wgpu::BindGroupLayout,
+    texture: wgpu::BindGroupLayout,
+}
+
+impl Layouts {
+    fn new(device: &wgpu::Device) -> Self {
         let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry {
             binding,
             visibility,
             ty,
             count: None,
         };
-        let fragment = wgpu::ShaderStages::FRAGMENT;
-        let screen_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("panels: screen"),
-            entries: &[entry(
-                0,
-                wgpu::ShaderStages::VERTEX_FRAGMENT,
-                uniform(SCREEN_BYTES),
-            )],
-        });
+        let (both, fragment) = (wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::ShaderStages::FRAGMENT);
         let texture = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Float { filterable: true },
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         };
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let texture_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("panels: texture"),
-            entries: &[
-                entry(0, fragment, texture),
-                entry(1, fragment, sampler),
-                entry(2, fragment, uniform(16)), // flags that only egui's shader reads
-            ],
-        });
-        let source = SHADERS
-            .iter()
-            .find(|s| s.name == "panels")
-            .map_or("", |s| s.source);
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("panels"),
-            source: wgpu::ShaderSource::Wgsl(source.into()),
-        });
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("panels"),
-            bind_group_layouts: &[Some(&screen_layout), Some(&texture_layout)],
+        Self {
+            screen: device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("ui: screen"),
+                entries: &[entry(0, both, uniform(SCREEN_BYTES))],
+            }),
+            texture: device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                label: Some("ui: texture"),
+                entries: &[
+                    entry(0, fragment, texture),
+                    entry(1, fragment, sampler),
+                    entry(2, fragment, uniform(16)), // flags that only egui's shader reads
+                ],
+            }),
+        }
+    }
+}
+
+/// The pipelines that wipe a rectangle, copy the picture and draw meshes.
+fn pipelines(
+    device: &wgpu::Device,
+    format: wgpu::TextureFormat,
+    layouts: &Layouts,
+) -> [wgpu::RenderPipeline; 3] {
+    let source = SHADERS
+        .iter()
+        .find(|s| s.name == "ui_mesh")
+        .map_or("", |s| s.source);
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("ui_mesh"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    let layout = |label, bind_group_layouts: &[Option<&wgpu::BindGroupLayout>]| {
+        device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts,
             immediate_size: 0,
-        });
-        let over = |src_factor, dst_factor| wgpu::BlendComponent {
-            src_factor,
-            dst_factor,
-            operation: wgpu::BlendOperation::Add,
-        };
-        use wgpu::BlendFactor::{One, OneMinusDstAlpha, OneMinusSrcAlpha};
-        let blend = wgpu::BlendState {
-            color: over(One, OneMinusSrcAlpha),
-            alpha: over(OneMinusDstAlpha, One),
-        };
-        let vertices = [Some(wgpu::VertexBufferLayout {
-            array_stride: size_of::<PanelVertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Uint32],
-        })];
-        let plain = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("panels: wipe"),
-            bind_group_layouts: &[Some(&screen_layout)],
-            immediate_size: 0,
-        });
-        let pipeline = |vertex, fragment, blend: Option<wgpu::BlendState>| {
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(fragment),
-                layout: Some(if fragment == "fs_wipe" { &plain } else { &layout }),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(vertex),
-                    buffers: if blend.is_some() { &vertices } else { &[] },
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(fragment),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend,
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
-        let wipe = pipeline("vs_all", "fs_wipe", None);
-        let copy = pipeline("vs_all", "fs_copy", None);
-        let pipeline = pipeline("vs_main", "fs_main", Some(blend));
-        let screen = buffer(
-            device,
-            "panels: screen",
-            SCREEN_BYTES,
-            wgpu::BufferUsages::UNIFORM,
-        );
+        })
+    };
+    let plain = layout("ui: wipe", &[Some(&layouts.screen)]);
+    let textured = layout("ui_mesh", &[Some(&layouts.screen), Some(&layouts.texture)]);
+    let over = |src_factor, dst_factor| wgpu::BlendComponent {
+        src_factor,
+        dst_factor,
+        operation: wgpu::BlendOperation::Add,
+    };
+    use wgpu::BlendFactor::{One, OneMinusDstAlpha, OneMinusSrcAlpha};
+    let blend = wgpu::BlendState {
+        color: over(One, OneMinusSrcAlpha),
+        alpha: over(OneMinusDstAlpha, One),
+    };
+    let vertices = [Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<UiVertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Uint32],
+    })];
+    let pipeline = |vertex, fragment, blend: Option<wgpu::BlendState>| {
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: Some(if fragment == "fs_wipe" { &plain } else { &textured }),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex),
+                buffers: if blend.is_some() { &vertices } else { &[] },
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend,
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    };
+    [
+        pipeline("vs_all", "fs_wipe", None),
+        pipeline("vs_all", "fs_copy", None),
+        pipeline("vs_main", "fs_main", Some(blend)),
+    ]
+}
+
+impl UiPainter {
+    /// For a target of that format, which must not be sRGB-converting. Textures come as bind groups of egui's renderer:
+    /// the layout here is the same entry by entry.
+    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let layouts = Layouts::new(device);
+        let [wipe, copy, pipeline] = pipelines(device, format, &layouts);
+        let screen = buffer(device, "ui: screen", SCREEN_BYTES, wgpu::BufferUsages::UNIFORM);
         let screen_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("panels: screen"),
-            layout: &screen_layout,
+            label: Some("ui: screen"),
+            layout: &layouts.screen,
             entries: &[wgpu::BindGroupEntry {
                 binding: 0,
                 resource: screen.as_entire_binding(),
@@ -188,10 +203,10 @@ impl Panels {
             copy,
             screen,
             screen_group,
-            texture_layout,
+            texture_layout: layouts.texture,
             sampler: device.create_sampler(&wgpu::SamplerDescriptor::default()),
-            vertices: buffer(device, "panels: vertices", 1 << 20, wgpu::BufferUsages::VERTEX),
-            indices: buffer(device, "panels: indices", 1 << 19, wgpu::BufferUsages::INDEX),
+            vertices: buffer(device, "ui: vertices", 1 << 20, wgpu::BufferUsages::VERTEX),
+            indices: buffer(device, "ui: indices", 1 << 19, wgpu::BufferUsages::INDEX),
             format,
             canvas: None,
         }
@@ -205,7 +220,7 @@ impl Panels {
         queue: &wgpu::Queue,
         size_points: [f32; 2],
         clear: [f32; 4],
-        (vertices, indices): (&[PanelVertex], &[u32]),
+        (vertices, indices): (&[UiVertex], &[u32]),
     ) {
         let ([w, h], [r, g, b, a]) = (size_points, clear);
         let screen = [w, h, 0.0, 0.0, r, g, b, a];
@@ -215,11 +230,11 @@ impl Panels {
         let room = |bytes: &[u8]| (bytes.len() as u64).next_power_of_two();
         if self.vertices.size() < vertices.len() as u64 {
             let usage = wgpu::BufferUsages::VERTEX;
-            self.vertices = buffer(device, "panels: vertices", room(vertices), usage);
+            self.vertices = buffer(device, "ui: vertices", room(vertices), usage);
         }
         if self.indices.size() < indices.len() as u64 {
             let usage = wgpu::BufferUsages::INDEX;
-            self.indices = buffer(device, "panels: indices", room(indices), usage);
+            self.indices = buffer(device, "ui: indices", room(indices), usage);
         }
         queue.write_buffer(&self.vertices, 0, vertices);
         queue.write_buffer(&self.indices, 0, indices);
@@ -268,7 +283,7 @@ impl Panels {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         rects: &[[u32; 4]],
-        parts: impl Fn([u32; 4]) -> Vec<(PanelMesh, &'t wgpu::BindGroup)>,
+        parts: impl Fn([u32; 4]) -> Vec<(UiMesh, &'t wgpu::BindGroup)>,
     ) {
         let Some(canvas) = self.canvas.as_ref().filter(|_| !rects.is_empty()) else {
             return;

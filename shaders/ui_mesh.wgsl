@@ -1,4 +1,4 @@
-// Panels, texts and pictures of the window: what egui's own shader draws, without the branches for other filters and
+// Meshes of the window's UI (areas, texts, pictures): what egui's own shader draws, without the branches for other filters and
 // dithering, which a software rasteriser computes although no pixel takes them (six times the work).
 
 struct Screen {
