@@ -5,35 +5,27 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::Receiver;
-use egui::{Rect, Ui};
+use egui::Ui;
 
 use editor::Document;
 use job::worker::GenWorker;
-use job::{GenError, GenParams, GenResult, Job, JobCtx, JobEvent, Pipeline, UpdateGate};
-use scene::{Scene, SceneRev};
+use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline};
+use scene::Scene;
 
 use super::checking::Checking;
 use super::dock::Dock;
-use super::drawing::Drawing;
-use super::exporting::Exporting;
-use super::file_dialogs::FileDialogs;
-use super::keymap::Keymap;
-use super::live::{Bounds, Live};
+use super::files::Disk;
+use super::files::Files;
+pub use super::files::{NewScene, OpenScene, SaveScene};
+use super::generation::Generation;
+use super::live::Live;
 use super::perf::Perf;
-use super::recovery::Recovery;
+use super::preferences::Preferences;
 use super::settings::Settings;
-use super::staged::Staged;
-use super::status::Receipt;
 use super::toasts::{Level, Toasts};
 use super::tuning::Tuning;
 use super::versions::Versions;
-use crate::canvas::Canvas;
-use crate::panes;
-use crate::panes::camera_strip::CameraStrip;
-use crate::panes::compare::Compare;
-use crate::panes::pane::Pane;
-use crate::panes::prompt::field::PromptField;
+use super::views::Views;
 use crate::sensing::Sensing;
 use crate::state::UiState;
 use crate::theme;
@@ -41,12 +33,6 @@ use crate::view3d::View3d;
 use crate::windows::palette::Palette;
 use crate::windows::shortcuts::Shortcuts;
 
-/// Reads a scene from a file of any kind that can be opened.
-pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<Scene> + Send + Sync>;
-/// Writes a scene to a `.loom` file.
-pub type SaveScene = Arc<dyn Fn(&Scene, &Path) -> anyhow::Result<()> + Send + Sync>;
-/// Makes a new scene.
-pub type NewScene = Arc<dyn Fn() -> anyhow::Result<Scene> + Send + Sync>;
 /// Makes the pipeline, on the worker's thread.
 pub type BuildPipeline = Box<dyn FnMut() -> Result<Box<dyn Pipeline>, GenError> + Send>;
 
@@ -85,25 +71,27 @@ impl Pipeline for AnyPipeline {
     }
 }
 
-/// What to do once unsaved changes are dealt with.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Next {
-    New,
-    NewFrom(&'static str),
-    AskOpen,
-    Open(PathBuf),
-    Quit,
+/// Threads that follow the scene.
+pub struct Background {
+    pub(crate) sensing: Sensing,
+    /// Findings of the quality checks.
+    pub checking: Checking,
 }
 
-/// A scene on its way from a file.
-pub(crate) struct Opening {
-    pub path: Option<PathBuf>,
-    pub what: String,
-    /// From a file that is no scene: its occupancy is a draft.
-    pub is_import: bool,
-    /// It becomes an undo step of this name, not a document of its own.
-    pub step: Option<&'static str>,
-    pub scene: Receiver<anyhow::Result<Scene>>,
+/// Windows that lie over the panes and keep something while they are open.
+#[derive(Default)]
+pub(crate) struct Overlays {
+    pub palette: Palette,
+    pub shortcuts: Shortcuts,
+}
+
+/// What frames need: the clock, how fast they are, the window's title.
+pub struct Frames {
+    /// How fast the window is.
+    pub perf: Perf,
+    pub(crate) clock: Instant,
+    pub(crate) title: String,
+    pub(crate) passes: u32,
 }
 
 /// The window's contents. Works without eframe and without a graphics device, for tests.
@@ -112,64 +100,22 @@ pub struct SceneloomApp {
     pub document: Document,
     /// What the window shows and holds in hand.
     pub state: UiState,
-    /// The bird's-eye view.
-    pub canvas: Canvas,
-    /// The 3D view.
-    pub view3d: View3d,
-    /// The scheduler.
-    pub live: Live,
-    /// Of the last generation.
-    pub receipt: Option<Receipt>,
     /// Messages.
     pub toasts: Toasts,
-    /// Findings of the quality checks.
-    pub checking: Checking,
-    /// Copies of unsaved work; none in tests.
-    pub recovery: Option<Recovery>,
-    /// How fast the window is.
-    pub perf: Perf,
-    pub(crate) exporting: Exporting,
-    /// The quality slider.
-    pub tuning: Tuning,
-    pub(crate) path: Option<PathBuf>,
-    pub(crate) worker: GenWorker,
-    pub(crate) dialogs: FileDialogs,
-    pub(crate) opening: Option<Opening>,
-    pub(crate) drawing: Option<Drawing>,
-    /// Waits for an answer about unsaved changes.
-    pub(crate) unsaved: Option<Next>,
-    /// Goes on after the scene was saved.
-    pub(crate) after_save: Option<Next>,
-    pub(crate) may_close: bool,
-    pub(crate) io: (OpenScene, SaveScene, NewScene),
-    pub(crate) clock: Instant,
-    pub(crate) gate: UpdateGate,
-    pub(crate) sensing: Sensing,
-    pub(crate) strip: CameraStrip,
-    pub(crate) panes: Vec<Box<dyn Pane>>,
-    pub(crate) dock: Dock,
-    /// What was generated so far.
-    pub versions: Versions,
-    pub(crate) compare: Compare,
-    pub(crate) staged: Option<Staged>,
-    pub(crate) prompt: PromptField,
-    pub(crate) render_state: Option<egui_wgpu::RenderState>,
-    pub(crate) palette: Palette,
-    /// What is kept between sessions.
-    pub settings: Settings,
-    /// What each chord calls for.
-    pub keymap: Keymap,
-    pub(crate) shortcuts: Shortcuts,
-    pub(crate) kept: (Option<PathBuf>, Settings, f64), // file of the settings, what it holds, when it was compared, s
-    pub(crate) drawn_first: Option<(SceneRev, Arc<Scene>)>, // scenery that waits for its generation, and the state before
-    pub(crate) words: Option<(SceneRev, Arc<Scene>)>, // the state that a sentence made, and the one before
-    pub(crate) finished: Option<(Arc<GenResult>, Option<&'static str>)>, // came during a drag, and the label if it is a step
-    pub(crate) preview: Option<(SceneRev, Arc<Scene>)>,
-    pub(crate) title: String,
-    pub(crate) center: Rect,
-    pub(crate) passes: u32,
-    pub(crate) ctx: egui::Context,
-    pub(crate) unsettled: Arc<[Bounds]>, // columns that are to be generated
+    /// The scene's file, and what is read and written.
+    pub files: Files,
+    /// The worker and its results.
+    pub generation: Generation,
+    /// Views and panes.
+    pub views: Views,
+    /// Sensors and checks.
+    pub background: Background,
+    pub(crate) overlays: Overlays,
+    /// Settings and keys.
+    pub preferences: Preferences,
+    /// The window's frames.
+    pub frames: Frames,
+    ctx: egui::Context,
 }
 
 impl SceneloomApp {
@@ -215,88 +161,65 @@ impl SceneloomApp {
             .named(&settings.quality)
             .filter(|_| config.settings_file.is_some());
         let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
+        let dock = settings.dock.clone().and_then(Dock::from_kept);
+        let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
+        let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));
+        let live = Live::new(params, config.full_params, config.warm_up);
+        let disk = Disk {
+            open: config.open,
+            save: config.save,
+            new_scene: config.new_scene,
+        };
         Ok(Self {
-            tuning,
             document: Document::new(config.scene),
             state,
-            canvas: Canvas::default(),
-            view3d,
-            live: Live::new(params, config.full_params, config.warm_up),
-            receipt: None,
             toasts,
-            checking: Checking::spawn(wake.clone())?,
-            recovery: None,
-            perf: Perf::default(),
-            exporting: Exporting::default(),
-            path: config.path,
-            worker,
-            dialogs: FileDialogs::new(config.native_dialogs),
-            opening: None,
-            drawing: None,
-            unsaved: None,
-            after_save: None,
-            may_close: false,
-            io: (config.open, config.save, config.new_scene),
-            clock: Instant::now(),
-            gate: UpdateGate::default(),
-            sensing: Sensing::spawn(sensing_grace, wake)?,
-            strip: CameraStrip::default(),
-            panes: panes::all(),
-            dock: settings
-                .dock
-                .clone()
-                .and_then(Dock::from_kept)
-                .map(|dock| dock.with_new_panes(&settings.panes_known))
-                .unwrap_or_else(|| Dock::workspace(settings.workspace)),
-            keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
-            palette: Palette::default(),
-            versions,
-            compare: Compare::default(),
-            staged: None,
-            words: None,
-            drawn_first: None,
-            prompt: PromptField::default(),
-            render_state,
-            shortcuts: Shortcuts::default(),
-            kept: (config.settings_file, settings.clone(), 0.0),
-            settings,
-            finished: None,
-            preview: None,
-            title: String::new(),
-            center: Rect::NOTHING,
-            passes: 0,
+            files: Files::new(config.path, disk, config.native_dialogs),
+            generation: Generation::new(worker, live, tuning, versions),
+            views: Views::new(view3d, dock, render_state),
+            background: Background {
+                checking: Checking::spawn(wake.clone())?,
+                sensing: Sensing::spawn(sensing_grace, wake)?,
+            },
+            overlays: Overlays::default(),
+            preferences: Preferences::new(config.settings_file, settings),
+            frames: Frames {
+                perf: Perf::default(),
+                clock: Instant::now(),
+                title: String::new(),
+                passes: 0,
+            },
             ctx: ctx.clone(),
-            unsettled: Arc::default(),
         })
     }
 
     /// Seconds since the start.
     pub fn now_s(&self) -> f64 {
-        self.clock.elapsed().as_secs_f64()
+        self.frames.clock.elapsed().as_secs_f64()
     }
 
     /// File of the scene, if it has one.
     pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
+        self.files.path.as_deref()
     }
 
     /// What the sensors returned last.
     pub fn sensing(&self) -> &Sensing {
-        &self.sensing
+        &self.background.sensing
     }
 
     /// True if LiDAR and cameras show the state on screen.
     pub fn sensors_are_current(&self) -> bool {
         let rev = self.document.scene().rev;
-        !self.sensing.cameras_stale(rev) && !self.sensing.lidar_stale(rev)
+        !self.background.sensing.cameras_stale(rev) && !self.background.sensing.lidar_stale(rev)
     }
 
     /// The document's scene, or a preview of its generation.
     pub(crate) fn shown_scene(&self) -> Arc<Scene> {
-        if let (true, Some(before)) = (self.state.holding_before, &self.compare.before) {
+        if let (true, Some(before)) = (self.state.holding_before, &self.views.compare.before) {
             return before.clone();
         }
-        match &self.preview {
+        match &self.generation.preview {
             Some((rev, scene)) if *rev == self.document.scene().rev => scene.clone(),
             _ => self.document.scene().clone(),
         }
@@ -304,32 +227,30 @@ impl SceneloomApp {
 
     /// Everything that happens without drawing: news of the worker, of sensing, of files.
     pub fn update(&mut self, ctx: &egui::Context) {
-        self.sensing.drain();
-        if let Some(problem) = self.sensing.take_problem() {
+        self.background.sensing.drain();
+        if let Some(problem) = self.background.sensing.take_problem() {
             self.fail(format!("The sensors show an older scene: {problem}"));
         }
-        self.tuning.update();
-        if self.document.history_limit() != self.settings.history_bytes() {
-            self.document.set_history_limit(self.settings.history_bytes());
+        self.generation.tuning.update();
+        if self.document.history_limit() != self.preferences.settings.history_bytes() {
+            self.document
+                .set_history_limit(self.preferences.settings.history_bytes());
         }
-        let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
-        for event in events {
-            if self.gate.admit(&event) {
-                self.take_event(event);
-            }
+        for event in self.generation.news() {
+            self.take_event(event);
         }
         if !self.document.is_dragging()
-            && let Some((result, own_step)) = self.finished.take()
+            && let Some((result, own_step)) = self.generation.finished.take()
         {
             self.adopt(&result, own_step);
         }
         self.take_opened(ctx);
         self.update_drawing(ctx);
-        if let Some((purpose, path)) = self.dialogs.poll() {
+        if let Some((purpose, path)) = self.files.dialogs.poll() {
             self.file_chosen(purpose, path, ctx);
         }
         // The first picture comes first.
-        if self.passes > 1 {
+        if self.frames.passes > 1 {
             self.schedule(ctx);
         }
         self.update_checks(ctx);
@@ -341,48 +262,30 @@ impl SceneloomApp {
 
     /// Puts changed settings to use, and writes them two seconds later at most.
     fn keep_settings(&mut self, ctx: &egui::Context) {
-        const EVERY_S: f64 = 2.0;
-        if self.settings.look != self.kept.1.look || self.settings.classes != self.kept.1.classes {
-            theme::apply(ctx, self.settings.look);
-            self.settings.classes.make_current();
-            self.canvas.forget_pictures();
-            self.strip = CameraStrip::default();
-            self.view3d.forget_pictures();
-            (self.kept.1.look, self.kept.1.classes) = (self.settings.look, self.settings.classes);
-            self.kept.2 = f64::NEG_INFINITY;
+        if self.preferences.looks_changed() {
+            theme::apply(ctx, self.preferences.settings.look);
+            self.preferences.settings.classes.make_current();
+            self.views.forget_pictures();
         }
-        if self.now_s() - self.kept.2 >= EVERY_S {
+        if self.preferences.is_due(self.now_s()) {
             self.write_settings(ctx);
         }
     }
 
     fn write_settings(&mut self, ctx: &egui::Context) {
-        self.settings.ui_scale = ctx.zoom_factor();
-        self.settings.dock = Some(self.dock.tree().clone());
-        self.settings.panes_known = panes::infos().iter().map(|p| p.id).collect();
-        self.settings.key_preset.clone_from(&self.keymap.preset);
-        self.settings.keys.clone_from(&self.keymap.own);
         let now_s = self.now_s();
-        let (file, kept, at_s) = &mut self.kept;
-        let forced = *at_s == f64::NEG_INFINITY;
-        *at_s = now_s;
-        let Some(path) = file.as_deref() else { return };
-        if (forced || *kept != self.settings)
-            && let Err(error) = self.settings.save(path)
-        {
-            let text = format!("Settings are not kept: {}", one_line(&error));
+        let complaint = self.preferences.write(ctx.zoom_factor(), &self.views.dock, now_s);
+        if let Some(text) = complaint {
             self.toasts.push(Level::Error, text, now_s);
-            *file = None; // said once
         }
-        self.kept.1 = self.settings.clone();
     }
 
     fn set_title(&mut self, ctx: &egui::Context) {
         let mark = if self.document.is_dirty() { "● " } else { "" };
         let title = format!("{mark}{} – Sceneloom", self.document.scene().name);
-        if title != self.title {
+        if title != self.frames.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.title = title;
+            self.frames.title = title;
         }
     }
 }
@@ -416,7 +319,7 @@ impl eframe::App for SceneloomApp {
         }
         self.update(ctx);
         if first {
-            self.perf.logic_done(self.now_s());
+            self.frames.perf.logic_done(self.now_s());
         }
     }
 
@@ -425,10 +328,10 @@ impl eframe::App for SceneloomApp {
     }
 
     fn on_exit(&mut self) {
-        self.kept.2 = f64::NEG_INFINITY;
+        self.preferences.write_soon();
         let ctx = self.ctx.clone();
         self.write_settings(&ctx);
-        self.perf.finish(None);
+        self.frames.perf.finish(None);
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

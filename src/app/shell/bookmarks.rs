@@ -62,18 +62,18 @@ impl SceneloomApp {
     /// Keeps where both views stand.
     pub(crate) fn keep_bookmark(&mut self, slot: u8) {
         if SLOTS.contains(&slot) {
-            let bookmark = Bookmark::of(&self.view3d.camera, &self.canvas);
-            self.settings.bookmarks.insert(slot, bookmark);
+            let bookmark = Bookmark::of(&self.views.view3d.camera, &self.views.canvas);
+            self.preferences.settings.bookmarks.insert(slot, bookmark);
             self.tell(format!("View {slot} is kept: F{slot} comes back to it"));
         }
     }
 
     /// Goes where both views stood when they were kept.
     pub(crate) fn go_to_bookmark(&mut self, slot: u8) {
-        match self.settings.bookmarks.get(&slot).copied() {
+        match self.preferences.settings.bookmarks.get(&slot).copied() {
             Some(bookmark) => {
-                self.view3d.camera = bookmark.camera();
-                self.canvas.go_to(bookmark.bev_center_m, bookmark.bev_scale);
+                self.views.view3d.camera = bookmark.camera();
+                self.views.canvas.go_to(bookmark.bev_center_m, bookmark.bev_scale);
             }
             None => self.tell(format!("No view is kept as {slot}: Ctrl+F{slot} keeps this one")),
         }

@@ -25,7 +25,7 @@ impl SceneloomApp {
         });
         self.apply(step_name(words), &edits);
         let after = self.document.settled_scene();
-        self.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
+        self.generation.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
         let changed = changed_boxes(before.frame(), after.frame());
         let conditions = |prompt: &str| Conditions::from_prompt(prompt);
         let other_light = conditions(&before.prompt) != conditions(&after.prompt);
@@ -42,7 +42,7 @@ impl SceneloomApp {
 
     /// Makes a scene of words on a thread of its own; it becomes a step that can be undone.
     pub(crate) fn scene_from_words(&mut self, ask: Ask, ctx: &Context) {
-        let told = self.prompt.told();
+        let told = self.views.prompt.told();
         let make = move || {
             let mut made = crate::text::made(ask.lay_out(), ask.seed);
             told.tell(&made.laid);
@@ -52,7 +52,7 @@ impl SceneloomApp {
             Ok(made.scene)
         };
         self.load(SCENE_FROM_WORDS.into(), None, false, ctx, make);
-        if let Some(opening) = &mut self.opening {
+        if let Some(opening) = &mut self.files.opening {
             opening.step = Some(SCENE_FROM_WORDS);
         }
     }

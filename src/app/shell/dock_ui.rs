@@ -210,28 +210,30 @@ impl Drawer<'_> {
 impl SceneloomApp {
     /// Draws all panes and does what was asked of the dock.
     pub(crate) fn dock_ui(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
-        let dock = &mut self.dock;
+        let views = &mut self.views;
+        let dock = &mut views.dock;
         dock.fit(ui.available_width());
         let maximized = dock.maximized;
+        let generation = &mut self.generation;
         let mut drawer = Drawer {
-            panes: &mut self.panes,
+            panes: &mut views.panes,
             cx: PaneContext {
                 scene,
                 document: &self.document,
                 state: &mut self.state,
-                canvas: &mut self.canvas,
-                view3d: &mut self.view3d,
-                strip: &mut self.strip,
-                prompt: &mut self.prompt,
-                compare: &mut self.compare,
-                versions: &mut self.versions,
-                tuning: &mut self.tuning,
-                sensing: &self.sensing,
-                checking: &self.checking,
-                params: &self.live.params,
-                unsettled: &self.unsettled,
-                generating: self.live.running.is_some(),
-                render_state: self.render_state.as_ref(),
+                canvas: &mut views.canvas,
+                view3d: &mut views.view3d,
+                strip: &mut views.strip,
+                prompt: &mut views.prompt,
+                compare: &mut views.compare,
+                versions: &mut generation.versions,
+                tuning: &mut generation.tuning,
+                sensing: &self.background.sensing,
+                checking: &self.background.checking,
+                params: &generation.live.params,
+                unsettled: &generation.unsettled,
+                generating: generation.live.running.is_some(),
+                render_state: views.render_state.as_ref(),
             },
             commands,
             actions: Vec::new(),

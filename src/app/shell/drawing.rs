@@ -44,7 +44,7 @@ impl SceneloomApp {
             Ok(_) => {
                 let now_s = self.now_s();
                 self.toasts.push(Level::Info, "The network draws scenery", now_s);
-                self.drawing = Some(Drawing {
+                self.generation.drawing = Some(Drawing {
                     wish,
                     before,
                     staged,
@@ -57,7 +57,9 @@ impl SceneloomApp {
 
     /// Takes scenery that is done, unless the scene has become another.
     pub(crate) fn update_drawing(&mut self, ctx: &egui::Context) {
-        let Some(drawing) = &self.drawing else { return };
+        let Some(drawing) = &self.generation.drawing else {
+            return;
+        };
         let edits = match drawing.edits.try_recv() {
             Err(TryRecvError::Empty) => return ctx.request_repaint_after(LOOK_AGAIN),
             Ok(edits) => edits,
@@ -65,7 +67,7 @@ impl SceneloomApp {
         };
         let Some(Drawing {
             wish, before, staged, ..
-        }) = self.drawing.take()
+        }) = self.generation.drawing.take()
         else {
             return;
         };
@@ -92,7 +94,9 @@ impl SceneloomApp {
         let after = self.document.settled_scene().clone();
         if after.rev != before.rev {
             let note = format!("Seed {}", wish.seed);
-            self.versions.push("Draw scenery".to_owned(), note, after);
+            self.generation
+                .versions
+                .push("Draw scenery".to_owned(), note, after);
             if staged {
                 self.stage(before.clone(), Some(Again::Scenery(Box::new(wish))));
             }

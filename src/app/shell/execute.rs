@@ -9,9 +9,10 @@ use editor::Edit;
 use editor::document::Label;
 use scene::SceneBox;
 
-use super::app::{Next, Opening, SceneloomApp, one_line};
+use super::app::{SceneloomApp, one_line};
 use super::dock::{Dock, Workspace};
 use super::file_dialogs::Purpose;
+use super::files::{Next, Opening};
 use super::toasts::Level;
 use crate::command::Command;
 use crate::open;
@@ -86,43 +87,47 @@ impl SceneloomApp {
             Command::Decide(verdict) => self.decide(verdict),
             Command::StopHere => self.stop_here(),
             Command::CancelGeneration => {
-                if let Some(running) = &mut self.live.running {
+                if let Some(running) = &mut self.generation.live.running {
                     running.cancelled = true;
-                    self.worker.cancel();
+                    self.generation.worker.cancel();
                     let now_s = self.now_s();
                     self.toasts.push(Level::Info, "Generation cancelled", now_s);
                 }
             }
-            Command::CancelWaiting => self.live.drop_waiting(self.document.settled_scene()),
+            Command::CancelWaiting => self.generation.live.drop_waiting(self.document.settled_scene()),
             Command::CancelAll => {
-                self.live.drop_waiting(self.document.settled_scene());
+                self.generation.live.drop_waiting(self.document.settled_scene());
                 self.execute(Command::CancelGeneration, ctx);
             }
             Command::KeepBookmark(slot) => self.keep_bookmark(slot),
             Command::GoToBookmark(slot) => self.go_to_bookmark(slot),
             Command::CompareWith(rev) => {
-                let version = self.versions.of(rev).map(|i| &self.versions.list()[i]);
-                self.compare.chosen = version.map(|v| v.scene.clone());
+                let version = self
+                    .generation
+                    .versions
+                    .of(rev)
+                    .map(|i| &self.generation.versions.list()[i]);
+                self.views.compare.chosen = version.map(|v| v.scene.clone());
                 if self.state.compare == CompareMode::Off {
                     self.state.compare = CompareMode::Wipe;
                 }
             }
             Command::RestoreVersion(rev) => {
-                if let Some(i) = self.versions.of(rev) {
-                    let scene = self.versions.list()[i].scene.clone();
+                if let Some(i) = self.generation.versions.of(rev) {
+                    let scene = self.generation.versions.list()[i].scene.clone();
                     self.restore(&scene);
                 }
             }
             Command::StepVersion(step) => {
                 let rev = self.document.settled_scene().rev;
-                if let Some(scene) = self.versions.neighbour(rev, step).cloned() {
+                if let Some(scene) = self.generation.versions.neighbour(rev, step).cloned() {
                     self.restore(&scene);
                 }
             }
             Command::CycleCompare => self.state.compare = self.state.compare.next(),
             Command::ToggleLive => {
-                self.live.on = !self.live.on;
-                self.live.forget_asked();
+                self.generation.live.on = !self.generation.live.on;
+                self.generation.live.forget_asked();
             }
             Command::ConfirmInferred => {
                 self.state.correcting = false;
@@ -132,13 +137,21 @@ impl SceneloomApp {
             Command::New => self.guarded(Next::New, ctx),
             Command::Open => self.guarded(Next::AskOpen, ctx),
             Command::OpenPath(path) => self.guarded(Next::Open(path), ctx),
-            Command::Save => match self.path.clone() {
+            Command::Save => match self.files.path.clone() {
                 Some(path) => self.save_to(path, ctx),
-                None => self.dialogs.ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+                None => self
+                    .files
+                    .dialogs
+                    .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
             },
-            Command::SaveAs => self.dialogs.ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+            Command::SaveAs => self
+                .files
+                .dialogs
+                .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
             Command::ExportScreenshot => {
-                self.dialogs.ask(Purpose::Screenshot, &self.suggested("png"), ctx);
+                self.files
+                    .dialogs
+                    .ask(Purpose::Screenshot, &self.suggested("png"), ctx);
             }
             Command::QuickShot => {
                 let path = free_name(&self.suggested("png"));
@@ -147,41 +160,45 @@ impl SceneloomApp {
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::FrameSelection => self.frame_selection(),
             Command::FrameAll => match self.state.hovered_pane {
-                Some(PaneId::VIEW3D) => self.view3d.camera.focus_all(),
-                Some(PaneId::BEV) => self.canvas.frame_all_again(),
+                Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_all(),
+                Some(PaneId::BEV) => self.views.canvas.frame_all_again(),
                 _ => {
-                    self.view3d.camera.focus_all();
-                    self.canvas.frame_all_again();
+                    self.views.view3d.camera.focus_all();
+                    self.views.canvas.frame_all_again();
                 }
             },
             Command::ToggleExport => self.toggle_export(),
             Command::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             Command::FixAll => self.fix_all(ctx),
-            Command::ToggleChecks => self.dock.toggle(PaneId::CHECKS),
-            Command::View(preset) => self.view3d.preset(preset),
+            Command::ToggleChecks => self.views.dock.toggle(PaneId::CHECKS),
+            Command::View(preset) => self.views.view3d.preset(preset),
             Command::LookThrough(index) => self.look_through(index),
             Command::Inspect(camera) => self.state.inspected = camera,
-            Command::SwapPanes => self.dock.swap(PaneId::BEV, PaneId::VIEW3D),
-            Command::ShowPane(pane) => self.dock.open(pane),
-            Command::TogglePane(pane) => self.dock.toggle(pane),
+            Command::SwapPanes => self.views.dock.swap(PaneId::BEV, PaneId::VIEW3D),
+            Command::ShowPane(pane) => self.views.dock.open(pane),
+            Command::TogglePane(pane) => self.views.dock.toggle(pane),
             Command::Quality(stop) => self.set_quality(stop),
             Command::Calibrate => {
                 let ctx = ctx.clone();
-                self.tuning.calibrate(move || ctx.request_repaint());
+                self.generation.tuning.calibrate(move || ctx.request_repaint());
             }
             Command::Refine => {
                 let ctx = ctx.clone();
-                self.tuning.refine(move || ctx.request_repaint());
+                self.generation.tuning.refine(move || ctx.request_repaint());
             }
-            Command::StopMeasuring => self.tuning.stop(),
+            Command::StopMeasuring => self.generation.tuning.stop(),
             Command::MaximizePane => {
-                if let Some(tile) = self.state.hovered_pane.and_then(|pane| self.dock.find(pane)) {
-                    self.dock.toggle_maximized(tile);
+                if let Some(tile) = self
+                    .state
+                    .hovered_pane
+                    .and_then(|pane| self.views.dock.find(pane))
+                {
+                    self.views.dock.toggle_maximized(tile);
                 }
             }
             Command::Workspace(workspace) => {
-                self.settings.workspace = workspace;
-                self.dock = Dock::workspace(workspace);
+                self.preferences.settings.workspace = workspace;
+                self.views.dock = Dock::workspace(workspace);
                 // Its tool comes to hand, unless one of the kind is there already.
                 self.state.tool = match (workspace, self.state.tool) {
                     (Workspace::Paint, Tool::Brush | Tool::Region) => self.state.tool,
@@ -195,26 +212,26 @@ impl SceneloomApp {
                 self.state.tool = Tool::AddBox;
                 self.state.box_class = class;
             }
-            Command::TogglePalette => self.palette.toggle(),
+            Command::TogglePalette => self.overlays.palette.toggle(),
             Command::ToggleSettings => self.state.settings_open = !self.state.settings_open,
             Command::ToggleStart => self.state.start_open = !self.state.start_open,
             Command::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
             Command::FocusPrompt => {
-                self.dock.open(PaneId::PROMPT);
-                self.prompt.focus();
+                self.views.dock.open(PaneId::PROMPT);
+                self.views.prompt.focus();
             }
             Command::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
             Command::ToggleGrid => self.state.show_grid = !self.state.show_grid,
             Command::ToggleSensors => self.state.sensors_open = !self.state.sensors_open,
             Command::ImportRig => {
                 let suggestion = self.suggested("json");
-                self.dialogs.ask(Purpose::ImportRig, &suggestion, ctx);
+                self.files.dialogs.ask(Purpose::ImportRig, &suggestion, ctx);
             }
             Command::ExportRig => {
                 let suggestion = self.suggested("json");
-                self.dialogs.ask(Purpose::ExportRig, &suggestion, ctx);
+                self.files.dialogs.ask(Purpose::ExportRig, &suggestion, ctx);
             }
-            Command::TogglePerformance => self.perf.open = !self.perf.open,
+            Command::TogglePerformance => self.frames.perf.open = !self.frames.perf.open,
             Command::ToggleLog => self.state.log_open = !self.state.log_open,
             Command::ToggleKeys => self.state.keys_open = !self.state.keys_open,
         }
@@ -230,10 +247,10 @@ impl SceneloomApp {
 
     /// A version becomes the present state; its result is there already.
     fn restore(&mut self, scene: &scene::Scene) {
-        self.worker.cancel();
+        self.generation.worker.cancel();
         self.document.restore("Go to version", scene);
-        self.live.source_changed();
-        self.compare.chosen = None;
+        self.generation.live.source_changed();
+        self.views.compare.chosen = None;
     }
 
     pub(crate) fn fail(&mut self, text: String) {
@@ -258,7 +275,7 @@ impl SceneloomApp {
     /// A correction changes what the source was inverted under.
     fn note_correction(&mut self) {
         if self.state.correcting {
-            self.live.source_changed();
+            self.generation.live.source_changed();
         }
     }
 
@@ -306,12 +323,12 @@ impl SceneloomApp {
         let scene = self.document.settled_scene().clone();
         let now_s = self.now_s();
         let anew = !full && !self.state.tools.region.is_empty();
-        if !full && !anew && self.live.look(&scene, now_s).is_empty {
+        if !full && !anew && self.generation.live.look(&scene, now_s).is_empty {
             self.toasts
                 .push(Level::Info, "Nothing was edited since the last generation", now_s);
             return;
         }
-        let mut params = self.live.params_for(&scene, full);
+        let mut params = self.generation.live.params_for(&scene, full);
         if anew {
             self.state.tools.draw_anew(&mut params);
         }
@@ -319,21 +336,21 @@ impl SceneloomApp {
             return self.generate_on_scenery(params);
         }
         let same = |r: &super::live::Running| r.key.rev == scene.rev && r.key.params == params;
-        if !self.live.running.as_ref().is_some_and(same) {
-            self.live.look(&scene, now_s);
+        if !self.generation.live.running.as_ref().is_some_and(same) {
+            self.generation.live.look(&scene, now_s);
             self.submit(scene, params);
         }
     }
 
     /// Puts a stop's settings to use, from the next edit on.
     pub(crate) fn set_quality(&mut self, stop: usize) {
-        let Some(stop) = self.tuning.stops.stops.get(stop) else {
+        let Some(stop) = self.generation.tuning.stops.stops.get(stop) else {
             return;
         };
-        self.live.params = stop.knobs.on(self.live.params);
-        self.settings.quality.clone_from(&stop.name);
+        self.generation.live.params = stop.knobs.on(self.generation.live.params);
+        self.preferences.settings.quality.clone_from(&stop.name);
         // The source's trajectory belongs to its settings.
-        self.live.source_changed();
+        self.generation.live.source_changed();
     }
 
     fn frame_selection(&mut self) {
@@ -341,23 +358,23 @@ impl SceneloomApp {
             return self.frame_things();
         };
         if self.state.hovered_pane != Some(PaneId::VIEW3D) {
-            self.canvas.frame_box(&b);
+            self.views.canvas.frame_box(&b);
         }
         if self.state.hovered_pane != Some(PaneId::BEV) {
-            self.view3d.frame_box(&b);
+            self.views.view3d.frame_box(&b);
         }
     }
 
     fn look_through(&mut self, index: usize) {
         if let Some(camera) = self.document.scene().rig.cameras.get(index) {
-            self.view3d.camera = viewport::ViewCamera::through(camera);
+            self.views.view3d.camera = viewport::ViewCamera::through(camera);
         }
     }
 
     /// Goes on at once if nothing is unsaved, else asks first.
     fn guarded(&mut self, next: Next, ctx: &Context) {
         if self.document.is_dirty() {
-            self.unsaved = Some(next);
+            self.files.unsaved = Some(next);
         } else {
             self.go_on(next, ctx);
         }
@@ -366,8 +383,8 @@ impl SceneloomApp {
     pub(crate) fn go_on(&mut self, next: Next, ctx: &Context) {
         match next {
             Next::Quit => {
-                self.may_close = true;
-                if let Some(recovery) = &mut self.recovery {
+                self.files.may_close = true;
+                if let Some(recovery) = &mut self.files.recovery {
                     recovery.forget();
                 }
                 ctx.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -375,10 +392,10 @@ impl SceneloomApp {
             Next::AskOpen => {
                 let folder = self.suggested("loom");
                 let folder = folder.parent().unwrap_or(Path::new("")).join("");
-                self.dialogs.ask(Purpose::Open, &folder, ctx);
+                self.files.dialogs.ask(Purpose::Open, &folder, ctx);
             }
             Next::New => {
-                let make = self.io.2.clone();
+                let make = self.files.disk.new_scene.clone();
                 self.load("New scene".into(), None, false, ctx, move || make());
             }
             Next::NewFrom(name) => {
@@ -392,7 +409,7 @@ impl SceneloomApp {
                 self.load("New scene".into(), None, false, ctx, make);
             }
             Next::Open(path) => {
-                let (open, file) = (self.io.0.clone(), path.clone());
+                let (open, file) = (self.files.disk.open.clone(), path.clone());
                 let what = format!("Opening {}", path.display());
                 let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
                 let is_import = own_file.is_none();
@@ -419,7 +436,7 @@ impl SceneloomApp {
         });
         match thread {
             Ok(_) => {
-                self.opening = Some(Opening {
+                self.files.opening = Some(Opening {
                     path,
                     what,
                     is_import,
@@ -439,7 +456,7 @@ impl SceneloomApp {
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
             Purpose::ExportFile | Purpose::ExportFolder => {
-                if let Some(panel) = &mut self.exporting.panel {
+                if let Some(panel) = &mut self.files.exporting.panel {
                     panel.path = path.display().to_string();
                 }
             }
@@ -470,15 +487,15 @@ impl SceneloomApp {
     fn save_to(&mut self, path: PathBuf, ctx: &Context) {
         self.document.cancel_drag();
         let scene = self.document.settled_scene().clone();
-        let next = self.after_save.take();
-        match (self.io.1)(&scene, &path) {
+        let next = self.files.after_save.take();
+        match (self.files.disk.save)(&scene, &path) {
             Ok(()) => {
                 self.document.mark_saved();
                 let now_s = self.now_s();
                 self.toasts
                     .push(Level::Info, format!("Saved {}", path.display()), now_s);
-                self.settings.remember(&path);
-                self.path = Some(path);
+                self.preferences.settings.remember(&path);
+                self.files.path = Some(path);
                 if let Some(next) = next {
                     self.go_on(next, ctx);
                 }
@@ -489,23 +506,12 @@ impl SceneloomApp {
 
     /// A path beside the scene's file, or in the working folder, named after the scene.
     pub(crate) fn suggested(&self, extension: &str) -> PathBuf {
-        match &self.path {
-            Some(path) => path.with_extension(extension),
-            None => {
-                let name = &self.document.scene().name;
-                let tidy: String = name
-                    .chars()
-                    .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
-                    .collect();
-                let folder = std::env::current_dir().unwrap_or_default();
-                folder.join(format!("{tidy}.{extension}"))
-            }
-        }
+        self.files.suggested(&self.document.scene().name, extension)
     }
 
     fn screenshot(&mut self, path: &Path) {
         let scene = self.document.scene().clone();
-        let shot = self.view3d.screenshot(&scene, &self.state, None);
+        let shot = self.views.view3d.screenshot(&scene, &self.state, None);
         let saved = shot.and_then(|([width, height], rgba)| {
             image::save_buffer(path, &rgba, width, height, image::ColorType::Rgba8)?;
             Ok([width, height])

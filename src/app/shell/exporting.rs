@@ -31,7 +31,7 @@ struct Running {
 impl SceneloomApp {
     /// Opens the dialog, or closes it.
     pub(crate) fn toggle_export(&mut self) {
-        self.exporting.panel = match self.exporting.panel.take() {
+        self.files.exporting.panel = match self.files.exporting.panel.take() {
             Some(_) => None,
             None => Some(ExportPanel::new(&self.suggested("loom"))),
         };
@@ -39,13 +39,13 @@ impl SceneloomApp {
 
     /// Draws the dialog and starts what it asks for.
     pub(crate) fn export_dialog(&mut self, ui: &egui::Ui) {
-        let Some(mut panel) = self.exporting.panel.take() else {
+        let Some(mut panel) = self.files.exporting.panel.take() else {
             return;
         };
-        let findings = self.checking.findings();
+        let findings = self.background.checking.findings();
         let input = ExportInput {
-            browse: self.dialogs.is_native(),
-            busy: self.exporting.running.as_ref().map(|r| &*r.progress),
+            browse: self.files.dialogs.is_native(),
+            busy: self.files.exporting.running.as_ref().map(|r| &*r.progress),
             errors: findings.map_or(0, |f| {
                 let open = waive::open(self.document.settled_scene().frame(), f);
                 open.filter(|f| f.severity == Severity::Error).count()
@@ -57,7 +57,7 @@ impl SceneloomApp {
         match wanted {
             Some(Asked::Write(formats)) => {
                 let mut options = panel.options.clone();
-                options.shot.camera = self.view3d.camera;
+                options.shot.camera = self.views.view3d.camera;
                 panel.written.clone_from(&panel.path);
                 self.start_export(formats, options, path, ui.ctx());
             }
@@ -66,12 +66,12 @@ impl SceneloomApp {
                     true => Purpose::ExportFolder,
                     false => Purpose::ExportFile,
                 };
-                self.dialogs.ask(purpose, &path, ui.ctx());
+                self.files.dialogs.ask(purpose, &path, ui.ctx());
             }
-            Some(Asked::Checks) => self.dock.open(crate::panes::id::PaneId::CHECKS),
+            Some(Asked::Checks) => self.views.dock.open(crate::panes::id::PaneId::CHECKS),
             None => {}
         }
-        self.exporting.panel = open.then_some(panel);
+        self.files.exporting.panel = open.then_some(panel);
     }
 
     fn start_export(
@@ -97,7 +97,7 @@ impl SceneloomApp {
         });
         match thread {
             Ok(_) => {
-                self.exporting.running = Some(Running {
+                self.files.exporting.running = Some(Running {
                     name,
                     progress,
                     written,
@@ -113,7 +113,7 @@ impl SceneloomApp {
 
     /// Tells how an export ended.
     pub(crate) fn update_export(&mut self) {
-        let Some(running) = &self.exporting.running else {
+        let Some(running) = &self.files.exporting.running else {
             return;
         };
         let answer = match running.written.try_recv() {
@@ -123,7 +123,7 @@ impl SceneloomApp {
         };
         let (name, now_s) = (running.name, self.now_s());
         let cancelled = running.progress.is_cancelled();
-        self.exporting.running = None;
+        self.files.exporting.running = None;
         match answer {
             Ok(files) => {
                 let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();

@@ -10,7 +10,7 @@ use super::trace::Trace;
 impl SceneloomApp {
     /// Writes what is measured to a file from now on. Errors name it.
     pub fn trace_to(&mut self, path: &Path) -> anyhow::Result<()> {
-        let adapter = self.render_state.as_ref().map(|s| s.adapter.get_info());
+        let adapter = self.views.render_state.as_ref().map(|s| s.adapter.get_info());
         let first = json!({
             "kind": "start",
             "version": env!("CARGO_PKG_VERSION"),
@@ -19,13 +19,13 @@ impl SceneloomApp {
             "cores": std::thread::available_parallelism().map_or(1, usize::from),
             "adapter": adapter.map(|a| a.name),
         });
-        self.perf.trace = Some(Trace::start(path, self.clock, &first)?);
+        self.frames.perf.trace = Some(Trace::start(path, self.frames.clock, &first)?);
         Ok(())
     }
 
     /// A frame begins; `before_s` is what the window says that the last one took.
     pub(crate) fn frame_begins(&mut self, before_s: Option<f32>) {
-        let (clock, render_state) = (self.clock, &self.render_state);
+        let (clock, render_state) = (self.frames.clock, &self.views.render_state);
         let wait = || {
             if let Some(state) = render_state {
                 // Lost devices are noticed where something is drawn.
@@ -34,7 +34,9 @@ impl SceneloomApp {
             clock.elapsed().as_secs_f64()
         };
         let now_s = clock.elapsed().as_secs_f64();
-        self.perf.frame_begins(now_s, before_s.map(f64::from), wait);
+        self.frames
+            .perf
+            .frame_begins(now_s, before_s.map(f64::from), wait);
     }
 
     /// What was edited in this frame is shown by this frame: the panels are laid out again, and only that is painted.
@@ -48,17 +50,18 @@ impl SceneloomApp {
         if !ctx.will_discard() {
             return false;
         }
-        self.perf.shown_at_once();
+        self.frames.perf.shown_at_once();
         true
     }
 
     /// A frame was drawn, and the commands of the user were carried out.
     pub(crate) fn frame_drawn(&mut self, ctx: &egui::Context, edited: bool) {
         let events = ctx.input(|i| i.raw.events.len());
-        let working = self.live.running.is_some();
-        let active = self.opening.is_some() || !self.sensors_are_current() || self.document.is_dragging();
+        let working = self.generation.live.running.is_some();
+        let active =
+            self.files.opening.is_some() || !self.sensors_are_current() || self.document.is_dragging();
         let now_s = self.now_s();
-        if self.perf.drawn(now_s, events, edited, active, working) {
+        if self.frames.perf.drawn(now_s, events, edited, active, working) {
             ctx.request_repaint();
         }
     }

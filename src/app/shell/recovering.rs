@@ -15,7 +15,7 @@ impl SceneloomApp {
     pub(crate) fn keep_copies(&mut self, ctx: &egui::Context) {
         let wake = ctx.clone();
         match Recovery::at_start(move || wake.request_repaint()) {
-            Ok(recovery) => self.recovery = Some(recovery),
+            Ok(recovery) => self.files.recovery = Some(recovery),
             Err(error) => {
                 let now_s = self.now_s();
                 let text = format!("No recovery copies of unsaved work: {error}");
@@ -26,10 +26,10 @@ impl SceneloomApp {
 
     pub(crate) fn update_recovery(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
-        let Some(recovery) = &mut self.recovery else {
+        let Some(recovery) = &mut self.files.recovery else {
             return;
         };
-        let (wait_s, problem) = recovery.tick(&self.document, self.path.as_deref(), now_s);
+        let (wait_s, problem) = recovery.tick(&self.document, self.files.path.as_deref(), now_s);
         if let Some(seconds) = wait_s {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }
@@ -41,15 +41,15 @@ impl SceneloomApp {
 
     /// True while the user has not answered about what a dead session left.
     pub(crate) fn asks_to_recover(&self) -> bool {
-        self.recovery.as_ref().is_some_and(|r| !r.offers.is_empty())
+        self.files.recovery.as_ref().is_some_and(|r| !r.offers.is_empty())
     }
 
     /// Asks about the newest offer, if there is one.
     pub(crate) fn recovery_dialog(&mut self, ui: &egui::Ui) {
-        if self.opening.is_some() {
+        if self.files.opening.is_some() {
             return;
         }
-        let Some(recovery) = &mut self.recovery else {
+        let Some(recovery) = &mut self.files.recovery else {
             return;
         };
         let Some(offer) = recovery.offers.first() else {
@@ -67,7 +67,7 @@ impl SceneloomApp {
                 let what = format!("{READING} {}", offer.name);
                 recovery.opening = Some(offer);
                 self.state.start_open = false;
-                let open = self.io.0.clone();
+                let open = self.files.disk.open.clone();
                 self.load(what, original, false, ui.ctx(), move || open(&file));
             }
         }
@@ -76,7 +76,7 @@ impl SceneloomApp {
     /// After a scene was read, or could not be: one that was recovered is unsaved, and its copy is kept until there is
     /// another.
     pub(crate) fn note_opened(&mut self, what: &str, is_open: bool) {
-        let Some(recovery) = &mut self.recovery else {
+        let Some(recovery) = &mut self.files.recovery else {
             return;
         };
         if let Some(recovered) = recovery.opening.take_if(|_| what.starts_with(READING))

@@ -12,7 +12,11 @@ impl SceneloomApp {
     pub(crate) fn update_checks(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
         let scene = self.document.settled_scene();
-        if let Some(seconds) = self.checking.update(scene, self.document.is_dragging(), now_s) {
+        if let Some(seconds) = self
+            .background
+            .checking
+            .update(scene, self.document.is_dragging(), now_s)
+        {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
         }
         if let Some(problem) = self.checking.take_problem() {
@@ -24,9 +28,10 @@ impl SceneloomApp {
     pub(crate) fn fix_all(&mut self, ctx: &egui::Context) {
         let scene = self.document.settled_scene();
         let Some(findings) = self
+            .background
             .checking
             .findings()
-            .filter(|_| !self.checking.is_stale(scene.rev))
+            .filter(|_| !self.background.checking.is_stale(scene.rev))
         else {
             return;
         };
@@ -47,7 +52,6 @@ impl SceneloomApp {
             velocity_mps: DVec2::ZERO,
             label: BoxLabel::default(),
         };
-        self.canvas.frame_box(&around);
-        self.view3d.frame_box(&around);
+        self.views.frame_box(&around);
     }
 }

@@ -75,34 +75,34 @@ impl SceneloomApp {
             compare: self.state.compare,
         };
         if beside {
-            self.compare.chosen = Some(before);
+            self.views.compare.chosen = Some(before);
             if self.state.compare == CompareMode::Off {
                 self.state.compare = CompareMode::Wipe;
             }
         }
-        self.staged = Some(staged);
+        self.generation.staged = Some(staged);
     }
 
     /// The result that waits, if it is still what is shown.
     pub fn staged(&self) -> Option<&Staged> {
         let rev = self.document.settled_scene().rev;
-        self.staged.as_ref().filter(|s| s.rev == rev)
+        self.generation.staged.as_ref().filter(|s| s.rev == rev)
     }
 
     /// Lets go of a result that another state has replaced.
     pub(crate) fn tidy_staging(&mut self) {
-        if self.staged.is_some() && self.staged().is_none() {
+        if self.generation.staged.is_some() && self.staged().is_none() {
             self.end_staging();
         }
     }
 
     fn end_staging(&mut self) -> Option<Staged> {
-        let staged = self.staged.take()?;
+        let staged = self.generation.staged.take()?;
         // A way to compare that the user chose meanwhile stays.
         if staged.again.is_some() && self.state.compare == CompareMode::Wipe {
             self.state.compare = staged.compare;
         }
-        self.compare.chosen = None;
+        self.views.compare.chosen = None;
         Some(staged)
     }
 
@@ -133,7 +133,7 @@ impl SceneloomApp {
                     return self.generate_on_scenery(*params);
                 }
                 let now_s = self.now_s();
-                self.live.look(&before, now_s);
+                self.generation.live.look(&before, now_s);
                 self.submit(before, *params);
             }
             Again::Scenery(mut wish) => {
@@ -157,15 +157,15 @@ impl SceneloomApp {
         };
         self.apply("Generate", &edits);
         let scene = self.document.settled_scene().clone();
-        self.drawn_first = (scene.rev != before.rev).then(|| (scene.rev, before));
+        self.generation.drawn_first = (scene.rev != before.rev).then(|| (scene.rev, before));
         let now_s = self.now_s();
-        self.live.look(&scene, now_s);
+        self.generation.live.look(&scene, now_s);
         self.submit(scene, params);
     }
 
     /// Takes scenery back that was drawn for a generation that did not come to an end.
     pub(crate) fn take_scenery_back(&mut self) {
-        if let Some((rev, _)) = self.drawn_first.take()
+        if let Some((rev, _)) = self.generation.drawn_first.take()
             && rev == self.document.settled_scene().rev
         {
             self.document.undo();
@@ -210,9 +210,9 @@ impl SceneloomApp {
     /// The state before, which is shown again.
     fn step_back(&mut self) -> Option<Arc<Scene>> {
         let staged = self.end_staging()?;
-        self.worker.cancel();
+        self.generation.worker.cancel();
         self.document.undo();
-        self.live.source_changed();
+        self.generation.live.source_changed();
         Some(staged.before)
     }
 
@@ -247,7 +247,8 @@ impl SceneloomApp {
                 .is_ok()
         {
             let scene = self.document.settled_scene().clone();
-            self.versions
+            self.generation
+                .versions
                 .push("Accept a part".to_owned(), String::new(), scene);
             self.state.tools.region = RedrawMask::default();
         }

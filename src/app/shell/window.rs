@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use egui::{Rect, Ui};
 
-use super::app::{Next, SceneloomApp};
+use super::app::SceneloomApp;
+use super::files::Next;
 use crate::camera_views::Wanted;
 use crate::command::Command;
 use crate::panes;
@@ -27,7 +28,7 @@ use scene::Scene;
 impl SceneloomApp {
     /// Draws the window and carries out what the user asked for.
     pub fn draw(&mut self, ui: &mut Ui) {
-        self.passes = self.passes.saturating_add(1);
+        self.frames.passes = self.frames.passes.saturating_add(1);
         let mut commands = Vec::new();
         self.take_window_events(ui.ctx(), &mut commands);
         self.tidy_staging();
@@ -49,9 +50,15 @@ impl SceneloomApp {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
                 flying: secondary && self.state.hovered_pane == Some(PaneId::VIEW3D),
-                dragging: primary && (self.canvas.is_dragging() || self.view3d.is_dragging()),
+                dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
             };
-            keys::commands(ui.ctx(), &self.keymap, &mut self.state, hands, &mut commands);
+            keys::commands(
+                ui.ctx(),
+                &self.preferences.keymap,
+                &mut self.state,
+                hands,
+                &mut commands,
+            );
         }
         let any = !commands.is_empty();
         let before = self.document.scene().rev;
@@ -61,18 +68,18 @@ impl SceneloomApp {
         let edited = self.document.scene().rev != before;
         self.frame_drawn(ui.ctx(), edited);
         let at_once = edited && self.show_at_once(ui.ctx());
-        if any && !at_once || self.passes < 3 {
+        if any && !at_once || self.frames.passes < 3 {
             ui.ctx().request_repaint();
         }
     }
 
     /// True while a dialog lies over everything.
     pub(crate) fn has_dialog(&self) -> bool {
-        self.unsaved.is_some()
-            || self.dialogs.is_open()
+        self.files.unsaved.is_some()
+            || self.files.dialogs.is_open()
             || self.state.keys_open
             || self.state.start_open
-            || self.palette.open
+            || self.overlays.palette.open
             || self.asks_to_recover()
             || self.state.tools.row_open
     }
@@ -80,9 +87,10 @@ impl SceneloomApp {
     pub(crate) fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
         let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
         commands.extend(dropped.map(Command::OpenPath));
-        if ctx.input(|i| i.viewport().close_requested()) && !self.may_close && self.document.is_dirty() {
+        if ctx.input(|i| i.viewport().close_requested()) && !self.files.may_close && self.document.is_dirty()
+        {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            self.unsaved = Some(Next::Quit);
+            self.files.unsaved = Some(Next::Quit);
         }
     }
 
@@ -90,23 +98,26 @@ impl SceneloomApp {
         let input = ToolbarInput {
             name: &scene.name,
             dirty: self.document.is_dirty(),
-            recent: &self.settings.recent,
+            recent: &self.preferences.settings.recent,
             undo: self.document.undo_label(),
             redo: self.document.redo_label(),
-            live: self.live.on,
-            busy: self.live.running.is_some(),
-            waiting: self.live.has_waiting(self.document.settled_scene().rev),
-            bookmarks: self.settings.bookmarks.keys().copied().collect(),
+            live: self.generation.live.on,
+            busy: self.generation.live.running.is_some(),
+            waiting: self
+                .generation
+                .live
+                .has_waiting(self.document.settled_scene().rev),
+            bookmarks: self.preferences.settings.bookmarks.keys().copied().collect(),
             has_paint: scene.frame().painted.iter_set().next().is_some(),
-            workspace: self.settings.workspace,
+            workspace: self.preferences.settings.workspace,
             shown: panes::infos()
                 .iter()
                 .map(|p| p.id)
-                .filter(|id| self.dock.is_shown(*id))
+                .filter(|id| self.views.dock.is_shown(*id))
                 .collect(),
             cameras: scene.rig.cameras.len(),
-            stops: self.tuning.foretold(),
-            stop: self.tuning.current(&self.live.params),
+            stops: self.generation.tuning.foretold(),
+            stop: self.generation.tuning.current(&self.generation.live.params),
         };
         egui::Panel::top("toolbar")
             .exact_size(42.0)
@@ -115,26 +126,26 @@ impl SceneloomApp {
             .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
-        let touched = self.live.look(&settled, now_s);
-        self.unsettled = self.live.parts();
+        let touched = self.generation.live.look(&settled, now_s);
+        self.generation.unsettled = self.generation.live.parts();
         let unsettled = !touched.is_empty;
-        let findings = self.checking.findings().map(|all| {
+        let findings = self.background.checking.findings().map(|all| {
             let open = waive::open(settled.frame(), all);
             let (errors, warnings): (Vec<_>, Vec<_>) = open.partition(|f| f.severity == Severity::Error);
             (errors.len(), warnings.len())
         });
         let status = StatusInput {
             findings,
-            running: self.live.running.as_ref(),
-            shows_what_comes: self.shows_what_comes(),
+            running: self.generation.live.running.as_ref(),
+            shows_what_comes: self.generation.shows_what_comes(settled.rev),
             now_s,
-            receipt: self.receipt.as_ref(),
-            live: self.live.on,
+            receipt: self.generation.receipt.as_ref(),
+            live: self.generation.live.on,
             unsettled,
-            busy_with: self.opening.as_ref().map(|o| o.what.as_str()),
+            busy_with: self.files.opening.as_ref().map(|o| o.what.as_str()),
             unread: self.toasts.unread(),
-            paused: self.live.paused.as_ref(),
-            waiting: self.live.has_waiting(settled.rev),
+            paused: self.generation.live.paused.as_ref(),
+            waiting: self.generation.live.has_waiting(settled.rev),
             dragging: self.document.is_dragging(),
             hint: &crate::shell::hints::hint(&self.state),
         };
@@ -149,13 +160,13 @@ impl SceneloomApp {
 
     pub(crate) fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
         self.state.hovered_pane = None;
-        self.center = ui.available_rect_before_wrap();
+        self.views.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
         // What nobody lists is not pointed at.
-        if !self.dock.is_shown(PaneId::CHECKS) {
+        if !self.views.dock.is_shown(PaneId::CHECKS) {
             self.state.meant = None;
         }
-        self.live.named = self.state.named;
+        self.generation.live.named = self.state.named;
     }
 
     /// Decides what the present state is compared with, in this frame.
@@ -169,14 +180,15 @@ impl SceneloomApp {
         self.state.holding_before = held;
         let rev = self.document.settled_scene().rev;
         let active = held || self.state.compare != CompareMode::Off;
-        let chosen = self.compare.chosen.as_ref().filter(|s| s.rev != rev);
+        let chosen = self.views.compare.chosen.as_ref().filter(|s| s.rev != rev);
         let before = chosen
-            .or_else(|| self.versions.before(rev))
+            .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)
             .cloned();
         let senses = held || matches!(self.state.compare, CompareMode::Wipe | CompareMode::Side);
         let ctx = ui.ctx().clone();
-        self.compare
+        self.views
+            .compare
             .prepare(before, Wanted::of(&self.state), senses, move || {
                 ctx.request_repaint()
             });
@@ -184,52 +196,63 @@ impl SceneloomApp {
 
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
-        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.sensing);
-        self.strip
-            .enlarged(ui, self.center, &cameras, &mut self.state, commands);
-        self.toasts.log_window(ui, self.center, &mut self.state.log_open);
+        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.background.sensing);
+        self.views
+            .strip
+            .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);
+        self.toasts
+            .log_window(ui, self.views.center, &mut self.state.log_open);
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
         crate::tools::dialogs::show(ui, scene.frame(), &mut self.state, commands);
-        let recent = &self.settings.recent;
-        self.palette
-            .show(ui, &self.keymap, recent, &mut self.state, commands);
-        self.shortcuts
-            .show(ui, &mut self.keymap, &mut self.state.keys_open);
-        settings_ui(ui, &mut self.settings, &mut self.state.settings_open);
-        start_ui(ui, &mut self.settings, &mut self.state.start_open, commands);
+        let recent = &self.preferences.settings.recent;
+        self.overlays
+            .palette
+            .show(ui, &self.preferences.keymap, recent, &mut self.state, commands);
+        self.overlays
+            .shortcuts
+            .show(ui, &mut self.preferences.keymap, &mut self.state.keys_open);
+        settings_ui(ui, &mut self.preferences.settings, &mut self.state.settings_open);
+        start_ui(
+            ui,
+            &mut self.preferences.settings,
+            &mut self.state.start_open,
+            commands,
+        );
         // Over the 3D view, where it hides no list.
-        let over = match self.view3d.rect.is_positive() {
-            true => self.view3d.rect,
-            false => self.center,
+        let over = match self.views.view3d.rect.is_positive() {
+            true => self.views.view3d.rect,
+            false => self.views.center,
         };
         self.staged_ui(ui, over, commands);
-        performance_ui(ui, over, &mut self.perf);
-        self.toasts.show(ui, self.center, now_s);
+        performance_ui(ui, over, &mut self.frames.perf);
+        self.toasts.show(ui, self.views.center, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
-            drop_hint(ui, self.center);
+            drop_hint(ui, self.views.center);
         }
         self.export_dialog(ui);
         self.recovery_dialog(ui);
-        if self.unsaved.is_some()
+        if self.files.unsaved.is_some()
             && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name)
         {
             self.answer_unsaved(answer, ui.ctx());
         }
-        if let Some((purpose, path)) = self.dialogs.show(ui) {
+        if let Some((purpose, path)) = self.files.dialogs.show(ui) {
             let ctx = ui.ctx().clone();
             self.file_chosen(purpose, path, &ctx);
         }
     }
 
     pub(crate) fn answer_unsaved(&mut self, answer: Unsaved, ctx: &egui::Context) {
-        let Some(next) = self.unsaved.take() else { return };
+        let Some(next) = self.files.unsaved.take() else {
+            return;
+        };
         match answer {
             Unsaved::Stay => {}
             Unsaved::Discard => self.go_on(next, ctx),
             Unsaved::Save => {
-                self.after_save = Some(next);
+                self.files.after_save = Some(next);
                 self.execute(Command::Save, ctx);
             }
         }

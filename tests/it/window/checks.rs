@@ -25,7 +25,7 @@ impl Bench {
     fn all_checked(&mut self) {
         self.wait_until("the checks", |b| {
             let rev = b.app().document.scene().rev;
-            !b.app().checking.is_stale(rev)
+            !b.app().background.checking.is_stale(rev)
         });
         self.steps(3);
     }

@@ -27,7 +27,7 @@ fn finish(bench: &mut Bench) {
     let started = bench.started.recv_timeout(PATIENCE);
     assert_eq!(started, Ok(RegionMode::Full));
     bench.orders.send(Do::Finish).expect("the pipeline listens");
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
     bench.steps(3);
 }
 
@@ -83,7 +83,7 @@ fn another_seed_takes_its_place() {
     bench.click("Next seed");
     // Other scenery, on which it is generated.
     assert!(bench.frame().occupancy != before && things(&mut bench) != first);
-    let params = bench.app().live.running.as_ref().expect("asked for").key.params;
+    let params = bench.app().generation.live.running.as_ref().expect("asked for").key.params;
     assert_eq!((params.seed, params.region), (seed + 1, RegionMode::Full));
     finish(&mut bench);
     assert_eq!(bench.history(), ["Open", "Generate"]);
@@ -149,7 +149,7 @@ fn a_generation_is_stopped_with_what_it_shows() {
     bench.orders.send(Do::Show).expect("the pipeline listens");
     bench.wait_until("what comes", |b| b.harness.query_by_label("Keep this").is_some());
     bench.click("Keep this");
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
     assert_eq!(bench.history(), ["Open", "Generate"]);
     assert!(bench.frame().occupancy == VoxelGrid::new());
     bench.click("Decline");
@@ -235,7 +235,7 @@ fn scenery_drawn_for_a_generation_that_is_cancelled_goes_with_it() {
     assert!(bench.frame().occupancy != before);
     assert!(!bench.app().document.scene().background.is_empty());
     bench.key(Modifiers::CTRL, egui::Key::Backspace);
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
     assert!(bench.frame().occupancy == before);
     assert!(bench.app().document.scene().background.is_empty());
 }

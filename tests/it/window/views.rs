@@ -82,7 +82,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     // A click chooses the car where it is seen.
     bench.key(Modifiers::NONE, Key::V);
     bench.key(Modifiers::NONE, Key::Num7);
-    let view = &bench.harness.state().view3d;
+    let view = &bench.harness.state().views.view3d;
     let size = [view.rect.width() as u32, view.rect.height() as u32];
     let at = view.camera.project(car().center_m, size).expect("in view");
     let at = view.rect.min + egui::vec2(at.x as f32, at.y as f32);
