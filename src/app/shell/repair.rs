@@ -19,7 +19,7 @@ impl SceneloomApp {
         {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
         }
-        if let Some(problem) = self.checking.take_problem() {
+        if let Some(problem) = self.background.checking.take_problem() {
             self.fail(format!("The scene was not checked: {problem}"));
         }
     }

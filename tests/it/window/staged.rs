@@ -83,7 +83,15 @@ fn another_seed_takes_its_place() {
     bench.click("Next seed");
     // Other scenery, on which it is generated.
     assert!(bench.frame().occupancy != before && things(&mut bench) != first);
-    let params = bench.app().generation.live.running.as_ref().expect("asked for").key.params;
+    let params = bench
+        .app()
+        .generation
+        .live
+        .running
+        .as_ref()
+        .expect("asked for")
+        .key
+        .params;
     assert_eq!((params.seed, params.region), (seed + 1, RegionMode::Full));
     finish(&mut bench);
     assert_eq!(bench.history(), ["Open", "Generate"]);
