@@ -42,7 +42,6 @@ mod pointer;
 pub mod priority;
 mod recovering;
 pub mod recovery;
-pub mod roads;
 pub mod sensing;
 pub mod settings;
 mod software_ui;
