@@ -16,7 +16,6 @@ pub mod panes;
 pub mod picture;
 mod pipeline;
 mod pointer;
-pub mod roads;
 pub mod sensing;
 pub mod shell;
 pub mod state;

@@ -5,5 +5,6 @@ pub mod around;
 pub mod memory;
 pub mod open;
 pub mod prompting;
+pub mod roads;
 pub mod scenery;
 pub mod text;

@@ -176,49 +176,18 @@ pub fn lay_out_graph(
             }
         },
     };
-    let mut road = match &how.keep {
-        Keep::Road(layout) => Chosen {
-            template: "kept",
-            layout: (**layout).clone(),
-            missing: road::lacks(&description, &graphed.graph, layout),
-        },
-        Keep::Objects(boxes) => {
-            let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
-            for (k, b) in boxes.values().enumerate() {
-                graphed.graph.nodes.push(scene::graph::Node {
-                    id: first + k as u32,
-                    kind: node_of(b.class),
-                    locked: Some(Locked::Box(*b)),
-                });
-            }
-            road_under(&description, &graphed, boxes, seed, net.as_deref(), &mut notes)
-        }
-        Keep::Nothing => {
-            let fits = |r: &RoadRef| {
-                let layout = layout_of(r).ok()?;
-                road::lacks(&description, &graphed.graph, &layout)
-                    .is_empty()
-                    .then_some(layout)
-            };
-            match proposed
-                .as_ref()
-                .filter(|_| description.road.kind.is_none())
-                .and_then(fits)
-            {
-                Some(layout) => {
-                    if let Some(found) = &mut remembered {
-                        found.road = true;
-                    }
-                    Chosen {
-                        template: "remembered",
-                        layout,
-                        missing: Vec::new(),
-                    }
-                }
-                None => road::choose(&description, &graphed.graph, seed),
-            }
-        }
-    };
+    let mut road = road_for(
+        &description,
+        &mut graphed,
+        how,
+        proposed.as_ref(),
+        net.as_deref(),
+        seed,
+        &mut notes,
+    );
+    if let Some(found) = &mut remembered {
+        found.road = road.template == REMEMBERED;
+    }
     let (mut placement, mut diffused) = match net {
         None => (
             place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others),
@@ -238,7 +207,7 @@ pub fn lay_out_graph(
     // (a crowd that overfills a road overfills the next, too, and takes the longest to place)
     let few = placement.boxes.len() <= FEW_BOXES;
     if matches!(how.keep, Keep::Nothing)
-        && road.template != "remembered"
+        && road.template != REMEMBERED
         && few
         && !placement.left_out.is_empty()
     {
@@ -259,6 +228,58 @@ pub fn lay_out_graph(
     }
 }
 
+/// The road of a new scene: the one that is kept, one under the objects that are kept (which join the graph), the remembered
+/// one if it has all that was said, else one of the templates.
+fn road_for(
+    description: &Description,
+    graphed: &mut Graphed,
+    how: &How,
+    proposed: Option<&RoadRef>,
+    net: Option<&LayoutNet>,
+    seed: u64,
+    notes: &mut Vec<String>,
+) -> Chosen {
+    match &how.keep {
+        Keep::Road(layout) => Chosen {
+            template: "kept",
+            layout: (**layout).clone(),
+            missing: road::lacks(description, &graphed.graph, layout),
+        },
+        Keep::Objects(boxes) => {
+            let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
+            for (k, b) in boxes.values().enumerate() {
+                graphed.graph.nodes.push(scene::graph::Node {
+                    id: first + k as u32,
+                    kind: node_of(b.class),
+                    locked: Some(Locked::Box(*b)),
+                });
+            }
+            road_under(description, graphed, boxes, seed, net, notes)
+        }
+        Keep::Nothing => {
+            let fits = |r: &RoadRef| {
+                let layout = layout_of(r).ok()?;
+                road::lacks(description, &graphed.graph, &layout)
+                    .is_empty()
+                    .then_some(layout)
+            };
+            match proposed
+                .filter(|_| description.road.kind.is_none())
+                .and_then(fits)
+            {
+                Some(layout) => Chosen {
+                    template: REMEMBERED,
+                    layout,
+                    missing: Vec::new(),
+                },
+                None => road::choose(description, &graphed.graph, seed),
+            }
+        }
+    }
+}
+
+/// What a road from memory is called.
+const REMEMBERED: &str = "remembered";
 /// Other variations of the road that are tried where something finds no place.
 const OTHER_ROADS: u64 = 1;
 /// Boxes up to which they are tried.

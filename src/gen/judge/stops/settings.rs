@@ -45,210 +45,190 @@ pub fn name_of(knobs: &StopKnobs, base: &StopKnobs) -> String {
     parts.join(", ")
 }
 
-/// The settings of edits: `base`, knobs one at a time, and `draws` random ones.
-pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
-    let mut out: Vec<Setting> = Vec::new();
-    let mut add = |params: GenParams, other_target: bool, extra: &str| {
-        let name = name_of(&StopKnobs::of(&params), &StopKnobs::of(&base)) + extra;
-        if params.check().is_ok() && !out.iter().any(|s| s.params == params) {
-            out.push(Setting {
-                name,
+/// Settings of one base, each only once.
+struct List {
+    base: GenParams,
+    settings: Vec<Setting>,
+}
+
+impl List {
+    fn new(base: GenParams) -> Self {
+        let mut list = Self {
+            base,
+            settings: Vec::new(),
+        };
+        list.add(base);
+        list
+    }
+
+    /// Adds a setting that asks for the same as the reference.
+    fn add(&mut self, params: GenParams) {
+        self.put(params, None);
+    }
+
+    /// Adds one with `extra` to its name: what else it asks for makes another target of it.
+    fn put(&mut self, params: GenParams, extra: Option<String>) {
+        let name = name_of(&StopKnobs::of(&params), &StopKnobs::of(&self.base));
+        if params.check().is_ok() && !self.settings.iter().any(|s| s.params == params) {
+            self.settings.push(Setting {
+                other_target: extra.is_some(),
+                name: name + &extra.unwrap_or_default(),
                 params,
-                other_target,
             });
         }
-    };
-    add(base, false, "");
-    for steps in [2, 4, 6, 10, 20, 33, 50] {
-        add(GenParams { steps, ..base }, false, "");
-        let precision = Precision::Int8;
-        add(
-            GenParams {
-                steps,
-                precision,
-                ..base
-            },
-            false,
-            "",
-        );
     }
-    for steps in [4, 10, 20] {
-        for solver in [SolverKind::DpmPp2M, SolverKind::UniPc, SolverKind::OBelm] {
-            add(
-                GenParams {
+
+    /// In full precision and in int8.
+    fn add_both_precisions(&mut self, params: GenParams) {
+        self.add(params);
+        self.add(GenParams {
+            precision: Precision::Int8,
+            ..params
+        });
+    }
+
+    /// Steps, solvers, fixed points, neighbours, reuse: one knob of edits after another.
+    fn add_knobs(&mut self) {
+        let base = self.base;
+        for steps in [2, 4, 6, 10, 20, 33, 50] {
+            self.add_both_precisions(GenParams { steps, ..base });
+        }
+        for steps in [4, 10, 20] {
+            for solver in [SolverKind::DpmPp2M, SolverKind::UniPc, SolverKind::OBelm] {
+                self.add(GenParams {
                     steps,
                     solver,
                     ..base
-                },
-                false,
-                "",
-            );
+                });
+            }
         }
-    }
-    add(
-        GenParams {
+        self.add(GenParams {
             inversion_iterations: 1,
             ..base
-        },
-        false,
-        "",
-    );
-    for steps in [4, 6, 10, 20, 33] {
-        let inversion_iterations = 3;
-        add(
-            GenParams {
+        });
+        for steps in [4, 6, 10, 20, 33] {
+            self.add_both_precisions(GenParams {
                 steps,
-                inversion_iterations,
+                inversion_iterations: 3,
                 ..base
-            },
-            false,
-            "",
-        );
-        let precision = Precision::Int8;
-        add(
-            GenParams {
-                steps,
-                inversion_iterations,
-                precision,
-                ..base
-            },
-            false,
-            "",
-        );
-    }
-    for halo_tokens in [0, 2, 4] {
-        add(GenParams { halo_tokens, ..base }, false, "");
-    }
-    for steps in [4, 10, 20] {
-        add(
-            GenParams {
+            });
+        }
+        for halo_tokens in [0, 2, 4] {
+            self.add(GenParams { halo_tokens, ..base });
+        }
+        for steps in [4, 10, 20] {
+            self.add(GenParams {
                 steps,
                 local: false,
                 ..base
-            },
-            false,
-            "",
-        );
+            });
+        }
+        for reuse_steps in [2, 3] {
+            for steps in [base.steps, 20] {
+                self.add(GenParams {
+                    reuse_steps,
+                    steps,
+                    ..base
+                });
+            }
+        }
     }
-    for reuse_steps in [2, 3] {
-        add(GenParams { reuse_steps, ..base }, false, "");
-        add(
-            GenParams {
-                reuse_steps,
-                steps: 20,
-                ..base
-            },
-            false,
-            "",
-        );
-    }
-    for steps in [2, 4, 10] {
-        for fine_steps in [0, 1, 2, 8] {
-            add(
-                GenParams {
+
+    /// The fine stage beside few and many steps.
+    fn add_fine_stages(&mut self) {
+        let base = self.base;
+        for steps in [2, 4, 10] {
+            for fine_steps in [0, 1, 2, 8] {
+                self.add(GenParams {
                     steps,
                     fine_steps,
                     ..base
-                },
-                false,
-                "",
-            );
+                });
+            }
         }
-    }
-    for (steps, precision) in [(10, Precision::F32), (20, Precision::Int8)] {
-        for fine_steps in [1, 4, 8] {
-            add(
-                GenParams {
+        for (steps, precision) in [(10, Precision::F32), (20, Precision::Int8)] {
+            for fine_steps in [1, 4, 8] {
+                self.add(GenParams {
                     steps,
                     precision,
                     fine_steps,
                     inversion_iterations: 3,
                     ..base
-                },
-                false,
-                "",
-            );
+                });
+            }
         }
     }
-    for guidance in [1.5, 3.0] {
-        add(
-            GenParams { guidance, ..base },
-            true,
-            &format!(", guidance {guidance}"),
-        );
-    }
-    for halo_columns in [1, 4] {
-        add(
-            GenParams { halo_columns, ..base },
-            true,
-            &format!(", {halo_columns} columns around"),
-        );
-    }
-    let mut draw = Draw::new(seed, "hypercube");
-    let mut columns: [Vec<usize>; 6] = std::array::from_fn(|_| (0..draws).collect());
-    for column in &mut columns {
-        for i in (1..draws).rev() {
-            column.swap(i, draw.below(i + 1));
+
+    /// What asks for another result than the reference.
+    fn add_other_targets(&mut self) {
+        let base = self.base;
+        for guidance in [1.5, 3.0] {
+            let extra = format!(", guidance {guidance}");
+            self.put(GenParams { guidance, ..base }, Some(extra));
+        }
+        for halo_columns in [1, 4] {
+            let extra = format!(", {halo_columns} columns around");
+            self.put(GenParams { halo_columns, ..base }, Some(extra));
         }
     }
-    // Value i of n of a knob for the rank that the draw gave.
-    let pick = |knob: usize, i: usize, n: usize| columns[knob][i] * n / draws.max(1);
-    for i in 0..draws {
-        add(
-            GenParams {
+
+    /// `draws` settings of a Latin hypercube.
+    fn add_draws(&mut self, draws: usize, seed: u64) {
+        let mut draw = Draw::new(seed, "hypercube");
+        let mut columns: [Vec<usize>; 6] = std::array::from_fn(|_| (0..draws).collect());
+        for column in &mut columns {
+            for i in (1..draws).rev() {
+                column.swap(i, draw.below(i + 1));
+            }
+        }
+        // Value i of n of a knob for the rank that the draw gave.
+        let pick = |knob: usize, i: usize, n: usize| columns[knob][i] * n / draws.max(1);
+        for i in 0..draws {
+            self.add(GenParams {
                 steps: [3, 5, 8, 12, 16, 24][pick(0, i, 6)],
                 solver: [SolverKind::Ddim, SolverKind::DpmPp2M, SolverKind::UniPc][pick(1, i, 3)],
                 precision: [Precision::F32, Precision::Int8][pick(2, i, 2)],
                 halo_tokens: [0, 1, 2][pick(3, i, 3)],
                 inversion_iterations: [0, 0, 1][pick(4, i, 3)],
                 reuse_steps: [1, 1, 2][pick(5, i, 3)],
-                ..base
-            },
-            false,
-            "",
-        );
+                ..self.base
+            });
+        }
     }
-    out
+}
+
+/// The settings of edits: `base`, knobs one at a time, and `draws` random ones.
+pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
+    let mut list = List::new(base);
+    list.add_knobs();
+    list.add_fine_stages();
+    list.add_other_targets();
+    list.add_draws(draws, seed);
+    list.settings
 }
 
 /// The settings of whole scenes.
 pub fn of_scenes(base: GenParams) -> Vec<Setting> {
-    let mut out: Vec<Setting> = Vec::new();
-    let mut add = |params: GenParams| {
-        let name = name_of(&StopKnobs::of(&params), &StopKnobs::of(&base));
-        if !out.iter().any(|s| s.params == params) {
-            out.push(Setting {
-                name,
-                params,
-                other_target: false,
-            });
-        }
-    };
-    add(base);
+    let mut list = List::new(base);
     for steps in [4, 6, 10, 20, 40] {
-        add(GenParams { steps, ..base });
-        add(GenParams {
-            steps,
-            precision: Precision::Int8,
-            ..base
-        });
+        list.add_both_precisions(GenParams { steps, ..base });
     }
     for steps in [6, 10, 20] {
-        add(GenParams {
+        list.add(GenParams {
             steps,
             solver: SolverKind::DpmPp2M,
             ..base
         });
-        add(GenParams {
+        list.add(GenParams {
             steps,
             reuse_steps: 2,
             ..base
         });
     }
     for fine_steps in [0, 1, 2, 8] {
-        add(GenParams { fine_steps, ..base });
+        list.add(GenParams { fine_steps, ..base });
     }
-    out
+    list.settings
 }
 
 #[cfg(test)]
