@@ -8,6 +8,7 @@ mod cli_formats;
 mod cli_tools;
 mod diffusion;
 mod fuzz;
+mod house;
 mod inferred;
 mod opendrive;
 mod parity;
