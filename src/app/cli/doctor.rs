@@ -58,6 +58,7 @@ impl Doctor {
             "adapter": adapter,
             "threads": threads,
             "simd": simd(),
+            "log": crate::shell::logging::file(),
             "weights": weights,
         });
         output::report(&self.common, &report, || {
@@ -74,6 +75,7 @@ impl Doctor {
                 ("adapter", adapter.to_string()),
                 ("threads", threads.to_string()),
                 ("simd", simd().join(" ")),
+                ("log", report["log"].as_str().unwrap_or("nowhere").to_owned()),
                 ("weights", weights.to_string()),
             ];
             rows.map(|(name, value)| format!("{name:<8} {value}")).join("\n")

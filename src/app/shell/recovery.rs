@@ -69,12 +69,7 @@ pub struct Recovery {
 
 /// Where copies are kept: `$SCENELOOM_STATE_DIR/recovery`, else in the user's state folder.
 pub fn root() -> Option<PathBuf> {
-    let own = std::env::var_os("SCENELOOM_STATE_DIR").filter(|v| !v.is_empty());
-    let state = own.map(PathBuf::from).or_else(|| {
-        let users = dirs::state_dir().or_else(dirs::data_local_dir)?;
-        Some(users.join("sceneloom"))
-    });
-    state.map(|folder| folder.join("recovery"))
+    super::folders::state().map(|folder| folder.join("recovery"))
 }
 
 impl Recovery {

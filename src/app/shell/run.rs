@@ -13,6 +13,7 @@ use scene::Scene;
 /// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
 /// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].
 pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -> anyhow::Result<()> {
+    super::logging::start();
     priority::workers_give_way();
     let config = AppConfig {
         scene,

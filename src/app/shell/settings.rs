@@ -75,11 +75,7 @@ impl Settings {
     /// Where they are kept: `settings.json` in `SCENELOOM_CONFIG_DIR`, else in the user's folder for settings; none if
     /// there is no such folder.
     pub fn file() -> Option<PathBuf> {
-        let folder = match std::env::var_os("SCENELOOM_CONFIG_DIR") {
-            Some(folder) => PathBuf::from(folder),
-            None => dirs::config_dir()?.join("sceneloom"),
-        };
-        Some(folder.join("settings.json"))
+        Some(super::folders::settings()?.join("settings.json"))
     }
 
     /// Reads them; those of a new user if there is no file. Errors in one line if the file cannot be read: it is then

@@ -38,9 +38,14 @@ const KEPT: usize = 500;
 impl Toasts {
     /// Shows a message as a card and writes it into the log.
     pub fn push(&mut self, level: Level, text: impl Into<String>, now_s: f64) {
+        let text = text.into();
+        match level {
+            Level::Error => tracing::error!("{text}"),
+            _ => tracing::info!("{text}"),
+        }
         let entry = Entry {
             level,
-            text: text.into(),
+            text,
             at_s: now_s,
             dismissed: false,
         };
