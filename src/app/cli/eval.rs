@@ -26,7 +26,7 @@ fn suites() -> clap::builder::PossibleValuesParser {
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Eval {
-    /// What is measured.
+    /// What is measured; `all`: every suite, one after another.
     #[arg(value_parser = suites())]
     suite: String,
     /// Number of held-out worlds, or of frames of --data [default: 24, quick: a few].
@@ -38,7 +38,7 @@ pub struct Eval {
     /// Vehicles of a scene that are removed, moved and changed, one by one, at most (editing) [default: 6, quick: 1].
     #[arg(long, value_name = "N")]
     vehicles: Option<usize>,
-    /// Worlds whose objects say how many voxels a class has, at least (editing) [default: 40, quick: 1].
+    /// Worlds whose objects say how many voxels a class has, at least (editing) [default: 40, quick: 2].
     #[arg(long, value_name = "N")]
     band_worlds: Option<usize>,
     /// Stops of the quality slider to judge, comma-separated; all but the reference if none is named (editing).
@@ -56,7 +56,7 @@ pub struct Eval {
     /// Sentences to judge (layout): a file of one JSON object a line, or a folder of such files; tests/words/dev if none is named.
     #[arg(long, value_name = "FILE")]
     prompts: Option<PathBuf>,
-    /// At most so many of the sentences, spread evenly (layout) [default: all, quick: 120].
+    /// At most so many of the sentences, spread evenly (layout) [default: all, quick: 240].
     #[arg(long, value_name = "N")]
     sentences: Option<usize>,
     /// Who reads the sentences (layout).

@@ -120,3 +120,36 @@ fn real_suites_fill_their_tables() {
         );
     }
 }
+
+/// What `eval all --quick --markdown` does, with the smallest numbers of worlds: every suite is measured and every figure found.
+/// Run: `cargo test --release -p sceneloom-judge --lib -- --ignored --nocapture quick`.
+#[test]
+#[ignore = "takes minutes"]
+fn quick_run_of_every_suite() {
+    let words = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/words/dev");
+    let small = |suite: &Suite| Options {
+        prompts: Some(words.into()),
+        ..quick(suite)
+    };
+    let tables = measure_all(SUITES.iter(), &small, &());
+    println!(
+        "{}",
+        markdown(
+            &Origin::now("sceneloom eval all --quick --markdown".into()),
+            &tables
+        )
+    );
+    for table in &tables {
+        let Ok((_, rows)) = &table.found else {
+            panic!("{}: not measured", table.name)
+        };
+        let empty: Vec<&str> = rows
+            .iter()
+            .filter(|r| r.value.is_none())
+            .map(|r| r.figure.as_str())
+            .collect();
+        assert!(empty.is_empty(), "{}: {empty:?}", table.name);
+    }
+    let all_s: f64 = tables.iter().map(|t| t.wall_s).sum();
+    println!("all suites: {all_s:.0} s");
+}

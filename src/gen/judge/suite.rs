@@ -119,7 +119,7 @@ pub static SUITES: [Suite; 7] = [
             ),
             ("lost echoes told by class, range, angle (AUC)", "/lidar/lost_auc"),
         ],
-        quick: |options| options.frames = 8,
+        quick: |options| options.frames = 16,
         run: |options, progress| options.world(progress),
     },
     Suite {
@@ -139,7 +139,7 @@ pub static SUITES: [Suite; 7] = [
                 "/labels_on_slopes/worst_loss_of_miou",
             ),
         ],
-        quick: |options| options.frames = 2,
+        quick: |options| options.frames = 3,
         run: |options, progress| {
             with_pipeline(options, |pipeline| match &options.data {
                 Some(dir) => options.vae_on_files(dir, pipeline, progress),
@@ -186,7 +186,7 @@ pub static SUITES: [Suite; 7] = [
             ("diversity across seeds (1 - IoU)", "/diversity_across_seeds"),
             ("time of a scene, s (median)", "/wall_s_median"),
         ],
-        quick: |options| (options.frames, options.rows_only) = (2, true),
+        quick: |options| (options.frames, options.rows_only) = (4, true),
         run: |options, progress| with_pipeline(options, |pipeline| options.generation(pipeline, progress)),
     },
     Suite {
@@ -209,7 +209,7 @@ pub static SUITES: [Suite; 7] = [
             ("time of inverting a scene, s (median)", "/inversion_s_median"),
         ],
         quick: |options| {
-            (options.frames, options.vehicles, options.band_worlds) = (1, 1, 1);
+            (options.frames, options.vehicles, options.band_worlds) = (2, 1, 2);
             options.presets = vec!["balanced".into()];
         },
         run: |options, progress| with_pipeline(options, |pipeline| options.editing(pipeline, progress)),
@@ -235,7 +235,7 @@ pub static SUITES: [Suite; 7] = [
             ("lost echoes, AUC", "/complete/echoes/drop_auc"),
             ("time of a sweep, s (median)", "/complete/learned/wall_s"),
         ],
-        quick: |options| options.frames = 2,
+        quick: |options| options.frames = 3,
         run: |options, progress| options.lidar(progress),
     },
     Suite {
@@ -255,7 +255,7 @@ pub static SUITES: [Suite; 7] = [
             ),
             ("time of six maps, splats, ms (median)", "/splat/ms_median"),
         ],
-        quick: |options| options.frames = 2,
+        quick: |options| options.frames = 3,
         run: |options, progress| options.splat(progress),
     },
     Suite {
@@ -271,7 +271,7 @@ pub static SUITES: [Suite; 7] = [
             ("time of a prompt, s (median)", "/made/wall_s_median"),
             ("time of an edit, s (median)", "/edited/wall_s_median"),
         ],
-        quick: |options| (options.sentences, options.placer_prompts) = (Some(120), 2),
+        quick: |options| (options.sentences, options.placer_prompts) = (Some(240), 2),
         run: |options, progress| options.layout(progress),
     },
 ];
