@@ -25,6 +25,8 @@ mod exporting;
 mod file_dialogs;
 pub mod graphics;
 pub mod guard;
+#[cfg(test)]
+mod guarded_tests;
 mod hints;
 mod icons;
 pub mod keymap;

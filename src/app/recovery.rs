@@ -101,27 +101,27 @@ impl Recovery {
         let (jobs, jobs_in) = unbounded::<Handed<Job>>();
         let (done_out, done) = unbounded();
         let place = folder.clone();
-        let thread = std::thread::Builder::new()
-            .name(NAME.into())
-            .spawn(move || {
-                for job in jobs_in {
-                    let is_copy = matches!(job.request(), Job::Write(..));
-                    let done = job.run(|job| match job {
-                        Job::Write(scene, original) => write(&place, &scene, original),
-                        Job::Remove => {
-                            remove_copy(&place);
-                            Ok(())
-                        }
-                    });
-                    let done = done.unwrap_or_else(|panic| Err(panic.into())).map_err(|e| e.to_string());
-                    if is_copy {
-                        // The receiver lives as long as the thread, except at the very end.
-                        let _ = done_out.send(done);
-                        // A wake-up that panics must not end the thread.
-                        let _ = guarded(NAME, &wake);
+        let thread = std::thread::Builder::new().name(NAME.into()).spawn(move || {
+            for job in jobs_in {
+                let is_copy = matches!(job.request(), Job::Write(..));
+                let done = job.run(|job| match job {
+                    Job::Write(scene, original) => write(&place, &scene, original),
+                    Job::Remove => {
+                        remove_copy(&place);
+                        Ok(())
                     }
+                });
+                let done = done
+                    .unwrap_or_else(|panic| Err(panic.into()))
+                    .map_err(|e| e.to_string());
+                if is_copy {
+                    // The receiver lives as long as the thread, except at the very end.
+                    let _ = done_out.send(done);
+                    // A wake-up that panics must not end the thread.
+                    let _ = guarded(NAME, &wake);
                 }
-            })?;
+            }
+        })?;
         Ok(Self {
             folder,
             lock: Some(lock),

@@ -313,7 +313,10 @@ mod tests {
         w.thread.take().expect("running").join().expect("guarded");
         let left: Vec<Told> = updates.try_iter().map(|e| e.update).collect();
         assert_eq!(left.len(), MOST_WAITING + 9 + 1);
-        assert_eq!(left[MOST_WAITING..MOST_WAITING + 2], [Told::Number(100), Told::Number(200)]);
+        assert_eq!(
+            left[MOST_WAITING..MOST_WAITING + 2],
+            [Told::Number(100), Told::Number(200)]
+        );
         assert_eq!(left.last(), Some(&Told::Done(2)));
     }
 }
