@@ -10,6 +10,8 @@ pub mod command;
 mod endpoint;
 pub mod export;
 pub mod graphics;
+#[cfg(test)]
+mod guarded_tests;
 mod meant;
 pub mod paint;
 pub mod panes;

@@ -74,7 +74,7 @@ impl SceneloomApp {
         self.files.exporting.panel = open.then_some(panel);
     }
 
-    fn start_export(
+    pub(super) fn start_export(
         &mut self,
         formats: Vec<Format>,
         options: ExportOptions,

@@ -218,6 +218,7 @@ impl Live {
     pub fn drop_waiting(&mut self, scene: &Scene) {
         self.asked = Some(JobKey {
             rev: scene.rev,
+            frame: scene.current,
             params: self.params_for(scene, false),
         });
         self.paused = None;
@@ -352,6 +353,7 @@ mod tests {
             JobId(id),
             JobKey {
                 rev: scene.rev,
+                frame: scene.current,
                 params,
             },
             now_s,

@@ -29,10 +29,16 @@ pub struct Job {
 }
 
 impl Job {
+    /// Index of the frame that is generated: the one that was current when the job was made, whatever is shown later.
+    pub fn frame(&self) -> usize {
+        self.scene.current
+    }
+
     /// What names this job's result.
     pub fn key(&self) -> JobKey {
         JobKey {
             rev: self.scene.rev,
+            frame: self.frame(),
             params: self.params,
         }
     }
@@ -43,6 +49,8 @@ impl Job {
 pub struct JobKey {
     /// State of the scene.
     pub rev: SceneRev,
+    /// Index of the frame in the clip.
+    pub frame: usize,
     /// Parameters.
     pub params: GenParams,
 }

@@ -93,7 +93,7 @@ pub struct GenParams {
     /// Cells that are regenerated in automatic mode although nothing was edited there; something new comes only
     /// with a `strength` above 0.
     pub redraw: RedrawMask,
-    /// 0: the region starts from the noise that its source comes from (inversion). Above: it is drawn anew from the source
+    /// 0: the region starts from the noise that its source comes from (inversion). Above: it is inpainted from the source
     /// with fresh noise, at this share of the steps (SDEdit); 1 keeps nothing of it. Then all tokens are computed.
     pub strength: f64,
     /// Fixed-point updates per inversion step; 0 = plain DDIM inversion.

@@ -113,7 +113,7 @@ mod tests {
     fn result_of(job: &Job) -> GenResult {
         GenResult {
             key: job.key(),
-            frame: job.scene.current,
+            frame: job.frame(),
             occupancy: VoxelGrid::new(),
             report: GenReport::default(),
         }
@@ -239,9 +239,13 @@ mod tests {
             panic!("{event:?}");
         };
         assert_eq!(
-            (event.id, result.key, result.rev()),
-            (id, asked.key(), asked.scene.rev)
+            (event.id, result.key, result.rev(), result.frame),
+            (id, asked.key(), asked.scene.rev, asked.frame())
         );
+        // Another frame of the same state is another result.
+        let mut other = asked.clone();
+        Arc::make_mut(&mut other.scene).current = 1;
+        assert!(other.key() != asked.key() && other.key().rev == asked.key().rev);
         drop(b.worker); // joins, so that the wake-up after the last update is counted
         assert_eq!(b.wakes.load(Ordering::SeqCst), 3);
     }

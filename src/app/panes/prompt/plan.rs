@@ -368,6 +368,46 @@ impl Plan {
         (!edits.is_empty()).then_some(Command::Apply("Re-roll", edits))
     }
 
+    /// Lays variants out on a thread of its own.
+    fn start_variants(&mut self, ask: &Ask, ctx: &egui::Context) {
+        let (send, coming) = channel();
+        let (work, wake) = (ask.clone(), ctx.clone());
+        let (tell, wake_last) = (send.clone(), wake.clone());
+        let lay_out = move || {
+            for k in 0..VARIANTS {
+                let ask = Ask {
+                    seed: work.seed.wrapping_add(k),
+                    ..work.clone()
+                };
+                // Nobody listens once others are asked for.
+                if send.send(Ok((ask.seed, ask.lay_out()))).is_err() {
+                    break;
+                }
+                wake.request_repaint();
+            }
+        };
+        let thread = job::guard::spawn("variants", lay_out, move |ended| {
+            if let Err(panic) = ended {
+                let _ = tell.send(Err(panic));
+                wake_last.request_repaint();
+            }
+        });
+        self.variants = thread.ok().map(|_| Variants {
+            of: ask.clone(),
+            coming,
+            found: BTreeMap::new(),
+            problem: None,
+        });
+    }
+
+    /// Seed of the first variant that comes.
+    #[cfg(test)]
+    pub(super) fn first_variant(&mut self, ask: &Ask) -> Result<u64, Panicked> {
+        self.start_variants(ask, &egui::Context::default());
+        let variants = self.variants.as_ref().expect("a thread");
+        variants.coming.recv().expect("an answer").map(|(seed, _)| seed)
+    }
+
     /// Variants: the seed that was chosen.
     pub fn variants(&mut self, ui: &mut Ui, ask: &Ask) -> Option<u64> {
         let mut chosen = None;
@@ -375,34 +415,7 @@ impl Plan {
             .button("Variants")
             .on_hover_text("Four layouts of these words, side by side; a click takes one");
         if button.clicked() {
-            let (send, coming) = channel();
-            let (work, wake) = (ask.clone(), ui.ctx().clone());
-            let (tell, wake_last) = (send.clone(), wake.clone());
-            let lay_out = move || {
-                for k in 0..VARIANTS {
-                    let ask = Ask {
-                        seed: work.seed.wrapping_add(k),
-                        ..work.clone()
-                    };
-                    // Nobody listens once others are asked for.
-                    if send.send(Ok((ask.seed, ask.lay_out()))).is_err() {
-                        break;
-                    }
-                    wake.request_repaint();
-                }
-            };
-            let thread = job::guard::spawn("variants", lay_out, move |ended| {
-                if let Err(panic) = ended {
-                    let _ = tell.send(Err(panic));
-                    wake_last.request_repaint();
-                }
-            });
-            self.variants = thread.ok().map(|_| Variants {
-                of: ask.clone(),
-                coming,
-                found: BTreeMap::new(),
-                problem: None,
-            });
+            self.start_variants(ask, ui.ctx());
         }
         let Some(variants) = &mut self.variants else {
             return None;

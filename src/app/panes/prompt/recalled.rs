@@ -80,6 +80,22 @@ pub struct Recall {
 }
 
 impl Recall {
+    fn look_up(&mut self, ask: &Ask, ctx: &egui::Context) {
+        let (send, coming) = channel();
+        let (ask, wake) = (ask.clone(), ctx.clone());
+        let words = ask.prompt.clone();
+        let look = move || {
+            let found = recall(&ask.prompt, &ask.description, ask.seed);
+            found.as_ref().and_then(Recalled::of)
+        };
+        let thread = job::guard::spawn("recall", look, move |found| {
+            // Nobody listens once the pane is gone.
+            let _ = send.send((words, found));
+            wake.request_repaint();
+        });
+        self.coming = thread.ok().map(|_| coming);
+    }
+
     /// Draws the scene for these words; the one before until it is found.
     pub fn show(&mut self, ui: &mut Ui, ask: &Ask) {
         if let Some(found) = self.coming.as_ref().and_then(|c| c.try_recv().ok()) {
@@ -87,19 +103,7 @@ impl Recall {
         }
         let known = self.shown.as_ref().is_some_and(|(of, _)| *of == ask.prompt);
         if !known && self.coming.is_none() {
-            let (send, coming) = channel();
-            let (ask, wake) = (ask.clone(), ui.ctx().clone());
-            let words = ask.prompt.clone();
-            let look = move || {
-                let found = recall(&ask.prompt, &ask.description, ask.seed);
-                found.as_ref().and_then(Recalled::of)
-            };
-            let thread = job::guard::spawn("recall", look, move |found| {
-                // Nobody listens once the pane is gone.
-                let _ = send.send((words, found));
-                wake.request_repaint();
-            });
-            self.coming = thread.ok().map(|_| coming);
+            self.look_up(ask, ui.ctx());
         }
         match &self.shown {
             Some((_, Ok(Some(found)))) => found.show(ui, "Memory goes by"),
@@ -139,5 +143,33 @@ mod tests {
         assert!(!shown.layout.polylines.is_empty() && !shown.boxes.is_empty());
         let long = shortened(&"words ".repeat(40));
         assert!(long.chars().count() <= 73 && long.ends_with("words…"));
+    }
+
+    #[test]
+    fn a_panic_is_told_and_the_next_words_are_looked_up() {
+        let words = "a quiet road";
+        let ask = Ask {
+            prompt: words.into(),
+            description: described("road straight").expect("valid"),
+            graphed: None,
+            seed: 1,
+            how: crate::prompting::How::default(),
+        };
+        let mut recall = Recall::default();
+        let mut found = || {
+            recall.look_up(&ask, &egui::Context::default());
+            let coming = recall.coming.take().expect("a thread");
+            let (of, found) = coming.recv().expect("an answer");
+            assert_eq!(of, words);
+            found.map(|f| f.is_some()).map_err(|e| e.to_string())
+        };
+        job::guard::panic_next("recall");
+        assert_eq!(found(), Err("recall panicked: asked for by a test".into()));
+        assert_eq!(found(), Ok(true));
+        let mut plan = super::super::prompt_plan::Plan::default();
+        job::guard::panic_next("variants");
+        let first = plan.first_variant(&ask).map_err(|e| e.to_string());
+        assert_eq!(first, Err("variants panicked: asked for by a test".into()));
+        assert_eq!(plan.first_variant(&ask), Ok(ask.seed));
     }
 }

@@ -3,18 +3,21 @@
 //! at two or three levels of the top view (0.4, 0.8, 1.6 m), norms that look at one place only. Twin of
 //! `training/models/occ_vae.py`.
 
-use rayon::prelude::*;
-use serde::Deserialize;
+mod config;
+mod heard;
 
-use super::encoder::{Encoder, HEIGHT, Level, PIECE, VoxelTable, levels, steps, through};
+use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps};
 use super::{ModelError, check_finite, check_length};
 use crate::pieces::pieces;
-use nn::kernels;
-use nn::layers::{Linear, Norm};
 use nn::map::{Map, Window};
 use nn::weights::{WeightFile, WeightsError};
+use nn::{Cpu, Ops};
 use numeric::philox::{self, Stream};
 use scene::{Class, GridSpec, VoxelGrid};
+
+pub use config::VaeConfig;
+use heard::Ears;
+pub use heard::Heard;
 
 /// Numbers per voxel before the class table.
 const FEATURES: usize = 8;
@@ -22,82 +25,32 @@ const CLASSES: usize = Class::COUNT;
 /// Bounds of the encoder's log variance: beyond them exp leaves f32.
 const LOG_VARIANCE: [f32; 2] = [-30.0, 20.0];
 
-/// Sizes, as in the file's metadata.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VaeConfig {
-    /// Numbers per latent cell.
-    pub latent: usize,
-    /// Channels at 0.4, 0.8 and (if latent cells are that large) 1.6 m.
-    pub widths: Vec<usize>,
-    /// Kernels (1 or 3) of the encoder's blocks at every level, finest first.
-    pub encoder_kernels: Vec<Vec<usize>>,
-    /// Kernels (1 or 3) of the decoder's blocks at every level, coarsest first.
-    pub decoder_kernels: Vec<Vec<usize>>,
-    /// The decoder hears the draft of the layout, and which voxels were observed.
-    #[serde(default)]
-    pub hears: bool,
-}
-
-/// What the decoder is told of the columns that it decodes.
-#[derive(Clone, Copy, Default)]
-pub struct Heard<'a> {
-    /// The draft of the layout, with the background where that is given.
-    pub draft: Option<&'a VoxelGrid>,
-    /// Which voxels of a labelled frame were observed ([`Unobserved::observed`]), 200x200.
-    ///
-    /// [`Unobserved::observed`]: scene::Unobserved::observed
-    pub observed: Option<&'a [u32]>,
-}
-
-impl VaeConfig {
-    fn check(&self) -> Result<(), String> {
-        let kernels = || self.encoder_kernels.iter().chain(&self.decoder_kernels).flatten();
-        let levels = self.widths.len();
-        if !(1..=64).contains(&self.latent) {
-            Err(format!("latent: expected 1 to 64, found {}", self.latent))
-        } else if !(2..=3).contains(&levels) {
-            Err(format!("widths: expected 2 or 3 levels, found {levels}"))
-        } else if [&self.encoder_kernels, &self.decoder_kernels]
-            .iter()
-            .any(|k| k.len() != levels)
-        {
-            Err(format!("kernels: expected {levels} levels, as many as widths"))
-        } else if self.widths.iter().any(|w| !(1..=4096).contains(w)) {
-            Err(format!("widths: expected 1 to 4096, found {:?}", self.widths))
-        } else if kernels().count() > 256 {
-            Err("more than 256 blocks".into())
-        } else if let Some(k) = kernels().find(|k| ![1, 3].contains(*k)) {
-            Err(format!("kernels: expected 1 or 3, found {k}"))
-        } else {
-            Ok(())
-        }
-    }
-
-    /// Latent cells along one side of the map.
-    pub fn side(&self) -> usize {
-        GridSpec::NX >> (self.widths.len() - 1)
-    }
-}
-
-/// The network with its weights.
-pub struct OccVae {
+/// The network with its weights, on a backend.
+pub struct OccVae<B: Ops = Cpu> {
+    ops: B,
     config: VaeConfig,
-    encoder: Encoder,
-    encoder_head: Linear,
-    decoder_stem: Linear,
-    decoder: Vec<Level>, // coarsest first
-    up: Vec<Linear>,
-    ears: Option<Ears>,
-    decoder_norm: Norm,
-    decoder_head: Linear, // with the class table multiplied in: logits of a column, [class][z]
+    encoder: Encoder<B>,
+    encoder_head: B::Linear,
+    decoder_stem: B::Linear,
+    decoder: Vec<Level<B>>, // coarsest first
+    up: Vec<B::Linear>,
+    ears: Option<Ears<B>>,
+    decoder_norm: B::Norm,
+    decoder_head: B::Linear, // with the class table multiplied in: logits of a column, [class][z]
     latent_mean: Vec<f32>,
     latent_std: Vec<f32>,
 }
 
 impl OccVae {
-    /// Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
-    pub fn new(mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
+    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
+    pub fn new(file: WeightFile<'_>) -> Result<Self, WeightsError> {
+        Self::on(Cpu, file)
+    }
+}
+
+impl<B: Ops> OccVae<B> {
+    /// The same on a backend.
+    pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: VaeConfig = file.config("config")?;
         config
             .check()
@@ -107,20 +60,26 @@ impl OccVae {
         let upwards: Vec<usize> = widths.iter().rev().copied().collect();
         let w = &mut file;
         let vae = Self {
-            encoder: Encoder::new(w, &widths, &config.encoder_kernels)?,
-            encoder_head: Linear::new(w, "encoder_head", coarse, 2 * latent, &[1, 1])?,
-            decoder_stem: Linear::new(w, "decoder_stem", latent, coarse, &[1, 1])?,
-            decoder: levels(w, "decoder", &upwards, &config.decoder_kernels)?,
-            up: steps(w, "up", upwards.windows(2).map(|p| (p[0], 4 * p[1])).collect())?,
+            encoder: Encoder::new(&ops, w, &widths, &config.encoder_kernels)?,
+            encoder_head: ops.linear(w, "encoder_head", [coarse, 2 * latent], &[1, 1])?,
+            decoder_stem: ops.linear(w, "decoder_stem", [latent, coarse], &[1, 1])?,
+            decoder: levels(&ops, w, "decoder", &upwards, &config.decoder_kernels)?,
+            up: steps(
+                &ops,
+                w,
+                "up",
+                upwards.windows(2).map(|p| [p[0], 4 * p[1]]).collect(),
+            )?,
             ears: match config.hears {
-                true => Some(Ears::new(w, fine)?),
+                true => Some(Ears::new(&ops, w, fine)?),
                 false => None,
             },
-            decoder_norm: Norm::new(w, "decoder_norm", fine)?,
-            decoder_head: head(w, fine)?,
+            decoder_norm: ops.load_norm(w, "decoder_norm", fine)?,
+            decoder_head: head(&ops, w, fine)?,
             latent_mean: w.take("latent_mean", &[latent])?,
             latent_std: w.take("latent_std", &[latent])?,
             config,
+            ops,
         };
         if let Some(i) = vae.latent_std.iter().position(|s| *s < 1e-6) {
             let reason = format!(
@@ -213,8 +172,11 @@ impl OccVae {
         window: Window,
     ) -> Result<(Vec<f32>, Vec<f32>), ModelError> {
         let channels = self.config.latent;
-        let features = self.encoder.features(grid, window)?;
-        let moments = self.encoder_head.parallel(&features.data, PIECE);
+        let ops = &self.ops;
+        let features = self.encoder.features(ops, grid, window)?;
+        let moments = ops
+            .download(ops.apply(&self.encoder_head, &features, PIECE)?)?
+            .data;
         let mut latent = Vec::with_capacity(window.rows * window.columns * channels);
         let mut spread = Vec::with_capacity(latent.capacity());
         for cell in moments.chunks_exact(2 * channels) {
@@ -256,30 +218,30 @@ impl OccVae {
         for cells in pieces(cells, reach) {
             if let Some(window) = Window::around(&cells, reach) {
                 let map = self.decoder_map(latent, window, heard)?;
-                self.labels_of(&map, &cells, window, &mut grid);
+                self.labels_of(&map, &cells, window, &mut grid)?;
             }
         }
         Ok(grid)
     }
 
     /// Puts the labels of the wanted cells of a window into a grid.
-    fn labels_of(&self, map: &Map, cells: &[bool], window: Window, grid: &mut VoxelGrid) {
+    fn labels_of(
+        &self,
+        map: &B::Tensor,
+        cells: &[bool],
+        window: Window,
+        grid: &mut VoxelGrid,
+    ) -> Result<(), ModelError> {
         let (side, per_cell) = (self.config.side(), self.columns());
         let wanted: Vec<usize> = window.cells().filter(|c| cells[*c]).collect();
-        let labels: Vec<Vec<u8>> = wanted
-            .par_iter()
-            .map(|cell| {
-                let mut labels = vec![0; per_cell * per_cell * HEIGHT];
-                let logits = self.cell_logits(map, window, *cell);
-                let columns = logits
-                    .chunks_exact(CLASSES * HEIGHT)
-                    .zip(labels.chunks_exact_mut(HEIGHT));
-                // Weights and normed features are finite and small, so no logit can be NaN.
-                columns.for_each(|(logits, labels)| kernels::likeliest(logits, labels));
-                labels
-            })
-            .collect();
-        for (cell, labels) in wanted.iter().zip(&labels) {
+        let places = wanted.iter().flat_map(|cell| self.places_of(*cell, window));
+        let places: Vec<usize> = places.collect();
+        let piece = per_cell * per_cell;
+        // Weights and normed features are finite and small, so no logit can be NaN.
+        let labels = self
+            .ops
+            .likeliest(&self.decoder_head, map, &places, HEIGHT, piece)?;
+        for (cell, labels) in wanted.iter().zip(labels.chunks_exact(piece * HEIGHT)) {
             let (x0, y0) = (cell / side * per_cell, cell % side * per_cell);
             for (column, labels) in labels.chunks_exact(HEIGHT).enumerate() {
                 if labels.iter().any(|l| *l != Class::FREE) {
@@ -288,6 +250,16 @@ impl OccVae {
                 }
             }
         }
+        Ok(())
+    }
+
+    /// Places of a cell's columns in a map of the window, `[dx][dy]`.
+    fn places_of(&self, cell: usize, window: Window) -> impl Iterator<Item = usize> {
+        let (side, per_cell) = (self.config.side(), self.columns());
+        let x = (cell / side - window.x) * per_cell;
+        let y = (cell % side - window.y) * per_cell;
+        let wide = window.columns * per_cell;
+        (0..per_cell * per_cell).map(move |i| (x + i / per_cell) * wide + y + i % per_cell)
     }
 
     /// Class logits `[dx][dy][z][class]` of one cell, for tests and uncertainty.
@@ -299,17 +271,20 @@ impl OccVae {
             return Ok(Vec::new());
         };
         let map = self.decoder_map(latent, window, heard)?;
-        let logits = self.cell_logits(&map, window, cell);
-        let columns = logits.chunks_exact(CLASSES * HEIGHT);
-        Ok(columns
+        let logits = self.ops.apply(&self.decoder_head, &map, PIECE)?;
+        let logits = self.ops.download(logits)?.data;
+        let column = |place: usize| &logits[place * CLASSES * HEIGHT..][..CLASSES * HEIGHT];
+        Ok(self
+            .places_of(cell, window)
+            .map(column)
             .flat_map(|column| (0..HEIGHT * CLASSES).map(|i| column[i % CLASSES * HEIGHT + i / CLASSES]))
             .collect())
     }
 
     /// The decoder's blocks over a window, up to its last norm: one place per column of voxels.
-    fn decoder_map(&self, latent: &[f32], window: Window, heard: Heard<'_>) -> Result<Map, ModelError> {
+    fn decoder_map(&self, latent: &[f32], window: Window, heard: Heard<'_>) -> Result<B::Tensor, ModelError> {
         check_finite("latent", latent)?;
-        let channels = self.config.latent;
+        let (ops, channels) = (&self.ops, self.config.latent);
         let mut scaled = Vec::with_capacity(window.rows * window.columns * channels);
         for cell in window.cells() {
             let values = latent[cell * channels..][..channels].iter();
@@ -320,94 +295,36 @@ impl OccVae {
                     .map(|((v, std), mean)| v * std + mean),
             );
         }
-        let mut map = Map {
-            data: self.decoder_stem.parallel(&scaled, PIECE),
+        let scaled = ops.upload(Map {
+            data: scaled,
             rows: window.rows,
             columns: window.columns,
-            width: self.config.widths[self.config.widths.len() - 1],
-        };
-        self.decoder[0].apply(&mut map);
+            width: channels,
+        })?;
+        let map = ops.apply(&self.decoder_stem, &scaled, PIECE)?;
+        let mut map = self.decoder[0].apply(ops, map)?;
         for (i, (up, level)) in self.up.iter().zip(&self.decoder[1..]).enumerate() {
-            map = through(up, &map).unfold();
+            map = ops.unfold(&ops.apply(up, &map, PIECE)?)?;
             if let (true, Some(ears)) = (i + 1 == self.up.len(), &self.ears) {
-                ears.add_to(&mut map, heard, window)?;
+                map = ears.add_to(ops, map, heard, window)?;
             }
-            level.apply(&mut map);
+            map = level.apply(ops, map)?;
         }
-        let mut normed = vec![0.0; map.data.len()];
-        normed
-            .par_chunks_mut(PIECE * map.width)
-            .zip(map.data.par_chunks(PIECE * map.width))
-            .for_each(|(out, x)| self.decoder_norm.rows(x, out));
-        check_finite("decoder features", &normed)?;
-        map.data = normed;
-        Ok(map)
+        let normed = ops.norm(&self.decoder_norm, map)?;
+        self.check_features(normed)
     }
 
-    /// Logits `[dx][dy][class][z]` of a cell of the window.
-    fn cell_logits(&self, map: &Map, window: Window, cell: usize) -> Vec<f32> {
-        let (side, per_cell) = (self.config.side(), self.columns());
-        let (x, y) = (
-            (cell / side - window.x) * per_cell,
-            (cell % side - window.y) * per_cell,
-        );
-        let mut columns = Vec::with_capacity(per_cell * per_cell * map.width);
-        for dx in 0..per_cell {
-            let from = ((x + dx) * map.columns + y) * map.width;
-            columns.extend_from_slice(&map.data[from..from + per_cell * map.width]);
-        }
-        let mut logits = vec![0.0; per_cell * per_cell * CLASSES * HEIGHT];
-        self.decoder_head.rows(&columns, &mut logits);
-        logits
-    }
-}
-
-/// What the decoder's columns hear.
-struct Ears {
-    drafted: VoxelTable,
-    observed: Vec<f32>, // [bit][width]
-}
-
-impl Ears {
-    fn new(w: &mut WeightFile<'_>, width: usize) -> Result<Self, WeightsError> {
-        let bits = HEIGHT + 1;
-        let weight = w.take("observed.weight", &[width, bits])?;
-        Ok(Self {
-            drafted: VoxelTable::new(w, "drafted", width)?,
-            observed: (0..bits * width)
-                .map(|i| weight[i % width * bits + i / width])
-                .collect(),
-        })
-    }
-
-    fn add_to(&self, map: &mut Map, heard: Heard<'_>, window: Window) -> Result<(), ModelError> {
-        if let Some(draft) = heard.draft {
-            self.drafted.add_to(map, draft, window)?;
-        }
-        let Some(observed) = heard.observed else {
-            return Ok(());
-        };
-        let (width, wide) = (map.width, map.columns);
-        let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));
-        map.data
-            .par_chunks_mut(wide * width)
-            .enumerate()
-            .for_each(|(row, columns)| {
-                let told = &observed[(corner[0] + row) * GridSpec::NY + corner[1]..][..wide];
-                for (values, told) in columns.chunks_exact_mut(width).zip(told) {
-                    let bits = self.observed.chunks_exact(width).enumerate();
-                    for (_, adds) in bits.filter(|(bit, _)| told >> bit & 1 == 1) {
-                        values.iter_mut().zip(adds).for_each(|(v, a)| *v += a);
-                    }
-                }
-            });
-        Ok(())
+    /// Features that a latent far outside of what was trained may have driven to infinity.
+    fn check_features(&self, normed: B::Tensor) -> Result<B::Tensor, ModelError> {
+        let map = self.ops.download(normed)?;
+        check_finite("decoder features", &map.data)?;
+        Ok(self.ops.upload(map)?)
     }
 }
 
 /// The decoder's head with the class table multiplied in: logit(class, z) = table(class) . feature(z)
 /// + bias(class) is one linear map of a column's channels.
-fn head(w: &mut WeightFile<'_>, width: usize) -> Result<Linear, WeightsError> {
+fn head<B: Ops>(ops: &B, w: &mut WeightFile<'_>, width: usize) -> Result<B::Linear, WeightsError> {
     let weight = w.take("decoder_head.weight", &[HEIGHT * FEATURES, width, 1, 1])?;
     let bias = w.take("decoder_head.bias", &[HEIGHT * FEATURES])?;
     let table = w.take("class_table", &[CLASSES, FEATURES])?;
@@ -424,5 +341,6 @@ fn head(w: &mut WeightFile<'_>, width: usize) -> Result<Linear, WeightsError> {
             row.iter_mut().zip(from).for_each(|(r, v)| *r += t * v);
         }
     }
-    Ok(Linear::from_parts(&folded, folded_bias, width))
+    ops.linear_from(&folded, folded_bias, width)
+        .map_err(|e| w.backend_error(e))
 }
