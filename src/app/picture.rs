@@ -4,6 +4,7 @@ use anyhow::bail;
 
 use scene::raster::box_cells;
 use scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
+use sensors::cameras::bounds;
 use sensors::{color, lidar};
 use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
@@ -170,6 +171,10 @@ pub fn lidar_top(sweep: &LidarSweep, scale: usize) -> Picture {
     out
 }
 
+/// Memory that a 3D picture takes, bytes per pixel: the target with four samples of colour and depth, the sums of
+/// supersampling, the picture and its PNG.
+pub const SHOT_BYTES_PER_PIXEL: u64 = 80;
+
 /// How a 3D picture is taken.
 #[derive(Clone, Debug)]
 pub struct ShotOptions {
@@ -222,8 +227,9 @@ impl View3d {
         })
     }
 
-    /// A picture of the scene.
+    /// A picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
+        bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
         let frame = scene.frame();
         let sweep = match options.lidar {
             true => lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default(),

@@ -2,6 +2,7 @@
 
 mod appearance_gpu;
 mod bounded_memory;
+mod camera_files;
 mod candle;
 mod cli;
 mod cli_formats;

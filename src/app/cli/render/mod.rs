@@ -161,7 +161,8 @@ impl Render {
             wall_s.insert("view", start.elapsed().as_secs_f64());
         }
         let files = writer.files;
-        let report = json!({ "files": files, "wall_s": wall_s, "lidar": lidar_report });
+        let peak = output::peak_rss_mb();
+        let report = json!({ "files": files, "wall_s": wall_s, "lidar": lidar_report, "peak_rss_mb": peak });
         output::report(&self.common, &report, || {
             files
                 .iter()

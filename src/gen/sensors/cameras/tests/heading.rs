@@ -134,58 +134,46 @@ fn seen(source: &'static dyn CameraSource) -> (Vec<bool>, bool) {
     }
 }
 
-#[test]
-fn every_source_shows_a_turned_car_where_its_corners_are() {
-    let (whole, body) = (
-        corners([-0.5; 3], [0.5; 3]),
-        corners([-0.45, -0.42, -0.2], [0.45, 0.42, -0.02]),
-    );
-    let px_per_m = FOCAL_PX / 13.0;
-    let rows = |z: f64| pixel(of_car([0.0, 0.0, z])).y;
-    for source in all() {
-        let name = source.id().name();
-        let (mask, tells_front) = seen(*source);
-        let horizon = matches!(source.views()[0].id.name(), "appearance" | "normals");
-        let (mut body_seen, mut body_all, mut outside, mut total) = (0, 0, 0, 0);
-        let (mut top_columns, mut top_count) = (0.0, 0);
-        for (i, seen) in mask.iter().enumerate() {
-            let p = DVec2::new(
-                (i as u32 % SIZE[0]) as f64 + 0.5,
-                (i as u32 / SIZE[0]) as f64 + 0.5,
-            );
-            if in_hull(&body, p, -2.0) && !(horizon && p.y > f64::from(SIZE[1]) / 2.0 - 2.0) {
-                body_all += 1;
-                body_seen += usize::from(*seen);
-            }
-            total += usize::from(*seen);
-            // Voxels stick out by half a voxel's diagonal, splats by some more.
-            outside += usize::from(*seen && !in_hull(&whole, p, 0.45 * px_per_m));
-            if *seen && (rows(0.45)..rows(0.3)).contains(&p.y) {
-                top_columns += p.x;
-                top_count += 1;
-            }
+/// What of one source's picture is not where it should be; `None` if all is.
+fn misplaced(source: &'static dyn CameraSource) -> Option<String> {
+    let name = source.id().name();
+    let whole = corners([-0.5; 3], [0.5; 3]);
+    let body = corners([-0.45, -0.42, -0.2], [0.45, 0.42, -0.02]);
+    let row = |z: f64| pixel(of_car([0.0, 0.0, z])).y;
+    let (mask, tells_front) = seen(source);
+    let only_above = matches!(source.views()[0].id.name(), "appearance" | "normals");
+    let (mut body_seen, mut body_all, mut outside, mut total) = (0, 0, 0, 0);
+    let (mut top_columns, mut top_count) = (0.0, 0);
+    for (i, seen) in mask.iter().enumerate() {
+        let at = [i as u32 % SIZE[0], i as u32 / SIZE[0]].map(f64::from);
+        let p = DVec2::from_array(at) + 0.5;
+        if in_hull(&body, p, -2.0) && !(only_above && p.y > f64::from(SIZE[1]) / 2.0 - 2.0) {
+            body_all += 1;
+            body_seen += usize::from(*seen);
         }
-        println!(
-            "{name}: {body_seen} of {body_all} of the body, {outside} of {total} outside, {top_count} at the top"
-        );
-        assert!(body_all > 300, "{name}: {body_all}");
-        assert!(
-            body_seen * 100 >= body_all * 90,
-            "{name}: {body_seen} of {body_all} pixels of the body"
-        );
-        assert!(
-            outside * 100 <= total,
-            "{name}: {outside} of {total} pixels beside the car"
-        );
-        if tells_front {
-            // What is highest stands behind the middle: the bonnet is low.
-            let [middle, rear] = [0.0, -0.5].map(|x| pixel(of_car([x, 0.0, 0.4])).x);
-            let shift = (top_columns / f64::from(top_count) - middle) * (rear - middle).signum();
-            println!("{name}: the top is {shift:.1} px behind the middle");
-            assert!(
-                top_count > 100 && shift > 3.0,
-                "{name}: {shift} px of {top_count}"
-            );
+        total += usize::from(*seen);
+        // Voxels stick out by half a voxel's diagonal, splats by some more.
+        outside += usize::from(*seen && !in_hull(&whole, p, 0.45 * FOCAL_PX / 13.0));
+        if *seen && (row(0.45)..row(0.3)).contains(&p.y) {
+            top_columns += p.x;
+            top_count += 1;
         }
     }
+    // What is highest stands behind the middle: the bonnet is low.
+    let [middle, rear] = [0.0, -0.5].map(|x| pixel(of_car([x, 0.0, 0.4])).x);
+    let behind_px = (top_columns / f64::from(top_count) - middle) * (rear - middle).signum();
+    let line = format!(
+        "{name}: {body_seen} of {body_all} pixels of the body, {outside} of {total} beside the car, the top of {top_count} \
+         pixels {behind_px:.1} px behind the middle"
+    );
+    println!("{line}");
+    let stands = body_all > 300 && body_seen * 100 >= body_all * 90 && outside * 100 <= total;
+    let heads = !tells_front || top_count > 100 && behind_px > 3.0;
+    (!(stands && heads)).then_some(line)
+}
+
+#[test]
+fn every_source_shows_a_turned_car_where_its_corners_are() {
+    let wrong: Vec<String> = all().iter().filter_map(|s| misplaced(*s)).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
