@@ -50,7 +50,10 @@ fn rooms() -> BTreeMap<String, (String, Vec<String>)> {
         let dependencies = manifest.split("[dependencies]").nth(1).unwrap_or("");
         let dependencies = dependencies.split("\n[").next().unwrap_or("");
         let named = |line: &str| line.split(['.', ' ', '=']).next().unwrap_or("").to_owned();
-        let known = dependencies.lines().map(named).filter(|n| folders.contains_key(n));
+        let known = dependencies
+            .lines()
+            .map(named)
+            .filter(|n| folders.contains_key(n));
         rooms.insert(name.clone(), (folder.clone(), known.collect()));
     }
     assert!(rooms.len() > 15, "rooms of the workspace: {rooms:?}");
@@ -99,7 +102,11 @@ fn files_are_short_and_the_shell_is_small() {
     let mut all: Vec<usize> = rust("src").iter().map(lines).collect();
     all.sort_unstable();
     let median = all[all.len() / 2];
-    println!("{} files, median {median} lines, {} in all", all.len(), all.iter().sum::<usize>());
+    println!(
+        "{} files, median {median} lines, {} in all",
+        all.len(),
+        all.iter().sum::<usize>()
+    );
     assert!(median <= 200, "{median}");
     let shell: usize = rust("src/app").iter().map(lines).sum();
     println!("src/app: {shell} lines");
@@ -135,7 +142,11 @@ fn licences_are_permissive() {
         .args(["--filter-platform", "x86_64-unknown-linux-gnu"])
         .output()
         .expect("cargo");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let allowed = read(&root().join("deny.toml"));
     let is_allowed = |one: &str| allowed.contains(&format!("\"{one}\""));
@@ -171,7 +182,10 @@ const TEN: [(&str, &str); 10] = [
 fn ten_lines_are_where_the_document_says() {
     for (line, folder) in TEN {
         let room = folder.trim_end_matches('/');
-        assert!(DOCUMENT.contains(room), "docs/architecture.md does not name {folder}");
+        assert!(
+            DOCUMENT.contains(room),
+            "docs/architecture.md does not name {folder}"
+        );
         let holds = |path: &&PathBuf| read(path).contains(line);
         let everywhere: Vec<PathBuf> = rust("src").iter().filter(holds).cloned().collect();
         assert!(!everywhere.is_empty(), "{line} is nowhere");

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::command::Command;
+use crate::command::{Command, Window};
 use crate::state::UiState;
 use crate::theme;
 use crate::widgets::icons;
@@ -60,7 +60,7 @@ pub fn header(
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             // The menu has it too.
             if ui.available_width() > SENSORS_BUTTON && ui.button("Sensors…").clicked() {
-                commands.push(Command::ToggleSensors);
+                commands.push(Command::Toggle(Window::Sensors));
             }
             let text = input
                 .lidar_points

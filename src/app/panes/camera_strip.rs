@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::camera_header::header;
 use super::lit;
 use crate::camera_views::{CameraView, march};
-use crate::command::Command;
+use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
 use crate::state::UiState;
 use crate::theme;
@@ -278,10 +278,10 @@ impl CameraStrip {
         );
         let part = response.hover_pos().map(|p| (p - rect.min) / rect.size());
         if response.double_clicked() {
-            commands.push(Command::Inspect(None));
-            commands.push(Command::LookThrough(index));
+            commands.push(Command::View(ViewCommand::Inspect(None)));
+            commands.push(Command::View(ViewCommand::LookThrough(index)));
         } else if response.clicked() {
-            commands.push(Command::Inspect((!chosen).then_some(index)));
+            commands.push(Command::View(ViewCommand::Inspect((!chosen).then_some(index))));
         }
         part
     }
@@ -333,8 +333,8 @@ impl CameraStrip {
                 }));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if ui.button("Look through in 3D").clicked() {
-                        commands.push(Command::LookThrough(index));
-                        commands.push(Command::Inspect(None));
+                        commands.push(Command::View(ViewCommand::LookThrough(index)));
+                        commands.push(Command::View(ViewCommand::Inspect(None)));
                     }
                 });
             });

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
-use crate::command::Command;
+use crate::command::{Command, ViewCommand};
 use crate::meant::Meant;
 use crate::theme;
 use crate::widgets::icons::Icon;
@@ -231,7 +231,7 @@ fn row(
                     if finding.box_id.is_some() {
                         commands.push(Command::Select(finding.box_id));
                     }
-                    commands.push(Command::FrameAt(finding.where_m));
+                    commands.push(Command::View(ViewCommand::FrameAt(finding.where_m)));
                     pointed.clicked = Some(key(finding));
                 }
             });

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
-use crate::command::Command;
+use crate::command::{Command, ViewCommand};
 use crate::panes::label::label_ui;
 use crate::state::UiState;
 use crate::theme;
@@ -223,7 +223,7 @@ fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut 
         commands.push(Command::Select(Some(b.id)));
     }
     if row.double_clicked() {
-        commands.push(Command::FrameSelection);
+        commands.push(Command::View(ViewCommand::FrameSelection));
     }
 }
 
@@ -249,13 +249,13 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             if icons::button(ui, Icon::Trash, "Delete box", "Del", false, true).clicked() {
-                commands.push(Command::DeleteSelected);
+                commands.push(Command::Tools(ToolCommand::Delete));
             }
             if icons::button(ui, Icon::Copy, "Duplicate box", "Ctrl+D", false, true).clicked() {
-                commands.push(Command::DuplicateSelected);
+                commands.push(Command::Tools(ToolCommand::Duplicate));
             }
             if icons::button(ui, Icon::Focus, "Frame box", "F", false, true).clicked() {
-                commands.push(Command::FrameSelection);
+                commands.push(Command::View(ViewCommand::FrameSelection));
             }
         });
     });
@@ -352,10 +352,10 @@ fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Comma
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             if icons::button(ui, Icon::Trash, "Delete boxes", "Del", false, true).clicked() {
-                commands.push(Command::DeleteSelected);
+                commands.push(Command::Tools(ToolCommand::Delete));
             }
             if icons::button(ui, Icon::Copy, "Duplicate boxes", "Ctrl+D", false, true).clicked() {
-                commands.push(Command::DuplicateSelected);
+                commands.push(Command::Tools(ToolCommand::Duplicate));
             }
         });
     });

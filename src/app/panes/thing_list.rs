@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use egui::Ui;
 
-use crate::command::Command;
+use crate::command::{Command, ViewCommand};
 use crate::state::UiState;
 use crate::theme;
 use crate::tools::things::{ThingCommand, words};
@@ -99,7 +99,7 @@ pub fn row_ui(
         commands.push(Command::Tools(ToolCommand::Thing(choose)));
     }
     if framed {
-        commands.push(Command::FrameSelection);
+        commands.push(Command::View(ViewCommand::FrameSelection));
     }
 }
 

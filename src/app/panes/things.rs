@@ -2,7 +2,7 @@
 
 use egui::{Response, Ui};
 
-use crate::command::Command;
+use crate::command::{Command, ViewCommand};
 use crate::theme;
 use crate::tools::ToolCommand;
 use crate::tools::things::panel::{FACADES, ROOFS, TREES, list};
@@ -86,13 +86,13 @@ fn header(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             if icons::button(ui, Icon::Trash, "Delete things", "Del", false, true).clicked() {
-                commands.push(Command::DeleteSelected);
+                commands.push(Command::Tools(ToolCommand::Delete));
             }
             if icons::button(ui, Icon::Copy, "Duplicate things", "Ctrl+D", false, true).clicked() {
-                commands.push(Command::DuplicateSelected);
+                commands.push(Command::Tools(ToolCommand::Duplicate));
             }
             if icons::button(ui, Icon::Focus, "Frame things", "F", false, true).clicked() {
-                commands.push(Command::FrameSelection);
+                commands.push(Command::View(ViewCommand::FrameSelection));
             }
         });
     });

@@ -6,7 +6,7 @@ use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::bev_image::DRAW_ORDER;
-use crate::command::Command;
+use crate::command::{Command, GenerationCommand};
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::{Tool, UiState, Underlay, VoxelVerb};
 use crate::theme;
@@ -109,7 +109,7 @@ fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
         let draw = ui.button("Draw").on_hover_text(hint);
         draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Draw scenery"));
         if draw.clicked() {
-            commands.push(Command::DrawScenery);
+            commands.push(Command::Generation(GenerationCommand::DrawScenery));
         }
     });
     let place = match state.tools.region.is_empty() {

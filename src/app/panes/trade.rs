@@ -5,7 +5,7 @@ use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
-use crate::command::Command;
+use crate::command::{Command, GenerationCommand};
 use crate::shell::tuning::{LastEdit, Measuring, Tuning, foretold};
 use crate::theme;
 use crate::trade_plot::front_plot;
@@ -108,7 +108,7 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
             info
         });
         if response.changed() && Some(at) != current {
-            commands.push(Command::Quality(at));
+            commands.push(Command::Generation(GenerationCommand::Quality(at)));
         }
         ui.label(RichText::new("Exact").color(theme::text_weak()));
     });
@@ -142,13 +142,13 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
             ui.add(egui::Spinner::new().size(13.0));
             ui.label(format!("Calibrating, {done} of {all} stops timed, 30 s at most"));
             if ui.button("Stop").clicked() {
-                commands.push(Command::StopMeasuring);
+                commands.push(Command::Generation(GenerationCommand::StopMeasuring));
             }
         }
         _ => {
             let text = "Times every stop on this computer: 30 s at most. Best while nothing else runs.";
             if ui.button("Calibrate").on_hover_text(text).clicked() {
-                commands.push(Command::Calibrate);
+                commands.push(Command::Generation(GenerationCommand::Calibrate));
             }
             let load = Load::now();
             let (line, color) = match (tuning.calibrated, load.is_busy()) {
@@ -258,7 +258,7 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
                 ui.add(egui::Spinner::new().size(13.0));
                 ui.label(format!("Measuring against the reference, step {done} of {all}"));
                 if ui.button("Stop").clicked() {
-                    commands.push(Command::StopMeasuring);
+                    commands.push(Command::Generation(GenerationCommand::StopMeasuring));
                 }
             }
             _ => {
@@ -271,7 +271,7 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
                     "Runs the reference on the same edit in the background and says how much differs.{about}"
                 );
                 if ui.button("Refine").on_hover_text(text).clicked() {
-                    commands.push(Command::Refine);
+                    commands.push(Command::Generation(GenerationCommand::Refine));
                 }
             }
         }

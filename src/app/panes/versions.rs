@@ -6,7 +6,7 @@ use egui::{Color32, Rect, Sense, TextureOptions, Ui, WidgetInfo, pos2, vec2};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::bev_image;
-use crate::command::Command;
+use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::compare::CompareMode;
 use crate::shell::versions::Versions;
 use crate::state::UiState;
@@ -124,9 +124,11 @@ pub fn versions_ui(
                 }
                 icons::focus_ring(ui, &response, rect);
                 if response.double_clicked() {
-                    commands.push(Command::RestoreVersion(version.scene.rev));
+                    commands.push(Command::Generation(GenerationCommand::RestoreVersion(
+                        version.scene.rev,
+                    )));
                 } else if response.clicked() {
-                    commands.push(Command::CompareWith(version.scene.rev));
+                    commands.push(Command::View(ViewCommand::CompareWith(version.scene.rev)));
                 }
             }
         });

@@ -6,7 +6,7 @@ use super::areas::{clipped, halves, in_rect, left_part, sides};
 use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
-use crate::command::Command;
+use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::{LidarModel, UiState};
 use crate::theme;
 use crate::view3d::{View3d, View3dInput};
@@ -37,7 +37,7 @@ impl Pane for View3dPane {
         let (options, state) = (&mut cx.view3d.options, &mut *cx.state);
 
         if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
-            commands.push(Command::QuickShot);
+            commands.push(Command::File(FileCommand::QuickShot));
         }
         let show = egui::containers::menu::MenuButton::new("Show").config(
             egui::containers::menu::MenuConfig::new()
@@ -47,7 +47,7 @@ impl Pane for View3dPane {
         ui.menu_button("View", |ui| {
             for preset in ViewPreset::ALL {
                 if ui.button(theme::sentence(preset.name())).clicked() {
-                    commands.push(Command::View(preset));
+                    commands.push(Command::View(ViewCommand::Preset(preset)));
                     ui.close();
                 }
             }

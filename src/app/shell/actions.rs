@@ -5,8 +5,9 @@ use glam::DVec3;
 use viewport::ViewPreset;
 
 use super::workspace::Workspace;
-use crate::command::Command;
 use crate::command::Verdict;
+use crate::command::{Command, FileCommand, GenerationCommand, ViewCommand, Window};
+use crate::panes::id::PaneId;
 use crate::state::{Tool, UiState, VoxelVerb};
 use crate::tools::things::{ThingCommand, ThingTool};
 use crate::tools::{PaintShape, ToolCommand, VoxelMode};
@@ -129,7 +130,7 @@ macro_rules! bookmarks {
                     concat!("bookmark_go_", $slot),
                     concat!("Go to kept view ", $slot),
                     concat!("F", $slot),
-                    |_| Some(Command::GoToBookmark($slot)),
+                    |_| Some(Command::View(ViewCommand::GoToBookmark($slot))),
                 ),)*
                 _ => panic!("there are nine"),
             }
@@ -143,7 +144,7 @@ macro_rules! bookmarks {
                     concat!("bookmark_keep_", $slot),
                     concat!("Keep this view as ", $slot),
                     concat!("Ctrl+F", $slot),
-                    |_| Some(Command::KeepBookmark($slot)),
+                    |_| Some(Command::View(ViewCommand::KeepBookmark($slot))),
                 ),)*
                 _ => panic!("there are nine"),
             }
@@ -307,37 +308,37 @@ pub const ACTIONS: &[ActionDef] = &[
         |_| Some(Command::Escape),
     ),
     action(Selection, "delete", "Delete", "Del Backspace", |_| {
-        Some(Command::DeleteSelected)
+        Some(Command::Tools(ToolCommand::Delete))
     }),
     action(Selection, "duplicate", "Duplicate", "Ctrl+D", |_| {
-        Some(Command::DuplicateSelected)
+        Some(Command::Tools(ToolCommand::Duplicate))
     }),
     action(Selection, "turn_left", "Turn left 1°", "Z", |_| {
-        Some(Command::Turn(1.0))
+        Some(Command::Tools(ToolCommand::Turn(1.0)))
     })
     .chosen()
     .repeats(),
     action(Selection, "turn_right", "Turn right 1°", "X", |_| {
-        Some(Command::Turn(-1.0))
+        Some(Command::Tools(ToolCommand::Turn(-1.0)))
     })
     .chosen()
     .repeats(),
     action(Selection, "turn_left_far", "Turn left 15°", "Shift+Z", |_| {
-        Some(Command::Turn(15.0))
+        Some(Command::Tools(ToolCommand::Turn(15.0)))
     })
     .chosen()
     .repeats(),
     action(Selection, "turn_right_far", "Turn right 15°", "Shift+X", |_| {
-        Some(Command::Turn(-15.0))
+        Some(Command::Tools(ToolCommand::Turn(-15.0)))
     })
     .chosen()
     .repeats(),
     action(Selection, "turn_90", "Turn 90°", "C", |_| {
-        Some(Command::Turn(90.0))
+        Some(Command::Tools(ToolCommand::Turn(90.0)))
     })
     .chosen(),
     action(Selection, "turn_180", "Turn 180°", "Q", |_| {
-        Some(Command::Turn(180.0))
+        Some(Command::Tools(ToolCommand::Turn(180.0)))
     })
     .chosen(),
     action(Selection, "select_all", "Select all boxes", "Ctrl+A", |_| {
@@ -420,58 +421,58 @@ pub const ACTIONS: &[ActionDef] = &[
         Some(Command::SelectNext(-1))
     }),
     action(Views, "frame_selection", "Frame the selection", "F", |_| {
-        Some(Command::FrameSelection)
+        Some(Command::View(ViewCommand::FrameSelection))
     }),
     action(Views, "frame_all", "Frame everything", "Home", |_| {
-        Some(Command::FrameAll)
+        Some(Command::View(ViewCommand::FrameAll))
     }),
     action(Views, "view_top", "3D view from above", "7", |_| {
-        Some(Command::View(ViewPreset::Top))
+        Some(Command::View(ViewCommand::Preset(ViewPreset::Top)))
     })
     .over_3d(),
     action(Views, "view_front", "3D view from the front", "1", |_| {
-        Some(Command::View(ViewPreset::Front))
+        Some(Command::View(ViewCommand::Preset(ViewPreset::Front)))
     })
     .over_3d(),
     action(Views, "view_side", "3D view from the side", "3", |_| {
-        Some(Command::View(ViewPreset::Side))
+        Some(Command::View(ViewCommand::Preset(ViewPreset::Side)))
     })
     .over_3d(),
     action(Views, "view_perspective", "3D view in perspective", "5", |_| {
-        Some(Command::View(ViewPreset::Perspective))
+        Some(Command::View(ViewCommand::Preset(ViewPreset::Perspective)))
     })
     .over_3d(),
     action(Views, "view_ego", "3D view from the ego vehicle", "0", |_| {
-        Some(Command::View(ViewPreset::Ego))
+        Some(Command::View(ViewCommand::Preset(ViewPreset::Ego)))
     })
     .over_3d(),
     action(Views, "look_1", "Look through camera 1", "Ctrl+Alt+1", |_| {
-        Some(Command::LookThrough(0))
+        Some(Command::View(ViewCommand::LookThrough(0)))
     }),
     action(Views, "look_2", "Look through camera 2", "Ctrl+Alt+2", |_| {
-        Some(Command::LookThrough(1))
+        Some(Command::View(ViewCommand::LookThrough(1)))
     }),
     action(Views, "look_3", "Look through camera 3", "Ctrl+Alt+3", |_| {
-        Some(Command::LookThrough(2))
+        Some(Command::View(ViewCommand::LookThrough(2)))
     }),
     action(Views, "look_4", "Look through camera 4", "Ctrl+Alt+4", |_| {
-        Some(Command::LookThrough(3))
+        Some(Command::View(ViewCommand::LookThrough(3)))
     }),
     action(Views, "look_5", "Look through camera 5", "Ctrl+Alt+5", |_| {
-        Some(Command::LookThrough(4))
+        Some(Command::View(ViewCommand::LookThrough(4)))
     }),
     action(Views, "look_6", "Look through camera 6", "Ctrl+Alt+6", |_| {
-        Some(Command::LookThrough(5))
+        Some(Command::View(ViewCommand::LookThrough(5)))
     }),
     action(Views, "swap_views", "Swap bird's-eye and 3D view", "Tab", |_| {
-        Some(Command::SwapPanes)
+        Some(Command::View(ViewCommand::SwapPanes))
     }),
     action(
         Views,
         "maximize",
         "Maximize the pane under the pointer",
         "Shift+Space",
-        |_| Some(Command::MaximizePane),
+        |_| Some(Command::View(ViewCommand::MaximizePane)),
     ),
     go(1),
     go(2),
@@ -501,111 +502,126 @@ pub const ACTIONS: &[ActionDef] = &[
         "",
         |_| Some(Command::Tools(ToolCommand::Thing(ThingCommand::ToggleLocked))),
     ),
-    action(Views, "grid", "Grid", "G", |_| Some(Command::ToggleGrid)),
+    action(Views, "grid", "Grid", "G", |_| {
+        Some(Command::View(ViewCommand::ToggleGrid))
+    }),
     action(Views, "workspace_edit", "Workspace: Edit", "Alt+1", |_| {
-        Some(Command::Workspace(Workspace::Edit))
+        Some(Command::View(ViewCommand::Workspace(Workspace::Edit)))
     }),
     action(Views, "workspace_paint", "Workspace: Paint", "Alt+2", |_| {
-        Some(Command::Workspace(Workspace::Paint))
+        Some(Command::View(ViewCommand::Workspace(Workspace::Paint)))
     }),
     action(Views, "workspace_voxels", "Workspace: Voxels", "Alt+3", |_| {
-        Some(Command::Workspace(Workspace::Voxels))
+        Some(Command::View(ViewCommand::Workspace(Workspace::Voxels)))
     }),
     action(Views, "workspace_sensors", "Workspace: Sensors", "Alt+4", |_| {
-        Some(Command::Workspace(Workspace::Sensors))
+        Some(Command::View(ViewCommand::Workspace(Workspace::Sensors)))
     }),
     action(Views, "workspace_label", "Workspace: Label", "Alt+5", |_| {
-        Some(Command::Workspace(Workspace::Label))
+        Some(Command::View(ViewCommand::Workspace(Workspace::Label)))
     }),
     action(Views, "workspace_trade", "Workspace: Trade", "Alt+6", |_| {
-        Some(Command::Workspace(Workspace::Trade))
+        Some(Command::View(ViewCommand::Workspace(Workspace::Trade)))
     }),
     action(
         Generation,
         "calibrate",
         "Calibrate the quality slider",
         "",
-        |_| Some(Command::Calibrate),
+        |_| Some(Command::Generation(GenerationCommand::Calibrate)),
     ),
     action(Generation, "refine", "Measure the last edit's error", "", |_| {
-        Some(Command::Refine)
+        Some(Command::Generation(GenerationCommand::Refine))
     }),
     action(Views, "sensors", "Sensors of the vehicle", "", |_| {
-        Some(Command::ToggleSensors)
+        Some(Command::Toggle(Window::Sensors))
     }),
     action(Views, "performance", "Performance overlay", "F10", |_| {
-        Some(Command::TogglePerformance)
+        Some(Command::Toggle(Window::Performance))
     }),
-    action(Views, "log", "Log", "", |_| Some(Command::ToggleLog)),
+    action(Views, "log", "Log", "", |_| Some(Command::Toggle(Window::Log))),
     action(
         Generation,
         "generate",
         "Generate everything",
         "Ctrl+Enter",
-        |_| Some(Command::Generate { full: true }),
+        |_| Some(Command::Generation(GenerationCommand::Generate { full: true })),
     ),
     action(
         Generation,
         "generate_edited",
         "Generate what was edited",
         "Ctrl+Shift+Enter",
-        |_| Some(Command::Generate { full: false }),
+        |_| Some(Command::Generation(GenerationCommand::Generate { full: false })),
     ),
     action(Generation, "live", "Live on or off", "Ctrl+Space", |_| {
-        Some(Command::ToggleLive)
+        Some(Command::Generation(GenerationCommand::ToggleLive))
     }),
     action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
-        Some(Command::CancelGeneration)
+        Some(Command::Generation(GenerationCommand::Cancel {
+            running: true,
+            waiting: false,
+        }))
     }),
     action(Generation, "scenery", "Draw scenery anew", "", |_| {
-        Some(Command::DrawScenery)
+        Some(Command::Generation(GenerationCommand::DrawScenery))
     }),
     action(Generation, "accept", "Accept the new result", "", |_| {
-        Some(Command::Decide(Verdict::Accept))
+        Some(Command::Generation(GenerationCommand::Decide(Verdict::Accept)))
     }),
     action(Generation, "decline", "Decline the new result", "", |_| {
-        Some(Command::Decide(Verdict::Decline))
+        Some(Command::Generation(GenerationCommand::Decide(Verdict::Decline)))
     }),
     action(Generation, "next_seed", "Another result: next seed", "", |_| {
-        Some(Command::Decide(Verdict::NextSeed))
+        Some(Command::Generation(GenerationCommand::Decide(Verdict::NextSeed)))
     }),
     action(
         Generation,
         "stop_here",
         "Stop generating, keep what is shown",
         "",
-        |_| Some(Command::StopHere),
+        |_| Some(Command::Generation(GenerationCommand::StopHere)),
     ),
     action(
         Generation,
         "cancel_waiting",
         "Drop the edit that waits",
         "",
-        |_| Some(Command::CancelWaiting),
+        |_| {
+            Some(Command::Generation(GenerationCommand::Cancel {
+                running: false,
+                waiting: true,
+            }))
+        },
     ),
     action(
         Generation,
         "cancel_all",
         "Cancel what runs and what waits",
         "Ctrl+Shift+Backspace",
-        |_| Some(Command::CancelAll),
+        |_| {
+            Some(Command::Generation(GenerationCommand::Cancel {
+                running: true,
+                waiting: true,
+            }))
+        },
     ),
     action(
         Generation,
         "compare",
         "Compare: off, wipe, side, difference",
         "Shift+Backslash",
-        |_| Some(Command::CycleCompare),
+        |_| Some(Command::View(ViewCommand::CycleCompare)),
     ),
     action(
         Generation,
         "previous_version",
         "Previous version",
         "Ctrl+[",
-        |_| Some(Command::StepVersion(-1)),
+        |_| Some(Command::Generation(GenerationCommand::StepVersion(-1))),
     ),
     action(Generation, "next_version", "Next version", "Ctrl+]", |_| {
-        Some(Command::StepVersion(1))
+        Some(Command::Generation(GenerationCommand::StepVersion(1)))
     }),
     action(
         Generation,
@@ -622,42 +638,54 @@ pub const ACTIONS: &[ActionDef] = &[
         Some(Command::Redo)
     })
     .repeats(),
-    action(File, "new", "New scene", "Ctrl+N", |_| Some(Command::New)),
-    action(File, "open", "Open", "Ctrl+O", |_| Some(Command::Open)),
-    action(File, "save", "Save", "Ctrl+S", |_| Some(Command::Save)),
+    action(File, "new", "New scene", "Ctrl+N", |_| {
+        Some(Command::File(FileCommand::New))
+    }),
+    action(File, "open", "Open", "Ctrl+O", |_| {
+        Some(Command::File(FileCommand::Open))
+    }),
+    action(File, "save", "Save", "Ctrl+S", |_| {
+        Some(Command::File(FileCommand::Save))
+    }),
     action(File, "save_as", "Save as", "Ctrl+Shift+S", |_| {
-        Some(Command::SaveAs)
+        Some(Command::File(FileCommand::SaveAs))
     }),
     action(File, "screenshot", "Screenshot of the 3D view", "F12", |_| {
-        Some(Command::QuickShot)
+        Some(Command::File(FileCommand::QuickShot))
     }),
     action(File, "export_screenshot", "Export a screenshot", "", |_| {
-        Some(Command::ExportScreenshot)
+        Some(Command::File(FileCommand::ExportScreenshot))
     }),
     action(File, "import_rig", "Import sensors", "", |_| {
-        Some(Command::ImportRig)
+        Some(Command::File(FileCommand::ImportRig))
     }),
     action(File, "export_rig", "Export sensors", "", |_| {
-        Some(Command::ExportRig)
+        Some(Command::File(FileCommand::ExportRig))
     }),
     action(File, "export", "Export", "Ctrl+E", |_| {
-        Some(Command::ToggleExport)
+        Some(Command::Toggle(Window::Export))
     }),
     action(File, "checks", "Checks of the scene", "", |_| {
-        Some(Command::ToggleChecks)
+        Some(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)))
     }),
-    action(File, "prompt", "Prompt", "/", |_| Some(Command::FocusPrompt)),
+    action(File, "prompt", "Prompt", "/", |_| {
+        Some(Command::View(ViewCommand::FocusPrompt))
+    }),
     action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
-        Some(Command::TogglePalette)
+        Some(Command::Toggle(Window::Palette))
     }),
-    action(File, "keys", "Sheet of keys", "?", |_| Some(Command::ToggleKeys)),
+    action(File, "keys", "Sheet of keys", "?", |_| {
+        Some(Command::Toggle(Window::Keys))
+    }),
     action(File, "settings", "Settings", "Ctrl+,", |_| {
-        Some(Command::ToggleSettings)
+        Some(Command::Toggle(Window::Settings))
     }),
     action(File, "start_screen", "Start screen", "", |_| {
-        Some(Command::ToggleStart)
+        Some(Command::Toggle(Window::Start))
     }),
-    action(File, "quit", "Quit", "Ctrl+Q", |_| Some(Command::Quit)),
+    action(File, "quit", "Quit", "Ctrl+Q", |_| {
+        Some(Command::File(FileCommand::Quit))
+    }),
 ];
 
 /// Nudges of the chosen box by the arrows, which no preset changes: direction in the ego frame, as the bird's-eye view

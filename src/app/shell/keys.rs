@@ -8,6 +8,7 @@ use super::keymap::{Chord, Keymap};
 use crate::command::Command;
 use crate::panes::id::PaneId;
 use crate::state::{Tool, UiState};
+use crate::tools::ToolCommand;
 use crate::tools::things::ThingTool;
 
 /// Actions that do not wait for the end of a drag.
@@ -155,12 +156,13 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
         (false, false, false) => 0.1,
         _ => return None,
     };
-    nudge_direction(chord.key).map(|d| Command::Nudge(d * step_m))
+    nudge_direction(chord.key).map(|d| Command::Tools(ToolCommand::Nudge(d * step_m)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::{FileCommand, GenerationCommand, ViewCommand};
     use crate::tools::{PaintShape, ToolCommand};
     use glam::DVec3;
     use scene::BoxId;
@@ -236,12 +238,12 @@ mod tests {
         assert!(of(Key::ArrowUp, Modifiers::NONE, &mut state, false).is_empty());
         state.selected = Some(BoxId(3));
         let up = of(Key::ArrowUp, Modifiers::NONE, &mut state, false);
-        assert_eq!(up, [Command::Nudge(DVec3::X * 0.1)]);
+        assert_eq!(up, [Command::Tools(ToolCommand::Nudge(DVec3::X * 0.1))]);
         let fine = of(Key::ArrowLeft, Modifiers::CTRL, &mut state, false);
-        assert_eq!(fine, [Command::Nudge(DVec3::Y * 0.01)]);
+        assert_eq!(fine, [Command::Tools(ToolCommand::Nudge(DVec3::Y * 0.01))]);
         assert_eq!(
             of(Key::Z, Modifiers::SHIFT, &mut state, false),
-            [Command::Turn(15.0)]
+            [Command::Tools(ToolCommand::Turn(15.0))]
         );
     }
 
@@ -263,7 +265,7 @@ mod tests {
         let _ = ctx.run_ui(input, |ui| {
             commands(ui.ctx(), &keymap, &mut state, Hands::default(), &mut out)
         });
-        assert_eq!(out, [Command::CycleCompare]);
+        assert_eq!(out, [Command::View(ViewCommand::CycleCompare)]);
     }
 
     #[test]
@@ -273,13 +275,25 @@ mod tests {
             (Key::Z, Modifiers::CTRL, Command::Undo),
             (Key::Z, Modifiers::CTRL | Modifiers::SHIFT, Command::Redo),
             (Key::Y, Modifiers::CTRL, Command::Redo),
-            (Key::Enter, Modifiers::CTRL, Command::Generate { full: true }),
-            (Key::Space, Modifiers::CTRL, Command::ToggleLive),
-            (Key::S, Modifiers::CTRL | Modifiers::SHIFT, Command::SaveAs),
+            (
+                Key::Enter,
+                Modifiers::CTRL,
+                Command::Generation(GenerationCommand::Generate { full: true }),
+            ),
+            (
+                Key::Space,
+                Modifiers::CTRL,
+                Command::Generation(GenerationCommand::ToggleLive),
+            ),
+            (
+                Key::S,
+                Modifiers::CTRL | Modifiers::SHIFT,
+                Command::File(FileCommand::SaveAs),
+            ),
             (
                 Key::Num2,
                 Modifiers::CTRL | Modifiers::ALT,
-                Command::LookThrough(1),
+                Command::View(ViewCommand::LookThrough(1)),
             ),
         ] {
             assert_eq!(of(key, modifiers, &mut state, true), [command]);

@@ -47,9 +47,14 @@ fn start_in(folder: &Path, text: &str) -> Option<PathBuf> {
     let path = folder.join(FILE);
     let targets = filter(text);
     let writer = Mutex::new(Bounded::open(&path).ok()?);
-    let lines = tracing_subscriber::fmt::layer().with_ansi(false).with_writer(writer);
+    let lines = tracing_subscriber::fmt::layer()
+        .with_ansi(false)
+        .with_writer(writer);
     // Fails if there is a log already, as in tests that open several windows.
-    tracing_subscriber::registry().with(lines.with_filter(targets)).try_init().ok()?;
+    tracing_subscriber::registry()
+        .with(lines.with_filter(targets))
+        .try_init()
+        .ok()?;
     Some(path)
 }
 

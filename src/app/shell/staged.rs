@@ -6,7 +6,7 @@ use egui::{Align2, Order, Rect, RichText, Ui};
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
-use crate::command::{Command, Taken, Verdict};
+use crate::command::{Command, GenerationCommand, Taken, Verdict};
 use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
@@ -278,7 +278,7 @@ fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command
     ui.label(RichText::new(text).color(theme::text_strong()));
     let mut decide = |clicked: bool, verdict| {
         if clicked {
-            commands.push(Command::Decide(verdict));
+            commands.push(Command::Generation(GenerationCommand::Decide(verdict)));
         }
     };
     let mut mark = false;

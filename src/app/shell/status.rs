@@ -4,7 +4,8 @@
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, Ui, WidgetInfo, vec2};
 
-use crate::command::Command;
+use crate::command::{Command, GenerationCommand, ViewCommand, Window};
+use crate::panes::id::PaneId;
 use crate::shell::guard::Pause;
 use crate::shell::live::{Purpose, Running};
 use crate::state::UiState;
@@ -107,7 +108,7 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
             });
             let button = egui::Button::new(log).frame(false).selected(false);
             if ui.add(button).on_hover_text("What happened so far").clicked() {
-                commands.push(Command::ToggleLog);
+                commands.push(Command::Toggle(Window::Log));
             }
             if let Some((errors, warnings)) = input.findings.filter(|(e, w)| e + w > 0) {
                 found(ui, errors, warnings, commands);
@@ -136,7 +137,7 @@ fn found(ui: &mut Ui, errors: usize, warnings: usize, commands: &mut Vec<Command
     let response = ui.add(button).on_hover_text(&hint);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &hint));
     if response.clicked() {
-        commands.push(Command::ToggleChecks);
+        commands.push(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)));
     }
 }
 
@@ -155,7 +156,7 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
         say(ui, &pause.text(), theme::text());
         let generate = ui.add(egui::Button::new("Generate it").small());
         if generate.on_hover_text("Ctrl+Shift+Enter").clicked() {
-            commands.push(Command::Generate { full: false });
+            commands.push(Command::Generation(GenerationCommand::Generate { full: false }));
         }
         return;
     }
@@ -173,7 +174,10 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
             .on_hover_text("This state is not generated; the next edit is")
             .clicked()
         {
-            commands.push(Command::CancelWaiting);
+            commands.push(Command::Generation(GenerationCommand::Cancel {
+                running: false,
+                waiting: true,
+            }));
         }
         return;
     }
@@ -243,20 +247,26 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
     if input.shows_what_comes {
         let stop = ui.add(egui::Button::new("Keep this").small());
         if stop.on_hover_text("Ends here, with what is shown").clicked() {
-            commands.push(Command::StopHere);
+            commands.push(Command::Generation(GenerationCommand::StopHere));
         }
     }
     let cancel = ui.add(egui::Button::new("Cancel").small());
     cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel generation"));
     if cancel.on_hover_text("Ctrl+Backspace").clicked() {
-        commands.push(Command::CancelGeneration);
+        commands.push(Command::Generation(GenerationCommand::Cancel {
+            running: true,
+            waiting: false,
+        }));
     }
     let all = ui.add(egui::Button::new("Cancel all").small());
     if all
         .on_hover_text("What runs and what waits, Ctrl+Shift+Backspace")
         .clicked()
     {
-        commands.push(Command::CancelAll);
+        commands.push(Command::Generation(GenerationCommand::Cancel {
+            running: true,
+            waiting: true,
+        }));
     }
     ui.ctx().request_repaint_after(REPAINT);
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
-use crate::command::Command;
+use crate::command::{Command, FileCommand, GenerationCommand, ViewCommand, Window};
 use crate::panes;
 use crate::panes::id::PaneId;
 use crate::shell::bookmarks::SLOTS;
@@ -103,7 +103,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
         let mut workspace = input.workspace;
         let names = Workspace::ALL.map(|(workspace, name)| (workspace, name, "arranges the panes"));
         if icons::segments(ui, &mut workspace, &names) {
-            commands.push(Command::Workspace(workspace));
+            commands.push(Command::View(ViewCommand::Workspace(workspace)));
         }
         let left = ui.min_rect().right();
         let right = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -173,8 +173,14 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         }
     };
     ui.menu_button("File", |ui| {
-        on(item(ui, "New scene", "Ctrl+N", true), Command::New);
-        on(item(ui, "Open…", "Ctrl+O", true), Command::Open);
+        on(
+            item(ui, "New scene", "Ctrl+N", true),
+            Command::File(FileCommand::New),
+        );
+        on(
+            item(ui, "Open…", "Ctrl+O", true),
+            Command::File(FileCommand::Open),
+        );
         ui.add_enabled_ui(!input.recent.is_empty(), |ui| {
             ui.menu_button("Open recent", |ui| {
                 for path in input.recent {
@@ -183,22 +189,28 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
                         .button(name)
                         .on_hover_text(path.display().to_string())
                         .clicked();
-                    on(clicked, Command::OpenPath(path.clone()));
+                    on(clicked, Command::File(FileCommand::OpenPath(path.clone())));
                 }
             });
         });
         ui.separator();
-        on(item(ui, "Save", "Ctrl+S", true), Command::Save);
-        on(item(ui, "Save as…", "Ctrl+Shift+S", true), Command::SaveAs);
-        ui.separator();
-        on(item(ui, "Export…", "", true), Command::ToggleExport);
-        on(item(ui, "Quick screenshot", "F12", true), Command::QuickShot);
+        on(item(ui, "Save", "Ctrl+S", true), Command::File(FileCommand::Save));
         on(
-            item(ui, "Export screenshot…", "", true),
-            Command::ExportScreenshot,
+            item(ui, "Save as…", "Ctrl+Shift+S", true),
+            Command::File(FileCommand::SaveAs),
         );
         ui.separator();
-        on(item(ui, "Quit", "Ctrl+Q", true), Command::Quit);
+        on(item(ui, "Export…", "", true), Command::Toggle(Window::Export));
+        on(
+            item(ui, "Quick screenshot", "F12", true),
+            Command::File(FileCommand::QuickShot),
+        );
+        on(
+            item(ui, "Export screenshot…", "", true),
+            Command::File(FileCommand::ExportScreenshot),
+        );
+        ui.separator();
+        on(item(ui, "Quit", "Ctrl+Q", true), Command::File(FileCommand::Quit));
     });
     ui.menu_button("Edit", |ui| {
         on(item(ui, "Undo", "Ctrl+Z", input.undo.is_some()), Command::Undo);
@@ -216,11 +228,11 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         };
         on(
             item(ui, &format!("Duplicate {what}"), "Ctrl+D", some),
-            Command::DuplicateSelected,
+            Command::Tools(ToolCommand::Duplicate),
         );
         on(
             item(ui, &format!("Delete {what}"), "Del", some),
-            Command::DeleteSelected,
+            Command::Tools(ToolCommand::Delete),
         );
         let thing = |command| Command::Tools(ToolCommand::Thing(command));
         let things = !state.tools.things.chosen.is_empty();
@@ -250,10 +262,13 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         );
     });
     ui.menu_button("View", |ui| {
-        on(item(ui, "Frame all", "Home", true), Command::FrameAll);
+        on(
+            item(ui, "Frame all", "Home", true),
+            Command::View(ViewCommand::FrameAll),
+        );
         on(
             item(ui, "Frame selection", "F", state.any_chosen()),
-            Command::FrameSelection,
+            Command::View(ViewCommand::FrameSelection),
         );
         ui.separator();
         for preset in ViewPreset::ALL {
@@ -265,7 +280,10 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
                 ViewPreset::Side => "3",
                 ViewPreset::Ego => "0",
             };
-            on(item(ui, &name, key, true), Command::View(preset));
+            on(
+                item(ui, &name, key, true),
+                Command::View(ViewCommand::Preset(preset)),
+            );
         }
         ui.separator();
         ui.menu_button("Panes", |ui| {
@@ -275,45 +293,72 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
                 }
                 let mut shown = input.shown.contains(&pane.id);
                 let tick = ui.checkbox(&mut shown, &pane.title);
-                on(tick.changed(), Command::TogglePane(pane.id));
+                on(tick.changed(), Command::View(ViewCommand::TogglePane(pane.id)));
             }
         });
         ui.menu_button("Kept views", |ui| {
             for slot in SLOTS {
                 let kept = input.bookmarks.contains(&slot);
                 let (name, keys) = (format!("Go to view {slot}"), format!("F{slot}"));
-                on(item(ui, &name, &keys, kept), Command::GoToBookmark(slot));
+                on(
+                    item(ui, &name, &keys, kept),
+                    Command::View(ViewCommand::GoToBookmark(slot)),
+                );
             }
             ui.separator();
             for slot in SLOTS {
                 let (name, keys) = (format!("Keep as view {slot}"), format!("Ctrl+F{slot}"));
-                on(item(ui, &name, &keys, true), Command::KeepBookmark(slot));
+                on(
+                    item(ui, &name, &keys, true),
+                    Command::View(ViewCommand::KeepBookmark(slot)),
+                );
             }
         });
-        on(item(ui, "Swap views", "Tab", true), Command::SwapPanes);
-        on(item(ui, "Grid", "G", true), Command::ToggleGrid);
-        on(item(ui, "Sensors…", "", true), Command::ToggleSensors);
-        on(item(ui, "Checks", "", true), Command::ToggleChecks);
-        on(item(ui, "Log", "", true), Command::ToggleLog);
-        on(item(ui, "Performance", "F10", true), Command::TogglePerformance);
+        on(
+            item(ui, "Swap views", "Tab", true),
+            Command::View(ViewCommand::SwapPanes),
+        );
+        on(
+            item(ui, "Grid", "G", true),
+            Command::View(ViewCommand::ToggleGrid),
+        );
+        on(item(ui, "Sensors…", "", true), Command::Toggle(Window::Sensors));
+        on(
+            item(ui, "Checks", "", true),
+            Command::View(ViewCommand::TogglePane(PaneId::CHECKS)),
+        );
+        on(item(ui, "Log", "", true), Command::Toggle(Window::Log));
+        on(
+            item(ui, "Performance", "F10", true),
+            Command::Toggle(Window::Performance),
+        );
     });
     ui.menu_button("Generate", |ui| {
         on(
             item(ui, "Generate everything", "Ctrl+Enter", true),
-            Command::Generate { full: true },
+            Command::Generation(GenerationCommand::Generate { full: true }),
         );
         on(
             item(ui, "Generate edited region", "", true),
-            Command::Generate { full: false },
+            Command::Generation(GenerationCommand::Generate { full: false }),
         );
-        on(item(ui, "Draw scenery anew", "", true), Command::DrawScenery);
+        on(
+            item(ui, "Draw scenery anew", "", true),
+            Command::Generation(GenerationCommand::DrawScenery),
+        );
         on(
             item(ui, "Cancel", "Ctrl+Backspace", input.busy),
-            Command::CancelGeneration,
+            Command::Generation(GenerationCommand::Cancel {
+                running: true,
+                waiting: false,
+            }),
         );
         on(
             item(ui, "Drop the edit that waits", "", input.waiting),
-            Command::CancelWaiting,
+            Command::Generation(GenerationCommand::Cancel {
+                running: false,
+                waiting: true,
+            }),
         );
         on(
             item(
@@ -322,7 +367,10 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
                 "Ctrl+Shift+Backspace",
                 input.busy || input.waiting,
             ),
-            Command::CancelAll,
+            Command::Generation(GenerationCommand::Cancel {
+                running: true,
+                waiting: true,
+            }),
         );
         ui.separator();
         let live = if input.live {
@@ -330,17 +378,23 @@ fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &
         } else {
             "Switch live on"
         };
-        on(item(ui, live, "Ctrl+Space", true), Command::ToggleLive);
+        on(
+            item(ui, live, "Ctrl+Space", true),
+            Command::Generation(GenerationCommand::ToggleLive),
+        );
     });
     ui.menu_button("Help", |ui| {
         on(
             item(ui, "Find a command…", "Ctrl+K", true),
-            Command::TogglePalette,
+            Command::Toggle(Window::Palette),
         );
-        on(item(ui, "Keys", "?", true), Command::ToggleKeys);
-        on(item(ui, "Start screen", "", true), Command::ToggleStart);
+        on(item(ui, "Keys", "?", true), Command::Toggle(Window::Keys));
+        on(item(ui, "Start screen", "", true), Command::Toggle(Window::Start));
         ui.separator();
-        on(item(ui, "Settings…", "Ctrl+,", true), Command::ToggleSettings);
+        on(
+            item(ui, "Settings…", "Ctrl+,", true),
+            Command::Toggle(Window::Settings),
+        );
     });
 }
 
@@ -361,10 +415,13 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
             "Ctrl+Backspace",
             theme::field(),
             Icon::Stop,
-            Command::CancelGeneration,
+            Command::Generation(GenerationCommand::Cancel {
+                running: true,
+                waiting: false,
+            }),
         )
     } else {
-        let command = Command::Generate { full: true };
+        let command = Command::Generation(GenerationCommand::Generate { full: true });
         (
             "Generate",
             "Generate everything",
@@ -394,7 +451,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     }
     live.widget_info(|| WidgetInfo::selected(Role::Button, true, input.live, "Live"));
     if live.clicked() {
-        commands.push(Command::ToggleLive);
+        commands.push(Command::Generation(GenerationCommand::ToggleLive));
     }
     if !input.stops.is_empty() {
         quality(ui, input, commands);
@@ -409,13 +466,13 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
         for (i, (name, foretold)) in input.stops.iter().enumerate() {
             let text = egui::RichText::new(format!("{}   {foretold}", theme::sentence(name)));
             if ui.selectable_label(input.stop == Some(i), text).clicked() {
-                commands.push(Command::Quality(i));
+                commands.push(Command::Generation(GenerationCommand::Quality(i)));
                 ui.close();
             }
         }
         ui.separator();
         if ui.button("Speed and accuracy…").clicked() {
-            commands.push(Command::Workspace(Workspace::Trade));
+            commands.push(Command::View(ViewCommand::Workspace(Workspace::Trade)));
             ui.close();
         }
     });

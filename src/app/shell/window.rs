@@ -7,7 +7,7 @@ use egui::{Rect, Ui};
 use super::app::SceneloomApp;
 use super::files::Next;
 use crate::camera_views::Wanted;
-use crate::command::Command;
+use crate::command::{Command, FileCommand};
 use crate::panes;
 use crate::panes::camera_strip::CamerasInput;
 use crate::panes::id::PaneId;
@@ -86,7 +86,7 @@ impl SceneloomApp {
 
     pub(crate) fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
         let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
-        commands.extend(dropped.map(Command::OpenPath));
+        commands.extend(dropped.map(|path| Command::File(FileCommand::OpenPath(path))));
         if ctx.input(|i| i.viewport().close_requested()) && !self.files.may_close && self.document.is_dirty()
         {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
@@ -253,7 +253,7 @@ impl SceneloomApp {
             Unsaved::Discard => self.go_on(next, ctx),
             Unsaved::Save => {
                 self.files.after_save = Some(next);
-                self.execute(Command::Save, ctx);
+                self.execute(Command::File(FileCommand::Save), ctx);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::command::Command;
+use crate::command::{Command, GenerationCommand};
 use crate::state::UiState;
 use crate::theme;
 use crate::widgets::hint::caption;
@@ -262,7 +262,7 @@ pub fn region(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
     caption(ui, "1: all of it new. Less is a variation of what is there.");
     ui.horizontal(|ui| {
         if button(ui, "Draw anew", "each time from other noise", n > 0) {
-            commands.push(Command::Generate { full: false });
+            commands.push(Command::Generation(GenerationCommand::Generate { full: false }));
         }
         if button(ui, "Clear region", "", n > 0) {
             state.tools.region = Default::default();

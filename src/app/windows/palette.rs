@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Id, Key, Modal, Ui, vec2};
 
-use crate::command::Command;
+use crate::command::{Command, FileCommand, ViewCommand};
 use crate::panes;
 use crate::shell::actions::ACTIONS;
 use crate::shell::keymap::Keymap;
@@ -149,7 +149,7 @@ fn items(keymap: &Keymap, recent: &[PathBuf]) -> Vec<Item> {
         add(
             format!("Pane: {}", pane.title),
             "pane",
-            Command::ShowPane(pane.id),
+            Command::View(ViewCommand::ShowPane(pane.id)),
         );
     }
     for class in Class::OBJECTS {
@@ -169,7 +169,7 @@ fn items(keymap: &Keymap, recent: &[PathBuf]) -> Vec<Item> {
         add(
             format!("Open {name}"),
             "recent file",
-            Command::OpenPath(path.clone()),
+            Command::File(FileCommand::OpenPath(path.clone())),
         );
     }
     out

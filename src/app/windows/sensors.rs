@@ -3,7 +3,7 @@
 use egui::Ui;
 use glam::DVec3;
 
-use crate::command::Command;
+use crate::command::{Command, FileCommand};
 use crate::panes::camera_strip::camera_label;
 use crate::state::{SensorChoice, UiState};
 use crate::theme;
@@ -69,10 +69,10 @@ fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
             }
         });
         if ui.button("Import…").clicked() {
-            commands.push(Command::ImportRig);
+            commands.push(Command::File(FileCommand::ImportRig));
         }
         if ui.button("Export…").clicked() {
-            commands.push(Command::ExportRig);
+            commands.push(Command::File(FileCommand::ExportRig));
         }
     });
 }

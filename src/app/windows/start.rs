@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 
-use crate::command::Command;
+use crate::command::{Command, FileCommand};
 use crate::shell::settings::Settings;
 use crate::theme;
 use crate::widgets::thumbnail;
@@ -39,10 +39,10 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 *open = false;
             }
             if wide(left, "Open or import…", "Ctrl+O").clicked() {
-                choose(open, Command::Open);
+                choose(open, Command::File(FileCommand::Open));
             }
             if wide(left, "New random scene", "Ctrl+N").clicked() {
-                choose(open, Command::New);
+                choose(open, Command::File(FileCommand::New));
             }
             left.add_space(theme::GAP);
             crate::widgets::icons::section(left, "Recent");
@@ -58,7 +58,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
             }
             for path in settings.recent.iter().take(6) {
                 if recent(left, path).clicked() {
-                    choose(open, Command::OpenPath(path.to_owned()));
+                    choose(open, Command::File(FileCommand::OpenPath(path.to_owned())));
                 }
             }
             crate::widgets::icons::section(right, "Roads to begin with");
@@ -66,7 +66,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 right.columns(2, |cells| {
                     for (ui, name) in cells.iter_mut().zip(pair) {
                         if road(ui, name).clicked() {
-                            choose(open, Command::NewFrom(name));
+                            choose(open, Command::File(FileCommand::NewFrom(name)));
                         }
                     }
                 });

@@ -1,6 +1,6 @@
 //! The list of what the quality checks found: beside what it speaks of, and marking it.
 
-use app::Command;
+use app::command::{Command, ViewCommand};
 use app::dock::Dock;
 use app::panes::id::PaneId;
 use app::settings::Settings;
@@ -45,7 +45,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
     };
     bench.command(Command::Apply("Paint voxels", vec![paint]));
     bench.all_checked();
-    bench.command(Command::ToggleChecks);
+    bench.command(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)));
     assert!(bench.shows("Fix all ("));
     let floats = "Warning: 3 voxels of manmade float 2.6 m above the ground";
     let row = bench.harness.get_by_label(floats).rect();
@@ -76,7 +76,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
     bench.key(Modifiers::CTRL, Key::Z);
     bench.all_checked();
     assert_eq!(meant(&mut bench), None, "it is gone, and so is its mark");
-    bench.command(Command::ToggleChecks);
+    bench.command(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)));
     assert!(!bench.shows("All is well") && !bench.shows("Fix all ("));
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use app::Command;
+use app::command::{Command, ViewCommand};
 use app::panes::id::PaneId;
 use app::tools::RegionShape;
 use editor::{Edit, Shape as Area};
@@ -257,7 +257,7 @@ fn the_status_bar_says_what_the_buttons_do() {
 fn a_finding_is_waived_with_a_reason_and_taken_back() {
     let mut bench = Bench::new();
     bench.off();
-    bench.run_command(Command::ShowPane(PaneId::CHECKS));
+    bench.run_command(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)));
     bench.checked();
     let finding = "car 7 faces against its lane, 180 degrees from it";
     bench.click(&format!("Waive: {finding}"));

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use formats::project;
 use scene::{BoxId, Class};
 
-use app::Command;
+use app::command::{Command, ViewCommand};
 use app::panes::id::PaneId;
 
 use super::bench::Bench;
@@ -51,7 +51,9 @@ fn findings_lead_to_their_place_and_are_fixed() {
     let mut bench = Bench::new();
     bench.off();
     let ctx = bench.harness.ctx.clone();
-    bench.app().execute(Command::ShowPane(PaneId::CHECKS), &ctx);
+    bench
+        .app()
+        .execute(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)), &ctx);
     let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
         !b.app().background.checking.is_stale(rev)

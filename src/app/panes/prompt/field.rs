@@ -8,7 +8,7 @@ use egui::{Key, Modifiers, Ui, WidgetInfo};
 use super::completion::Completion;
 use super::heard::Both;
 use super::plan::{Plan, Told};
-use crate::command::Command;
+use crate::command::{Command, FileCommand};
 use crate::text::doubts;
 use crate::theme;
 use crate::widgets::icons::section;
@@ -247,7 +247,7 @@ impl PromptField {
                 self.done = Some(prompted.answer());
                 (self.asks, self.notes) = (false, doubts(&prompted.heard));
                 self.plan.makes(&self.prompt, seed);
-                commands.push(Command::NewFromPrompt(Box::new(ask)));
+                commands.push(Command::File(FileCommand::NewFromPrompt(Box::new(ask))));
             }
             Some(Err(error)) => self.notes = vec![error.clone()],
             None => {}
