@@ -108,7 +108,7 @@ fn what_cannot_be_had_is_told_before_anything_is_written() {
         );
         assert!(!Path::new(&out).exists());
     };
-    ["semantic", "depth", "pictures"].map(export);
+    ["semantic", "depth", "pictures"].into_iter().for_each(export);
 }
 
 /// What one picture takes, rendered and written, is no more than its source says: the peak of a run with large pictures
