@@ -108,18 +108,18 @@ fn what_cannot_be_had_is_told_before_anything_is_written() {
         );
         assert!(!Path::new(&out).exists());
     };
-    ["semantic", "depth", "pictures"].map(export);
+    ["semantic", "depth", "pictures"].into_iter().for_each(export);
 }
 
 /// What one picture takes, rendered and written, is no more than its source says: the peak of a run with large pictures
 /// beyond that of one with small ones.
 #[test]
 fn a_run_takes_the_memory_that_its_source_states() {
-    const SIZE: [u32; 2] = [2048, 1152];
+    const SIZE: [u32; 2] = [1280, 720];
     let dir = Folder::new();
     let (scene, out) = (dir.scene(), dir.path("out"));
     let one = rig(&dir, "one.json", |r| r.cameras.truncate(1));
-    let two = rig(&dir, "two.json", |r| r.cameras.truncate(2));
+    let six = rig(&dir, "six.json", |r| assert_eq!(r.cameras.len(), 6));
     let pixels = f64::from(SIZE[0] * SIZE[1]);
     for view in cameras::views() {
         for source in cameras::sources_of(view.id) {
@@ -132,25 +132,26 @@ fn a_run_takes_the_memory_that_its_source_states() {
                 json(&sceneloom(&args))["peak_rss_mb"].as_f64()
             };
             let large = format!("{}x{}", SIZE[0], SIZE[1]);
-            let (Some(small), Some(single), Some(double)) = (
+            let (Some(small), Some(single), Some(all)) = (
                 peak_mb("64x36", &one),
                 peak_mb(&large, &one),
-                peak_mb(&large, &two),
+                peak_mb(&large, &six),
             ) else {
                 return println!("this system does not tell a process's peak memory");
             };
-            let per_pixel = |mb: f64| mb * 1e6 / pixels;
-            let (taken, more) = (per_pixel(single - small), per_pixel(double - single));
+            let per_pixel = |mb: f64| mb * f64::from(1 << 20) / pixels;
+            let (taken, more) = (per_pixel(single - small), per_pixel(all - single));
             let stated = source.bytes_per_pixel() as f64;
             println!(
-                "{} from {}: {taken:.0} bytes a pixel of {stated}, {more:.0} more for a second camera",
+                "{} from {}: {taken:.0} bytes a pixel of {stated}, {more:.0} more for five other cameras",
                 view.title,
                 source.title()
             );
             // The sheet of pictures in colours has one camera here.
             assert!(taken <= stated + 8.0, "{}: {taken} of {stated}", source.title());
-            // What is kept of a camera is its place in the sheet, and what the allocator does not give back.
-            assert!(more <= 24.0, "{}: {more} for another camera", source.title());
+            // What is kept of a camera is its place in the sheet, 4 bytes, and what the allocator does not give back; all
+            // maps of five cameras would be 85.
+            assert!(more <= 60.0, "{}: {more} for five cameras", source.title());
         }
     }
 }

@@ -3,6 +3,7 @@
 
 mod limits;
 
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
 use scene::splats::{RawMaps, SplatOptions};

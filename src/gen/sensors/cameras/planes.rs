@@ -52,7 +52,7 @@ impl CameraSource for PlaneStacks {
     }
 
     fn bytes_per_pixel(&self) -> u64 {
-        96
+        120
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
