@@ -111,13 +111,12 @@ fn part_of<B: Ops>(net: &OccDit<B>, condition: &DitCondition, x: &[f32], cells: 
     let some = net
         .prepare_some(condition, tokens_of(cells, 1))
         .expect("a sound condition");
-    let mut run = |t, middle| {
-        net.forward_in(x, t, &some, &mut kept, Precision::F32, middle)
-            .expect("finite")
-    };
     let mut added = Vec::new();
-    let first = run(437.5, Middle::Kept(&mut added));
-    [first, run(300.0, Middle::Reused(&added))]
+    let middle = Middle::Kept(&mut added);
+    let first = net.forward_in(x, 437.5, &some, &mut kept, Precision::F32, middle);
+    let middle = Middle::Reused(&added);
+    let second = net.forward_in(x, 300.0, &some, &mut kept, Precision::F32, middle);
+    [first.expect("finite"), second.expect("finite")]
 }
 
 /// One label of ten thousand may differ, where two classes are as likely.
