@@ -183,42 +183,14 @@ pub fn lay_out_graph(
             missing: road::lacks(&description, &graphed.graph, layout),
         },
         Keep::Objects(boxes) => {
-            let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
-            for (k, b) in boxes.values().enumerate() {
-                graphed.graph.nodes.push(scene::graph::Node {
-                    id: first + k as u32,
-                    kind: node_of(b.class),
-                    locked: Some(Locked::Box(*b)),
-                });
-            }
+            keep_boxes(&mut graphed, boxes);
             road_under(&description, &graphed, boxes, seed, net.as_deref(), &mut notes)
         }
-        Keep::Nothing => {
-            let fits = |r: &RoadRef| {
-                let layout = layout_of(r).ok()?;
-                road::lacks(&description, &graphed.graph, &layout)
-                    .is_empty()
-                    .then_some(layout)
-            };
-            match proposed
-                .as_ref()
-                .filter(|_| description.road.kind.is_none())
-                .and_then(fits)
-            {
-                Some(layout) => {
-                    if let Some(found) = &mut remembered {
-                        found.road = true;
-                    }
-                    Chosen {
-                        template: "remembered",
-                        layout,
-                        missing: Vec::new(),
-                    }
-                }
-                None => road::choose(&description, &graphed.graph, seed),
-            }
-        }
+        Keep::Nothing => fresh_road(&description, &graphed, proposed.as_ref(), seed),
     };
+    if let Some(found) = remembered.as_mut().filter(|_| road.template == REMEMBERED) {
+        found.road = true;
+    }
     let (mut placement, mut diffused) = match net {
         None => (
             place_with(&graphed.graph, &road.layout, seed, &graphed.sizes_m, &how.others),
@@ -238,7 +210,7 @@ pub fn lay_out_graph(
     // (a crowd that overfills a road overfills the next, too, and takes the longest to place)
     let few = placement.boxes.len() <= FEW_BOXES;
     if matches!(how.keep, Keep::Nothing)
-        && road.template != "remembered"
+        && road.template != REMEMBERED
         && few
         && !placement.left_out.is_empty()
     {
@@ -256,6 +228,42 @@ pub fn lay_out_graph(
         diffused,
         notes,
         wall_s: started.elapsed().as_secs_f64(),
+    }
+}
+
+/// What the road of a scene is called that memory remembers.
+const REMEMBERED: &str = "remembered";
+
+/// Boxes that stay as they are become objects of the graph.
+fn keep_boxes(graphed: &mut Graphed, boxes: &BTreeMap<BoxId, SceneBox>) {
+    let first = graphed.graph.nodes.iter().map(|n| n.id + 1).max().unwrap_or(1);
+    for (k, b) in boxes.values().enumerate() {
+        graphed.graph.nodes.push(scene::graph::Node {
+            id: first + k as u32,
+            kind: node_of(b.class),
+            locked: Some(Locked::Box(*b)),
+        });
+    }
+}
+
+/// The road that memory proposes, if the words name none and it has what they ask for; else one that is chosen for them.
+fn fresh_road(description: &Description, graphed: &Graphed, proposed: Option<&RoadRef>, seed: u64) -> Chosen {
+    let fits = |r: &RoadRef| {
+        let layout = layout_of(r).ok()?;
+        road::lacks(description, &graphed.graph, &layout)
+            .is_empty()
+            .then_some(layout)
+    };
+    match proposed
+        .filter(|_| description.road.kind.is_none())
+        .and_then(fits)
+    {
+        Some(layout) => Chosen {
+            template: REMEMBERED,
+            layout,
+            missing: Vec::new(),
+        },
+        None => road::choose(description, &graphed.graph, seed),
     }
 }
 

@@ -22,6 +22,7 @@ pub mod keymap;
 mod keys;
 pub mod live;
 mod measuring;
+mod menus;
 mod news;
 pub mod perf;
 pub mod preferences;

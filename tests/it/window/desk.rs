@@ -105,7 +105,10 @@ fn views_are_kept_and_gone_back_to() {
     bench.app().views.canvas.go_to(DVec2::ZERO, 4.0);
     bench.key(Modifiers::NONE, Key::F4);
     assert!(bench.sees("No view is kept as 4: Ctrl+F4 keeps this one"));
-    assert_eq!(bench.app().views.view3d.camera, ViewCamera::preset(ViewPreset::Top));
+    assert_eq!(
+        bench.app().views.view3d.camera,
+        ViewCamera::preset(ViewPreset::Top)
+    );
     bench.key(Modifiers::NONE, Key::F3);
     let now = bench.app().views.view3d.camera;
     assert!(

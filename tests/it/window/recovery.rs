@@ -51,7 +51,9 @@ fn findings_lead_to_their_place_and_are_fixed() {
     let mut bench = Bench::new();
     bench.off();
     let ctx = bench.harness.ctx.clone();
-    bench.app().execute(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)), &ctx);
+    bench
+        .app()
+        .execute(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)), &ctx);
     let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
         !b.app().background.checking.is_stale(rev)

@@ -455,7 +455,15 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
     assert!(bench.app().state.tools.region.count() < marked);
     assert_eq!(bench.history(), ["Open"]);
     bench.click("Draw anew");
-    let params = bench.app().generation.live.running.as_ref().expect("asked for").key.params;
+    let params = bench
+        .app()
+        .generation
+        .live
+        .running
+        .as_ref()
+        .expect("asked for")
+        .key
+        .params;
     assert_eq!(params.redraw, bench.app().state.tools.region);
     assert!(params.strength > 0.0);
     assert_eq!(
@@ -467,7 +475,10 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
         .send(super::bench::Do::Finish)
         .expect("the pipeline listens");
     bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
-    assert!(bench.app().generation.receipt.is_some(), "a result, not a warm-up");
+    assert!(
+        bench.app().generation.receipt.is_some(),
+        "a result, not a warm-up"
+    );
     bench.click("Clear region");
     assert!(bench.app().state.tools.region.is_empty());
 }

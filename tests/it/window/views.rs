@@ -100,9 +100,10 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let path = bench.folder.path().join("scene.loom");
     project::save(&path, bench.app().document.scene()).expect("saved");
     bench.app().document.mark_saved();
-    bench
-        .app()
-        .execute(app::Command::File(app::command::FileCommand::OpenPath(path.clone())), &egui::Context::default());
+    bench.app().execute(
+        app::Command::File(app::command::FileCommand::OpenPath(path.clone())),
+        &egui::Context::default(),
+    );
     bench.wait_until("the scene", |b| b.app().path().is_some());
     bench.key(Modifiers::NONE, Key::F12);
     let shot = image::open(path.with_extension("png"))
