@@ -1,7 +1,7 @@
 //! The plot of time against error: in the window, and as a picture drawn without one.
 
-use egui::{Align2, Color32, RichText, Ui, Vec2, vec2};
-use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
+use egui::{Align2, RichText, Ui, Vec2, vec2};
+use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Text, VLine};
 
 use crate::picture::Picture;
 use crate::theme;
@@ -68,7 +68,7 @@ pub fn front_plot(
         .include_x(marks.iter().map(|m| log(m.wall_s[0])).fold(-1.0, f64::min) - 0.45)
         .include_y(LEAST_ERROR.log10())
         .set_margin_fraction(vec2(0.05, 0.09));
-    let (weak, strong, accent) = (theme::text_weak(), theme::text_strong(), theme::accent());
+    let (weak, accent) = (theme::text_weak(), theme::accent());
     plot.show(ui, |plot| {
         for (s, name) in ANCHORS {
             plot.vline(
@@ -87,66 +87,18 @@ pub fn front_plot(
                     .anchor(Align2::RIGHT_TOP),
             );
         }
-        let whisker = |from: [f64; 2], to: [f64; 2], color: Color32| {
-            Line::new("interval", PlotPoints::from(vec![from, to]))
-                .color(color)
-                .width(1.0)
-                .allow_hover(false)
-        };
+        let right = marks
+            .iter()
+            .map(|m| log(m.wall_s[0]))
+            .fold(ANCHORS[0].0.log10(), f64::max);
         // Names of stops stand above and below the line by turns.
         let mut nth = 0u32;
         for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
-            let color = if mark.on_front {
-                accent
-            } else {
-                weak.gamma_multiply(0.6)
-            };
-            let [s, s_low, s_high] = mark.wall_s.map(log);
-            let [e, e_low, e_high] = mark.error.map(log);
-            let faint = color.gamma_multiply(0.5);
-            plot.line(whisker([s_low, e], [s_high, e], faint));
-            plot.line(whisker([s, e_low], [s, e_high], faint));
-            let radius = if mark.stop.is_some() { 5.0 } else { 2.5 };
-            plot.points(
-                Points::new(mark.name.clone(), vec![[s, e]])
-                    .color(color)
-                    .radius(radius),
-            );
+            draw_point(plot, mark, current);
             if let Some(stop) = &mark.stop {
                 let here = current == Some(stop.as_str());
-                if here {
-                    let ring = Points::new(stop.clone(), vec![[s, e]])
-                        .filled(false)
-                        .color(strong)
-                        .radius(8.0);
-                    plot.points(ring);
-                }
-                // The list of stops tells the numbers where there is no room for them.
-                let text = RichText::new(match size.x < ROOM_FOR_NUMBERS {
-                    true => stop.clone(),
-                    false => format!("{stop}\n{}, {}", seconds(mark.wall_s[0]), percent(mark.error[0])),
-                });
-                let text = if here { text.small().strong() } else { text.small() };
-                // Where the name has room: to the left of the last ones.
-                let right = marks
-                    .iter()
-                    .map(|m| log(m.wall_s[0]))
-                    .fold(ANCHORS[0].0.log10(), f64::max);
-                let late = s > right - 0.35;
-                // Two that stand below lie beside each other: the second one a line lower.
-                let (below, lower) = (nth % 2 == 1, f64::from(nth / 2) * LABEL_DECADES);
+                draw_name(plot, mark, stop, here, size.x >= ROOM_FOR_NUMBERS, right, nth);
                 nth += 1;
-                let (dx, dy, anchor) = match (late, below) {
-                    (true, _) => (-0.03, 0.02, Align2::RIGHT_BOTTOM),
-                    (_, true) => (-0.03, -0.02 - lower, Align2::RIGHT_TOP),
-                    _ => (0.03, 0.02, Align2::LEFT_BOTTOM),
-                };
-                let at = PlotPoint::new(s + dx, e + dy);
-                plot.text(
-                    Text::new(stop.clone(), at, text)
-                        .color(if here { strong } else { theme::text() })
-                        .anchor(anchor),
-                );
             }
         }
         let mut front: Vec<[f64; 2]> = marks
@@ -172,6 +124,69 @@ pub fn front_plot(
             }
         }
     });
+}
+
+/// One setting: its middle and its intervals, and a ring around the stop that is in use.
+fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
+    let color = if mark.on_front {
+        theme::accent()
+    } else {
+        theme::text_weak().gamma_multiply(0.6)
+    };
+    let [s, s_low, s_high] = mark.wall_s.map(log);
+    let [e, e_low, e_high] = mark.error.map(log);
+    let faint = color.gamma_multiply(0.5);
+    for ends in [[[s_low, e], [s_high, e]], [[s, e_low], [s, e_high]]] {
+        plot.line(
+            Line::new("interval", PlotPoints::from(ends.to_vec()))
+                .color(faint)
+                .width(1.0)
+                .allow_hover(false),
+        );
+    }
+    let radius = if mark.stop.is_some() { 5.0 } else { 2.5 };
+    plot.points(
+        Points::new(mark.name.clone(), vec![[s, e]])
+            .color(color)
+            .radius(radius),
+    );
+    if let Some(stop) = mark.stop.as_ref().filter(|stop| current == Some(stop.as_str())) {
+        let ring = Points::new(stop.clone(), vec![[s, e]])
+            .filled(false)
+            .color(theme::text_strong())
+            .radius(8.0);
+        plot.points(ring);
+    }
+}
+
+/// The name of a stop beside its point, with its numbers where there is room for them; the list of stops tells them too.
+fn draw_name(
+    plot: &mut PlotUi<'_>,
+    mark: &Mark,
+    stop: &str,
+    here: bool,
+    with_numbers: bool,
+    right: f64,
+    nth: u32,
+) {
+    let (s, e) = (log(mark.wall_s[0]), log(mark.error[0]));
+    let text = RichText::new(match with_numbers {
+        false => stop.to_owned(),
+        true => format!("{stop}\n{}, {}", seconds(mark.wall_s[0]), percent(mark.error[0])),
+    });
+    let text = if here { text.small().strong() } else { text.small() };
+    // Where the name has room: to the left of the last ones.
+    let late = s > right - 0.35;
+    // Two that stand below lie beside each other: the second one a line lower.
+    let (below, lower) = (nth % 2 == 1, f64::from(nth / 2) * LABEL_DECADES);
+    let (dx, dy, anchor) = match (late, below) {
+        (true, _) => (-0.03, 0.02, Align2::RIGHT_BOTTOM),
+        (_, true) => (-0.03, -0.02 - lower, Align2::RIGHT_TOP),
+        _ => (0.03, 0.02, Align2::LEFT_BOTTOM),
+    };
+    let color = if here { theme::text_strong() } else { theme::text() };
+    let at = PlotPoint::new(s + dx, e + dy);
+    plot.text(Text::new(stop.to_owned(), at, text).color(color).anchor(anchor));
 }
 
 /// The same as a picture of `points` size, twice as many pixels.

@@ -58,14 +58,14 @@ pub fn all() -> Vec<Box<dyn Pane>> {
 /// What there is to know about every pane, in the same order.
 pub fn infos() -> &'static [PaneInfo] {
     static INFOS: LazyLock<Vec<PaneInfo>> = LazyLock::new(|| {
-        let info = |pane: &Box<dyn Pane>| PaneInfo {
+        let info = |pane: &dyn Pane| PaneInfo {
             id: pane.id(),
             title: pane.title(),
             icon: pane.icon(),
             place: pane.place(),
             column_points: pane.column_points(),
         };
-        all().iter().map(info).collect()
+        all().iter().map(|pane| info(pane.as_ref())).collect()
     });
     &INFOS
 }

@@ -24,6 +24,7 @@ mod keys;
 pub mod live;
 pub mod logging;
 mod measuring;
+mod menus;
 mod news;
 pub mod perf;
 pub mod preferences;

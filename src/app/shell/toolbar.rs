@@ -5,17 +5,14 @@ use std::path::PathBuf;
 use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
-use crate::command::{Command, FileCommand, GenerationCommand, ViewCommand, Window};
-use crate::panes;
+use super::menus::menus;
+use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::id::PaneId;
-use crate::shell::bookmarks::SLOTS;
 use crate::shell::workspace::Workspace;
 use crate::state::{Tool, UiState};
 use crate::theme;
-use crate::tools::ToolCommand;
-use crate::tools::things::{ThingCommand, ThingTool};
+use crate::tools::things::ThingTool;
 use crate::widgets::icons::{self, Icon};
-use viewport::ViewPreset;
 
 /// What the bar shows of the document and the worker.
 pub struct ToolbarInput<'a> {
@@ -151,12 +148,12 @@ fn thing_tools(ui: &mut Ui, in_hand: Tool, commands: &mut Vec<Command>) {
 }
 
 /// The chord alone, without what else the hint says.
-fn short(key: &str) -> &str {
+pub(super) fn short(key: &str) -> &str {
     key.split(';').next().unwrap_or_default()
 }
 
 /// A chord in the second column of a menu.
-fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
+pub(super) fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
     let keys = egui::RichText::new(keys).color(theme::text_weak());
     let button = egui::Button::new(name).shortcut_text(keys);
     let clicked = ui.add_enabled(enabled, button).clicked();
@@ -164,238 +161,6 @@ fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
         ui.close();
     }
     clicked
-}
-
-fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
-    let mut on = |clicked: bool, command: Command| {
-        if clicked {
-            commands.push(command);
-        }
-    };
-    ui.menu_button("File", |ui| {
-        on(
-            item(ui, "New scene", "Ctrl+N", true),
-            Command::File(FileCommand::New),
-        );
-        on(
-            item(ui, "Open…", "Ctrl+O", true),
-            Command::File(FileCommand::Open),
-        );
-        ui.add_enabled_ui(!input.recent.is_empty(), |ui| {
-            ui.menu_button("Open recent", |ui| {
-                for path in input.recent {
-                    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-                    let clicked = ui
-                        .button(name)
-                        .on_hover_text(path.display().to_string())
-                        .clicked();
-                    on(clicked, Command::File(FileCommand::OpenPath(path.clone())));
-                }
-            });
-        });
-        ui.separator();
-        on(item(ui, "Save", "Ctrl+S", true), Command::File(FileCommand::Save));
-        on(
-            item(ui, "Save as…", "Ctrl+Shift+S", true),
-            Command::File(FileCommand::SaveAs),
-        );
-        ui.separator();
-        on(item(ui, "Export…", "", true), Command::Toggle(Window::Export));
-        on(
-            item(ui, "Quick screenshot", "F12", true),
-            Command::File(FileCommand::QuickShot),
-        );
-        on(
-            item(ui, "Export screenshot…", "", true),
-            Command::File(FileCommand::ExportScreenshot),
-        );
-        ui.separator();
-        on(item(ui, "Quit", "Ctrl+Q", true), Command::File(FileCommand::Quit));
-    });
-    ui.menu_button("Edit", |ui| {
-        on(item(ui, "Undo", "Ctrl+Z", input.undo.is_some()), Command::Undo);
-        on(
-            item(ui, "Redo", "Ctrl+Shift+Z", input.redo.is_some()),
-            Command::Redo,
-        );
-        ui.separator();
-        let some = state.any_chosen();
-        let what = match (state.selected.is_some(), state.tools.things.chosen.len()) {
-            (true, 0) | (false, 0) => "box",
-            (false, 1) => "thing",
-            (false, _) => "things",
-            (true, _) => "selection",
-        };
-        on(
-            item(ui, &format!("Duplicate {what}"), "Ctrl+D", some),
-            Command::Tools(ToolCommand::Duplicate),
-        );
-        on(
-            item(ui, &format!("Delete {what}"), "Del", some),
-            Command::Tools(ToolCommand::Delete),
-        );
-        let thing = |command| Command::Tools(ToolCommand::Thing(command));
-        let things = !state.tools.things.chosen.is_empty();
-        on(
-            item(ui, "Raise things", "]", things),
-            thing(ThingCommand::Raise(1)),
-        );
-        on(
-            item(ui, "Lower things", "[", things),
-            thing(ThingCommand::Raise(-1)),
-        );
-        on(
-            item(ui, "Things to the kerb", "D", things),
-            Command::Tools(ToolCommand::ToLane),
-        );
-        ui.menu_button("Add beside the road", |ui| {
-            for (tool, name, key) in Tool::ALL {
-                if matches!(tool, Tool::Thing(_)) {
-                    on(item(ui, name, short(key), true), Command::Tool(tool));
-                }
-            }
-        });
-        ui.separator();
-        on(
-            item(ui, "Unlock painted voxels", "", input.has_paint),
-            Command::ClearPaint,
-        );
-    });
-    ui.menu_button("View", |ui| {
-        on(
-            item(ui, "Frame all", "Home", true),
-            Command::View(ViewCommand::FrameAll),
-        );
-        on(
-            item(ui, "Frame selection", "F", state.any_chosen()),
-            Command::View(ViewCommand::FrameSelection),
-        );
-        ui.separator();
-        for preset in ViewPreset::ALL {
-            let name = format!("3D: {}", theme::sentence(preset.name()));
-            let key = match preset {
-                ViewPreset::Perspective => "5",
-                ViewPreset::Top => "7",
-                ViewPreset::Front => "1",
-                ViewPreset::Side => "3",
-                ViewPreset::Ego => "0",
-            };
-            on(
-                item(ui, &name, key, true),
-                Command::View(ViewCommand::Preset(preset)),
-            );
-        }
-        ui.separator();
-        ui.menu_button("Panes", |ui| {
-            for pane in panes::infos() {
-                if pane.id.camera().is_some_and(|i| i >= input.cameras) {
-                    continue;
-                }
-                let mut shown = input.shown.contains(&pane.id);
-                let tick = ui.checkbox(&mut shown, &pane.title);
-                on(tick.changed(), Command::View(ViewCommand::TogglePane(pane.id)));
-            }
-        });
-        ui.menu_button("Kept views", |ui| {
-            for slot in SLOTS {
-                let kept = input.bookmarks.contains(&slot);
-                let (name, keys) = (format!("Go to view {slot}"), format!("F{slot}"));
-                on(
-                    item(ui, &name, &keys, kept),
-                    Command::View(ViewCommand::GoToBookmark(slot)),
-                );
-            }
-            ui.separator();
-            for slot in SLOTS {
-                let (name, keys) = (format!("Keep as view {slot}"), format!("Ctrl+F{slot}"));
-                on(
-                    item(ui, &name, &keys, true),
-                    Command::View(ViewCommand::KeepBookmark(slot)),
-                );
-            }
-        });
-        on(
-            item(ui, "Swap views", "Tab", true),
-            Command::View(ViewCommand::SwapPanes),
-        );
-        on(
-            item(ui, "Grid", "G", true),
-            Command::View(ViewCommand::ToggleGrid),
-        );
-        on(item(ui, "Sensors…", "", true), Command::Toggle(Window::Sensors));
-        on(
-            item(ui, "Checks", "", true),
-            Command::View(ViewCommand::TogglePane(PaneId::CHECKS)),
-        );
-        on(item(ui, "Log", "", true), Command::Toggle(Window::Log));
-        on(
-            item(ui, "Performance", "F10", true),
-            Command::Toggle(Window::Performance),
-        );
-    });
-    ui.menu_button("Generate", |ui| {
-        on(
-            item(ui, "Generate everything", "Ctrl+Enter", true),
-            Command::Generation(GenerationCommand::Generate { full: true }),
-        );
-        on(
-            item(ui, "Generate edited region", "", true),
-            Command::Generation(GenerationCommand::Generate { full: false }),
-        );
-        on(
-            item(ui, "Draw scenery anew", "", true),
-            Command::Generation(GenerationCommand::DrawScenery),
-        );
-        on(
-            item(ui, "Cancel", "Ctrl+Backspace", input.busy),
-            Command::Generation(GenerationCommand::Cancel {
-                running: true,
-                waiting: false,
-            }),
-        );
-        on(
-            item(ui, "Drop the edit that waits", "", input.waiting),
-            Command::Generation(GenerationCommand::Cancel {
-                running: false,
-                waiting: true,
-            }),
-        );
-        on(
-            item(
-                ui,
-                "Cancel all",
-                "Ctrl+Shift+Backspace",
-                input.busy || input.waiting,
-            ),
-            Command::Generation(GenerationCommand::Cancel {
-                running: true,
-                waiting: true,
-            }),
-        );
-        ui.separator();
-        let live = if input.live {
-            "Switch live off"
-        } else {
-            "Switch live on"
-        };
-        on(
-            item(ui, live, "Ctrl+Space", true),
-            Command::Generation(GenerationCommand::ToggleLive),
-        );
-    });
-    ui.menu_button("Help", |ui| {
-        on(
-            item(ui, "Find a command…", "Ctrl+K", true),
-            Command::Toggle(Window::Palette),
-        );
-        on(item(ui, "Keys", "?", true), Command::Toggle(Window::Keys));
-        on(item(ui, "Start screen", "", true), Command::Toggle(Window::Start));
-        ui.separator();
-        on(
-            item(ui, "Settings…", "Ctrl+,", true),
-            Command::Toggle(Window::Settings),
-        );
-    });
 }
 
 fn divider(ui: &mut Ui) {
