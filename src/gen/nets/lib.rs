@@ -250,7 +250,11 @@ mod tests {
                 Err(error) => error.to_string(),
             };
             let all = bytes.len();
-            let expected = |found| format!("{name}: expected {all} bytes, as its header says, found {found}");
+            let expected = |found| {
+                format!(
+                    "{name}: not a usable safetensors file: expected {all} bytes, as its header says, found {found}"
+                )
+            };
             for cut in [1, 2, 7, 4096] {
                 assert_eq!(refusal(&bytes[..all - cut]), expected(all - cut));
             }
@@ -268,7 +272,7 @@ mod tests {
             .expect_err("cut")
             .to_string();
         assert!(
-            told.starts_with("occ_dit.safetensors: expected 11840048 bytes"),
+            told.starts_with("occ_dit.safetensors: not a usable safetensors file: expected 11840048 bytes"),
             "{told}"
         );
         std::fs::remove_dir_all(&folder).expect("removed");

@@ -50,7 +50,9 @@ pub enum WeightsError {
         reason: OpsError,
     },
     /// The bytes end before or after the place that the header names.
-    #[error("{file}: expected {expected} bytes, as its header says, found {found}")]
+    #[error(
+        "{file}: not a usable safetensors file: expected {expected} bytes, as its header says, found {found}"
+    )]
     Size {
         /// Name of the file.
         file: String,
@@ -429,7 +431,9 @@ mod tests {
         let (all, more) = (bytes.len(), longer.len());
         assert_eq!(
             error,
-            format!("w: expected {all} bytes, as its header says, found {more}")
+            format!(
+                "w: not a usable safetensors file: expected {all} bytes, as its header says, found {more}"
+            )
         );
         let missing = read(Path::new("/nowhere/at/all")).expect_err("no such file");
         assert!(missing.to_string().starts_with("/nowhere/at/all: "));
