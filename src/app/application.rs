@@ -411,7 +411,6 @@ pub(super) fn cameras_input<'a>(scene: &'a Scene, rev: SceneRev, sensing: &'a Se
     CamerasInput {
         scene,
         views: sensing.cameras(),
-        prompt: &scene.prompt,
         stale: sensing.cameras_stale(rev),
         lidar_points: sensing.lidar().map(|l| l.points.len()),
     }

@@ -8,7 +8,7 @@ use super::graphics::Graphics;
 use super::state::{CameraMode, CameraSource, LidarModel, UiState};
 use scene::sensor_data::Planes;
 use scene::{CameraMaps, MultiPlaneImage, PerspectiveMap, Scene};
-use sensors::appearance::{CameraImage, Conditions, Look, Quality};
+use sensors::appearance::{CameraImage, Look, Quality};
 use sensors::cloud::GaussianCloud;
 use sensors::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
 use sensors::march::ground::GroundHeight;
@@ -189,13 +189,7 @@ impl Prepared {
             }
             (CameraMode::Planes, _) => Self::Ids(RenderIds::new(&frame.occupancy, frame.layout.cells())),
             (CameraMode::Layout, _) => Self::Layout,
-            (CameraMode::Picture, _) => {
-                let conditions = Conditions {
-                    seed: scene.seed,
-                    ..Conditions::from_prompt(&scene.prompt)
-                };
-                Self::Look(Box::new(Look::new(frame, &scene.rig, &conditions)))
-            }
+            (CameraMode::Picture, _) => Self::Look(Box::new(Look::new(frame, &scene.rig, &scene.conditions))),
         }
     }
 

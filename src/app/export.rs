@@ -14,7 +14,7 @@ use formats::{atomic, box_list, occ3d, png, point_cloud};
 use nets::lidar::LidarNet;
 use scene::sensor_data::{RENDER_IDS, RenderId};
 use scene::{CameraMaps, Class, LidarSweep, Scene, SensorRig};
-use sensors::appearance::{Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use sensors::appearance::{Quality, RayMarched, SynthesisInput, ViewSynthesizer};
 use sensors::learned::{self, Drops};
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 use sensors::{color, lidar};
@@ -295,10 +295,7 @@ fn make_ready(
                     rig,
                     size: options.camera_size,
                     prompt: &scene.prompt,
-                    conditions: Conditions {
-                        seed: scene.seed,
-                        ..Conditions::from_prompt(&scene.prompt)
-                    },
+                    conditions: scene.conditions,
                     quality: Quality::Full,
                 })?)
             })?;

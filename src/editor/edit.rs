@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use scene::grid::NOT_PAINTED;
 use scene::{
-    BevLayer, BevLayout, BoxId, BoxLabel, BoxName, Class, Form, Frame, GridSpec, Polyline, Scene, SceneBox,
-    SensorRig, SourceFrame, ThingId, VoxelGrid, VoxelPaint, Waiver, raster,
+    BevLayer, BevLayout, BoxId, BoxLabel, BoxName, Class, Conditions, Form, Frame, GridSpec, Polyline, Scene,
+    SceneBox, SensorRig, SourceFrame, ThingId, VoxelGrid, VoxelPaint, Waiver, raster,
 };
 
 use super::Shape;
@@ -182,6 +182,11 @@ pub enum Edit {
         /// The text; empty means none.
         prompt: String,
     },
+    /// Replaces light and air. No voxel changes.
+    SetConditions {
+        /// The new ones.
+        conditions: Conditions,
+    },
     /// Notes words that were typed to change the scene.
     KeepWords {
         /// The words.
@@ -237,6 +242,9 @@ pub enum EditError {
     /// The sensors that would result are not sound; see [`SensorRig::problem`].
     #[error("{0}")]
     BadRig(String),
+    /// The conditions that would result are not sound; see [`Conditions::problem`].
+    #[error("{0}")]
+    BadConditions(String),
     /// Layers of objects come from boxes.
     #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
     ObjectLayer(BevLayer),
@@ -299,6 +307,15 @@ impl Edit {
                 if scene.prompt.as_ref() != prompt {
                     scene.rev = scene::SceneRev::fresh();
                     scene.prompt = prompt.as_str().into();
+                }
+            }
+            Self::SetConditions { conditions } => {
+                if let Some(problem) = conditions.problem() {
+                    return Err(EditError::BadConditions(problem));
+                }
+                if scene.conditions != *conditions {
+                    scene.rev = scene::SceneRev::fresh();
+                    scene.conditions = *conditions;
                 }
             }
             Self::KeepWords { words } => {
@@ -492,6 +509,7 @@ impl Edit {
             Self::AdoptResult { occupancy } => adopt(frame, occupancy.clone()),
             // These concern the scene, see `apply`.
             Self::SetPrompt { .. }
+            | Self::SetConditions { .. }
             | Self::KeepWords { .. }
             | Self::SetRig { .. }
             | Self::ClearScenery { .. }

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::*;
 use scene::draft::draft;
-use scene::{BevLayout, SensorRig};
+use scene::{BevLayout, SensorRig, TimeOfDay, Weather};
 
 const FREE: u8 = Class::FREE;
 
@@ -114,6 +114,8 @@ fn json_forms_are_those_of_the_command_line() {
         json!({"clear_paint": {}}),
         json!({"set_prompt": {"prompt": ""}}),
         json!({"keep_words": {"words": "remove the bus"}}),
+        json!({"set_conditions": {"conditions": {"time": "night", "weather": "rain", "wetness": 0.5, "visibility_m": 400.0,
+            "sun": {"azimuth_deg": 20.0, "elevation_deg": 30.0}, "seed": 3}}}),
     ] {
         let edit = parse(form.clone()).expect("a documented form");
         assert_eq!(serde_json::to_value(&edit).expect("plain data"), form);
@@ -441,6 +443,9 @@ fn what_changes_nothing_keeps_the_revision() {
     let nothing = [
         Edit::SetPrompt { prompt: "".into() },
         Edit::ClearPaint {},
+        Edit::SetConditions {
+            conditions: scene.conditions,
+        },
         Edit::SetBoxClass {
             id: BoxId(1),
             class: Class::Car,
@@ -465,6 +470,30 @@ fn what_changes_nothing_keeps_the_revision() {
         .apply(&mut scene)
         .expect("sound");
     assert_ne!(scene.rev, rev);
+}
+
+#[test]
+fn conditions_are_set_whole_or_not_at_all() {
+    let mut scene = street();
+    let (rev, before) = (scene.rev, scene.conditions);
+    let bad = Conditions {
+        wetness: 2.0,
+        ..before
+    };
+    let error = Edit::SetConditions { conditions: bad }
+        .apply(&mut scene)
+        .expect_err("refused");
+    assert_eq!(error.to_string(), "wetness is 2, expected 0 to 1");
+    assert_eq!((scene.rev, scene.conditions), (rev, before));
+    let night = before.at(TimeOfDay::Night).under(Weather::Snow);
+    let edit = Edit::SetConditions { conditions: night };
+    let frame = scene.frame().clone();
+    edit.apply(&mut scene).expect("sound");
+    assert_eq!(scene.conditions, night);
+    assert!(
+        scene.rev != rev && Arc::ptr_eq(&frame, scene.frame()),
+        "no voxel changes"
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! | entry | holds |
 //! |---|---|
 //! | `manifest.json` | `format`, `version`, `frames` |
-//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background, and of each frame time, pose, boxes, polylines |
+//! | `scene.json` | all but the grids: name, prompt, conditions, words, seed, rig, background, and of each frame time, pose, boxes, polylines |
 //! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
 //! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, 40,000 little-endian numbers in m; only if it is not flat |
 //! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
@@ -11,11 +11,13 @@
 //! | `frames/00000/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
 //! | `frames/00000/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
 //!
-//! Version 2 added background and relief; files of version 1 open as scenes without either.
+//! Version 2 added background and relief; files of version 1 open as scenes without either. Version 3 added the conditions;
+//! in older files the prompt holds them, see `old_prompt`.
 
 mod archive;
 mod check;
 mod error;
+mod old_prompt;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -27,8 +29,8 @@ use serde::{Deserialize, Serialize};
 
 use scene::grid::NOT_PAINTED;
 use scene::{
-    Background, BevLayout, BoxId, Frame, GridSpec, Inferred, Polyline, Pose, Relief, Scene, SceneBox,
-    SceneRev, SensorRig, SourceFrame, Thing, Unobserved, VoxelGrid, VoxelPaint, Waiver,
+    Background, BevLayout, BoxId, Conditions, Frame, GridSpec, Inferred, Polyline, Pose, Relief, Scene,
+    SceneBox, SceneRev, SensorRig, SourceFrame, Thing, Unobserved, VoxelGrid, VoxelPaint, Waiver,
 };
 
 use super::atomic;
@@ -37,7 +39,7 @@ use check::check;
 pub use error::ProjectError;
 
 /// Version written.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Oldest version read.
 const OLDEST: u32 = 1;
 /// Frames a project may hold.
@@ -66,6 +68,9 @@ struct AnyManifest {
 struct SceneHeader {
     name: Arc<str>,
     prompt: Arc<str>,
+    /// Since version 3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    conditions: Option<Conditions>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     words: Vec<String>,
     seed: u64,
@@ -160,6 +165,7 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
     let header = SceneHeader {
         name: scene.name.clone(),
         prompt: scene.prompt.clone(),
+        conditions: Some(scene.conditions),
         words: scene.words.to_vec(),
         seed: scene.seed,
         current: scene.current,
@@ -285,9 +291,18 @@ fn read<R: Read + Seek>(reader: R) -> Result<Scene, ProjectError> {
             "scene.json: two things of the background have the same id".into(),
         ));
     }
+    let conditions = match (header.conditions, any.version) {
+        (Some(conditions), _) => conditions,
+        (None, 1 | 2) => old_prompt::conditions(&header.prompt, header.seed),
+        (None, _) => {
+            let text = "scene.json: conditions are missing, expected them since version 3";
+            return Err(ProjectError::Unsound(text.into()));
+        }
+    };
     let scene = Scene {
         rev: SceneRev::fresh(),
         name: header.name,
+        conditions,
         prompt: header.prompt,
         words: Arc::new(header.words),
         rig: header.rig,

@@ -4,6 +4,7 @@ pub mod background;
 pub mod box_label;
 pub mod boxes;
 pub mod classes;
+pub mod conditions;
 pub mod density;
 pub mod distance;
 pub mod draft;
@@ -37,6 +38,7 @@ pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
+pub use conditions::{Conditions, Sun, TimeOfDay, Weather};
 pub use density::Density;
 pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
 pub use inferred::{Inferred, Unobserved};
@@ -135,8 +137,10 @@ pub struct Scene {
     pub rev: SceneRev,
     /// Name shown to the user.
     pub name: Arc<str>,
-    /// Free text that describes style (time of day, weather); empty when none.
+    /// Free text that describes the style; empty when none. What it says of light and air is in `conditions`.
     pub prompt: Arc<str>,
+    /// Light and air.
+    pub conditions: Conditions,
     /// What was typed to make it and to change it, in order.
     pub words: Arc<Vec<String>>,
     /// Cameras and LiDARs.
@@ -152,12 +156,16 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A clip of a single frame.
+    /// A clip of a single frame on a clear day.
     pub fn single(name: &str, frame: Frame, rig: Arc<SensorRig>, seed: u64) -> Self {
         Self {
             rev: SceneRev::fresh(),
             name: name.into(),
             prompt: "".into(),
+            conditions: Conditions {
+                seed,
+                ..Conditions::default()
+            },
             words: Arc::default(),
             rig,
             background: Arc::default(),

@@ -39,8 +39,6 @@ pub struct CamerasInput<'a> {
     pub views: Option<&'a Arc<Vec<CameraView>>>,
     /// The pictures belong to an earlier state.
     pub stale: bool,
-    /// Text that decides time and weather.
-    pub prompt: &'a str,
     /// Returns of the newest sweep.
     pub lidar_points: Option<usize>,
 }

@@ -6,6 +6,7 @@ pub mod cameras;
 pub mod checks;
 mod chip;
 mod completion;
+pub mod conditions;
 pub mod dialogs;
 pub mod export;
 pub mod fields;

@@ -24,6 +24,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
             "current is {found}, expected below the number of frames, {frames}"
         ));
     }
+    if let Some(problem) = scene.conditions.problem() {
+        return unsound(format!("conditions: {problem}"));
+    }
     if let Some(problem) = scene.rig.problem() {
         return unsound(format!("rig: {problem}"));
     }

@@ -11,7 +11,7 @@ use crate::text_edit::TextEdit;
 use place::holds::{in_role, overlap_m, role_of};
 use place::lanes::LaneMap;
 use scene::graph::{LaneRole, ObjectState};
-use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
+use scene::{BevLayer, BevLayout, BoxId, Class, Conditions, SceneBox};
 
 /// An open scene, as far as words need it.
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +20,10 @@ pub struct OpenScene<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
     /// Map.
     pub layout: &'a BevLayout,
-    /// Its conditions in words: `night, rain`.
+    /// Its style in words: `night, rain`.
     pub prompt: &'a str,
+    /// Its light and air.
+    pub conditions: Conditions,
 }
 
 /// A box that a question names.
@@ -89,6 +91,7 @@ pub struct Stage<'a> {
     /// Boxes as they were before the first act.
     pub(super) first: &'a BTreeMap<BoxId, SceneBox>,
     pub(super) prompt: String,
+    pub(super) conditions: Conditions,
     pub(super) seed: u64,
     pub(super) act: usize,
     /// Boxes that some act of the text says to stay.
@@ -115,6 +118,7 @@ impl<'a> Stage<'a> {
             boxes: scene.boxes.clone(),
             first: scene.boxes,
             prompt: scene.prompt.to_owned(),
+            conditions: scene.conditions,
             seed,
             act: 0,
             stays: std::collections::BTreeSet::new(),
@@ -176,6 +180,10 @@ impl<'a> Stage<'a> {
                 self.done().changed.push(*id);
             }
             TextEdit::Crossing { .. } | TextEdit::EraseCrossing { .. } => self.done().scene = true,
+            TextEdit::Conditions { conditions } => {
+                self.conditions = *conditions;
+                self.done().scene = true;
+            }
             TextEdit::Style { prompt } => {
                 self.prompt.clone_from(prompt);
                 self.done().scene = true;

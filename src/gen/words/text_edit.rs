@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use serde::Serialize;
 
-use scene::{BoxId, BoxLabel, SceneBox};
+use scene::{BoxId, BoxLabel, Conditions, SceneBox};
 
 /// One change of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,6 +51,11 @@ pub enum TextEdit {
     EraseCrossing {
         /// Its corners, m.
         outline_m: Vec<DVec2>,
+    },
+    /// Sets light and air.
+    Conditions {
+        /// The new ones.
+        conditions: Conditions,
     },
     /// Sets the text that describes the style.
     Style {

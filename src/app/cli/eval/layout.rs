@@ -210,6 +210,7 @@ fn place_description(
         seed,
     );
     scene.prompt = laid.description.style().into();
+    scene.conditions = laid.description.conditions(scene.seed);
     (scene, laid)
 }
 
@@ -438,6 +439,7 @@ fn changed(
         boxes: &frame.boxes,
         layout: &frame.layout,
         prompt: &scene.prompt,
+        conditions: scene.conditions,
     };
     let outcome = carry_out(reading, &open, seed);
     let wall_s = read.wall_s + started.elapsed().as_secs_f64();

@@ -15,10 +15,8 @@ use crate::graphics::{Graphics, OnCard};
 use crate::{open, picture};
 use nets::lidar::LidarNet;
 use scene::sensor_data::Planes;
-use scene::{CameraMaps, LidarSweep, Scene};
-use sensors::appearance::{
-    CameraImage, Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
-};
+use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
+use sensors::appearance::{CameraImage, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
 use sensors::learned::{self, Drops};
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 use sensors::{lidar, mpi, perspective};
@@ -53,10 +51,10 @@ pub struct Render {
     /// What classes and depths are rendered from: Gaussians, exact rays to the voxels, or those with boxes as shapes.
     #[arg(long, value_name = "NAME", value_parser = ["splats", "voxels", "shapes"], default_value = "splats")]
     source: String,
-    /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the prompt's.
+    /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the scene's.
     #[arg(long, value_name = "NAME")]
     weather: Option<Weather>,
-    /// Time of day of appearance: dawn, day, dusk, night; else the prompt's.
+    /// Time of day of appearance: dawn, day, dusk, night; else the scene's.
     #[arg(long, value_name = "NAME")]
     time: Option<TimeOfDay>,
     /// One sample per pixel for appearance: several times faster, rougher edges.
@@ -103,7 +101,8 @@ impl Render {
     }
 
     fn appearance(&self, scene: &Scene) -> anyhow::Result<Vec<CameraImage>> {
-        let said = Conditions::from_prompt(&scene.prompt);
+        let own = scene.conditions;
+        let timed = self.time.map_or(own, |time| own.at(time));
         // The same bytes on every machine, unless a card is asked for.
         let marched: Box<dyn ViewSynthesizer> = match Graphics::forced() {
             Some(card) => Box::new(OnCard::new(card)),
@@ -114,11 +113,7 @@ impl Render {
             rig: &scene.rig,
             size: self.size,
             prompt: &scene.prompt,
-            conditions: Conditions {
-                time: self.time.unwrap_or(said.time),
-                weather: self.weather.unwrap_or(said.weather),
-                seed: scene.seed,
-            },
+            conditions: self.weather.map_or(timed, |weather| timed.under(weather)),
             quality: if self.preview {
                 Quality::Preview
             } else {

@@ -13,7 +13,7 @@ use super::carry_out;
 use place::road;
 use place::rules::place_with;
 use place::to_graph::to_graph;
-use scene::{BevLayout, BoxId, Class, Paint, SceneBox};
+use scene::{BevLayout, BoxId, Class, Conditions, Paint, SceneBox, TimeOfDay, Weather};
 
 struct Base {
     layout: BevLayout,
@@ -37,6 +37,7 @@ impl Base {
             boxes: &self.boxes,
             layout: &self.layout,
             prompt: "day",
+            conditions: Default::default(),
         };
         carry_out(&parse(line).unwrap_or_else(|e| panic!("{line}: {e}")), &scene, 1)
     }
@@ -126,6 +127,8 @@ fn edits_hit_what_they_name() {
     let prompt = "night, rain".to_owned();
     let style = base.edit("time night ; weather rain").edits;
     assert_eq!(style.last(), Some(&TextEdit::Style { prompt }));
+    let conditions = Conditions::usual(TimeOfDay::Night, Weather::Rain, 0);
+    assert!(style.contains(&TextEdit::Conditions { conditions }), "{style:?}");
     match base.edit("set the bus red").edits.as_slice() {
         [TextEdit::Label { id, label }] => assert_eq!((*id, label.paint), (bus, Some(Paint::Red))),
         other => panic!("{other:?}"),
