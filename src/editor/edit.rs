@@ -233,6 +233,12 @@ pub enum EditError {
     /// The thing that would result is not sound; see [`Form::problem`].
     #[error("{0}")]
     BadThing(String),
+    /// As many boxes as a frame holds are there.
+    #[error("this frame holds {} boxes already, expected at most {}", .0, Frame::MAX_BOXES)]
+    TooManyBoxes(usize),
+    /// As many waivers as a frame holds are there.
+    #[error("this frame holds {} waivers already, expected at most {}", .0, Frame::MAX_WAIVERS)]
+    TooManyWaivers(usize),
     /// No id is left for a new box.
     #[error("no box id is left above {}", u32::MAX)]
     NoIdLeft,
@@ -357,7 +363,13 @@ impl Edit {
 
     /// Applies edits in order; an error stops there. Things that are changed one after another are drawn once, at the end.
     pub fn apply_all(edits: &[Self], scene: &mut Scene) -> Result<(), EditError> {
-        for run in edits.chunk_by(|a, b| a.is_of_things() && b.is_of_things()) {
+        let goes_on =
+            |a: &Self, b: &Self| a.is_of_things() && b.is_of_things() || a.is_of_a_box() && b.is_of_a_box();
+        for run in edits.chunk_by(goes_on) {
+            if run[0].is_of_a_box() {
+                super::box_run::apply(run, scene)?;
+                continue;
+            }
             if !run[0].is_of_things() {
                 run.iter().try_for_each(|edit| edit.apply(scene))?;
                 continue;
@@ -374,6 +386,18 @@ impl Edit {
         Ok(())
     }
 
+    /// True if it changes a box.
+    pub(super) fn is_of_a_box(&self) -> bool {
+        matches!(
+            self,
+            Self::AddBox { .. }
+                | Self::RemoveBox { .. }
+                | Self::MoveBox { .. }
+                | Self::LabelBox { .. }
+                | Self::SetBoxClass { .. }
+        )
+    }
+
     /// True if it changes things of the background.
     pub fn is_of_things(&self) -> bool {
         matches!(
@@ -386,7 +410,7 @@ impl Edit {
         )
     }
 
-    fn apply_to(&self, frame: &mut Frame) -> Result<(), EditError> {
+    pub(super) fn apply_to(&self, frame: &mut Frame) -> Result<(), EditError> {
         match self {
             Self::RemoveBox { id } => {
                 let old = take_box(frame, *id)?;
@@ -401,6 +425,9 @@ impl Edit {
                 id,
                 label,
             } => {
+                if frame.boxes.len() >= Frame::MAX_BOXES {
+                    return Err(EditError::TooManyBoxes(frame.boxes.len()));
+                }
                 let id = match *id {
                     Some(id) => id,
                     None => next_id(frame)?,
@@ -498,6 +525,9 @@ impl Edit {
                 let new = waive::checked(check, *box_id, *where_m, reason)?;
                 let list = Arc::make_mut(&mut frame.waivers);
                 list.retain(|w| !same_finding(w, check, *box_id, *where_m));
+                if list.len() >= Frame::MAX_WAIVERS {
+                    return Err(EditError::TooManyWaivers(list.len()));
+                }
                 list.push(new);
             }
             Self::Unwaive {
@@ -544,9 +574,10 @@ pub(super) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) {
 fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
     let taken: &BTreeMap<_, _> = &frame.boxes;
     if taken.contains_key(&BoxId(u32::MAX)) {
-        // `next_box_id` counts up from the highest; look for a gap instead.
-        let free = (1..u32::MAX).find(|id| !taken.contains_key(&BoxId(*id)));
-        return free.map(BoxId).ok_or(EditError::NoIdLeft);
+        // `next_box_id` counts up from the highest; the lowest gap instead.
+        let above_zero = taken.keys().filter(|id| id.0 > 0);
+        let free = (1..).zip(above_zero).find(|(free, id)| id.0 != *free);
+        return free.map(|(id, _)| BoxId(id)).ok_or(EditError::NoIdLeft);
     }
     Ok(frame.next_box_id())
 }

@@ -1,6 +1,7 @@
 //! How a scene changes: document, undo, picking, checks, and the arithmetic of the tools.
 
 pub mod arrange;
+mod box_run;
 pub mod checks;
 pub mod choose;
 pub mod document;

@@ -98,6 +98,11 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// Boxes that a frame holds at most.
+    pub const MAX_BOXES: usize = 20_000;
+    /// Waivers that a frame holds at most.
+    pub const MAX_WAIVERS: usize = 10_000;
+
     /// A frame whose occupancy is its own source.
     pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, occupancy: VoxelGrid) -> Self {
         let source = Arc::new(SourceFrame {

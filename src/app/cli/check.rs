@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::{anyhow, bail};
+use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
 use super::{Common, Outcome, Stop, output};
 use crate::{checking, open, panels};
+use editor::Edit;
 use editor::checks::{self, Finding, Severity, waive};
 use formats::project;
 use scene::Scene;
@@ -62,12 +63,8 @@ impl Check {
         if let Some(path) = &self.output {
             let before = findings.len();
             let mut apply = || -> anyhow::Result<()> {
-                for edit in checks::fix_all(&scene, &findings) {
-                    if let Err(error) = edit.apply(&mut scene) {
-                        bail!("a fix does not apply: {error}");
-                    }
-                }
-                Ok(())
+                let edits = checks::fix_all(&scene, &findings);
+                Edit::apply_all(&edits, &mut scene).context("a fix does not apply")
             };
             apply()?;
             findings = self.findings(&scene);

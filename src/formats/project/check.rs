@@ -65,6 +65,10 @@ fn frame_problem(frame: &Frame) -> Option<String> {
         ("", &frame.boxes, &frame.layout),
         ("source: ", &frame.source.boxes, &frame.source.layout),
     ] {
+        let (found, most) = (boxes.len(), Frame::MAX_BOXES);
+        if found > most {
+            return Some(format!("{of}{found} boxes, expected at most {most}"));
+        }
         for (id, b) in boxes {
             if *id != b.id {
                 return Some(format!("{of}box {} is filed under id {}", b.id.0, id.0));
