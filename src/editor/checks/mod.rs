@@ -174,7 +174,7 @@ pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
     let mut fix = |findings: &[&Finding], scratch: &mut Scene| {
         for fix in findings.iter().filter_map(|f| f.fixes.first()) {
             let mut next = scratch.clone();
-            if fix.edits.iter().all(|edit| edit.apply(&mut next).is_ok()) && next.rev != scratch.rev {
+            if Edit::apply_all(&fix.edits, &mut next).is_ok() && next.rev != scratch.rev {
                 *scratch = next;
                 edits.extend(fix.edits.iter().cloned());
             }

@@ -17,9 +17,14 @@ const WRONG_SHARE: f64 = 0.3;
 const GAP_M: f64 = 0.1;
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
+    let across_m: Vec<f64> = context
+        .boxes
+        .iter()
+        .map(|b| b.size_m.truncate().length())
+        .collect();
     for (i, a) in context.boxes.iter().enumerate() {
-        for b in &context.boxes[i + 1..] {
-            let reach = (a.size_m.truncate().length() + b.size_m.truncate().length()) / 2.0;
+        for (b, b_across_m) in context.boxes[i + 1..].iter().zip(&across_m[i + 1..]) {
+            let reach = (across_m[i] + b_across_m) / 2.0;
             let (pa, pb) = (a.center_m.truncate(), b.center_m.truncate());
             if pa.distance_squared(pb) >= reach * reach
                 || shared_height_m(a, b) <= TOLERATED_HEIGHT_M
