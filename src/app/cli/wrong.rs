@@ -176,7 +176,7 @@ mod tests {
                 let more = more.iter().map(|w| (*w).to_owned());
                 path.iter().cloned().chain(more).collect()
             };
-            let long = "x".repeat(1 << 20);
+            let long = "x".repeat(1 << 13);
             let mut lines = vec![
                 with(&["--no-such-option"]),
                 with(&["--no-such-option=a\nb\nc"]),

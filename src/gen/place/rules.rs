@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::cost::{moved_far, off_line, off_measure, off_near, off_thing, turned_where_it_is};
 use super::holds::{Target, ego, holds, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
-use super::spots::{Spot, spots};
+use super::spots::{Spot, is_beside, spots};
 use scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
@@ -596,22 +596,5 @@ pub fn stands(relation: RelationKind) -> bool {
     matches!(
         relation,
         RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking
-    )
-}
-
-/// Strips on either side of the road: its edges and the sidewalks.
-fn is_beside(role: LaneRole) -> bool {
-    is_roadside(role)
-        || matches!(
-            role,
-            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
-        )
-}
-
-/// Roles beside the lanes.
-pub(super) fn is_roadside(role: LaneRole) -> bool {
-    matches!(
-        role,
-        LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside
     )
 }
