@@ -10,8 +10,6 @@ pub mod command;
 mod endpoint;
 pub mod export;
 pub mod graphics;
-#[cfg(test)]
-mod guarded_tests;
 mod meant;
 pub mod paint;
 pub mod panes;

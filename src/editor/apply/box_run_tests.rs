@@ -1,5 +1,6 @@
 //! Long runs of edits of boxes: the same as one by one, in time that grows with their number only.
 
+use crate::Apply;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;

@@ -196,15 +196,15 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1] = migrate::ALL;
-    let chain = [FROM_0, v1];
+    let [v1, v2] = migrate::ALL;
+    let chain = [FROM_0, v1, v2];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.
-    let now = to_bytes(&sample(2)).expect("sound");
+    let now = to_bytes(&sample(3)).expect("sound");
     assert_same(
         &read::read(Cursor::new(now), &chain).expect("the present version"),
-        &sample(2),
+        &sample(3),
     );
     // What a step cannot take over is one line, and what it leaves lying is named.
     let mut entries = unpack(&of_version_0());

@@ -6,9 +6,8 @@ use super::super::describe::describe;
 use super::super::hear::hear;
 use super::super::reader::Mode;
 use super::super::stage::OpenScene;
-use super::super::text_edit::TextEdit;
 use super::*;
-use scene::{Frame, SensorRig};
+use scene::{Edit, Frame, SensorRig};
 use sensors::appearance::{Quality, RayMarched, SynthesisInput, ViewSynthesizer};
 use world::World;
 use world::voxelize::{Vertical, complete};
@@ -100,11 +99,11 @@ fn edits_by_words_set_the_conditions() {
         };
         let edits = carry_out(&heard.reading, &scene, 1).edits;
         let set = edits.iter().rev().find_map(|e| match e {
-            TextEdit::Conditions { conditions } => Some(*conditions),
+            Edit::SetConditions { conditions } => Some(*conditions),
             _ => None,
         });
         let style = edits.iter().rev().find_map(|e| match e {
-            TextEdit::Style { prompt } => Some(prompt.clone()),
+            Edit::SetPrompt { prompt } => Some(prompt.clone()),
             _ => None,
         });
         (set, style)
