@@ -126,7 +126,7 @@ fn short(text: &str) -> String {
 mod tests {
     use clap::{Command, CommandFactory, Parser};
 
-    use super::super::Cli;
+    use crate::Cli;
     use super::*;
 
     /// The message for a command line that must be refused.
