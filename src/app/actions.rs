@@ -1,5 +1,7 @@
 //! Everything that a key can call for: the one list behind keys, the sheet of keys and the command palette.
 
+use std::sync::LazyLock;
+
 use glam::DVec3;
 
 use viewport::ViewPreset;
@@ -7,10 +9,10 @@ use viewport::ViewPreset;
 use super::command::Command;
 use super::dock::Workspace;
 use super::staged::Verdict;
-use super::state::{Tool, UiState, VoxelVerb};
-use super::tools::things::{ThingCommand, ThingTool};
-use super::tools::{PaintShape, ToolCommand, VoxelMode};
-use editor::transform::Kind;
+use super::state::UiState;
+use super::tools::ToolCommand;
+use super::tools::things::ThingCommand;
+use editor::tools::{self, Shortcut};
 
 /// Where a chord counts; what stands later wins over what stands before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,8 +75,16 @@ pub struct ActionDef {
     pub keys: &'static str,
     /// Goes on while the key is held.
     pub repeats: bool,
-    /// What to do; none if only the window's state changes.
-    pub command: fn(&mut UiState) -> Option<Command>,
+    does: Does,
+}
+
+/// What an action does.
+#[derive(Clone, Copy)]
+enum Does {
+    /// Asks for something; nothing if only the window's state changes.
+    Command(fn(&mut UiState) -> Option<Command>),
+    /// The shortcut of a tool of that name.
+    Shortcut,
 }
 
 const fn action(
@@ -91,11 +101,19 @@ const fn action(
         when: When::Always,
         keys,
         repeats: false,
-        command,
+        does: Does::Command(command),
     }
 }
 
 impl ActionDef {
+    /// What the action asks for now.
+    pub fn run(&self, state: &mut UiState) -> Option<Command> {
+        match self.does {
+            Does::Command(command) => command(state),
+            Does::Shortcut => Some(Command::Tools(ToolCommand::Shortcut(self.id))),
+        }
+    }
+
     const fn over_3d(mut self) -> Self {
         self.when = When::Over3d;
         self
@@ -157,26 +175,34 @@ const fn raise(steps: i32) -> Command {
     Command::Tools(ToolCommand::Thing(ThingCommand::Raise(steps)))
 }
 
-/// Every action.
-pub const ACTIONS: &[ActionDef] = &[
-    action(Tools, "select_tool", "Select", "V", |_| {
-        Some(Command::Tools(ToolCommand::Lasso(false)))
-    }),
-    action(Tools, "brush_tool", "Brush", "B", |_| {
-        Some(Command::Tools(ToolCommand::Shape(PaintShape::Stroke)))
-    }),
-    action(Tools, "voxel_brush", "Voxel brush (over the 3D view)", "B", |s| {
-        let tool = if s.tool == Tool::Voxel {
-            Tool::Brush
-        } else {
-            Tool::Voxel
-        };
-        Some(Command::Tool(tool))
-    })
-    .over_3d(),
-    action(Tools, "add_box_tool", "Add box", "A", |_| {
-        Some(Command::Tool(Tool::AddBox))
-    }),
+/// Every action: those of the tools, and all others.
+pub static ACTIONS: LazyLock<Vec<ActionDef>> = LazyLock::new(|| {
+    let of_tools = tools::all().iter().flat_map(|tool| tool.shortcuts).map(of_tool);
+    of_tools.chain(OTHERS.iter().copied()).collect()
+});
+
+/// The action that a tool has.
+fn of_tool(shortcut: &'static Shortcut) -> ActionDef {
+    ActionDef {
+        id: shortcut.id,
+        group: match shortcut.when {
+            tools::When::Chosen => Selection,
+            _ => Tools,
+        },
+        title: shortcut.title,
+        when: match shortcut.when {
+            tools::When::Always => When::Always,
+            tools::When::OverSpace => When::Over3d,
+            tools::When::Chosen => When::Chosen,
+        },
+        keys: shortcut.keys,
+        repeats: false,
+        does: Does::Shortcut,
+    }
+}
+
+/// Actions that belong to no tool.
+const OTHERS: &[ActionDef] = &[
     action(Tools, "brush_smaller", "Smaller brush", "[ {", |_| {
         Some(Command::BrushSize(-1))
     })
@@ -185,120 +211,6 @@ pub const ACTIONS: &[ActionDef] = &[
         Some(Command::BrushSize(1))
     })
     .repeats(),
-    action(
-        Tools,
-        "toggle_erase",
-        "Paint or erase (or hold Shift)",
-        "E",
-        |s| {
-            s.erase = !s.erase;
-            None
-        },
-    ),
-    action(Tools, "voxel_attach", "Attach voxels", "T", |_| {
-        Some(Command::Verb(VoxelVerb::Attach))
-    }),
-    action(Tools, "voxel_remove", "Remove voxels", "R", |_| {
-        Some(Command::Verb(VoxelVerb::Remove))
-    }),
-    action(Tools, "voxel_recolour", "Recolour voxels", "Y", |_| {
-        Some(Command::Verb(VoxelVerb::Recolour))
-    }),
-    action(Tools, "lasso", "Select by lasso", "O", |_| {
-        Some(Command::Tools(ToolCommand::Lasso(true)))
-    }),
-    action(
-        Tools,
-        "rectangle_select",
-        "Select by rectangle",
-        "Shift+V",
-        |_| Some(Command::Tools(ToolCommand::Lasso(false))),
-    ),
-    action(Tools, "measure_tool", "Measure", "M", |_| {
-        Some(Command::Tool(Tool::Measure))
-    }),
-    action(Tools, "region_tool", "Region that is drawn anew", "N", |_| {
-        Some(Command::Tool(Tool::Region))
-    }),
-    action(Tools, "building_tool", "Building", "Shift+B", |_| {
-        Some(Command::Tool(Tool::Thing(ThingTool::Building)))
-    }),
-    action(Tools, "tree_tool", "Trees", "Shift+T", |_| {
-        Some(Command::Tool(Tool::Thing(ThingTool::Tree)))
-    }),
-    action(
-        Tools,
-        "line_tool",
-        "Hedge, wall, fence, guard rail",
-        "Shift+L",
-        |_| Some(Command::Tool(Tool::Thing(ThingTool::Line))),
-    ),
-    action(Tools, "shrub_tool", "Shrubs", "Shift+S", |_| {
-        Some(Command::Tool(Tool::Thing(ThingTool::Shrubs)))
-    }),
-    action(
-        Tools,
-        "post_tool",
-        "Pole, sign, light, bus stop, bench, bin",
-        "Shift+P",
-        |_| Some(Command::Tool(Tool::Thing(ThingTool::Post))),
-    ),
-    action(Tools, "shape_rectangle", "Brush: rectangle", "U", |_| {
-        Some(Command::Tools(ToolCommand::Shape(PaintShape::Rectangle)))
-    }),
-    action(Tools, "shape_line", "Brush: line", "L", |_| {
-        Some(Command::Tools(ToolCommand::Shape(PaintShape::Line)))
-    }),
-    action(
-        Tools,
-        "shape_polygon",
-        "Brush: polygon; again: street",
-        "P",
-        |s| {
-            let again = s.tool == Tool::Brush && s.tools.shape == PaintShape::Polygon;
-            let shape = if again {
-                PaintShape::Street
-            } else {
-                PaintShape::Polygon
-            };
-            Some(Command::Tools(ToolCommand::Shape(shape)))
-        },
-    ),
-    action(Tools, "shape_street", "Brush: street", "", |_| {
-        Some(Command::Tools(ToolCommand::Shape(PaintShape::Street)))
-    }),
-    action(Tools, "shape_fill", "Brush: fill", "K", |_| {
-        Some(Command::Tools(ToolCommand::Shape(PaintShape::Fill)))
-    }),
-    action(
-        Tools,
-        "shape_pick",
-        "Brush: pick a layer (or Alt+click)",
-        "I",
-        |_| Some(Command::Tools(ToolCommand::Shape(PaintShape::Pick))),
-    ),
-    action(Tools, "voxel_block", "Voxels: block", "U", |_| {
-        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Block)))
-    })
-    .over_3d(),
-    action(Tools, "voxel_row", "Voxels: row", "L", |_| {
-        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Row)))
-    })
-    .over_3d(),
-    action(Tools, "voxel_fill", "Voxels: flood", "K", |_| {
-        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Fill)))
-    })
-    .over_3d(),
-    action(Tools, "voxel_pull", "Voxels: pull a face", "P", |_| {
-        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Extrude)))
-    })
-    .over_3d(),
-    action(Tools, "voxel_wand", "Voxels: magic wand", "Shift+O", |_| {
-        Some(Command::Tools(ToolCommand::Voxels(VoxelMode::Wand)))
-    }),
-    action(Tools, "symmetry", "Symmetry about the ego axis", "S", |_| {
-        Some(Command::Tools(ToolCommand::Symmetry))
-    }),
     action(
         Tools,
         "escape",
@@ -401,18 +313,6 @@ pub const ACTIONS: &[ActionDef] = &[
     )
     .things()
     .repeats(),
-    action(Selection, "gizmo_move", "Dragging moves", "W", |_| {
-        Some(Command::Tools(ToolCommand::Gizmo(Kind::Move)))
-    })
-    .chosen(),
-    action(Selection, "gizmo_turn", "Dragging turns", "E", |_| {
-        Some(Command::Tools(ToolCommand::Gizmo(Kind::Turn)))
-    })
-    .chosen(),
-    action(Selection, "gizmo_scale", "Dragging scales", "R", |_| {
-        Some(Command::Tools(ToolCommand::Gizmo(Kind::Scale)))
-    })
-    .chosen(),
     action(Selection, "next_box", "Next box", "J", |_| {
         Some(Command::SelectNext(1))
     }),

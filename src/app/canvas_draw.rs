@@ -4,10 +4,11 @@ use egui::{Align2, Color32, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui,
 use glam::DVec2;
 
 use editor::pick;
+use editor::tools::select;
 use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
 use super::canvas::{CanvasInput, ScreenMap};
-use super::state::{Tool, UiState};
+use super::state::UiState;
 use super::theme;
 
 /// What of `outer` is not covered by `inner`.
@@ -145,7 +146,7 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
     let frame = scene.frame();
     let hovered = response
         .hover_pos()
-        .filter(|_| state.tool == Tool::Select)
+        .filter(|_| state.tool == select::ID)
         .and_then(|p| pick::box_at(frame, map.to_ego(p)));
     for b in frame.boxes.values() {
         if Some(b.id) != state.selected {
@@ -161,7 +162,7 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
     }
     if let Some(b) = state.selected.and_then(|id| frame.boxes.get(&id)) {
         draw_box(ui, map, b, BoxLook::Selected);
-        if state.tool == Tool::Select {
+        if state.tool == select::ID {
             draw_handles(ui, map, b);
         }
     }

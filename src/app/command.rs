@@ -8,7 +8,8 @@ use scene::{BoxId, Class, SceneRev};
 use viewport::ViewPreset;
 
 use super::dock::Workspace;
-use super::state::{Pane, Tool, VoxelVerb};
+use super::state::Pane;
+use super::tools::ToolId;
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,15 +38,6 @@ pub enum Command {
     SelectNext(i32),
     /// Ends what is in hand: a drag, an enlarged camera, the selection, the tool.
     Escape,
-    /// Puts a new box of typical size on the ground, and chooses it.
-    AddBox {
-        /// One of the ten object classes.
-        class: Class,
-        /// Middle of the footprint, ego frame, m.
-        at_m: glam::DVec2,
-        /// Heading, rad.
-        yaw_rad: f64,
-    },
     /// Deletes the chosen box.
     DeleteSelected,
     /// Copies the chosen box beside itself, and chooses the copy.
@@ -55,9 +47,7 @@ pub enum Command {
     /// Turns the chosen box counter-clockwise, degrees.
     Turn(f64),
     /// Takes another tool.
-    Tool(Tool),
-    /// What the voxel brush does.
-    Verb(VoxelVerb),
+    Tool(ToolId),
     /// Makes the brush in hand larger (1) or smaller (-1).
     BrushSize(i32),
     /// Generates: all of it, or what was edited.

@@ -7,6 +7,7 @@ use egui::Context;
 
 use editor::Edit;
 use editor::document::Label;
+use editor::tools::{add_box, brush, region, select, voxel};
 use scene::SceneBox;
 
 use super::application::{Next, Opening, SceneloomApp, one_line};
@@ -17,9 +18,8 @@ use super::file_dialogs::Purpose;
 use super::open;
 use super::panels::objects::neighbour;
 use super::panels::toasts::Level;
-use super::state::{Pane, Tool};
-use super::tools::things::Draft;
-use super::tools::{Choose, ToolCommand};
+use super::state::{Pane, UiState};
+use super::tools::{Choose, ToolCommand, ToolId};
 
 impl SceneloomApp {
     /// Carries out one command.
@@ -40,13 +40,7 @@ impl SceneloomApp {
                 self.document.commit_drag(label);
                 self.note_correction();
             }
-            Command::CancelDrag => {
-                self.document.cancel_drag();
-                let draft = &mut self.state.tools.things.draft;
-                if draft.points_m().is_empty() {
-                    *draft = Draft::None;
-                }
-            }
+            Command::CancelDrag => self.document.cancel_drag(),
             Command::Undo => {
                 self.document.undo();
             }
@@ -62,23 +56,14 @@ impl SceneloomApp {
                 self.state.choose(next.as_slice(), Choose::Only);
             }
             Command::Escape => self.escape(),
-            Command::AddBox { class, at_m, yaw_rad } => {
-                let made = self
-                    .state
-                    .new_box(self.document.scene().frame(), class, at_m, yaw_rad);
-                if let Some(b) = made {
-                    self.add(&b, "Add box");
-                }
-            }
             Command::DeleteSelected => self.tool_command(ToolCommand::Delete, ctx),
             Command::DuplicateSelected => self.tool_command(ToolCommand::Duplicate, ctx),
             Command::Nudge(step_m) => self.tool_command(ToolCommand::Nudge(step_m), ctx),
             Command::Turn(degrees) => self.tool_command(ToolCommand::Turn(degrees), ctx),
             Command::Tool(tool) => {
-                self.state.tool = tool;
-                self.state.tools.things.draft = Draft::None;
+                let UiState { toolbox, tools, .. } = &mut self.state;
+                toolbox.take(&mut tools.hand, tool);
             }
-            Command::Verb(verb) => (self.state.verb, self.state.tool) = (verb, Tool::Voxel),
             Command::BrushSize(step) => self.state.step_brush(step),
             Command::Generate { full } => self.generate(full),
             Command::DrawScenery => self.draw_scenery(),
@@ -183,15 +168,15 @@ impl SceneloomApp {
                 self.dock = Dock::workspace(workspace);
                 // Its tool comes to hand, unless one of the kind is there already.
                 self.state.tool = match (workspace, self.state.tool) {
-                    (Workspace::Paint, Tool::Brush | Tool::Region) => self.state.tool,
-                    (Workspace::Paint, _) => Tool::Brush,
-                    (Workspace::Voxels, _) => Tool::Voxel,
-                    (_, Tool::Brush | Tool::Voxel) => Tool::Select,
+                    (Workspace::Paint, tool) if paints_map(tool) => tool,
+                    (Workspace::Paint, _) => brush::ID,
+                    (Workspace::Voxels, _) => voxel::ID,
+                    (_, tool) if tool == brush::ID || tool == voxel::ID => select::ID,
                     (_, tool) => tool,
                 };
             }
             Command::PlaceClass(class) => {
-                self.state.tool = Tool::AddBox;
+                self.state.tool = add_box::ID;
                 self.state.box_class = class;
             }
             Command::TogglePalette => self.palette.toggle(),
@@ -255,7 +240,7 @@ impl SceneloomApp {
     }
 
     /// A correction changes what the source was inverted under.
-    fn note_correction(&mut self) {
+    pub(super) fn note_correction(&mut self) {
         if self.state.correcting {
             self.live.source_changed();
         }
@@ -266,22 +251,6 @@ impl SceneloomApp {
         self.document.scene().frame().boxes.get(&id).copied()
     }
 
-    fn add(&mut self, b: &SceneBox, label: &'static str) {
-        self.apply(
-            label,
-            &[Edit::AddBox {
-                class: b.class,
-                center_m: b.center_m,
-                size_m: b.size_m,
-                yaw_deg: b.yaw_rad.to_degrees(),
-                velocity_mps: (b.velocity_mps != glam::DVec2::ZERO).then_some(b.velocity_mps),
-                id: Some(b.id),
-                label: b.label,
-            }],
-        );
-        self.state.choose(&[b.id], Choose::Only);
-    }
-
     fn escape(&mut self) {
         if self.document.is_dragging() {
             self.document.cancel_drag();
@@ -289,8 +258,8 @@ impl SceneloomApp {
             self.state.inspected = None;
         } else if !self.state.tools.voxels.is_empty() {
             self.state.tools.voxels.clear();
-        } else if self.state.tool != Tool::Select {
-            self.state.tool = Tool::Select;
+        } else if self.state.tool != select::ID {
+            self.state.tool = select::ID;
         } else if self.state.any_chosen() {
             self.state.choose(&[], Choose::Only);
         } else {
@@ -518,6 +487,11 @@ impl SceneloomApp {
             Err(error) => self.fail(format!("No screenshot: {}", one_line(&error))),
         }
     }
+}
+
+/// True for a tool of the workspace that paints the map.
+fn paints_map(tool: ToolId) -> bool {
+    tool == region::ID || tool.def().paints && tool != voxel::ID
 }
 
 /// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.

@@ -56,9 +56,29 @@ pub enum Icon {
     Shrubs,
     /// Lamp with an arm.
     Lamp,
+    /// Circle with its middle.
+    Circle,
 }
 
 impl Icon {
+    /// The icon that a tool names; an arrow for a name that is none.
+    pub fn named(name: &str) -> Self {
+        match name {
+            "brush" => Self::Brush,
+            "circle" => Self::Circle,
+            "add_box" => Self::AddBox,
+            "voxel" => Self::Voxel,
+            "measure" => Self::Measure,
+            "region" => Self::Region,
+            "building" => Self::Building,
+            "tree" => Self::Tree,
+            "fence" => Self::Fence,
+            "shrubs" => Self::Shrubs,
+            "lamp" => Self::Lamp,
+            _ => Self::Cursor,
+        }
+    }
+
     /// Draws the icon into the middle of `rect`.
     pub fn paint(self, ui: &Ui, rect: Rect, color: Color32) {
         let scale = (rect.width().min(rect.height()) / 16.0).min(1.25);
@@ -129,6 +149,10 @@ impl Icon {
                 line(&[(13.0, 5.8), (6.5, 5.8)]);
                 arc((6.5, 9.5), 3.7, 90.0, 270.0);
                 line(&[(6.5, 13.2), (10.0, 13.2)]);
+            }
+            Icon::Circle => {
+                arc((8.0, 8.0), 6.0, 0.0, 360.0);
+                arc((8.0, 8.0), 0.9, 0.0, 360.0);
             }
             Icon::Play => solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)]),
             Icon::Stop => solid(&[(3.5, 3.5), (12.5, 3.5), (12.5, 12.5), (3.5, 12.5)]),

@@ -6,8 +6,7 @@ use egui::{Context, Key, Modifiers};
 use super::actions::{When, nudge_direction};
 use super::command::Command;
 use super::keymap::{Chord, Keymap};
-use super::state::{Pane, Tool, UiState};
-use super::tools::things::ThingTool;
+use super::state::{Pane, UiState};
 
 /// Actions that do not wait for the end of a drag.
 const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
@@ -49,11 +48,8 @@ pub fn commands(
         }
         let over_3d = state.hovered_pane == Some(Pane::View3d);
         // With a brush in hand its own letters count.
-        let brush = matches!(
-            state.tool,
-            Tool::Brush | Tool::Voxel | Tool::Region | Tool::Thing(ThingTool::Shrubs)
-        );
-        let chosen = state.any_chosen() && !matches!(state.tool, Tool::Brush | Tool::Voxel);
+        let brush = state.tool.def().is_brush;
+        let chosen = state.any_chosen() && !state.tool.def().paints;
         let things = !state.tools.things.chosen.is_empty() && !brush;
         let applies = |when| match when {
             When::Always => true,
@@ -73,7 +69,7 @@ pub fn commands(
             drop_focus(ctx);
         }
         if !repeat || action.repeats {
-            commands.extend((action.command)(state));
+            commands.extend(action.run(state));
         }
     }
 }
@@ -160,7 +156,7 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tools::{PaintShape, ToolCommand};
+    use crate::tools::ToolCommand;
     use glam::DVec3;
     use scene::BoxId;
 
@@ -195,28 +191,28 @@ mod tests {
         let mut state = UiState::default();
         assert_eq!(
             of(Key::A, Modifiers::NONE, &mut state, false),
-            [Command::Tool(Tool::AddBox)]
+            [Command::Tools(ToolCommand::Shortcut("add_box_tool"))]
         );
         assert!(of(Key::A, Modifiers::NONE, &mut state, true).is_empty());
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
-            [Command::Tools(ToolCommand::Shape(PaintShape::Stroke))]
+            [Command::Tools(ToolCommand::Shortcut("brush_tool"))]
         );
         state.hovered_pane = Some(Pane::View3d);
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
-            [Command::Tool(Tool::Voxel)]
+            [Command::Tools(ToolCommand::Shortcut("voxel_brush"))]
         );
-        of(Key::E, Modifiers::NONE, &mut state, false);
-        assert!(state.erase);
+        assert_eq!(
+            of(Key::E, Modifiers::NONE, &mut state, false),
+            [Command::Tools(ToolCommand::Shortcut("toggle_erase"))]
+        );
     }
 
     #[test]
     fn keys_wait_for_the_end_of_a_drag() {
-        let mut state = UiState {
-            selected: Some(BoxId(3)),
-            ..UiState::default()
-        };
+        let mut state = UiState::default();
+        state.selected = Some(BoxId(3));
         let hands = Hands {
             dragging: true,
             ..Hands::default()

@@ -158,6 +158,7 @@ impl SceneloomApp {
         let rect = if mode == CompareMode::Side { right } else { area };
         let input = CanvasInput {
             scene,
+            settled: self.document.settled_scene(),
             lidar: self.sensing.lidar().map(|l| &**l),
             unsettled: self.unsettled.clone(),
             generating: self.live.running.is_some(),

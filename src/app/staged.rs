@@ -10,7 +10,7 @@ use super::compare::CompareMode;
 use super::panels::cameras::thousands;
 use super::panels::toasts::Level;
 use super::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use super::state::{Tool, UiState};
+use super::state::UiState;
 use super::theme;
 use editor::Edit;
 use editor::part::{Part, changed_by_class};
@@ -347,7 +347,7 @@ fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command
         .on_hover_text("The rest stays as it was");
     });
     if mark {
-        commands.push(Command::Tool(Tool::Region));
+        commands.push(Command::Tool(editor::tools::region::ID));
     }
 }
 

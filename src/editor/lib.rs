@@ -18,6 +18,7 @@ pub mod pick;
 pub mod pick_things;
 pub mod shape;
 mod things;
+pub mod tools;
 pub mod transform;
 pub mod voxel_ops;
 

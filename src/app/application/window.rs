@@ -162,7 +162,7 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
-        crate::tools::dialogs::show(ui, scene.frame(), &mut self.state, commands);
+        crate::panels::row::show(ui, scene.frame(), &mut self.state, commands);
         let recent = &self.settings.recent;
         self.palette
             .show(ui, &self.keymap, recent, &mut self.state, commands);

@@ -9,15 +9,7 @@ use editor::Edit;
 
 /// What the fields to its right are.
 pub fn caption(ui: &mut Ui, text: &str) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(52.0, theme::ROW), egui::Sense::hover());
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    ui.painter().text(
-        rect.left_center(),
-        egui::Align2::LEFT_CENTER,
-        text,
-        font,
-        theme::text_weak(),
-    );
+    crate::tools::panel::label(ui, text, 52.0);
 }
 
 /// Three numbers in a row; the response of all of them.

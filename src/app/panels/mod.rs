@@ -24,6 +24,7 @@ mod prompt_graph;
 pub mod prompt_plan;
 pub mod recalled;
 pub mod recovery;
+pub mod row;
 pub mod sensors;
 pub mod settings;
 pub mod shortcuts;
