@@ -43,6 +43,8 @@ struct Disc {
     radius_m: f64,
     layer: BevLayer,
     erase: bool,
+    /// It is large enough, and some of it lies on the map.
+    shown: bool,
 }
 
 impl Disc {
@@ -81,6 +83,7 @@ impl Circle {
             radius_m: 0.0,
             layer,
             erase: cx.hand.erase || pointer.held.shift,
+            shown: false,
         });
         Response::hold()
     }
@@ -90,15 +93,16 @@ impl Circle {
             return Response::none();
         };
         disc.radius_m = disc.middle_m.distance(at_m);
-        if disc.radius_m < LEAST_M {
-            return Response::act(Act::Cancel);
+        disc.shown = disc.radius_m >= LEAST_M && disc.shape().cells().is_ok();
+        match disc.shown {
+            true => brush::show(disc.layer, disc.shape(), !disc.erase),
+            false => Response::act(Act::Cancel),
         }
-        brush::show(disc.layer, disc.shape(), !disc.erase)
     }
 
     fn release(&mut self) -> Response {
         match self.disc.take() {
-            Some(disc) if disc.radius_m >= LEAST_M => {
+            Some(disc) if disc.shown => {
                 let label = if disc.erase {
                     "Erase circle"
                 } else {
@@ -170,5 +174,97 @@ impl Tool for Circle {
             setting::take(&mut hand.erase, value, &brush::ERASE);
         }
         Vec::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Edit;
+    use crate::tools::Wants;
+    use crate::tools::testing::{NONE, SHIFT, Table};
+
+    fn previewed(response: &Response) -> (DVec2, f64, bool) {
+        match &response.acts[..] {
+            [Act::Preview(edits)] => match &edits[..] {
+                [
+                    Edit::PaintBev {
+                        layer: BevLayer::Walkway,
+                        shape: Shape::Disc { center_m, radius_m },
+                        value,
+                    },
+                ] => (*center_m, *radius_m, *value),
+                other => panic!("{other:?}"),
+            },
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn table() -> Table {
+        let mut table = Table::new();
+        table.hand.layer = BevLayer::Walkway;
+        table
+    }
+
+    #[test]
+    fn a_drag_from_the_middle_paints_a_disc() {
+        let (mut table, mut tool) = (table(), Circle::default());
+        let pressed = table.press(&mut tool, 4.0, -2.0, NONE);
+        assert!(pressed.holds && pressed.acts.is_empty());
+        let shown = previewed(&table.drag(&mut tool, 7.0, 2.0));
+        assert_eq!(shown, (DVec2::new(4.0, -2.0), 5.0, true));
+        let hint = tool.hint(&table.hand, Some(ViewKind::Bev));
+        assert_eq!(hint[0], "Paints a disc of 5.0 m radius");
+        let marks = tool.overlay(&table.sight(7.0, 2.0));
+        let role = Role::Paint(BevLayer::Walkway);
+        assert_eq!(marks[0], Mark::Disc(DVec2::new(4.0, -2.0), 5.0, role));
+        assert!(matches!(&marks[1], Mark::Tag(_, text) if text == "5.0 m"));
+        let released = table.release(&mut tool, 7.0, 2.0);
+        assert_eq!(released, Response::act(Act::Commit("Paint circle".into())));
+        // It is over: moving on changes nothing.
+        assert_eq!(table.drag(&mut tool, 9.0, 9.0), Response::none());
+        assert_eq!(table.release(&mut tool, 9.0, 9.0), Response::none());
+        assert!(tool.overlay(&table.sight(9.0, 9.0)).is_empty());
+        assert_eq!(tool.wants(), Wants::Nothing);
+    }
+
+    #[test]
+    fn shift_or_the_eraser_erases() {
+        let (mut table, mut tool) = (table(), Circle::default());
+        table.press(&mut tool, 0.0, 0.0, SHIFT);
+        // Shift counts when the button goes down.
+        assert_eq!(
+            previewed(&table.drag(&mut tool, 2.0, 0.0)),
+            (DVec2::ZERO, 2.0, false)
+        );
+        let released = table.release(&mut tool, 2.0, 0.0);
+        assert_eq!(released.acts, [Act::Commit("Erase circle".into())]);
+        tool.set(&mut table.hand, table.scene.frame(), "erase", Value::Index(1));
+        assert!(table.hand.erase);
+        table.press(&mut tool, 0.0, 0.0, NONE);
+        assert!(!previewed(&table.drag(&mut tool, 2.0, 0.0)).2);
+    }
+
+    #[test]
+    fn what_is_cancelled_too_small_outside_or_locked_paints_nothing() {
+        let (mut table, mut tool) = (table(), Circle::default());
+        table.press(&mut tool, 0.0, 0.0, NONE);
+        table.drag(&mut tool, 3.0, 0.0);
+        assert_eq!(table.tell(&mut tool, Event::Cancel), Response::none());
+        assert_eq!(table.release(&mut tool, 3.0, 0.0), Response::none());
+        // A click, or a drag back to where it began.
+        assert_eq!(table.click(&mut tool, 5.0, 5.0, NONE).acts, []);
+        table.press(&mut tool, 0.0, 0.0, NONE);
+        table.drag(&mut tool, 3.0, 0.0);
+        assert_eq!(table.drag(&mut tool, 0.1, 0.0).acts, [Act::Cancel]);
+        assert_eq!(table.release(&mut tool, 0.1, 0.0).acts, []);
+        // Beside the map there is nothing to show, and what was shown before goes.
+        table.press(&mut tool, 300.0, 0.0, NONE);
+        assert_eq!(table.drag(&mut tool, 302.0, 0.0).acts, [Act::Cancel]);
+        assert_eq!(table.release(&mut tool, 302.0, 0.0).acts, []);
+        table.hand.layers_locked = BevLayer::Walkway.bit();
+        let pressed = table.press(&mut tool, 0.0, 0.0, NONE);
+        assert!(!pressed.holds && matches!(&pressed.acts[..], [Act::Note(text)] if text.contains("locked")));
+        assert_eq!(tool.cursor(&table.sight(0.0, 0.0)), Cursor::Forbidden);
     }
 }

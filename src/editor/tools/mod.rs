@@ -14,6 +14,10 @@ pub mod region;
 mod response;
 pub mod select;
 pub mod setting;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
 mod toolbox;
 mod view;
 pub mod voxel;
@@ -223,35 +227,4 @@ pub enum Wants {
     Drag,
     /// The wheel.
     Wheel,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_there_once_and_every_tool_says_what_it_does() {
-        let mut ids: Vec<&str> = all().iter().map(|t| t.id.0).collect();
-        ids.sort_unstable();
-        ids.dedup();
-        assert_eq!(ids.len(), all().len());
-        let mut names: Vec<&str> = all().iter().flat_map(|t| t.shortcuts).map(|s| s.id).collect();
-        let count = names.len();
-        names.sort_unstable();
-        names.dedup();
-        assert_eq!(names.len(), count, "an action twice");
-        for tool in all() {
-            assert!(
-                shortcut(tool.id.0).is_some(),
-                "{} cannot be taken by a key",
-                tool.title
-            );
-            assert!(std::ptr::eq(tool.id.def(), *tool));
-            let (hand, made) = (Hand::default(), (tool.make)());
-            for view in [ViewKind::Bev, ViewKind::Space] {
-                assert!(!made.hint(&hand, Some(view)).is_empty(), "{}", tool.title);
-            }
-            assert!(made.points_m().is_empty());
-        }
-    }
 }
