@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{
-    Color32, ColorImage, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle,
-    TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Color32, ColorImage, PointerButton, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, Ui, WidgetInfo, pos2,
 };
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use editor::pick::{self, Ray};
+use editor::pick;
 use editor::pick_things;
-use editor::tools::{Hand, View, ViewKind, region, select};
+use editor::tools::{Hand, region, select};
 use scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerLook};
@@ -20,69 +20,16 @@ use super::canvas_draw::{
     BoxLook, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
     draw_unsettled,
 };
-use super::canvas_tools::{Driver, Seen, point, pos};
+use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
 use super::live::Bounds;
 use super::marks::{self, Board};
 use super::panels::row;
 use super::pointer::{self, Held, Step};
+pub use super::screen_map::ScreenMap;
 use super::state::{UiState, Underlay};
 use super::theme;
 use super::thing_outlines;
-
-/// From the ego frame to the screen and back.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenMap {
-    /// The pane, points.
-    pub rect: Rect,
-    /// Point of the ego frame in the middle of the pane, m.
-    pub center_m: DVec2,
-    /// Points per metre.
-    pub scale: f64,
-}
-
-impl ScreenMap {
-    /// Where a point of the ego frame appears.
-    pub fn to_screen(&self, p_m: DVec2) -> Pos2 {
-        let d = (p_m - self.center_m) * self.scale;
-        self.rect.center() + vec2(-d.y as f32, -d.x as f32)
-    }
-
-    /// The point of the ego frame under a point of the screen, m.
-    pub fn to_ego(&self, p: Pos2) -> DVec2 {
-        let d = p - self.rect.center();
-        self.center_m + DVec2::new(-f64::from(d.y), -f64::from(d.x)) / self.scale
-    }
-
-    pub(super) fn rect_of(&self, min_m: DVec2, max_m: DVec2) -> Rect {
-        Rect::from_two_pos(self.to_screen(min_m), self.to_screen(max_m))
-    }
-}
-
-/// Rays from above begin this high, m.
-const ABOVE_M: f64 = 1000.0;
-
-impl View for ScreenMap {
-    fn kind(&self) -> ViewKind {
-        ViewKind::Bev
-    }
-
-    fn project(&self, p_m: DVec3) -> Option<DVec2> {
-        Some(point(self.to_screen(p_m.truncate())))
-    }
-
-    fn ray(&self, at: DVec2) -> Option<Ray> {
-        Ray::new(self.to_ego(pos(at)).extend(ABOVE_M), -DVec3::Z)
-    }
-
-    fn right(&self) -> DVec3 {
-        DVec3::X
-    }
-
-    fn scale(&self) -> f64 {
-        self.scale
-    }
-}
 
 /// The bird's-eye view's own state.
 pub struct Canvas {
@@ -337,7 +284,7 @@ impl Canvas {
         if state.show_boxes {
             draw_boxes(ui, map, response, input.scene, state);
         }
-        draw_unsettled(ui, map, input);
+        draw_unsettled(ui, map, &input.unsettled, input.generating);
         if let Some(meant) = &state.meant {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
             meant.draw(&inside, map, scene.frame());
@@ -386,14 +333,17 @@ impl Canvas {
                 draw_box(ui, map, &b, BoxLook::Ghost);
             }
         }
-        let (marks, cursor) = self.driver.sight(ui, response, &seen(input, map), state);
+        let (marks, cursor) = self
+            .driver
+            .sight(ui, response.hover_pos(), &seen(input, map), state);
         let board = Board {
             painter,
             view: map,
             map: Some(map),
         };
         board.paint(ui, &marks);
-        if response.hover_pos().is_some() {
+        // A still answers no pointer.
+        if response.hover_pos().is_some() && response.sense.senses_drag() {
             let pans = ui.input(|i| i.key_down(egui::Key::Space) || i.pointer.middle_down());
             let cursor = if pans { egui::CursorIcon::Grab } else { cursor };
             ui.ctx().set_cursor_icon(cursor);
@@ -484,23 +434,4 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
         parts.push(format!("{name} #{}, {height_m:.1} m high", thing.id.0));
     }
     parts.join("  ·  ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_map_goes_both_ways() {
-        let map = ScreenMap {
-            rect: Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 300.0)),
-            center_m: DVec2::new(3.0, -2.0),
-            scale: 7.5,
-        };
-        let p = DVec2::new(11.25, 4.5);
-        assert!(map.to_ego(map.to_screen(p)).distance(p) < 1e-4);
-        // Forward is up, left is left.
-        assert!(map.to_screen(DVec2::new(10.0, -2.0)).y < map.rect.center().y);
-        assert!(map.to_screen(DVec2::new(3.0, 5.0)).x < map.rect.center().x);
-    }
 }

@@ -7,7 +7,8 @@ use editor::pick;
 use editor::tools::select;
 use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
-use super::canvas::{CanvasInput, ScreenMap};
+use super::live::Bounds;
+use super::screen_map::ScreenMap;
 use super::state::UiState;
 use super::theme;
 
@@ -208,15 +209,15 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
 }
 
 /// A dashed frame around what is still to be generated.
-pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) {
-    let color = if input.generating {
+pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, unsettled: &[Bounds], generating: bool) {
+    let color = if generating {
         theme::accent()
     } else {
         theme::warn()
     };
     let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
-    for (low, high) in input.unsettled.iter() {
+    for (low, high) in unsettled {
         let rect = map.rect_of(corner(*low) - half, corner(*high) + half).expand(2.0);
         ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
         let [a, b, c, d] = [

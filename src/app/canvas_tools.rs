@@ -2,18 +2,16 @@
 //! large views drive the tools through here.
 
 use egui::{CursorIcon, Key as Pressed, PointerButton, Pos2, Response, Ui};
-use glam::DVec2;
 
 use editor::tools::{
-    Act, Context, Cursor, Event, Key, Mark, Modifiers, Pointer, Response as Answer, Sight, View, ViewKind,
-    Wants,
+    Context, Cursor, Event, Key, Mark, Modifiers, Pointer, Response as Answer, Sight, View, ViewKind, Wants,
 };
 use scene::Scene;
 
 use super::command::Command;
 use super::pointer::{self, Step};
+use super::screen_map::point;
 use super::state::UiState;
-use super::tools::ToolCommand;
 
 /// Who follows the pointer while the button is down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,32 +42,11 @@ pub(super) struct Seen<'a> {
     pub view: &'a dyn View,
 }
 
-/// A point of the window for the tools.
-pub(super) fn point(p: Pos2) -> DVec2 {
-    DVec2::new(p.x.into(), p.y.into())
-}
-
-/// A point of the window from the tools.
-pub(super) fn pos(p: DVec2) -> Pos2 {
-    egui::pos2(p.x as f32, p.y as f32)
-}
-
 fn modifiers(m: egui::Modifiers) -> Modifiers {
     Modifiers {
         shift: m.shift,
         ctrl: m.ctrl || m.command,
         alt: m.alt,
-    }
-}
-
-/// Asks for what a tool answered.
-pub(super) fn carry_out(acts: Vec<Act>, commands: &mut Vec<Command>) {
-    for act in acts {
-        match act {
-            Act::Preview(edits) => pointer::preview(commands, edits),
-            Act::Cancel => commands.push(Command::CancelDrag),
-            act => commands.push(Command::Tools(ToolCommand::Act(act))),
-        }
     }
 }
 
@@ -84,7 +61,7 @@ fn tell(seen: &Seen<'_>, state: &mut UiState, event: Event, commands: &mut Vec<C
         hand: &mut tools.hand,
     };
     let mut answer = tool.event(&mut cx, &event);
-    carry_out(std::mem::take(&mut answer.acts), commands);
+    pointer::carry_out(std::mem::take(&mut answer.acts), commands);
     answer
 }
 
@@ -245,12 +222,12 @@ impl Driver {
     pub fn sight(
         &self,
         ui: &Ui,
-        response: &Response,
+        hover: Option<Pos2>,
         seen: &Seen<'_>,
         state: &UiState,
     ) -> (Vec<Mark>, CursorIcon) {
         let held = ui.input(|i| modifiers(i.modifiers));
-        let pointer = response.hover_pos().map(|p| Pointer { at: point(p), held });
+        let pointer = hover.map(|p| Pointer { at: point(p), held });
         let sight = Sight {
             scene: seen.scene,
             settled: seen.settled,

@@ -50,6 +50,7 @@ mod recovering;
 pub mod recovery;
 pub mod roads;
 pub mod scenery;
+mod screen_map;
 pub mod sensing;
 pub mod settings;
 mod software_ui;

@@ -6,9 +6,8 @@ use glam::DVec2;
 use editor::tools::{At, Mark, Role, View};
 use scene::{BevLayer, GridSpec};
 
-use super::canvas::ScreenMap;
 use super::canvas_draw::{BoxLook, draw_box};
-use super::canvas_tools::pos;
+use super::screen_map::{ScreenMap, pos};
 use super::theme;
 use super::thing_outlines;
 

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use editor::tools::beside::ThingState;
 use scene::{Form, Pose, Scene, ThingId};
 
-use super::canvas::ScreenMap;
+use super::screen_map::ScreenMap;
 
 /// More outlines than this are drawn without those of trees and posts.
 const MANY: usize = 4000;

@@ -16,10 +16,11 @@ use viewport::{
     lidar_colors,
 };
 
-use super::canvas_tools::{Driver, Seen, point, pos};
+use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
 use super::marks::Board;
 use super::pointer::{self, Held, Step};
+use super::screen_map::{point, pos};
 use super::software_ui;
 use super::state::{UiState, position_text};
 use super::theme;
@@ -164,7 +165,9 @@ impl View3d {
         if moved || (input.dragging || brushes) && !self.is_software() {
             self.last_motion_s = now_s;
         }
-        let (marks, cursor) = self.driver.sight(ui, &response, &self.seen(input), state);
+        let (marks, cursor) = self
+            .driver
+            .sight(ui, response.hover_pos(), &self.seen(input), state);
         if response.hovered() && !self.driver.is_held() {
             ui.ctx().set_cursor_icon(cursor);
         }
@@ -196,8 +199,7 @@ impl View3d {
         self.options = options.clone();
         if self.gpu.is_some() {
             let now_s = ui.input(|i| i.time);
-            let still = ui.interact(rect, ui.scope_id().with("still 3d"), Sense::empty());
-            let (marks, _) = self.driver.sight(ui, &still, &self.seen(input), state);
+            let (marks, _) = self.driver.sight(ui, None, &self.seen(input), state);
             self.paint(ui, input, state, (None, &marks), now_s);
         }
     }

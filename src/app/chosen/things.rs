@@ -19,7 +19,10 @@ impl SceneloomApp {
             ThingCommand::Raise(steps) => self.raise(steps),
             ThingCommand::Apply(label, edits) => self.apply(label, &edits),
             ThingCommand::Commit(label) => self.document.commit_drag(label),
-            ThingCommand::Take(kind) => self.state.take_thing(kind),
+            ThingCommand::Take(kind) => {
+                self.state.toolbox.put_down();
+                self.state.take_thing(kind);
+            }
             ThingCommand::ToggleShown => self.show_things(!self.state.tools.things.shown),
             ThingCommand::ToggleLocked => self.lock_things(!self.state.tools.things.locked),
         }

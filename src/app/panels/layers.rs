@@ -4,9 +4,9 @@ use egui::accesskit::Role;
 use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::bev_image::DRAW_ORDER;
-use crate::canvas_tools::carry_out;
 use crate::command::Command;
 use crate::icons::{self, Icon, section};
+use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::{UiState, Underlay};
 use crate::theme;

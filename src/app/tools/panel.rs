@@ -76,6 +76,9 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
             let response = ui.add_enabled(*enabled, egui::Button::new(*title));
             return response.on_hover_text(*hint).clicked().then_some(Value::Pressed);
         }
+        Control::Line(settings) => {
+            ui.horizontal(|ui| set.extend(show(ui, settings)));
+        }
         Control::Row(settings) => {
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = egui::vec2(3.0, 3.0);

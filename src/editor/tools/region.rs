@@ -186,7 +186,7 @@ impl Tool for Marker {
             Setting::text("1: all of it new. Less is a variation of what is there."),
             Setting::new(
                 "",
-                setting::Control::Row(vec![
+                setting::Control::Line(vec![
                     Setting::button("draw", "Draw anew", "each time from other noise", any),
                     Setting::button("clear", "Clear region", "", any),
                 ]),

@@ -81,6 +81,8 @@ pub enum Control {
         /// Can be pressed.
         enabled: bool,
     },
+    /// Several side by side on one line.
+    Line(Vec<Setting>),
     /// Several side by side, in as many lines as they need.
     Row(Vec<Setting>),
     /// A little room.

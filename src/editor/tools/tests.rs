@@ -215,11 +215,14 @@ fn every_option_that_is_listed_can_be_set() {
         while let Some(setting) = settings.pop() {
             use setting::Control;
             let value = match setting.control {
-                Control::Row(inner) => {
+                Control::Row(inner) | Control::Line(inner) => {
                     settings.extend(inner);
                     continue;
                 }
-                Control::Number(number) => Value::Number(number.range[1]),
+                Control::Number(number) => {
+                    let [low, high] = number.range;
+                    Value::Number(if number.value == high { low } else { high })
+                }
                 Control::Segments { chosen, choices, .. } => Value::Index((chosen + 1) % choices.len()),
                 Control::Toggle { on, .. } => Value::On(!on),
                 Control::Rows { chosen, names, .. } => Value::Index((chosen + 1) % names.len()),

@@ -231,8 +231,8 @@ impl Tool for Select {
             Setting::gap(),
             Setting::segments("pivot", hand.pivot, &PIVOTS, 2),
             Setting::gap(),
-            Setting::new("", Control::Row(snaps)),
-            Setting::new("", Control::Row(more_snaps)),
+            Setting::new("", Control::Line(snaps)),
+            Setting::new("", Control::Line(more_snaps)),
             Setting::gap(),
             Setting::new("", Control::Row(buttons)),
             Setting::toggle(
