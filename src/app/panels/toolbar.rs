@@ -118,7 +118,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
 }
 
 /// In a narrower window the tools for things share one button, so that the name of the scene keeps its place, points.
-const ROOM_FOR_ALL: f32 = 1390.0;
+const ROOM_FOR_ALL: f32 = 1360.0;
 
 /// One button for all tools for things; it opens their list.
 fn thing_tools(ui: &mut Ui, in_hand: ToolId, commands: &mut Vec<Command>) {
