@@ -4,8 +4,8 @@
 use std::time::Instant;
 
 use dataset::occupancy_frame;
-use metrics::stats::median;
 use nets::{CELLS, ColumnHeights, DitCondition, GROUPS, KeysValues, OccModels, tokens_of};
+use numeric::quantile::median;
 
 const RUNS: usize = 25;
 const SIDE: usize = 50;

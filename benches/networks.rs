@@ -1,16 +1,15 @@
-//! Times the networks with the shipped weights, and the transformer beside the same one written with
-//! candle: `cargo bench --bench networks`. Medians in one run, the two taking turns.
+//! Times the networks with the shipped weights, on the processor's kernels and on candle: `cargo bench --bench networks`. Medians in one run, the two taking turns.
 
 use std::time::Instant;
 
 use dataset::occupancy_frame;
-use metrics::stats::median;
-use nets::candle_dit::CandleDit;
-use nets::candle_vae::CandleVae;
-use nets::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccModels};
+use nets::{ColumnHeights, DitCondition, GROUPS, KeysValues, Middle, OccDit, OccModels, OccVae};
 use nn::Precision;
 use nn::layers::{View, matmul};
 use nn::packed_matrix::{PackedMatrix, Start};
+use nn::weights::WeightFile;
+use nn_candle::Candle;
+use numeric::quantile::median;
 
 const RUNS: usize = 15;
 
@@ -21,20 +20,20 @@ fn timed<T>(out: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// A layer's product, 80 x 192 times 192 x 768, against panels and through gemm, on one core.
+/// A layer's product, 80 x 192 times 192 x 768, against a packed matrix and through gemm, on one core.
 fn products() {
     let [m, n, k] = [80, 768, 192];
     let number = |i: usize| (i % 97) as f32 / 97.0 - 0.5;
     let a: Vec<f32> = (0..m * k).map(number).collect();
     let b: Vec<f32> = (0..k * n).map(number).collect();
     let mut out = vec![0.0; m * n];
-    let panels = PackedMatrix::new(View::rows(&b, n), k, n);
-    let (int8, bias) = (panels.to_int8(), vec![0.0; n]);
+    let packed = PackedMatrix::new(View::rows(&b, n), k, n);
+    let (int8, bias) = (packed.to_int8(), vec![0.0; n]);
     let [mut ours, mut theirs, mut bytes] = [const { Vec::new() }; 3];
     for _ in 0..20 * RUNS {
         timed(&mut bytes, || int8.multiply(&a, &bias, &mut out));
         timed(&mut ours, || {
-            panels.multiply(&a, k, [m, 0, k], Start::Zero, &mut out, n)
+            packed.multiply(&a, k, [m, 0, k], Start::Zero, &mut out, n)
         });
         timed(&mut theirs, || {
             matmul(
@@ -49,7 +48,7 @@ fn products() {
     }
     let rate = |ms: &[f64]| 2e-6 * (m * n * k) as f64 / median(ms);
     println!(
-        "product of a layer, one core: panels {:.0}, gemm {:.0}, eight bits {:.0} GFLOP/s",
+        "product of a layer, one core: packed {:.0}, gemm {:.0}, eight bits {:.0} GFLOP/s",
         rate(&ours),
         rate(&theirs),
         rate(&bytes)
@@ -58,11 +57,11 @@ fn products() {
 
 fn main() {
     let models = OccModels::bundled().expect("the shipped weights load");
-    let bytes = include_bytes!("../assets/weights/occ_dit.safetensors");
-    let candle = CandleDit::new(bytes, models.dit.config().heads).expect("the shipped weights load");
-    let vae_bytes = include_bytes!("../assets/weights/occ_vae.safetensors");
-    let candle_vae =
-        CandleVae::new(vae_bytes, models.vae.config().clone()).expect("the shipped weights load");
+    let file = |bytes| WeightFile::parse("shipped", bytes).expect("the shipped weights load");
+    let device = Candle::best().expect("a device");
+    let candle =
+        OccDit::on(device.clone(), file(assets::weights::OCC_DIT)).expect("the shipped weights load");
+    let candle_vae = OccVae::on(device, file(assets::weights::OCC_VAE)).expect("the shipped weights load");
     let frame = occupancy_frame(3, 0, |_| None);
     let [mut encode, mut decode, mut ours, mut theirs, mut int8, mut reused] = [const { Vec::new() }; 6];
     let [mut their_encode, mut their_decode] = [const { Vec::new() }; 2];
@@ -79,7 +78,7 @@ fn main() {
         context: vec![0.0; 20_000],
     };
     let prepared = models.dit.prepare(&condition).expect("a sound condition");
-    let tokens = candle.condition(&condition).expect("a sound condition");
+    let tokens = candle.prepare(&condition).expect("a sound condition");
     for run in 0..RUNS + 2 {
         if run == 2 {
             // The first two warm up.
@@ -126,10 +125,7 @@ fn main() {
                 error / square(&mut exact.iter().copied())
             );
         }
-        timed(&mut theirs, || {
-            candle.forward(&latent, 500.0, &condition, &tokens)
-        })
-        .expect("finite");
+        timed(&mut theirs, || candle.forward(&latent, 500.0, &tokens)).expect("finite");
     }
     products();
     println!("median of {RUNS}, ms");

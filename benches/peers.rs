@@ -13,7 +13,7 @@ use diffusion::solver::{Branch, Denoiser, Guidance, Prediction, Sampler, SolverE
 use formats::occ3d;
 use glam::DVec3;
 use nets::{ColumnHeights, DitCondition, GROUPS, OccModels};
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 use rayon::prelude::*;
 use safetensors::{Dtype, tensor::TensorView};
 use scene::splats::SplatOptions;

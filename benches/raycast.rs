@@ -3,6 +3,7 @@
 //! threads for the same rays, after 68.6 ms to build its tree.
 
 use glam::DVec3;
+use numeric::quantile::median;
 use rayon::prelude::*;
 use scene::{Class, GridSpec, SensorRig, VoxelGrid};
 use sensors::caster::Caster;
@@ -66,7 +67,7 @@ fn main() {
         hits
     };
     // Taking turns, so that a busy machine slows both alike.
-    let mut ratios: Vec<f64> = (0..60)
+    let ratios: Vec<f64> = (0..60)
         .map(|_| {
             let start = std::time::Instant::now();
             let hits = one_by_one();
@@ -76,10 +77,9 @@ fn main() {
             start.elapsed().as_secs_f64() / alone.as_secs_f64()
         })
         .collect();
-    ratios.sort_by(f64::total_cmp);
     println!(
         "packets take {:.2} of the time of single rays (median of turns)",
-        ratios[30]
+        median(&ratios)
     );
     timing::time("single rays, one thread", 60, one_by_one);
     timing::time("cast, one thread", 60, || packets(0, 1084 * GROUPS));

@@ -3,6 +3,8 @@
 
 use std::time::Instant;
 
+use numeric::quantile::{median, quantile};
+
 /// Nanoseconds that the threads of this process have run so far, if the system tells.
 fn cpu_ns() -> Option<u64> {
     let mut total = 0;
@@ -20,7 +22,7 @@ pub fn time(what: &str, repeats: usize, mut run: impl FnMut() -> usize) {
         result = run();
     }
     let before = cpu_ns();
-    let mut times_ms: Vec<f64> = (0..repeats)
+    let times_ms: Vec<f64> = (0..repeats)
         .map(|_| {
             let start = Instant::now();
             assert_eq!(run(), result, "{what}: the same each time");
@@ -31,10 +33,9 @@ pub fn time(what: &str, repeats: usize, mut run: impl FnMut() -> usize) {
         .zip(cpu_ns())
         .map(|(a, b)| (b - a) as f64 / 1e6 / repeats as f64);
     let cpu = cpu.map_or(String::new(), |ms| format!(", processor {ms:.2} ms"));
-    times_ms.sort_by(f64::total_cmp);
     println!(
         "{what}: median {:.2} ms, least {:.2} ms{cpu} ({result})",
-        times_ms[times_ms.len() / 2],
-        times_ms[0]
+        median(&times_ms),
+        quantile(&times_ms, 0.0)
     );
 }

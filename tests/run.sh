@@ -23,9 +23,19 @@ if [ "${#need[@]}" -gt 0 ]; then
   fi
 fi
 
-# The release profile throughout: dependencies build once, and networks run at full speed.
-cargo fmt --check
-cargo clippy --release --all-targets --quiet -- -D warnings
-cargo clippy --release -p sceneloom-worlds --quiet -- -D warnings
-RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --document-private-items --quiet
-cargo test --release
+# The release profile throughout: libraries build once, and networks run at full speed.
+cargo fmt --all --check
+cargo clippy --release --workspace --all-targets --quiet -- -D warnings
+RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --document-private-items --quiet
+cargo test --release --workspace
+
+# Overflow and debug assertions: the rooms without networks and window, whose tests are quick without optimisation.
+cargo test --profile checked --lib --quiet -p sceneloom-numeric -p sceneloom-scene -p sceneloom-editor -p sceneloom-formats \
+  -p sceneloom-diffusion -p sceneloom-place
+
+# The PyTorch twins of the networks, where PyTorch is there (pip install -r training/requirements.txt).
+if python3 -c 'import torch, numpy, safetensors' 2>/dev/null; then
+  (cd training && python3 test_training.py ../tests/reference && python3 test_lidar.py ../tests/reference)
+else
+  echo "training tests: not run, no PyTorch here"
+fi

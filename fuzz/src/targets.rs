@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use app::cli;
 use app::dock::Dock;
 use app::keymap::{Chord, Keymap};
+use app::panes::{self, id::PaneId};
 use app::settings::Settings;
-use app::state::Pane;
 use app::{open, text as app_text};
 use diffusion::solver::SolverKind;
 use editor::{Document, Edit, Shape};
@@ -117,7 +117,6 @@ pub fn project_file(bytes: &[u8]) {
 
 /// `labels.npz`, and with it npy.
 pub fn occ3d_file(bytes: &[u8]) {
-    occ3d::is_npz(bytes);
     match occ3d::read(bytes) {
         Err(error) => one_line(error),
         Ok(frame) => {
@@ -195,9 +194,9 @@ pub fn settings_file(bytes: &[u8]) {
     let Some(mut dock) = settings.dock.clone().and_then(Dock::from_kept) else {
         return;
     };
-    for pane in Pane::CHOICES {
+    for pane in panes::infos().iter().map(|p| p.id) {
         dock.is_shown(pane);
-        dock.swap(pane, Pane::Bev);
+        dock.swap(pane, PaneId::BEV);
         dock.open(pane);
         if let Some(tile) = dock.find(pane) {
             dock.toggle_maximized(tile);

@@ -22,14 +22,14 @@ use super::canvas_draw::{
 };
 use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
-use super::live::Bounds;
 use super::marks::{self, Board};
-use super::panels::row;
 use super::pointer::{self, Held, Step};
 pub use super::screen_map::ScreenMap;
 use super::state::{UiState, Underlay};
 use super::theme;
 use super::thing_outlines;
+use crate::shell::live::Bounds;
+use crate::windows::row;
 
 /// The bird's-eye view's own state.
 pub struct Canvas {

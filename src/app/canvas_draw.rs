@@ -7,10 +7,10 @@ use editor::pick;
 use editor::tools::select;
 use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
-use super::live::Bounds;
 use super::screen_map::ScreenMap;
 use super::state::UiState;
 use super::theme;
+use crate::shell::live::Bounds;
 
 /// What of `outer` is not covered by `inner`.
 pub(super) fn around(inner: Rect, outer: Rect) -> [Rect; 4] {

@@ -1,104 +1,29 @@
-//! Takes a scene to files of other programs: what the command line and the window share.
+//! Takes a scene to files of other programs: what the command line and the window share. Which formats there are, and what
+//! they write, is in `formats::export`; here is what has to be made of the scene for them.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow, bail};
-use serde_json::json;
 
-use super::camera_views::march;
-use super::checking;
+use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
-use super::state::{CameraSource, LidarModel};
-use formats::{atomic, box_list, occ3d, png, point_cloud};
+use super::state::LidarModel;
+use crate::shell::checking;
+use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen};
+use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
-use scene::sensor_data::{RENDER_IDS, RenderId};
-use scene::{CameraMaps, Class, LidarSweep, Scene, SensorRig};
-use sensors::appearance::{Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use scene::{CameraMaps, LidarSweep, Scene, SensorRig};
+use sensors::appearance::Quality;
+use sensors::cameras::{
+    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
+};
 use sensors::learned::{self, Drops};
-use sensors::splat::{self, GaussianCloud, SplatOptions};
-use sensors::{color, lidar};
+use sensors::lidar;
 use viewport::{ViewCamera, ViewPreset};
 
-/// What can be exported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Format {
-    /// Occupancy as Occ3D labels.
-    Occ3d,
-    /// LiDAR sweep as nuScenes keeps it.
-    NuscenesLidar,
-    /// LiDAR sweep for viewers.
-    Ply,
-    /// Classes that the cameras see.
-    Semantic,
-    /// Depths that the cameras see.
-    Depth,
-    /// Pictures that the cameras take.
-    Pictures,
-    /// Boxes with their numbers.
-    Boxes,
-    /// Picture of the 3D view.
-    View,
-}
-
-impl Format {
-    /// Every format, in the order of lists.
-    pub const ALL: [Format; 8] = [
-        Format::Occ3d,
-        Format::Boxes,
-        Format::NuscenesLidar,
-        Format::Ply,
-        Format::Semantic,
-        Format::Depth,
-        Format::Pictures,
-        Format::View,
-    ];
-
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Format::Occ3d => "occ3d",
-            Format::NuscenesLidar => "nuscenes-lidar",
-            Format::Ply => "ply",
-            Format::Semantic => "semantic",
-            Format::Depth => "depth",
-            Format::Pictures => "pictures",
-            Format::Boxes => "boxes",
-            Format::View => "view",
-        }
-    }
-
-    /// The format of that name.
-    pub fn from_name(name: &str) -> Option<Format> {
-        Self::ALL.into_iter().find(|f| f.name() == name)
-    }
-
-    /// What it holds, for a person.
-    pub fn what(self) -> &'static str {
-        match self {
-            Format::Occ3d => "Occupancy: Occ3D labels.npz, 200 x 200 x 16 class labels",
-            Format::NuscenesLidar => "LiDAR: nuScenes .pcd.bin, sensor frame (x, y, z, intensity, ring)",
-            Format::Ply => "LiDAR: PLY for viewers, ego frame, with class, intensity, ring",
-            Format::Semantic => "Cameras: class maps, PNG with palette, and classes.json",
-            Format::Depth => "Cameras: depth in millimetres, 16-bit PNG",
-            Format::Pictures => "Cameras: pictures in the prompt's weather, PNG",
-            Format::Boxes => "Boxes: JSON with centre, size, heading, velocity, LiDAR points",
-            Format::View => "3D view: PNG of any size, supersampled",
-        }
-    }
-
-    /// Name of the file where only a folder is given; `None` for formats that fill a folder.
-    pub fn file_name(self) -> Option<&'static str> {
-        match self {
-            Format::Occ3d => Some("labels.npz"),
-            Format::NuscenesLidar => Some("LIDAR_TOP.pcd.bin"),
-            Format::Ply => Some("lidar.ply"),
-            Format::Boxes => Some("boxes.json"),
-            Format::View => Some("view.png"),
-            Format::Semantic | Format::Depth | Format::Pictures => None,
-        }
-    }
-}
+/// A format that is written, a line of the table [`formats::export::all`].
+pub type Format = &'static Exporter;
 
 /// How to export.
 #[derive(Clone, Debug)]
@@ -106,7 +31,7 @@ pub struct ExportOptions {
     /// Size of camera pictures and maps in pixels.
     pub camera_size: [u32; 2],
     /// What classes and depths are rendered from.
-    pub source: CameraSource,
+    pub source: SourceId,
     /// How the LiDAR sweep comes about.
     pub lidar: LidarModel,
     /// How the picture of the 3D view is taken.
@@ -117,7 +42,7 @@ impl Default for ExportOptions {
     fn default() -> Self {
         Self {
             camera_size: [800, 450],
-            source: CameraSource::default(),
+            source: SourceId::default(),
             lidar: LidarModel::default(),
             shot: ShotOptions::default(),
         }
@@ -135,7 +60,10 @@ pub struct ExportProgress {
 impl ExportProgress {
     /// Begins to count what these formats take.
     fn begin(&self, formats: &[Format], rig: &SensorRig) {
-        let of_cameras = |f: &&Format| matches!(f, Format::Semantic | Format::Depth | Format::Pictures);
+        let of_cameras = |f: &&Format| {
+            let pictures = [Product::CameraMaps, Product::Pictures];
+            f.needs.iter().any(|product| pictures.contains(product))
+        };
         let pictures = formats.iter().filter(of_cameras).count() * rig.cameras.len();
         self.done.store(0, Ordering::Relaxed);
         self.of.store(pictures, Ordering::Relaxed);
@@ -164,25 +92,35 @@ impl ExportProgress {
         }
     }
 
-    /// Makes something for each camera of a rig, in their order; asks before each whether to go on.
-    fn each_camera<T>(
+    /// Renders a view for each camera, in the rig's order, and hands each picture on before the next is made; asks before
+    /// each whether to go on.
+    fn each_camera(
         &self,
-        rig: &SensorRig,
-        mut make: impl FnMut(&SensorRig) -> anyhow::Result<Vec<T>>,
-    ) -> anyhow::Result<Vec<T>> {
+        scene: &Scene,
+        (view, options): (ViewId, &ExportOptions),
+        mut take: impl FnMut(CameraPicture) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        let rig = &scene.rig;
         if rig.cameras.is_empty() {
             bail!("the rig {:?} has no camera", rig.name);
         }
-        let mut all = Vec::new();
+        let source = cameras::source_of(view, options.source);
+        bounds::check(options.camera_size, source.bytes_per_pixel(), 0)?;
+        let ready = Ready::new(source, &camera_input(scene, Detail::Full));
+        let options = RenderOptions {
+            size: options.camera_size,
+            quality: Quality::Full,
+        };
         for camera in &rig.cameras {
             self.go_on()?;
-            all.extend(make(&SensorRig {
-                cameras: vec![camera.clone()],
-                ..rig.clone()
-            })?);
+            let context = RenderContext {
+                cancelled: &|| self.is_cancelled(),
+                ..RenderContext::processor()
+            };
+            take(ready.render(camera, &options, context)?)?;
             self.done.fetch_add(1, Ordering::Relaxed);
         }
-        Ok(all)
+        Ok(())
     }
 }
 
@@ -219,168 +157,114 @@ pub fn export_all(
     path: &Path,
     progress: &ExportProgress,
 ) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-    let mut out = Files {
-        scene,
-        path,
-        fills_a_folder: formats.len() > 1,
-        ready: Vec::new(),
-    };
+    let fills_a_folder = formats.len() > 1;
+    let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
     for format in formats {
-        make_ready(&mut out, scene, *format, options, progress)?;
+        let files = (format.write)(
+            scene,
+            &mut Making {
+                scene,
+                options,
+                progress,
+            },
+        )?;
+        progress.go_on()?;
+        let place = |file: OutFile| (place_of(format, &file, path, fills_a_folder), file.bytes);
+        ready.extend(files.into_iter().map(place));
     }
     progress.go_on()?;
-    out.write()
+    write(path, ready)
 }
 
-/// Makes the files of a format.
-fn make_ready(
-    out: &mut Files<'_>,
-    scene: &Scene,
-    format: Format,
-    options: &ExportOptions,
-    progress: &ExportProgress,
-) -> anyhow::Result<()> {
-    let frame = scene.frame();
-    match format {
-        Format::Occ3d => {
-            if let Some((x, y, z, label)) = frame.occupancy.iter_set().find(|(.., l)| *l > Class::FREE) {
-                bail!(
-                    "voxel {x}, {y}, {z} holds label {label}, expected 0 to {}",
-                    Class::FREE
-                );
-            }
-            out.file(format, occ3d::to_bytes(&frame.occupancy));
-        }
-        Format::Boxes => {
-            let seen = checking::seen(scene);
-            let (lidar, camera) = (seen.lidar_returns.as_ref(), seen.camera_pixels.as_ref());
-            let bytes = box_list::to_bytes(&scene.name, frame, lidar, camera).map_err(|e| anyhow!(e))?;
-            out.file(format, bytes);
-        }
-        Format::NuscenesLidar => {
-            let sweep = sweep(scene, options.lidar)?;
-            // The sweep is of the first one, and there is one.
-            let pattern = scene.rig.lidars.first().context("the rig has no LiDAR")?;
-            out.file(format, point_cloud::nuscenes(&sweep, pattern));
-        }
-        Format::Ply => out.file(format, point_cloud::ply(&sweep(scene, options.lidar)?)),
-        Format::Semantic => {
-            for m in camera_maps(scene, options, progress)? {
-                let labels = labels(&m);
-                out.picture(
-                    &format!("{}_semantic.png", m.camera),
-                    png::indexed(m.width, m.height, &labels, &palette())?,
-                );
-            }
-            let classes: Vec<_> = (0..=RENDER_IDS as u8)
-                .map(|id| json!({ "index": id, "name": label_name(id), "rgb": palette()[usize::from(id)] }))
-                .collect();
-            let text = serde_json::to_string_pretty(&json!({ "classes": classes }))?;
-            out.beside("classes.json", text.into_bytes());
-        }
-        Format::Depth => {
-            for m in camera_maps(scene, options, progress)? {
-                let mm = color::depth_mm(&m.depth_m);
-                out.picture(
-                    &format!("{}_depth_mm.png", m.camera),
-                    png::grey16(m.width, m.height, &mm)?,
-                );
-            }
-        }
-        Format::Pictures => {
-            let images = progress.each_camera(&scene.rig, |rig| {
-                Ok(RayMarched.synthesize(&SynthesisInput {
-                    frame,
-                    rig,
-                    size: options.camera_size,
-                    prompt: &scene.prompt,
-                    conditions: Conditions {
-                        seed: scene.seed,
-                        ..Conditions::from_prompt(&scene.prompt)
-                    },
-                    quality: Quality::Full,
-                })?)
-            })?;
-            for image in images {
-                out.picture(
-                    &format!("{}.png", image.camera),
-                    png::rgba(image.width, image.height, &image.rgba)?,
-                );
-            }
-        }
-        Format::View => {
-            let shot = View3d::new()?.shot(scene, &options.shot)?;
-            let mut bytes = png::rgba(shot.width, shot.height, &shot.rgba)?;
-            tell(scene, &mut bytes);
-            out.file(format, bytes);
-        }
+/// Where a file of a format goes: the one file of a format to the path itself, unless that is a folder.
+fn place_of(format: Format, file: &OutFile, path: &Path, fills_a_folder: bool) -> PathBuf {
+    let is_folder = format.file_name.is_none()
+        || fills_a_folder
+        || path.is_dir()
+        || path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
+    match is_folder {
+        true => path.join(&file.name),
+        false => path.to_path_buf(),
     }
-    progress.go_on()
 }
 
-struct Files<'a> {
+/// Writes what is ready; makes the folder where it is missing, but no folder above the one that was named.
+fn write(named: &Path, ready: Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<Vec<(PathBuf, u64)>> {
+    let mut written = Vec::new();
+    for (path, bytes) in ready {
+        if path != named {
+            std::fs::create_dir_all(named).with_context(|| format!("create {}", named.display()))?;
+        }
+        atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
+        written.push((path, bytes.len() as u64));
+    }
+    Ok(written)
+}
+
+/// Makes the products of a scene for the formats that ask for them.
+struct Making<'a> {
     scene: &'a Scene,
-    path: &'a Path,
-    fills_a_folder: bool,
-    ready: Vec<(PathBuf, Vec<u8>)>,
+    options: &'a ExportOptions,
+    progress: &'a ExportProgress,
 }
 
-impl Files<'_> {
-    /// The one file of a format.
-    fn file(&mut self, format: Format, bytes: Vec<u8>) {
-        let is_folder = self.fills_a_folder
-            || self.path.is_dir()
-            || self.path.as_os_str().to_string_lossy().ends_with(['/', '\\']);
-        let path = match format.file_name().filter(|_| is_folder) {
-            Some(name) => self.path.join(name),
-            None => self.path.to_path_buf(),
-        };
-        self.ready.push((path, bytes));
+impl Products for Making<'_> {
+    fn seen(&mut self) -> Result<Seen, FormatError> {
+        let seen = checking::seen(self.scene);
+        Ok(Seen {
+            lidar_returns: seen.lidar_returns,
+            camera_pixels: seen.camera_pixels,
+        })
     }
 
-    /// One of several in the folder.
-    fn beside(&mut self, name: &str, bytes: Vec<u8>) {
-        // Cameras are named by users.
-        let tidy: String = name
-            .chars()
-            .map(|c| {
-                if c.is_alphanumeric() || "-_.".contains(c) {
-                    c
-                } else {
-                    '_'
-                }
-            })
-            .collect();
-        self.ready.push((self.path.join(tidy), bytes));
+    fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
+        sweep(self.scene, self.options.lidar).map_err(FormatError::new)
     }
 
-    fn picture(&mut self, name: &str, mut bytes: Vec<u8>) {
-        tell(self.scene, &mut bytes);
-        self.beside(name, bytes);
+    fn camera_maps(
+        &mut self,
+        take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        let view = (ViewId::SEMANTIC, self.options);
+        let each = self
+            .progress
+            .each_camera(self.scene, view, |picture| match picture {
+                CameraPicture::Maps(maps) => Ok(take(maps)?),
+                _ => bail!("the source of classes and depths gives something else"),
+            });
+        each.map_err(FormatError::new)
     }
 
-    /// Writes what is ready; makes the folder where it is missing, but no folder above the one that was named.
-    fn write(self) -> anyhow::Result<Vec<(PathBuf, u64)>> {
-        let mut written = Vec::new();
-        for (path, bytes) in self.ready {
-            if path != self.path {
-                std::fs::create_dir_all(self.path)
-                    .with_context(|| format!("create {}", self.path.display()))?;
-            }
-            atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
-            written.push((path, bytes.len() as u64));
-        }
-        Ok(written)
+    fn pictures(
+        &mut self,
+        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        let view = (pictures::VIEW.id, self.options);
+        let each = self
+            .progress
+            .each_camera(self.scene, view, |picture| match picture {
+                CameraPicture::Picture(image) => Ok(take(Picture {
+                    camera: image.camera,
+                    width: image.width,
+                    height: image.height,
+                    rgba: image.rgba,
+                })?),
+                _ => bail!("the source of pictures gives something else"),
+            });
+        each.map_err(FormatError::new)
     }
-}
 
-/// What a picture shows goes into the picture.
-fn tell(scene: &Scene, png: &mut Vec<u8>) {
-    png::add_text(png, "Prompt", &scene.prompt);
-    png::add_text(png, "Seed", &scene.seed.to_string());
-    png::add_text(png, "Scene", &scene.name);
-    png::add_text(png, "Software", concat!("sceneloom ", env!("CARGO_PKG_VERSION")));
+    fn view(&mut self) -> Result<Picture, FormatError> {
+        let shot = View3d::new().and_then(|mut view| view.shot(self.scene, &self.options.shot));
+        let shot = shot.map_err(FormatError::new)?;
+        Ok(Picture {
+            camera: String::new(),
+            width: shot.width,
+            height: shot.height,
+            rgba: shot.rgba,
+        })
+    }
 }
 
 fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
@@ -396,54 +280,6 @@ fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
     }
 }
 
-fn camera_maps(
-    scene: &Scene,
-    options: &ExportOptions,
-    progress: &ExportProgress,
-) -> anyhow::Result<Vec<CameraMaps>> {
-    let [width, height] = options.camera_size;
-    let frame = scene.frame();
-    match options.source {
-        CameraSource::Splats => {
-            let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
-            let splats = SplatOptions::default();
-            progress.each_camera(&scene.rig, |rig| {
-                Ok(splat::render_rig(&cloud, rig, width, height, &splats))
-            })
-        }
-        source => {
-            let world = march(scene, source == CameraSource::Shapes);
-            progress.each_camera(&scene.rig, |rig| Ok(world.render_rig(rig, width, height)))
-        }
-    }
-}
-
-/// Label of the class "others", which shares render id 0 with nothing at all.
-const OTHERS: u8 = RENDER_IDS as u8;
-
-/// Labels of a map: render ids, and [`OTHERS`] where a surface of that class is.
-fn labels(maps: &CameraMaps) -> Vec<u8> {
-    let others = |at: usize| maps.coverage[at] > 0.5 && maps.depth_m[at] > 0.0;
-    let of = |(at, id): (usize, &RenderId)| if *id == 0 && others(at) { OTHERS } else { *id };
-    maps.semantic.iter().enumerate().map(of).collect()
-}
-
-fn palette() -> Vec<[u8; 3]> {
-    let ids = (0..RENDER_IDS as u8).map(color::render_id_color);
-    ids.chain([Class::Others.color()]).collect()
-}
-
-fn label_name(label: u8) -> &'static str {
-    match label {
-        0 => "nothing",
-        17 => "ped_crossing",
-        18 => "road_divider",
-        19 => "lane_divider",
-        OTHERS => "others",
-        class => Class::from_id(class).map_or("unknown", Class::name),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -454,7 +290,12 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("out");
         let scene = open::from_template("straight", 3).expect("a template");
-        let formats: Vec<Format> = Format::ALL.into_iter().filter(|f| *f != Format::View).collect();
+        let needs_no_device = |f: &Format| !f.needs.contains(&Product::View);
+        let formats: Vec<Format> = formats::export::all()
+            .iter()
+            .copied()
+            .filter(needs_no_device)
+            .collect();
         let progress = ExportProgress::default();
         let options = ExportOptions {
             camera_size: [320, 180],

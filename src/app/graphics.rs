@@ -2,12 +2,9 @@
 //! thread that senses has a device of its own, so the window never waits for it. What the card cannot draw, the
 //! processor draws.
 
-use std::sync::Mutex;
-
 use scene::{Camera, CameraMaps};
-use sensors::appearance::{
-    CameraImage, Look, Quality, RayMarched, SynthesisError, SynthesisInput, ViewSynthesizer,
-};
+use sensors::appearance::{CameraImage, Look, Quality};
+use sensors::cameras::Card;
 use sensors::cloud::GaussianCloud;
 use sensors::splat::SplatOptions;
 use viewport::{LookRenderer, SplatRenderer, headless_device};
@@ -64,16 +61,16 @@ impl Graphics {
     pub fn adapter(&self) -> &str {
         &self.adapter
     }
+}
 
-    /// Takes a cloud up; false if the processor has to draw it.
-    pub fn set_cloud(&mut self, cloud: &GaussianCloud) -> bool {
+impl Card for Graphics {
+    fn set_cloud(&mut self, cloud: &GaussianCloud) -> bool {
         let set = self.splats.as_mut().map(|s| s.set_cloud(cloud.gaussians()));
         self.splats = self.splats.take().filter(|_| matches!(set, Some(Ok(()))));
         self.splats.is_some()
     }
 
-    /// Maps of the cloud that was set last; `None` if the processor has to draw them.
-    pub fn maps(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Option<CameraMaps> {
+    fn maps(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Option<CameraMaps> {
         let options = SplatOptions::default();
         let drawn = self
             .splats
@@ -87,15 +84,13 @@ impl Graphics {
         Some(maps.into_camera_maps(&camera.name, &options))
     }
 
-    /// Takes a look up; false if the processor has to draw it.
-    pub fn set_look(&mut self, look: &Look) -> bool {
+    fn set_look(&mut self, look: &Look) -> bool {
         let set = self.looks.as_mut().map(|l| l.set_look(&look.data()));
         self.looks = self.looks.take().filter(|_| matches!(set, Some(Ok(()))));
         self.looks.is_some()
     }
 
-    /// A picture of the look that was set last, which is `look`; `None` if the processor has to draw it.
-    pub fn picture(
+    fn picture(
         &mut self,
         look: &Look,
         camera: &Camera,
@@ -113,43 +108,12 @@ impl Graphics {
     }
 }
 
-/// The renderer of pictures on a card; it takes what the card cannot draw to the processor.
-pub struct OnCard(Mutex<Graphics>);
-
-impl OnCard {
-    /// On this card.
-    pub fn new(graphics: Graphics) -> Self {
-        Self(Mutex::new(graphics))
-    }
-}
-
-impl ViewSynthesizer for OnCard {
-    fn name(&self) -> &str {
-        "ray marched on the graphics card"
-    }
-
-    fn synthesize(&self, input: &SynthesisInput<'_>) -> Result<Vec<CameraImage>, SynthesisError> {
-        let [w, h] = input.size;
-        let look = Look::new(input.frame, input.rig, &input.conditions);
-        let mut card = self.0.lock().unwrap_or_else(|e| e.into_inner());
-        let drawn = card.set_look(&look).then(|| {
-            let cameras = input.rig.cameras.iter();
-            let picture = |camera| card.picture(&look, camera, [w, h], input.quality);
-            cameras.map(picture).collect::<Option<Vec<CameraImage>>>()
-        });
-        match drawn.flatten() {
-            Some(images) => Ok(images),
-            None => RayMarched.synthesize(input),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera_views::{CameraPicture, Prepared};
-    use crate::state::{CameraMode, CameraSource};
+    use crate::camera_views::camera_input;
     use scene::{Frame, Scene, draft};
+    use sensors::cameras::{self, CameraPicture, Detail, Ready, RenderContext, RenderOptions};
     use world::World;
 
     /// What the window shows by way of a card, software here, is what it shows without: labels of splats to 0.1 %,
@@ -162,21 +126,26 @@ mod tests {
         let occupancy = draft::draft(&world.layout, world.boxes.values());
         let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
         let scene = Scene::single("test", frame, Default::default(), 3);
-        for (mode, source) in [
-            (CameraMode::Semantic, CameraSource::Splats),
-            (CameraMode::Semantic, CameraSource::Voxels),
-            (CameraMode::Picture, CameraSource::default()),
-        ] {
-            let prepared = Prepared::new(&scene, mode, source);
-            let on_card = prepared.upload(&mut card);
-            assert_eq!(
-                on_card,
-                source != CameraSource::Voxels || mode == CameraMode::Picture
-            );
-            let size = [96, 54];
-            let there = prepared.view(&scene, 1, size, true, on_card.then_some(&mut card));
-            let here = prepared.view(&scene, 1, size, true, None);
-            match (&*there.picture, &*here.picture) {
+        let options = RenderOptions {
+            size: [96, 54],
+            quality: Quality::Preview,
+        };
+        let mut drawn_by_card = Vec::new();
+        for source in cameras::all() {
+            let ready = Ready::new(*source, &camera_input(&scene, Detail::Live));
+            if !ready.upload_to(|| Some(&mut card)) {
+                continue;
+            }
+            drawn_by_card.push(source.id().name());
+            let camera = &scene.rig.cameras[1];
+            let by = |card| {
+                let context = RenderContext {
+                    card,
+                    ..RenderContext::processor()
+                };
+                ready.render(camera, &options, context).expect("a small picture")
+            };
+            match (by(Some(&mut card)), by(None)) {
                 (CameraPicture::Maps(a), CameraPicture::Maps(b)) => {
                     let gaps = a.semantic.iter().zip(&b.semantic).filter(|(a, b)| a != b);
                     assert!(gaps.count() * 1000 <= a.semantic.len());
@@ -188,6 +157,7 @@ mod tests {
                 _ => panic!("of two kinds"),
             }
         }
+        assert_eq!(drawn_by_card, ["splats", "pictures"]);
         assert!(card.splats.is_some() && card.looks.is_some(), "nothing failed");
     }
 

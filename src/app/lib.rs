@@ -1,164 +1,41 @@
-//! The shell: window, panels, commands, command line; the only room that knows everyone.
+//! The program: the window with its panes, and the command line. It knows every other crate, and none knows it.
 
-pub mod actions;
-pub mod application;
-mod around;
 mod bev_image;
-pub mod bookmarks;
-mod by_words;
 pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
 mod canvas_tools;
-pub mod checking;
 mod chosen;
 pub mod cli;
 pub mod command;
-pub mod compare;
-mod damage;
-pub mod dock;
-mod dock_ui;
-mod drawing;
 mod endpoint;
-mod execute;
 pub mod export;
-mod exporting;
-mod file_dialogs;
 pub mod graphics;
-pub mod guard;
-mod hints;
-mod icons;
-pub mod keymap;
-mod keys;
-pub mod live;
+#[cfg(test)]
+mod guarded_tests;
 mod marks;
 mod meant;
-mod measuring;
-pub mod memory;
-mod modelled;
-pub mod open;
 pub mod paint;
-mod pane_views;
-pub mod panels;
-pub mod perf;
+pub mod panes;
 pub mod picture;
 mod pipeline;
 mod pointer;
-pub mod priority;
-pub mod prompting;
-mod recovering;
-pub mod recovery;
-pub mod roads;
-pub mod scenery;
 mod screen_map;
 pub mod sensing;
-pub mod settings;
-mod software_ui;
-pub mod staged;
+pub mod shell;
 pub mod state;
-pub mod text;
 pub mod theme;
 mod thing_outlines;
 pub mod tools;
-pub mod trace;
-pub mod trade;
-pub mod tuning;
-pub mod versions;
+pub mod trade_plot;
 pub mod view3d;
+pub mod widgets;
+pub mod windows;
 
-use std::path::PathBuf;
-use std::sync::Arc;
+pub use authoring::{memory, open, prompting, scenery, text};
 
-pub use application::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
 pub use command::Command;
-
-use formats::project;
-use job::GenParams;
-use scene::Scene;
-
-/// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
-/// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].
-pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -> anyhow::Result<()> {
-    priority::workers_give_way();
-    let config = AppConfig {
-        scene,
-        path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
-        build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
-        params: GenParams::default(),
-        full_params: cli::full_params(),
-        warm_up: true,
-        open: Arc::new(open::scene),
-        save: Arc::new(|scene, path| {
-            project::save(path, scene)?;
-            Ok(())
-        }),
-        new_scene: Arc::new(new_scene),
-        native_dialogs: true,
-        settings_file: settings::Settings::file(),
-    };
-    run_window_with(config, trace)
-}
-
-/// A random world, another one each time.
-fn new_scene() -> anyhow::Result<Scene> {
-    use world::template::TEMPLATES;
-    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-    let seed = since.map_or(1, |d| u64::from(d.subsec_nanos()) ^ d.as_secs()) % 100_000;
-    let name = TEMPLATES[seed as usize % TEMPLATES.len()];
-    let mut scene =
-        open::from_template(name, seed).ok_or_else(|| anyhow::anyhow!("there is no template {name:?}"))?;
-    scene.name = format!("{name} {seed}").into();
-    Ok(scene)
-}
-
-/// Opens the window and returns when it is closed. Errors in one line if there is no display or no
-/// graphics adapter (a software one will do), or if the file that measurements go to cannot be written.
-pub fn run_window_with(config: AppConfig, trace: Option<PathBuf>) -> anyhow::Result<()> {
-    let viewport = egui::ViewportBuilder::default()
-        .with_app_id("sceneloom")
-        .with_title(format!("{} – Sceneloom", config.scene.name))
-        .with_inner_size([1600.0, 950.0])
-        .with_min_inner_size([960.0, 600.0])
-        .with_drag_and_drop(true);
-    let options = eframe::NativeOptions {
-        viewport,
-        renderer: eframe::Renderer::Wgpu,
-        wgpu_options: wgpu_options(),
-        persist_window: false,
-        dithering: false,
-        ..Default::default()
-    };
-    let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
-        let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
-        app.keep_copies(&cc.egui_ctx);
-        if let Some(state) = &cc.wgpu_render_state {
-            software_ui::install(&cc.egui_ctx, state);
-        }
-        if let Some(path) = trace {
-            app.trace_to(&path)?;
-        }
-        Ok(Box::new(app))
-    };
-    eframe::run_native("sceneloom", options, Box::new(start)).map_err(|error| {
-        anyhow::anyhow!(
-            "the window could not be opened: {}",
-            error.to_string().replace('\n', "; ")
-        )
-    })
-}
-
-/// Any adapter, a software one too, with limits that all of them have.
-fn wgpu_options() -> egui_wgpu::WgpuConfiguration {
-    let mut setup = egui_wgpu::WgpuSetupCreateNew::without_display_handle();
-    setup.power_preference =
-        wgpu::PowerPreference::from_env().unwrap_or(wgpu::PowerPreference::HighPerformance);
-    setup.device_descriptor = Arc::new(|adapter| wgpu::DeviceDescriptor {
-        label: Some("window"),
-        required_limits: wgpu::Limits::downlevel_defaults().using_resolution(adapter.limits()),
-        ..Default::default()
-    });
-    egui_wgpu::WgpuConfiguration {
-        wgpu_setup: egui_wgpu::WgpuSetup::CreateNew(setup),
-        ..Default::default()
-    }
-}
+pub use panes::compare;
+pub use shell::app::{AppConfig, BuildPipeline, NewScene, OpenScene, SaveScene, SceneloomApp};
+pub use shell::run::{run_window, run_window_with};
+pub use shell::{dock, keymap, live, recovery, settings};

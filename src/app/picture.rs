@@ -4,11 +4,15 @@ use anyhow::bail;
 
 use scene::raster::box_cells;
 use scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
+use sensors::cameras::bounds;
 use sensors::{color, lidar};
 use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
 };
+
+/// What is between the pictures of a sheet, sRGB.
+pub const SHEET_COLOR: [u8; 3] = [24, 26, 31];
 
 /// RGBA8, row-major, top row first.
 #[derive(Clone, Debug)]
@@ -54,7 +58,7 @@ impl Picture {
         let width = |row: &Vec<Picture>| row.iter().map(|p| p.width + margin).sum::<usize>() + margin;
         let height = |row: &Vec<Picture>| row.iter().map(|p| p.height).max().unwrap_or(0) + margin;
         let w = rows.iter().map(width).max().unwrap_or(margin);
-        let mut out = Picture::filled(w, rows.iter().map(height).sum::<usize>() + margin, [24, 26, 31]);
+        let mut out = Picture::filled(w, rows.iter().map(height).sum::<usize>() + margin, SHEET_COLOR);
         let mut y = margin;
         for row in rows {
             let mut x = margin;
@@ -167,6 +171,10 @@ pub fn lidar_top(sweep: &LidarSweep, scale: usize) -> Picture {
     out
 }
 
+/// Memory that a 3D picture takes, bytes per pixel: the target with four samples of colour and depth, the sums of
+/// supersampling, the picture and its PNG.
+pub const SHOT_BYTES_PER_PIXEL: u64 = 80;
+
 /// How a 3D picture is taken.
 #[derive(Clone, Debug)]
 pub struct ShotOptions {
@@ -219,8 +227,9 @@ impl View3d {
         })
     }
 
-    /// A picture of the scene.
+    /// A picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
+        bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
         let frame = scene.frame();
         let sweep = match options.lidar {
             true => lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default(),

@@ -2,16 +2,17 @@
 //! wins; what is on screen stays until something newer is there.
 
 use std::sync::Arc;
-use std::thread::JoinHandle;
 use std::time::Duration;
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
-
-use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Prepared, Wanted};
+use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Wanted, camera_input};
 use super::graphics::Graphics;
-use super::state::{CameraMode, LidarModel};
+use super::state::LidarModel;
+use job::guard::Panicked;
+use job::product::{Ctx, Product, Worker};
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
+use sensors::appearance::Quality;
+use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
@@ -32,38 +33,39 @@ struct Request {
 enum News {
     Lidar(SceneRev, LidarSweep, Option<Sampled>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
+    /// All of a scene was sensed, or a newer one waits.
+    Ended,
+    Failed(Panicked),
 }
 
 /// The newest of what was sensed, and the thread that senses.
 pub struct Sensing {
-    requests: Option<Sender<Request>>, // None only while dropping
-    news: Receiver<News>,
-    thread: Option<JoinHandle<()>>,
+    worker: Worker<Request, News>,
     asked: Option<(SceneRev, Wanted, bool)>,
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
     sampled: Option<Sampled>,
     cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
     version: u64,
+    problem: Option<String>,
 }
 
 impl Sensing {
     /// Starts the thread `sensing`, which takes up a scene after a `grace`: where the processor draws, an edit is shown
     /// first. `wake` is called after each piece of news. Errors if the system gives no thread.
-    pub fn spawn(grace: Duration, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let (requests, requests_in) = unbounded();
-        let (news_out, news) = unbounded();
-        let thread = std::thread::Builder::new()
-            .name("sensing".into())
-            .spawn(move || sense_all(&requests_in, grace, &news_out, &wake))?;
+    pub fn spawn(grace: Duration, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
+        let senses = move || Senses {
+            grace,
+            rested: false,
+            kept: Kept::default(),
+        };
         Ok(Self {
-            requests: Some(requests),
-            news,
-            thread: Some(thread),
+            worker: Worker::start("sensing", senses, Arc::new(wake))?,
             asked: None,
             lidar: None,
             sampled: None,
             cameras: None,
             version: 0,
+            problem: None,
         })
     }
 
@@ -76,29 +78,36 @@ impl Sensing {
             return;
         }
         self.asked = Some((scene.rev, wanted, preview));
-        if let Some(requests) = &self.requests {
-            let scene = scene.clone();
-            // The thread ends only when this sender is gone.
-            let _ = requests.send(Request {
-                scene,
-                wanted,
-                preview,
-            });
-        }
+        let scene = scene.clone();
+        self.worker.submit(Request {
+            scene,
+            wanted,
+            preview,
+        });
     }
 
     /// Takes in what has arrived.
     pub fn drain(&mut self) {
-        for news in self.news.try_iter() {
-            self.version += 1;
+        for news in self.worker.updates().try_iter().map(|event| event.update) {
             match news {
                 News::Lidar(rev, sweep, sampled) => {
                     self.lidar = Some((rev, Arc::new(sweep)));
                     self.sampled = sampled;
+                    self.version += 1;
                 }
-                News::Cameras(rev, wanted, views) => self.cameras = Some((rev, wanted, Arc::new(views))),
+                News::Cameras(rev, wanted, views) => {
+                    self.cameras = Some((rev, wanted, Arc::new(views)));
+                    self.version += 1;
+                }
+                News::Ended => {}
+                News::Failed(panic) => self.problem = Some(panic.to_string()),
             }
         }
+    }
+
+    /// Why a scene could not be sensed, told once. Later scenes are sensed again.
+    pub fn take_problem(&mut self) -> Option<String> {
+        self.problem.take()
     }
 
     /// The newest sweep.
@@ -134,26 +143,48 @@ impl Sensing {
     }
 }
 
-impl Drop for Sensing {
-    fn drop(&mut self) {
-        self.requests = None;
-        if let Some(thread) = self.thread.take() {
-            // An error would be a panic in the thread; there is nobody left to tell.
-            let _ = thread.join();
-        }
-    }
+/// Sweeps and pictures as a product.
+struct Senses {
+    grace: Duration,
+    /// A grace has passed in which only newer scenes came.
+    rested: bool,
+    kept: Kept,
 }
 
-fn sense_all(requests: &Receiver<Request>, grace: Duration, news: &Sender<News>, wake: &dyn Fn()) {
-    let mut kept = Kept::default();
-    while let Ok(first) = requests.recv() {
-        std::thread::sleep(grace);
-        let newest = requests.try_iter().last().unwrap_or(first);
-        sense(&newest, requests, &mut kept, |piece| {
-            // The receiver lives as long as the thread, except at the very end.
-            let _ = news.send(piece);
-            wake();
-        });
+impl Product for Senses {
+    type Request = Request;
+    type Update = News;
+
+    fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
+        if !std::mem::replace(&mut self.rested, false) {
+            std::thread::sleep(self.grace);
+            if ctx.should_stop() {
+                self.rested = true;
+                return News::Ended;
+            }
+        }
+        sense(request, &mut self.kept, ctx);
+        News::Ended
+    }
+
+    fn reset(&mut self) {
+        self.kept = Kept::default();
+    }
+
+    fn given_up() -> News {
+        News::Ended
+    }
+
+    fn panicked(panic: Panicked) -> News {
+        News::Failed(panic)
+    }
+
+    fn is_terminal(news: &News) -> bool {
+        matches!(news, News::Ended | News::Failed(_))
+    }
+
+    fn must_arrive(_: &News) -> bool {
+        true
     }
 }
 
@@ -212,7 +243,7 @@ impl Kept {
     }
 }
 
-fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell: impl Fn(News)) {
+fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     let Request {
         scene,
         wanted,
@@ -227,24 +258,33 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
             .as_ref()
             .filter(|_| wanted.lidar == LidarModel::Learned);
         let sampled = learned.map(|(_, caster)| caster.sampled(SHOWN_RAYS));
-        tell(News::Lidar(scene.rev, sweep, sampled));
+        ctx.tell(News::Lidar(scene.rev, sweep, sampled));
         kept.swept = Some(swept);
     }
     let key = (scene.rev, wanted.pictures());
-    let (mut prepared, graphics) = (None, &mut kept.graphics);
-    let mut view = |camera, size, quick| {
-        let (prepared, on_card) = prepared.get_or_insert_with(|| {
-            let prepared = Prepared::new(scene, wanted.mode, wanted.source);
-            let card = prepared
-                .suits_card()
-                .then(|| graphics.get_or_insert_with(Graphics::find));
-            let on_card = card.and_then(Option::as_mut).is_some_and(|c| prepared.upload(c));
-            (prepared, on_card)
+    let (mut ready, graphics) = (None, &mut kept.graphics);
+    let source = wanted.camera_source();
+    // Errors are pictures that are too large for the bounds, which these sizes never are.
+    let mut view = |camera: usize, size, quick| -> Option<CameraView> {
+        let (ready, on_card) = ready.get_or_insert_with(|| {
+            let ready = Ready::new(source, &camera_input(scene, Detail::Live));
+            let on_card = ready.upload_to(|| {
+                let card = graphics.get_or_insert_with(Graphics::find).as_mut();
+                card.map(|card| card as &mut dyn Card)
+            });
+            (ready, on_card)
         });
         let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| *on_card);
-        prepared
-            .view(scene, camera, size, quick, card)
-            .colored(wanted.mode)
+        let options = RenderOptions {
+            size,
+            quality: if quick { Quality::Preview } else { Quality::Full },
+        };
+        let context = RenderContext {
+            card: card.map(|card| card as &mut dyn Card),
+            ..RenderContext::processor()
+        };
+        let picture = ready.render(rig.cameras.get(camera)?, &options, context).ok()?;
+        Some(CameraView::new(camera, picture).colored(source))
     };
     let shown = |i: &usize| *i >= 32 || wanted.hidden >> i & 1 == 0;
     let mut render = |quick: bool| -> Option<Vec<CameraView>> {
@@ -253,10 +293,10 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
         for i in (0..rig.cameras.len()).filter(shown) {
             // Full pictures give way to a newer scene; previews are quick, and giving way would leave
             // the strip without any news for as long as the user drags.
-            if !quick && !requests.is_empty() {
+            if !quick && ctx.should_stop() {
                 return None;
             }
-            views.push(view(i, size, quick));
+            views.push(view(i, size, quick)?);
         }
         Some(views)
     };
@@ -266,10 +306,10 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
         Some(views) => views,
         None => {
             // Camera pictures take their time: a coarse one comes first.
-            if (*preview || wanted.mode == CameraMode::Picture)
+            if (*preview || source.previews())
                 && let Some(views) = render(true)
             {
-                tell(News::Cameras(scene.rev, *wanted, views));
+                ctx.tell(News::Cameras(scene.rev, *wanted, views));
             }
             if *preview {
                 return;
@@ -279,13 +319,14 @@ fn sense(request: &Request, requests: &Receiver<Request>, kept: &mut Kept, tell:
             views
         }
     };
-    tell(News::Cameras(scene.rev, *wanted, views.clone()));
+    ctx.tell(News::Cameras(scene.rev, *wanted, views.clone()));
     let enlarged = wanted.enlarged.filter(|i| rig.cameras.len() > *i && shown(i));
     if let Some(large) = enlarged.and_then(|i| views.iter_mut().find(|v| v.camera == i))
-        && requests.is_empty()
+        && !ctx.should_stop()
+        && let Some(view) = view(large.camera, LARGE_SIZE, false)
     {
-        *large = view(large.camera, LARGE_SIZE, false);
-        tell(News::Cameras(scene.rev, *wanted, views));
+        *large = view;
+        ctx.tell(News::Cameras(scene.rev, *wanted, views));
     }
 }
 
@@ -295,6 +336,7 @@ mod tests {
 
     use super::*;
     use scene::{Frame, draft};
+    use sensors::cameras;
     use world::World;
 
     #[test]
@@ -322,35 +364,69 @@ mod tests {
         std::thread::sleep(Duration::from_millis(50));
         sensing.drain();
         assert_eq!(sensing.version(), version);
-        // Another kind of picture of the same scene is news; hidden cameras are not rendered.
-        for mode in [
-            CameraMode::Depth,
-            CameraMode::Planes,
-            CameraMode::Layout,
-            CameraMode::Picture,
-        ] {
+        // Pictures of another source of the same scene are news; hidden cameras are not rendered.
+        for source in cameras::all() {
             let wanted = Wanted {
-                mode,
+                source: source.id(),
                 hidden: 0b101,
                 ..Wanted::default()
             };
             sensing.ask(&Arc::new(scene.clone()), wanted, true);
             assert!(sensing.cameras_stale(scene.rev));
             while sensing.cameras_stale(scene.rev) {
-                assert!(start.elapsed() < Duration::from_secs(120), "no news of {mode:?}");
+                assert!(
+                    start.elapsed() < Duration::from_secs(120),
+                    "no news of {}",
+                    source.title()
+                );
                 std::thread::sleep(Duration::from_millis(5));
                 sensing.drain();
             }
             let views = sensing.cameras().expect("pictures");
             assert_eq!(views.iter().map(|v| v.camera).collect::<Vec<_>>(), [1, 3, 4, 5]);
-            for view in views.iter() {
-                let ([w, h], rgba) = view.picture.rgba(mode, 12.0);
+            for (of_camera, view) in views
+                .iter()
+                .flat_map(|v| source.views().iter().map(move |s| (v, s)))
+            {
+                let ([w, h], rgba) = of_camera.picture.rgba(view.id, 12.0);
                 assert_eq!(rgba.len(), w * h * 4);
                 assert!(
                     rgba.chunks(4).any(|c| c != &rgba[..4]),
-                    "{mode:?}: all of one colour"
+                    "{}: all of one colour",
+                    view.title
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
+        let world = World::random(3);
+        let occupancy = draft::draft(&world.layout, world.boxes.values());
+        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+        let mut scene = Scene::single("test", frame, Arc::default(), 3);
+        let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+        let patience = |start: Instant| assert!(start.elapsed() < Duration::from_secs(120), "no news");
+        job::guard::panic_next("sensing");
+        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+        let start = Instant::now();
+        let problem = loop {
+            patience(start);
+            sensing.drain();
+            if let Some(problem) = sensing.take_problem() {
+                break problem;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        };
+        assert_eq!(problem, "sensing panicked: asked for by a test");
+        assert_eq!((sensing.take_problem(), sensing.version()), (None, 0));
+        scene.rev = SceneRev::fresh();
+        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+        while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
+            patience(start);
+            std::thread::sleep(Duration::from_millis(5));
+            sensing.drain();
+        }
+        assert_eq!(sensing.take_problem(), None);
     }
 }

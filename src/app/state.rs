@@ -4,117 +4,14 @@
 use std::ops::{Deref, DerefMut};
 
 use glam::DVec2;
-use serde::{Deserialize, Serialize};
 
 use editor::Edit;
 use job::Named;
+use sensors::cameras::{self, CameraSource, SourceId, ViewId};
 use viewport::LidarColorMode;
 
-use super::compare::CompareMode;
+use super::panes::id::PaneId;
 use super::tools::{Hand, ToolState, Toolbox};
-
-/// What a part of the window shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Pane {
-    /// Bird's-eye view.
-    Bev,
-    /// 3D view.
-    View3d,
-    /// All cameras in a row.
-    Cameras,
-    /// One camera of the rig, by index.
-    Camera(usize),
-    /// The newest sweep, unrolled: azimuth by beam.
-    Lidar,
-    /// The chosen box from above, from its side and from behind.
-    BoxViews,
-    /// Words that become a scene, or change it.
-    Prompt,
-    /// What was generated so far.
-    Versions,
-    /// Options of the tool in hand, map layers.
-    Tools,
-    /// The chosen box in numbers, all boxes.
-    Objects,
-    /// The steps that can be undone.
-    History,
-    /// The quality slider, its measurements, the receipt of the last edit.
-    Trade,
-    /// What the quality checks found.
-    Checks,
-}
-
-impl Pane {
-    /// What a tile can be told to show.
-    pub const CHOICES: [Pane; 18] = [
-        Pane::Bev,
-        Pane::View3d,
-        Pane::Cameras,
-        Pane::Lidar,
-        Pane::BoxViews,
-        Pane::Prompt,
-        Pane::Versions,
-        Pane::Tools,
-        Pane::Objects,
-        Pane::History,
-        Pane::Trade,
-        Pane::Checks,
-        Pane::Camera(0),
-        Pane::Camera(1),
-        Pane::Camera(2),
-        Pane::Camera(3),
-        Pane::Camera(4),
-        Pane::Camera(5),
-    ];
-
-    /// Name for a person; that of a camera is its number until the rig names it.
-    pub fn name(self) -> String {
-        match self {
-            Pane::Bev => "Bird's-eye view".into(),
-            Pane::View3d => "3D view".into(),
-            Pane::Cameras => "Cameras".into(),
-            Pane::Camera(i) => format!("Camera {}", i + 1),
-            Pane::Lidar => "LiDAR sweep".into(),
-            Pane::BoxViews => "Box views".into(),
-            Pane::Prompt => "Prompt".into(),
-            Pane::Versions => "Versions".into(),
-            Pane::Tools => "Tools".into(),
-            Pane::Objects => "Objects".into(),
-            Pane::History => "History".into(),
-            Pane::Trade => "Speed and accuracy".into(),
-            Pane::Checks => "Checks".into(),
-        }
-    }
-}
-
-/// What the camera strip shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CameraMode {
-    /// Classes.
-    #[default]
-    Semantic,
-    /// Distance along the optical axis.
-    Depth,
-    /// What a camera would see, by day or night and in any weather.
-    Picture,
-    /// One plane of a multi-plane image.
-    Planes,
-    /// Boxes and lanes in perspective, hidden or not.
-    Layout,
-}
-
-/// What classes and depths are rendered from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CameraSource {
-    /// Gaussians at voxel centres, as the papers do.
-    Splats,
-    /// The voxels themselves.
-    Voxels,
-    /// The voxels, and the shapes of boxes where they stand.
-    #[default]
-    Shapes,
-}
 
 /// How the LiDAR sweep comes about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -124,6 +21,36 @@ pub enum LidarModel {
     Exact,
     /// The network: ranges within voxels, intensity, lost echoes.
     Learned,
+}
+
+/// How two states are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CompareMode {
+    /// Only the present state is shown.
+    #[default]
+    Off,
+    /// Before on the left of a line, after on its right.
+    Wipe,
+    /// Before beside after.
+    Side,
+    /// Voxels that differ are marked.
+    Difference,
+}
+
+impl CompareMode {
+    /// Every mode with its name and what it does.
+    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
+        (CompareMode::Off, "Off", "only the present state"),
+        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
+        (CompareMode::Side, "Side", "before beside after"),
+        (CompareMode::Difference, "Diff", "voxels that differ"),
+    ];
+
+    /// The next one.
+    pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
+        Self::ALL[(at + 1) % Self::ALL.len()].0
+    }
 }
 
 /// A sensor of the rig.
@@ -173,9 +100,9 @@ pub struct UiState {
     /// Colour of LiDAR returns.
     pub lidar_colors: LidarColorMode,
     /// What the camera strip shows.
-    pub camera_mode: CameraMode,
-    /// What its classes and depths are rendered from.
-    pub camera_source: CameraSource,
+    pub camera_view: ViewId,
+    /// What it is rendered from, where several sources give it.
+    pub camera_source: SourceId,
     /// Depth of the plane that is shown, m.
     pub plane_m: f64,
     /// Bit per camera that is not rendered.
@@ -197,7 +124,7 @@ pub struct UiState {
     /// Camera that is enlarged.
     pub inspected: Option<usize>,
     /// Pane under the pointer in the last frame.
-    pub hovered_pane: Option<Pane>,
+    pub hovered_pane: Option<PaneId>,
     /// What the pane under the pointer says about it; shown in the status bar.
     pub readout: String,
     /// The log is open.
@@ -214,6 +141,11 @@ impl UiState {
     /// True if a camera of the rig is not rendered.
     pub fn camera_hidden(&self, camera: usize) -> bool {
         camera < 32 && self.cameras_hidden >> camera & 1 == 1
+    }
+
+    /// The source of what the camera strip shows.
+    pub fn shown_source(&self) -> &'static dyn CameraSource {
+        cameras::source_of(self.camera_view, self.camera_source)
     }
 
     /// After a camera was taken away, those behind it move up.
@@ -271,8 +203,8 @@ impl Default for UiState {
             correcting: false,
             named: Named::default(),
             lidar_colors: LidarColorMode::Range,
-            camera_mode: CameraMode::Semantic,
-            camera_source: CameraSource::default(),
+            camera_view: ViewId::SEMANTIC,
+            camera_source: SourceId::default(),
             plane_m: 12.0,
             cameras_hidden: 0,
             lidar_model: LidarModel::default(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use scene::{Background, Scene, SceneRev, VoxelGrid};
 
-use super::edit::{self, Edit, EditError};
+use scene::{Edit, EditError};
 
 /// A scene with its history. A step is a snapshot: copy-on-write makes it a few kilobytes.
 /// Deliberately absent: a way to get at the scene mutably.
@@ -211,7 +211,7 @@ impl Document {
             return Err(Stale);
         }
         let scene = Arc::make_mut(&mut step.scene);
-        edit::adopt(scene.frame_mut(), occupancy);
+        super::apply::adopt(scene.frame_mut(), occupancy);
         let rev = scene.rev;
         self.weigh(self.at);
         self.weigh(self.at + 1);
@@ -230,7 +230,7 @@ impl Document {
             return Err(Stale);
         }
         let mut scene = Scene::clone(self.settled_scene());
-        edit::adopt(scene.frame_mut(), occupancy);
+        super::apply::adopt(scene.frame_mut(), occupancy);
         self.push(label.into(), scene);
         Ok(self.settled_scene().rev)
     }
@@ -248,7 +248,7 @@ impl Document {
         }
         let mut scene = Scene::clone(self.settled_scene());
         scene.background = Arc::new(background);
-        edit::adopt(scene.frame_mut(), occupancy);
+        super::apply::adopt(scene.frame_mut(), occupancy);
         self.push(label.into(), scene);
         Ok(self.settled_scene().rev)
     }
@@ -280,7 +280,7 @@ impl Document {
 
     fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
         let mut scene = Scene::clone(self.settled_scene());
-        Edit::apply_all(edits, &mut scene)?;
+        super::apply::apply_all(edits, &mut scene)?;
         Ok(scene)
     }
 

@@ -1,5 +1,6 @@
 //! Tests of the document: whatever is done to it, undo visits the same scenes.
 
+use crate::Apply;
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};

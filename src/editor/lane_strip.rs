@@ -158,6 +158,7 @@ fn offset_line(points_m: &[DVec2], left_m: f64) -> Vec<DVec2> {
 
 #[cfg(test)]
 mod tests {
+    use crate::Apply;
     use std::collections::BTreeMap;
     use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! How a scene changes: document, undo, picking, checks, and the arithmetic of the tools.
 
+pub mod apply;
 pub mod arrange;
 pub mod checks;
 pub mod choose;
 pub mod document;
-pub mod edit;
 pub mod flood;
 pub mod immediate;
 mod junction;
@@ -16,14 +16,13 @@ pub mod outline;
 pub mod part;
 pub mod pick;
 pub mod pick_things;
-pub mod shape;
 mod things;
 pub mod tools;
 pub mod transform;
 pub mod voxel_ops;
 
+pub use apply::{Apply, apply_all};
 pub use document::{Document, Stale};
-pub use edit::{Edit, EditError};
 pub use part::Part;
-pub use shape::Shape;
+pub use scene::{Edit, EditError, Shape};
 pub use things::columns_between;

@@ -6,17 +6,17 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::edit::{Edit, EditError};
 use super::immediate::refill_ground;
-use super::shape::at_least;
 use scene::background::{Columns, in_grid};
 use scene::draft::ground_bin;
 use scene::grid::NOT_PAINTED;
 use scene::raster::polygon_cells;
+use scene::shape::at_least;
 use scene::{
     Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
     VoxelPaint,
 };
+use scene::{Edit, EditError};
 
 /// Voxels of a thing's class this close to it go with it, columns: what a network drew of it is not exact.
 const MARGIN: usize = 1;

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+use scene::message::{one_line, quoted};
 use scene::{BoxId, BoxLabel, Class, Frame, SceneBox};
 
 const FORMAT: &str = "sceneloom_boxes";
@@ -90,11 +91,12 @@ pub fn to_bytes(
 
 /// The boxes in the bytes of such a file. Errors in one line.
 pub fn read(bytes: &[u8]) -> Result<Vec<SceneBox>, String> {
-    let list: List = serde_json::from_slice(bytes).map_err(|e| e.to_string())?;
+    let list: List = serde_json::from_slice(bytes).map_err(|e| one_line(&e))?;
     if (list.format.as_str(), list.version) != (FORMAT, VERSION) {
         return Err(format!(
             "format is {:?} version {}, expected {FORMAT:?} version {VERSION}",
-            list.format, list.version
+            quoted(&list.format, 80),
+            list.version
         ));
     }
     let boxes: Vec<SceneBox> = list

@@ -1,11 +1,36 @@
-//! How a scene travels: one file per exchange format.
+//! How a scene travels: what can be read is a table ([`import`]), and so is what can be written ([`export`]).
 
 pub mod atomic;
 pub mod box_list;
+pub mod error;
+pub mod export;
+pub mod import;
+pub mod input;
+pub mod loom;
 pub mod multi_plane;
 pub mod npz;
 pub mod occ3d;
 pub mod opendrive;
 pub mod png;
-pub mod point_cloud;
-pub mod project;
+#[cfg(test)]
+mod table_tests;
+
+pub use error::FormatError;
+pub use loom as project; // the name that callers use
+
+/// What a file of a format holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Holds {
+    /// All of a scene.
+    Scene,
+    /// Roads with lanes, of any extent.
+    Roads,
+    /// The class of every voxel of a frame.
+    Occupancy,
+    /// The boxes of a frame.
+    Boxes,
+    /// Points of a LiDAR sweep.
+    Points,
+    /// A picture, or a map of one value per pixel.
+    Pictures,
+}

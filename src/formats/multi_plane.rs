@@ -1,57 +1,31 @@
 //! Multi-plane images as numpy archives: runs of planes per pixel, or every plane.
 
-use super::npz::{Array, to_bytes};
+use super::npz::{Array, Values, to_bytes};
 use scene::MultiPlaneImage;
 
 /// Arrays `starts` (u4, one more than there are pixels), `first`, `end` (u2) and `id` (u1, one per run), `depth_m` (f4, one
 /// per plane), `size` (u4: width, height). Pixel p (row-major) holds the runs from start p up to start p + 1; a run shows
 /// class `id` on planes `first` to `end` - 1.
 pub fn sparse(image: &MultiPlaneImage) -> Vec<u8> {
-    let runs = [image.runs.len()];
-    let of_u16 = |value: fn(&scene::sensor_data::PlaneRun) -> u16| -> Vec<u8> {
-        image.runs.iter().flat_map(|r| value(r).to_le_bytes()).collect()
-    };
-    let size = [image.width as u32, image.height as u32];
-    to_bytes(&[
-        Array {
-            name: "starts",
-            descr: "<u4",
-            shape: &[image.starts.len()],
-            bytes: image.starts.iter().flat_map(|v| v.to_le_bytes()).collect(),
-        },
-        Array {
-            name: "first",
-            descr: "<u2",
-            shape: &runs,
-            bytes: of_u16(|r| r.first),
-        },
-        Array {
-            name: "end",
-            descr: "<u2",
-            shape: &runs,
-            bytes: of_u16(|r| r.end),
-        },
-        Array {
-            name: "id",
-            descr: "|u1",
-            shape: &runs,
-            bytes: image.runs.iter().map(|r| r.id).collect(),
-        },
-        Array {
-            name: "depth_m",
-            descr: "<f4",
-            shape: &[usize::from(image.planes.count)],
-            bytes: (0..image.planes.count)
-                .flat_map(|p| (image.planes.depth_m(p) as f32).to_le_bytes())
-                .collect(),
-        },
-        Array {
-            name: "size",
-            descr: "<u4",
-            shape: &[2],
-            bytes: size.iter().flat_map(|v| v.to_le_bytes()).collect(),
-        },
-    ])
+    let (runs, starts) = ([image.runs.len()], [image.starts.len()]);
+    let planes = [usize::from(image.planes.count)];
+    let of_u16 =
+        |value: fn(&scene::sensor_data::PlaneRun) -> u16| Values::U16(image.runs.iter().map(value).collect());
+    let depths = (0..image.planes.count).map(|p| image.planes.depth_m(p) as f32);
+    let array = |name, shape, values| Array { name, shape, values };
+    let arrays = [
+        array("starts", &starts[..], Values::U32(image.starts.clone())),
+        array("first", &runs, of_u16(|r| r.first)),
+        array("end", &runs, of_u16(|r| r.end)),
+        array("id", &runs, Values::U8(image.runs.iter().map(|r| r.id).collect())),
+        array("depth_m", &planes, Values::F32(depths.collect())),
+        array(
+            "size",
+            &[2],
+            Values::U32(vec![image.width as u32, image.height as u32]),
+        ),
+    ];
+    to_bytes(&arrays).expect("as many values as each shape says, written to memory")
 }
 
 #[cfg(test)]

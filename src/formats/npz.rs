@@ -1,44 +1,59 @@
-//! Numpy archives, written: named arrays of any little-endian type, compressed; equal arrays give equal bytes.
+//! Numpy archives, written: named arrays, compressed; equal arrays give equal bytes.
 
-use std::io::{Cursor, Write as _};
+use std::io::{self, Cursor, Write as _};
+
+use npyz::{AutoSerialize, WriteOptions, WriterBuilder};
 
 /// One array of an archive.
 pub struct Array<'a> {
     /// Name without `.npy`.
     pub name: &'a str,
-    /// Numpy's type string: `|u1`, `<u2`, `<u4`, `<f4`.
-    pub descr: &'a str,
     /// Length of each axis, row-major.
     pub shape: &'a [usize],
-    /// Values, little-endian.
-    pub bytes: Vec<u8>,
+    /// As many values as the shape has places.
+    pub values: Values,
 }
 
-/// The archive as bytes.
-pub fn to_bytes(arrays: &[Array<'_>]) -> Vec<u8> {
+/// Values of an array, of one of numpy's types (little-endian in the file).
+pub enum Values {
+    /// `|u1`.
+    U8(Vec<u8>),
+    /// `<u2`.
+    U16(Vec<u16>),
+    /// `<u4`.
+    U32(Vec<u32>),
+    /// `<f4`.
+    F32(Vec<f32>),
+}
+
+/// The archive as bytes. Errors if an array has not as many values as its shape says.
+pub fn to_bytes(arrays: &[Array<'_>]) -> io::Result<Vec<u8>> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     let options = zip::write::SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
-    let mut write = || -> zip::result::ZipResult<()> {
-        for a in arrays {
-            // A tuple of one ends in a comma.
-            let shape: String = a.shape.iter().map(|n| format!("{n}, ")).collect();
-            let header = format!(
-                "{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}",
-                a.descr,
-                shape.trim_end()
-            );
-            // Magic, version and length take ten bytes; data starts at a multiple of 64.
-            let padded = (header.len() + 11).next_multiple_of(64) - 10;
-            zip.start_file(format!("{}.npy", a.name), options)?;
-            zip.write_all(b"\x93NUMPY\x01\x00")?;
-            zip.write_all(&(padded as u16).to_le_bytes())?;
-            zip.write_all(format!("{header:<0$}\n", padded - 1).as_bytes())?;
-            zip.write_all(&a.bytes)?;
-        }
-        Ok(())
-    };
-    write().expect("writing to memory");
-    zip.finish().expect("writing to memory").into_inner()
+    for a in arrays {
+        let npy = match &a.values {
+            Values::U8(values) => npy(a.shape, values),
+            Values::U16(values) => npy(a.shape, values),
+            Values::U32(values) => npy(a.shape, values),
+            Values::F32(values) => npy(a.shape, values),
+        }?;
+        zip.start_file(npyz::npz::file_name_from_array_name(a.name), options)?;
+        zip.write_all(&npy)?;
+    }
+    Ok(zip.finish()?.into_inner())
+}
+
+fn npy<T: AutoSerialize + Copy>(shape: &[usize], values: &[T]) -> io::Result<Vec<u8>> {
+    let mut out = Vec::with_capacity(size_of_val(values) + 128);
+    let shape: Vec<u64> = shape.iter().map(|n| *n as u64).collect();
+    let mut writer = WriteOptions::<T>::new()
+        .default_dtype()
+        .shape(&shape)
+        .writer(&mut out)
+        .begin_nd()?;
+    writer.extend(values.iter().copied())?;
+    writer.finish()?;
+    Ok(out)
 }
 
 #[cfg(test)]
@@ -50,16 +65,41 @@ mod tests {
         let values: Vec<u32> = (0..6).map(|i| i * 1000).collect();
         let array = |name, shape| Array {
             name,
-            descr: "<u4",
             shape,
-            bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            values: Values::U32(values.clone()),
         };
-        let bytes = to_bytes(&[array("flat", &[6]), array("square", &[2, 3])]);
+        let bytes = to_bytes(&[array("flat", &[6]), array("square", &[2, 3])]).expect("memory");
         let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).expect("an archive");
         for (name, shape) in [("flat.npy", vec![6]), ("square.npy", vec![2, 3])] {
             let array = npyz::NpyFile::new(zip.by_name(name).expect(name)).expect("an npy file");
             assert_eq!(array.shape(), shape);
             assert_eq!(array.into_vec::<u32>().expect("u32"), values);
+        }
+        to_bytes(&[array("short", &[7])]).expect_err("six values for seven places");
+    }
+
+    /// Type strings are those that other programs expect, and values begin at a multiple of 64 as numpy writes them.
+    #[test]
+    fn headers_are_those_of_numpy() {
+        for (values, descr) in [
+            (Values::U8(vec![1]), "'|u1'"),
+            (Values::U16(vec![1]), "'<u2'"),
+            (Values::U32(vec![1]), "'<u4'"),
+            (Values::F32(vec![1.0]), "'<f4'"),
+        ] {
+            let one = Array {
+                name: "a",
+                shape: &[1],
+                values,
+            };
+            let bytes = to_bytes(&[one]).expect("memory");
+            let mut zip = zip::ZipArchive::new(Cursor::new(bytes)).expect("an archive");
+            let mut npy = Vec::new();
+            io::Read::read_to_end(&mut zip.by_name("a.npy").expect("a"), &mut npy).expect("whole");
+            let header = usize::from(u16::from_le_bytes([npy[8], npy[9]]));
+            let text = String::from_utf8_lossy(&npy[10..10 + header]).into_owned();
+            assert!(text.contains(descr) && text.contains("(1,"), "{text}");
+            assert_eq!((10 + header) % 16, 0);
         }
     }
 }

@@ -9,11 +9,16 @@ use npyz::{NpyFile, Order};
 use thiserror::Error;
 use zip::ZipArchive;
 
-use super::npz;
+use super::input::{self, InputError};
+use super::npz::{self, Values as Npy};
+use scene::message::{one_line, quoted, shortened};
 use scene::{Class, GridSpec, VoxelGrid};
 
 /// Names that the labels may have, in order of preference.
 const NAMES: [&str; 3] = ["semantics", "occ", "arr_0"];
+/// Largest archive that is read, bytes: the labels and two masks of eight bytes a voxel are 16 MB, other arrays may lie
+/// beside them.
+pub const LARGEST_FILE: u64 = 256 << 20;
 /// Largest array that is unpacked: eight bytes a voxel and a header.
 const LARGEST: u64 = 8 * GridSpec::VOXELS as u64 + 65_536;
 /// Longest header of an array, bytes, and most brackets in it: its parser calls itself for each, and a file of nothing
@@ -36,8 +41,8 @@ pub struct Occ3dFrame {
 #[derive(Debug, Error)]
 pub enum Occ3dError {
     /// The file could not be read.
-    #[error("{0}")]
-    Io(#[from] std::io::Error),
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// No zip archive, or a damaged one.
     #[error("not an npz archive: {0}")]
     Archive(String),
@@ -57,11 +62,6 @@ pub enum Occ3dError {
     },
 }
 
-/// True for a zip archive with a numpy array in it.
-pub fn is_npz(bytes: &[u8]) -> bool {
-    ZipArchive::new(Cursor::new(bytes)).is_ok_and(|zip| !arrays(&zip).is_empty())
-}
-
 /// Names of the arrays in an archive.
 fn arrays(zip: &ZipArchive<Cursor<&[u8]>>) -> Vec<String> {
     let files = zip.file_names().filter_map(Result::ok);
@@ -71,21 +71,25 @@ fn arrays(zip: &ZipArchive<Cursor<&[u8]>>) -> Vec<String> {
 
 /// Reads a frame from a file.
 pub fn load(path: &Path) -> Result<Occ3dFrame, Occ3dError> {
-    read(&std::fs::read(path)?)
+    read(&input::read(path, LARGEST_FILE)?)
 }
 
 /// Reads a frame from the bytes of an npz file.
 pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
-    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| Occ3dError::Archive(e.to_string()))?;
+    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| Occ3dError::Archive(one_line(&e)))?;
     let found = arrays(&zip);
     let known = NAMES.into_iter().find(|name| found.iter().any(|f| f == name));
     let name = match (known, found.as_slice()) {
         (Some(name), _) => name.to_string(),
         (None, [only]) => only.clone(),
-        _ => return Err(Occ3dError::NoLabels { found }),
+        // No more than a line holds.
+        _ => {
+            let found = found.iter().take(6).map(|name| quoted(name, 24)).collect();
+            return Err(Occ3dError::NoLabels { found });
+        }
     };
     let wrong = |i: usize, found: i64| Occ3dError::Array {
-        name: name.clone(),
+        name: quoted(&name, 80),
         problem: format!(
             "class {found} at voxel {}, {}, {}, expected 0 to {}",
             i / (GridSpec::NY * GridSpec::NZ),
@@ -137,15 +141,14 @@ pub fn frame_to_bytes(frame: &Occ3dFrame) -> Vec<u8> {
 fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2]) -> Vec<u8> {
     let array = |name, bytes| npz::Array {
         name,
-        descr: "|u1",
         shape: &[GridSpec::NX, GridSpec::NY, GridSpec::NZ],
-        bytes,
+        values: Npy::U8(bytes),
     };
     let mut all = vec![array("semantics", labels.to_dense())];
     for (name, mask) in ["mask_lidar", "mask_camera"].into_iter().zip(masks) {
         all.extend(mask.map(|mask| array(name, mask.iter().map(|seen| u8::from(*seen)).collect())));
     }
-    npz::to_bytes(&all)
+    npz::to_bytes(&all).expect("a mask has a flag per voxel, and memory takes what is written")
 }
 
 /// Values of an array: as they lie in the file if they are bytes, which is the usual case and much faster.
@@ -158,8 +161,8 @@ enum Values {
 fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3dError> {
     // What a parser says may be a drawing of several lines, and holds what the file holds.
     let problem = |problem: String| Occ3dError::Array {
-        name: name.into(),
-        problem: problem.split_whitespace().take(40).collect::<Vec<_>>().join(" "),
+        name: quoted(name, 80),
+        problem: shortened(&problem.split_whitespace().collect::<Vec<_>>().join(" "), 200),
     };
     let file = npyz::npz::file_name_from_array_name(name);
     let entry = zip.by_name(&file).map_err(|e| problem(e.to_string()))?;
@@ -286,7 +289,7 @@ mod tests {
     fn what_is_written_is_read() {
         let labels = VoxelGrid::from_dense(&labels()).expect("labels");
         let bytes = to_bytes(&labels);
-        assert!(is_npz(&bytes) && !is_npz(b"PK") && bytes == to_bytes(&labels));
+        assert_eq!(bytes, to_bytes(&labels));
         assert_eq!(read(&bytes).expect("a frame").labels, labels);
         let masks = [3, 7].map(|n| Some((0..GridSpec::VOXELS).map(|i| i % n == 0).collect()));
         let [lidar_observed, camera_observed] = masks;

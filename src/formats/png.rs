@@ -1,104 +1,127 @@
 //! PNG pictures as bytes: colour, 16-bit grey, class labels with a palette; with text inside.
 
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageResult};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
-/// Bytes before the first chunk, and those of the header chunk after it: length, type, 13 bytes, check sum.
-const SIGNATURE: usize = 8;
-const HEADER: usize = 4 + 4 + 13 + 4;
-/// Place of the colour type within the file, and its value for a palette (PNG specification 11.2.2).
-const COLOR_TYPE: usize = SIGNATURE + 8 + 9;
-const PALETTE: u8 = 3;
+/// Why a picture could not be encoded. One line each.
+#[derive(Debug, thiserror::Error)]
+pub enum PngError {
+    /// As many values as pixels are needed, and at least one of either.
+    #[error("{found} values for {width} x {height} pixels, expected {expected}, and at least one")]
+    Size {
+        /// Pixels per row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Values given.
+        found: usize,
+        /// Values needed.
+        expected: usize,
+    },
+    /// A label without a colour, or more colours than a palette holds.
+    #[error("label {highest} and {colors} colours, expected a colour for each label, at most 256")]
+    Palette {
+        /// Highest label of the picture.
+        highest: u8,
+        /// Colours given.
+        colors: usize,
+    },
+    /// The encoder refused.
+    #[error("the picture could not be encoded: {0}")]
+    Encoder(#[from] png::EncodingError),
+}
+
+/// Text that goes into a picture: a keyword of 1 to 79 Latin letters and digits, and what it says. Others are left out.
+pub type Text<'a> = [(&'a str, &'a str)];
 
 /// RGBA, 8 bits each, row-major. Errors if there are not `4 * width * height` bytes.
-pub fn rgba(width: usize, height: usize, pixels: &[u8]) -> ImageResult<Vec<u8>> {
-    encode(width, height, pixels, ExtendedColorType::Rgba8)
+pub fn rgba(width: usize, height: usize, pixels: &[u8], text: &Text<'_>) -> Result<Vec<u8>, PngError> {
+    checked(width, height, pixels.len(), 4)?;
+    encode(
+        [width, height],
+        (ColorType::Rgba, BitDepth::Eight),
+        None,
+        pixels,
+        text,
+    )
 }
 
 /// Grey, 16 bits: depth in millimetres. Errors if there are not `width * height` values.
-pub fn grey16(width: usize, height: usize, values: &[u16]) -> ImageResult<Vec<u8>> {
-    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_ne_bytes()).collect();
-    encode(width, height, &bytes, ExtendedColorType::L16)
+pub fn grey16(width: usize, height: usize, values: &[u16], text: &Text<'_>) -> Result<Vec<u8>, PngError> {
+    checked(width, height, values.len(), 1)?;
+    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
+    encode(
+        [width, height],
+        (ColorType::Grayscale, BitDepth::Sixteen),
+        None,
+        &bytes,
+        text,
+    )
 }
 
 /// Labels, 8 bits, with the colour of each: viewers show the colours, programs read the labels. Errors if there are
 /// not `width * height` labels or not 1 to 256 colours, or a label has none.
-pub fn indexed(width: usize, height: usize, labels: &[u8], palette: &[[u8; 3]]) -> ImageResult<Vec<u8>> {
+pub fn indexed(
+    width: usize,
+    height: usize,
+    labels: &[u8],
+    palette: &[[u8; 3]],
+    text: &Text<'_>,
+) -> Result<Vec<u8>, PngError> {
+    checked(width, height, labels.len(), 1)?;
     let highest = labels.iter().max().copied().unwrap_or(0);
     if usize::from(highest) >= palette.len() || palette.len() > 256 {
-        let problem = format!(
-            "label {highest} and {} colours, expected a colour for each label",
-            palette.len()
-        );
-        return Err(image::ImageError::Parameter(
-            image::error::ParameterError::from_kind(image::error::ParameterErrorKind::Generic(problem)),
-        ));
+        return Err(PngError::Palette {
+            highest,
+            colors: palette.len(),
+        });
     }
-    // A grey picture has the very bytes of a palette picture but for the header; the encoder writes no palettes.
-    let mut bytes = encode(width, height, labels, ExtendedColorType::L8)?;
-    bytes[COLOR_TYPE] = PALETTE;
-    let check = crc32(&bytes[SIGNATURE + 4..SIGNATURE + HEADER - 4]);
-    bytes[SIGNATURE + HEADER - 4..SIGNATURE + HEADER].copy_from_slice(&check.to_be_bytes());
-    insert(&mut bytes, &chunk(b"PLTE", palette.as_flattened()));
-    Ok(bytes)
+    let kind = (ColorType::Indexed, BitDepth::Eight);
+    encode([width, height], kind, Some(palette.as_flattened()), labels, text)
 }
 
-/// Adds UTF-8 text under a keyword of 1 to 79 Latin letters (an iTXt chunk); another keyword adds nothing.
-pub fn add_text(png: &mut Vec<u8>, keyword: &str, text: &str) {
-    let sound = (1..80).contains(&keyword.len()) && keyword.bytes().all(|b| b.is_ascii_alphanumeric());
-    if !sound || png.len() < SIGNATURE + HEADER {
-        return;
+fn checked(width: usize, height: usize, found: usize, channels: usize) -> Result<(), PngError> {
+    let expected = width.saturating_mul(height).saturating_mul(channels);
+    match found == expected && expected > 0 {
+        true => Ok(()),
+        false => Err(PngError::Size {
+            width,
+            height,
+            found,
+            expected,
+        }),
     }
-    // Not compressed; no language, no translated keyword. A zero would end the text.
-    let mut body = keyword.as_bytes().to_vec();
-    body.extend([0; 5]);
-    body.extend(text.replace('\0', " ").into_bytes());
-    insert(png, &chunk(b"iTXt", &body));
 }
 
-fn encode(width: usize, height: usize, bytes: &[u8], kind: ExtendedColorType) -> ImageResult<Vec<u8>> {
-    let expected = width * height * usize::from(kind.bits_per_pixel() / 8);
-    if bytes.len() != expected || expected == 0 {
-        let problem = format!(
-            "{} bytes for {width} x {height} pixels, expected {expected}",
-            bytes.len()
-        );
-        return Err(image::ImageError::Parameter(
-            image::error::ParameterError::from_kind(image::error::ParameterErrorKind::Generic(problem)),
-        ));
-    }
+fn encode(
+    [width, height]: [usize; 2],
+    (color, depth): (ColorType, BitDepth),
+    palette: Option<&[u8]>,
+    bytes: &[u8],
+    text: &Text<'_>,
+) -> Result<Vec<u8>, PngError> {
     let mut out = Vec::new();
-    PngEncoder::new(&mut out).write_image(bytes, width as u32, height as u32, kind)?;
+    let mut encoder = Encoder::new(&mut out, width as u32, height as u32);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    if let Some(palette) = palette {
+        encoder.set_palette(palette);
+        // Filters are for shades; labels are not.
+        encoder.set_compression(Compression::Balanced);
+        encoder.set_filter(Filter::NoFilter);
+    }
+    for (keyword, said) in text {
+        let sound = (1..80).contains(&keyword.len()) && keyword.bytes().all(|b| b.is_ascii_alphanumeric());
+        if sound {
+            // A zero would end the text.
+            encoder.add_itxt_chunk((*keyword).to_owned(), said.replace('\0', " "))?;
+        }
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()?;
     Ok(out)
-}
-
-/// Puts a chunk right behind the header.
-fn insert(png: &mut Vec<u8>, chunk: &[u8]) {
-    let at = SIGNATURE + HEADER;
-    png.splice(at..at, chunk.iter().copied());
-}
-
-fn chunk(kind: &[u8; 4], body: &[u8]) -> Vec<u8> {
-    let mut out = (body.len() as u32).to_be_bytes().to_vec();
-    out.extend(kind);
-    out.extend(body);
-    let check = crc32(&out[4..]);
-    out.extend(check.to_be_bytes());
-    out
-}
-
-/// The check sum of PNG chunks (specification, annex D).
-fn crc32(bytes: &[u8]) -> u32 {
-    let step = |crc: u32, byte: &u8| {
-        (0..8).fold(crc ^ u32::from(*byte), |c, _| {
-            if c & 1 == 1 {
-                0xedb8_8320 ^ (c >> 1)
-            } else {
-                c >> 1
-            }
-        })
-    };
-    !bytes.iter().fold(u32::MAX, step)
 }
 
 #[cfg(test)]
@@ -107,33 +130,50 @@ mod tests {
 
     #[test]
     fn labels_read_back_as_their_colours() {
-        assert_eq!(crc32(b"123456789"), 0xcbf4_3926); // the check value of CRC-32/ISO-HDLC
         let palette = [[1, 2, 3], [200, 100, 50], [9, 8, 7]];
         let labels = [0, 1, 2, 2, 1, 0, 1, 1];
-        let mut bytes = indexed(4, 2, &labels, &palette).expect("sound");
-        add_text(&mut bytes, "Prompt", "Nebel, 5 °C");
+        let text = [("Prompt", "Nebel, 5\0°C"), ("", "no keyword"), ("a b", "a space")];
+        let bytes = indexed(4, 2, &labels, &palette, &text).expect("sound");
         let image = image::load_from_memory(&bytes).expect("a PNG").to_rgb8();
         assert_eq!(image.dimensions(), (4, 2));
         let found: Vec<[u8; 3]> = image.pixels().map(|p| p.0).collect();
         assert_eq!(found, labels.map(|l| palette[usize::from(l)]));
-        assert!(
-            bytes
-                .windows(11)
-                .any(|w| w == "Nebel, 5 °C".as_bytes()[..11].to_vec())
-        );
-        let before = bytes.clone();
-        add_text(&mut bytes, "", "no keyword");
-        assert_eq!(bytes, before);
+        // The labels themselves, for programs; and the text.
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(&bytes));
+        decoder.set_transformations(png::Transformations::IDENTITY);
+        let mut reader = decoder.read_info().expect("a PNG");
+        let mut raw = [0; 8];
+        reader.next_frame(&mut raw).expect("whole");
+        let info = reader.info();
+        assert_eq!((raw, info.color_type), (labels, ColorType::Indexed));
+        let said: Vec<(String, String)> = info
+            .utf8_text
+            .iter()
+            .map(|t| (t.keyword.clone(), t.get_text().expect("UTF-8")))
+            .collect();
+        assert_eq!(said, [("Prompt".to_owned(), "Nebel, 5 °C".to_owned())]);
     }
 
     #[test]
     fn depths_keep_all_bits_and_wrong_sizes_are_refused() {
         let values = [0, 1, 255, 256, 40_000, 65_535];
-        let bytes = grey16(3, 2, &values).expect("sound");
+        let bytes = grey16(3, 2, &values, &[]).expect("sound");
         let image = image::load_from_memory(&bytes).expect("a PNG").to_luma16();
         assert_eq!(image.into_raw(), values);
-        grey16(4, 2, &values).expect_err("too few");
-        rgba(0, 0, &[]).expect_err("nothing");
-        indexed(1, 1, &[3], &[[0; 3]; 3]).expect_err("no colour for label 3");
+        grey16(4, 2, &values, &[]).expect_err("too few");
+        rgba(0, 0, &[], &[]).expect_err("nothing");
+        let line = indexed(1, 1, &[3], &[[0; 3]; 3], &[])
+            .expect_err("no colour for label 3")
+            .to_string();
+        assert!(line.starts_with("label 3 and 3 colours"), "{line}");
+        let pixels = [1, 2, 3, 4, 250, 251, 252, 0];
+        let bytes = rgba(1, 2, &pixels, &[]).expect("sound");
+        assert_eq!(
+            image::load_from_memory(&bytes)
+                .expect("a PNG")
+                .to_rgba8()
+                .into_raw(),
+            pixels
+        );
     }
 }

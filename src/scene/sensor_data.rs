@@ -1,11 +1,35 @@
 //! What sensors return: label and depth maps of a camera, points of a LiDAR sweep.
 
+use super::{BevLayer, Class};
+
 /// Label of a splat map, a type apart from [`super::Class`] because 17 to 19 mean lines here:
 /// 0 nothing, 1 to 16 as the occupancy classes, 17 crossing, 18 road divider, 19 lane divider.
 pub type RenderId = u8;
 
 /// Number of render ids.
 pub const RENDER_IDS: usize = 20;
+
+/// sRGB colour of pixels on which nothing was drawn.
+pub const SKY: [u8; 3] = [46, 58, 78];
+
+/// sRGB colour of a render id: the classes' colours, and those of the painted lines for 17 to 19.
+/// Id 0 is the sky; ids from 20 on are drawn as the class "others".
+pub fn render_id_color(id: RenderId) -> [u8; 3] {
+    match id {
+        0 => SKY,
+        17 => BevLayer::PedCrossing.color(),
+        18 => BevLayer::RoadDivider.color(),
+        19 => BevLayer::LaneDivider.color(),
+        _ => Class::from_id(id).unwrap_or(Class::Others).color(),
+    }
+}
+
+/// Depth in whole millimetres for a 16-bit picture, as in common RGB-D data: 0 where there is none
+/// (not above 0, or NaN), 65,535 for that many millimetres and more.
+pub fn depth_mm(depth_m: &[f32]) -> Vec<u16> {
+    let mm = |&d: &f32| if d > 0.0 { (d * 1000.0).round() as u16 } else { 0 };
+    depth_m.iter().map(mm).collect()
+}
 
 /// Maps of one camera, row-major, `height * width` values each.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,24 +1,60 @@
 //! The gradient behind the scene, and the nothing that a part of the picture is drawn again upon.
 
-use super::shared::{PipelineSpec, Shared};
+use super::Background;
+use super::change::Change;
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::shared::PipelineSpec;
 
-/// Makes all pixels, within the scissors, as if nothing had been drawn.
-pub(super) fn eraser(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-    PipelineSpec {
-        shader: "background",
-        fragment: "fs_nothing",
-        depth_compare: wgpu::CompareFunction::Always,
-        ..PipelineSpec::OPAQUE
-    }
-    .build(device, shared, samples)
+/// Drawable of what is behind everything.
+#[derive(Debug, Default)]
+pub(super) struct Backdrop {
+    eraser: Pipelines,
+    gradient: Pipelines,
 }
 
-/// Covers what nothing else covered: drawn after the opaque things, at the far end of depth.
-pub(super) fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-    PipelineSpec {
-        shader: "background",
-        depth_write: false,
-        ..PipelineSpec::OPAQUE
+impl Drawable for Backdrop {
+    fn name(&self) -> &'static str {
+        "background"
     }
-    .build(device, shared, samples)
+
+    fn prepare(&mut self, _gpu: Gpu<'_>, _shown: Shown<'_>) -> Change {
+        Change::None // it is in the uniforms
+    }
+
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        // Makes all pixels, within the scissors, as if nothing had been drawn.
+        let eraser = PipelineSpec {
+            shader: "background",
+            fragment: "fs_nothing",
+            depth_compare: wgpu::CompareFunction::Always,
+            ..PipelineSpec::OPAQUE
+        };
+        // Covers what nothing else covered, at the far end of depth.
+        let gradient = PipelineSpec {
+            shader: "background",
+            depth_write: false,
+            ..PipelineSpec::OPAQUE
+        };
+        self.eraser
+            .build(samples, || eraser.build(gpu.device, gpu.shared, samples));
+        self.gradient
+            .build(samples, || gradient.build(gpu.device, gpu.shared, samples));
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        let drawn = match layer {
+            Layer::Erase => view.part && self.eraser.set(pass, view),
+            Layer::Backdrop => {
+                view.options.background != Background::Transparent && self.gradient.set(pass, view)
+            }
+            _ => false,
+        };
+        if drawn {
+            pass.draw(0..3, 0..1);
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        0
+    }
 }

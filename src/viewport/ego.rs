@@ -3,7 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::shared::{PipelineSpec, Shared, VertexBuffer};
+use super::change::Change;
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::options::drop_m;
+use super::shared::{PipelineSpec, VertexBuffer};
 use scene::SensorRig;
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -26,26 +29,52 @@ const TAIL_LIGHT: [u8; 3] = [226, 62, 56];
 /// Drawable of the ego vehicle.
 #[derive(Debug, Default)]
 pub(super) struct Ego {
+    pipelines: Pipelines,
     quads: VertexBuffer,
+    uploaded: Option<(SensorRig, u64)>, // with the bits of how much lower it is drawn
 }
 
-impl Ego {
-    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-        PipelineSpec {
+impl Drawable for Ego {
+    fn name(&self) -> &'static str {
+        "ego"
+    }
+
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+        let (rig, options) = (shown.scene.rig, shown.scene.options);
+        let lowered = options.drop_m.to_bits();
+        let held = self.uploaded.as_ref().map(|(rig, lowered)| (rig, *lowered));
+        if held == Some((rig, lowered)) {
+            return Change::None;
+        }
+        let vertices = car(rig, drop_m(options));
+        self.quads.write(gpu.device, gpu.queue, "ego", &vertices);
+        self.uploaded = Some((rig.clone(), lowered));
+        Change::All
+    }
+
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        let spec = PipelineSpec {
             shader: "ego",
             stride: size_of::<EgoVertex>(),
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm8x4, 2 => Unorm8x4],
             ..PipelineSpec::OPAQUE
+        };
+        self.pipelines
+            .build(samples, || spec.build(gpu.device, gpu.shared, samples));
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        if layer == Layer::Opaque && view.options.ego && self.pipelines.set(pass, view) {
+            self.quads.draw_quads(pass, view.shared, 0..self.quads.quads());
         }
-        .build(device, shared, samples)
     }
 
-    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, rig: &SensorRig, drop_m: f64) {
-        self.quads.write(device, queue, "ego", &car(rig, drop_m));
+    fn memory_bytes(&self) -> u64 {
+        self.quads.memory_bytes()
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.quads.draw_quads(pass, shared, 0..self.quads.quads());
+    fn quads(&self) -> usize {
+        self.quads.quads() as usize
     }
 }
 

@@ -1,5 +1,7 @@
 //! What can go wrong when drawing without a window.
 
+pub(super) use scene::message::one_line; // drivers say more
+
 /// Why a picture could not be made; each message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewportError {
@@ -30,13 +32,4 @@ pub enum ViewportError {
     /// The device was lost or the picture could not be read back.
     #[error("the picture could not be read back from the graphics device: {0}")]
     Readback(String),
-}
-
-/// Joins a driver's message into one line.
-pub(super) fn one_line(message: &impl std::fmt::Display) -> String {
-    message
-        .to_string()
-        .split_whitespace()
-        .collect::<Vec<_>>()
-        .join(" ")
 }

@@ -3,7 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::shared::{PipelineSpec, Shared, VertexBuffer};
+use super::change::Change;
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::marks::{differing, marked};
+use super::shared::{PipelineSpec, VertexBuffer};
 
 /// How a rectangle is filled; the value goes to the shader.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,30 +54,54 @@ impl FaceList {
     }
 }
 
-/// Rectangles on the device.
+/// Drawable of translucent rectangles.
 #[derive(Debug, Default)]
 pub(super) struct Faces {
+    pipelines: Pipelines,
+    list: FaceList, // as uploaded
     quads: VertexBuffer,
 }
 
-impl Faces {
-    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-        PipelineSpec {
+impl Drawable for Faces {
+    fn name(&self) -> &'static str {
+        "faces"
+    }
+
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+        let list = &shown.marks.faces;
+        if *list == self.list {
+            return Change::None;
+        }
+        let differing = differing(&list.vertices, &self.list.vertices);
+        self.quads.write(gpu.device, gpu.queue, "faces", &list.vertices);
+        self.list = list.clone();
+        marked(differing.iter().map(|v| v.position_m()), 2.0)
+    }
+
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        let spec = PipelineSpec {
             shader: "faces",
             stride: size_of::<FaceVertex>(),
             attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Unorm8x4],
             blend: true,
             depth_write: false,
             ..PipelineSpec::OPAQUE
+        };
+        self.pipelines
+            .build(samples, || spec.build(gpu.device, gpu.shared, samples));
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        if layer == Layer::Fills && self.pipelines.set(pass, view) {
+            self.quads.draw_quads(pass, view.shared, 0..self.quads.quads());
         }
-        .build(device, shared, samples)
     }
 
-    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, list: &FaceList) {
-        self.quads.write(device, queue, "faces", &list.vertices);
+    fn memory_bytes(&self) -> u64 {
+        self.quads.memory_bytes()
     }
 
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.quads.draw_quads(pass, shared, 0..self.quads.quads());
+    fn quads(&self) -> usize {
+        self.quads.quads() as usize
     }
 }

@@ -1,7 +1,9 @@
 //! The layout: road markings painted on ground voxels, and a thin plane with all of its layers.
 
 use super::change::{Change, Part};
-use super::shared::{PipelineSpec, Shared};
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::shared::PipelineSpec;
+use super::voxels::same_bricks;
 use super::{LayoutPlane, ViewOptions};
 use scene::{BevLayer, Class, GridSpec, VoxelGrid};
 
@@ -26,40 +28,25 @@ const PLANE: [BevLayer; 8] = [
     BevLayer::RoadBlock,
 ];
 
-/// Both textures as uploaded last; compared to learn what changed.
+/// Drawable of the layout: both textures as uploaded last, compared to learn what changed.
 #[derive(Debug, Default)]
 pub(super) struct Ground {
+    pipelines: Pipelines,
     markings: Vec<[u8; 4]>,
     plane: Vec<[u8; 4]>,
+    /// What they were made from: grid, fingerprint of the cells, kind of plane, voxels shown.
+    made_from: Option<(VoxelGrid, u64, LayoutPlane, bool)>,
 }
 
 impl Ground {
-    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-        PipelineSpec {
-            shader: "ground",
-            blend: true,
-            depth_write: false,
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
-            ..PipelineSpec::OPAQUE
-        }
-        .build(device, shared, samples)
-    }
-
     /// Uploads the textures if they differ from the last ones; what is seen differently by that.
-    pub fn update(
-        &mut self,
-        queue: &wgpu::Queue,
-        shared: &Shared,
-        bev: &[u32],
-        grid: &VoxelGrid,
-        options: &ViewOptions,
-    ) -> Change {
+    fn update(&mut self, gpu: Gpu<'_>, bev: &[u32], grid: &VoxelGrid, options: &ViewOptions) -> Change {
         let markings = marking_texels(bev);
         let plane = plane_texels(bev, grid, options);
         if markings == self.markings && plane == self.plane {
             return Change::None;
         }
-        shared.write_layout(queue, &markings, &plane);
+        gpu.shared.write_layout(gpu.queue, &markings, &plane);
         // Shown on top of the ground voxels of a column, and beneath them.
         let mut seen = Change::None;
         for (texels, old) in [(&markings, &self.markings), (&plane, &self.plane)] {
@@ -70,8 +57,58 @@ impl Ground {
     }
 
     /// True if the plane would show anything.
-    pub fn is_visible(&self) -> bool {
+    fn is_visible(&self) -> bool {
         self.plane.iter().any(|t| t[3] != 0)
+    }
+}
+
+impl Drawable for Ground {
+    fn name(&self) -> &'static str {
+        "ground"
+    }
+
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+        let (scene, options) = (shown.scene, shown.scene.options);
+        let same = |(grid, bev, plane, voxels): &(VoxelGrid, u64, LayoutPlane, bool)| {
+            (*bev, *plane, *voxels) == (shown.bev, options.layout_plane, options.voxels)
+                && same_bricks(grid, scene.grid)
+        };
+        if self.made_from.as_ref().is_some_and(same) {
+            return Change::None;
+        }
+        self.made_from = Some((
+            scene.grid.clone(),
+            shown.bev,
+            options.layout_plane,
+            options.voxels,
+        ));
+        self.update(gpu, scene.bev, scene.grid, options)
+    }
+
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        let spec = PipelineSpec {
+            shader: "ground",
+            blend: true,
+            depth_write: false,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            ..PipelineSpec::OPAQUE
+        };
+        self.pipelines
+            .build(samples, || spec.build(gpu.device, gpu.shared, samples));
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        if layer == Layer::Ground
+            && self.is_visible()
+            && view.uniforms.shows_layout_plane()
+            && self.pipelines.set(pass, view)
+        {
+            pass.draw(0..4, 0..1);
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        0 // its textures are shared
     }
 }
 

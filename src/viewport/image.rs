@@ -36,7 +36,7 @@ impl Viewport {
             return Err(ViewportError::Supersample(supersample));
         }
         let samples = if supersample > 1 { 1 } else { scene.options.samples };
-        let target = Target::new(device, [width, height], super::samples(samples));
+        let target = Target::new(device, [width, height], super::view::samples(samples));
         let mut sums = vec![0u32; width as usize * height as usize * 4];
         for i in 0..supersample * supersample {
             let part = |k: u32| (f64::from(k) + 0.5) / f64::from(supersample) - 0.5;

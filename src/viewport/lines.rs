@@ -3,7 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use super::shared::{PipelineSpec, Shared, VertexBuffer};
+use super::change::Change;
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::marks::{differing, marked};
+use super::shared::{PipelineSpec, VertexBuffer};
 
 /// One corner of a line's quad; all four carry the whole line.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -54,58 +57,85 @@ impl LineList {
     }
 }
 
-/// Lines on the device: those of the first list show through what hides them, faintly.
+/// Drawable of lines: those of the first list show through what hides them, faintly.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
+    in_sight: Pipelines,
+    covered: Pipelines,
+    lists: [LineList; 2], // see-through, plain, as uploaded
     see_through: VertexBuffer,
     plain: VertexBuffer,
 }
 
-impl Lines {
-    /// The pipeline of what is in sight (`hidden` false) or behind something (true).
-    pub fn pipeline(
-        device: &wgpu::Device,
-        shared: &Shared,
-        samples: u32,
-        hidden: bool,
-    ) -> wgpu::RenderPipeline {
-        PipelineSpec {
-            shader: "lines",
-            fragment: if hidden { "fs_hidden" } else { "fs_main" },
-            stride: size_of::<LineVertex>(),
-            attributes: &wgpu::vertex_attr_array![
-                0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Float32
-            ],
-            blend: true,
-            depth_write: false,
-            depth_compare: if hidden {
-                wgpu::CompareFunction::Less
-            } else {
-                wgpu::CompareFunction::GreaterEqual
-            },
-            ..PipelineSpec::OPAQUE
+/// The pipeline of what is in sight (`covered` false) or behind something (true).
+fn spec(covered: bool) -> PipelineSpec<'static> {
+    const ATTRIBUTES: [wgpu::VertexAttribute; 4] = wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Unorm8x4, 3 => Float32
+    ];
+    PipelineSpec {
+        shader: "lines",
+        fragment: if covered { "fs_hidden" } else { "fs_main" },
+        stride: size_of::<LineVertex>(),
+        attributes: &ATTRIBUTES,
+        blend: true,
+        depth_write: false,
+        depth_compare: match covered {
+            true => wgpu::CompareFunction::Less,
+            false => wgpu::CompareFunction::GreaterEqual,
+        },
+        ..PipelineSpec::OPAQUE
+    }
+}
+
+impl Drawable for Lines {
+    fn name(&self) -> &'static str {
+        "lines"
+    }
+
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+        let px = f64::from(shown.scene.options.pixels_per_point);
+        let lists = [&shown.marks.see_through, &shown.marks.plain];
+        let buffers = [(&mut self.see_through, "lines"), (&mut self.plain, "plain lines")];
+        let mut seen = Change::None;
+        for ((list, held), (buffer, label)) in lists.into_iter().zip(&mut self.lists).zip(buffers) {
+            if list == held {
+                continue;
+            }
+            let differing = differing(&list.vertices, &held.vertices);
+            let width_pt = differing.iter().map(|v| v.line().1).fold(0.0, f64::max);
+            let ends = differing.iter().flat_map(|v| v.line().0);
+            seen.add(marked(ends, width_pt * px + 2.0));
+            buffer.write(gpu.device, gpu.queue, label, &list.vertices);
+            *held = list.clone();
         }
-        .build(device, shared, samples)
+        seen
     }
 
-    pub fn write(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        see_through: &LineList,
-        plain: &LineList,
-    ) {
-        self.see_through
-            .write(device, queue, "lines", &see_through.vertices);
-        self.plain.write(device, queue, "plain lines", &plain.vertices);
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        for (pipelines, covered) in [(&mut self.in_sight, false), (&mut self.covered, true)] {
+            pipelines.build(samples, || spec(covered).build(gpu.device, gpu.shared, samples));
+        }
     }
 
-    pub fn draw_plain(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.plain.draw_quads(pass, shared, 0..self.plain.quads());
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        let all = |pass: &mut wgpu::RenderPass<'_>, lines: &VertexBuffer| {
+            lines.draw_quads(pass, view.shared, 0..lines.quads());
+        };
+        match layer {
+            Layer::Covered if self.covered.set(pass, view) => all(pass, &self.see_through),
+            Layer::Lines if self.in_sight.set(pass, view) => {
+                all(pass, &self.plain);
+                all(pass, &self.see_through);
+            }
+            _ => {}
+        }
     }
 
-    pub fn draw_see_through(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared) {
-        self.see_through
-            .draw_quads(pass, shared, 0..self.see_through.quads());
+    fn memory_bytes(&self) -> u64 {
+        self.see_through.memory_bytes() + self.plain.memory_bytes()
+    }
+
+    fn quads(&self) -> usize {
+        (self.see_through.quads() + self.plain.quads()) as usize
     }
 }

@@ -8,7 +8,8 @@ use super::change::{Change, Part};
 use super::faces::{FaceList, FaceStyle};
 use super::lines::LineList;
 use super::meshing::NORMALS;
-use super::{GROUND_TOP_M, ViewScene, drop_m, ego};
+use super::options::drop_m;
+use super::{GROUND_TOP_M, ViewScene, ego};
 use scene::{Camera, GridSpec, SceneBox, SensorRig};
 
 /// All marks of a picture.
@@ -58,21 +59,6 @@ impl Marks {
             marks.cells(brush.cells, brush.color);
         }
         marks
-    }
-
-    /// What of the picture differs from that with other marks; `pixels_per_point` scales the width of lines.
-    pub fn change_from(&self, old: &Marks, pixels_per_point: f64) -> Change {
-        let mut seen = Change::None;
-        let lines = [(&self.see_through, &old.see_through), (&self.plain, &old.plain)];
-        for (new, old) in lines {
-            let differing = differing(&new.vertices, &old.vertices);
-            let width_pt = differing.iter().map(|v| v.line().1).fold(0.0, f64::max);
-            let ends = differing.iter().flat_map(|v| v.line().0);
-            seen.add(marked(ends, width_pt * pixels_per_point + 2.0));
-        }
-        let faces = differing(&self.faces.vertices, &old.faces.vertices);
-        seen.add(marked(faces.iter().map(|v| v.position_m()), 2.0));
-        seen
     }
 
     fn metre_grid(&mut self) {
@@ -216,7 +202,7 @@ impl Marks {
 
 /// What is in one of two lists of rectangles (four vertices each) and not at the same place, from the front or from the
 /// back, in the other.
-fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
+pub(super) fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
     let whole = |vertices: usize| vertices / 4 * 4;
     let same = whole(a.iter().zip(b).take_while(|(a, b)| a == b).count());
     let (a, b) = (&a[same..], &b[same..]);
@@ -229,7 +215,8 @@ fn differing<V: Copy + PartialEq>(a: &[V], b: &[V]) -> Vec<V> {
     [&a[..a.len() - same], &b[..b.len() - same]].concat()
 }
 
-fn marked(points_m: impl Iterator<Item = DVec3>, around_px: f64) -> Change {
+/// What some points and what is drawn around them, up to so many pixels wide, change of a picture.
+pub(super) fn marked(points_m: impl Iterator<Item = DVec3>, around_px: f64) -> Change {
     let mut points_m = points_m.peekable();
     if points_m.peek().is_none() {
         return Change::None;

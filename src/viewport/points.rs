@@ -1,12 +1,15 @@
 //! LiDAR returns: small discs, and the colours they can have. They are held in squares of the ground, so that those out of
 //! view cost nothing, and an edit draws again only what it changed.
 
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
 use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
 
-use glam::{DMat4, DVec3};
-
+use super::LidarView;
 use super::change::{Change, Part, may_be_seen};
-use super::shared::{PipelineSpec, Shared, VertexBuffer};
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
+use super::shared::{PipelineSpec, VertexBuffer};
 use scene::{Class, LidarPoint, LidarSweep};
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -93,15 +96,77 @@ struct Square {
 /// Drawable of a sweep.
 #[derive(Debug)]
 pub(super) struct Points {
+    pipelines: Pipelines,
     squares: Vec<Square>,
+    uploaded: Option<u64>, // fingerprint
 }
 
 impl Default for Points {
     fn default() -> Self {
         Self {
+            pipelines: Pipelines::default(),
             squares: (0..SQUARES * SQUARES).map(|_| Square::default()).collect(),
+            uploaded: None,
         }
     }
+}
+
+impl Drawable for Points {
+    fn name(&self) -> &'static str {
+        "points"
+    }
+
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+        let options = shown.scene.options;
+        let lidar = shown.scene.lidar.filter(|_| options.lidar);
+        let points = lidar.map_or(0, fingerprint);
+        if self.uploaded == Some(points) {
+            return Change::None;
+        }
+        self.uploaded = Some(points);
+        let nothing = LidarSweep::default();
+        let (sweep, colors) = lidar.map_or((&nothing, &[][..]), |l| (l.sweep, l.colors));
+        self.write(gpu, sweep, colors, f64::from(options.point_px))
+    }
+
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        let spec = PipelineSpec {
+            shader: "points",
+            stride: size_of::<PointVertex>(),
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
+            ..PipelineSpec::OPAQUE
+        };
+        self.pipelines
+            .build(samples, || spec.build(gpu.device, gpu.shared, samples));
+    }
+
+    /// Draws the squares in view. What `clip` maps beyond -1 or 1 is not: it leaves room for the discs, see
+    /// [`Points::reach_px`].
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        if layer != Layer::Opaque || !self.pipelines.set(pass, view) {
+            return;
+        }
+        for square in &self.squares {
+            let seen = |p: Part| may_be_seen(p.low_m, p.high_m, &view.clip);
+            if square.part.is_some_and(seen) {
+                square.triangles.draw_triangles(pass);
+            }
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.squares.iter().map(|s| s.triangles.memory_bytes()).sum()
+    }
+}
+
+fn fingerprint(lidar: LidarView<'_>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (lidar.sweep.points.len(), lidar.sweep.physical).hash(&mut hasher);
+    for p in &lidar.sweep.points {
+        hasher.write(bytemuck::cast_slice(&p.position_in_ego));
+    }
+    hasher.write(lidar.colors.as_flattened());
+    hasher.finish()
 }
 
 fn square_of([x, y, _]: [f32; 3]) -> usize {
@@ -110,16 +175,6 @@ fn square_of([x, y, _]: [f32; 3]) -> usize {
 }
 
 impl Points {
-    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-        PipelineSpec {
-            shader: "points",
-            stride: size_of::<PointVertex>(),
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Unorm8x4],
-            ..PipelineSpec::OPAQUE
-        }
-        .build(device, shared, samples)
-    }
-
     /// How far a disc of `point_px` may reach from the point, px: the triangle around it is twice as large as it is, and
     /// nearby it is twice as large as was asked for.
     pub fn reach_px(point_px: f64) -> f64 {
@@ -128,14 +183,7 @@ impl Points {
 
     /// Uploads the returns; a return without a colour is white, a non-finite one is left out. What is seen differently
     /// by that, with discs of `point_px`.
-    pub fn write(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        sweep: &LidarSweep,
-        colors: &[[u8; 4]],
-        point_px: f64,
-    ) -> Change {
+    fn write(&mut self, gpu: Gpu<'_>, sweep: &LidarSweep, colors: &[[u8; 4]], point_px: f64) -> Change {
         // The ground is drawn where the labels have it; so is what was measured on the physical one.
         let lift_m = if sweep.physical {
             super::GROUND_TOP_M as f32
@@ -163,21 +211,10 @@ impl Points {
             for part in [part, square.part].into_iter().flatten() {
                 seen.add(Change::part(part, Self::reach_px(point_px)));
             }
-            square.triangles.write(device, queue, "points", &vertices);
+            square.triangles.write(gpu.device, gpu.queue, "points", &vertices);
             (square.vertices, square.part) = (vertices, part);
         }
         seen
-    }
-
-    /// Draws the squares in view. What `clip` maps beyond -1 or 1 is not: it leaves room for the discs, see
-    /// [`Points::reach_px`].
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, clip: &DMat4) {
-        for square in &self.squares {
-            let seen = |p: Part| may_be_seen(p.low_m, p.high_m, clip);
-            if square.part.is_some_and(seen) {
-                square.triangles.draw_triangles(pass);
-            }
-        }
     }
 }
 

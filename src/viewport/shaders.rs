@@ -31,11 +31,11 @@ pub const SHADERS: &[Shader] = &[
     shader!("faces"),
     shader!("ground"),
     shader!("lines"),
-    Shader {
-        name: "panels",
-        source: include_str!("../../shaders/panels.wgsl"),
-    },
     shader!("points"),
+    Shader {
+        name: "ui_mesh",
+        source: include_str!("../../shaders/ui_mesh.wgsl"),
+    },
     shader!("voxels"),
 ];
 

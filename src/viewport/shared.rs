@@ -440,6 +440,11 @@ impl VertexBuffer {
         pass.draw(0..self.vertices, 0..1);
     }
 
+    /// Memory on the device, bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        self.buffer.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+
     /// Number of rectangles held.
     pub fn quads(&self) -> u32 {
         self.vertices / 4

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::change::{Change, Part, may_be_seen};
+use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
 use super::light::{LightBlock, LightRays, REACH};
 use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, brick_origin, join, mesh_bricks};
-use super::shared::{PipelineSpec, Shared, VertexBuffer};
+use super::shared::{PipelineSpec, VertexBuffer};
 use super::{ViewCamera, ViewOptions};
 use scene::grid::{BRICK, BRICKS, Brick};
 use scene::{GridSpec, VoxelGrid};
@@ -22,6 +23,7 @@ const EDGE_PX: f64 = 2.0;
 /// Drawable of the occupancy.
 #[derive(Debug)]
 pub(super) struct Voxels {
+    pipelines: Pipelines,
     grid: VoxelGrid, // as last uploaded; holding it keeps the addresses of its bricks unique
     visible: Visible,
     solid: Solidity,
@@ -55,11 +57,60 @@ pub(super) fn visible(options: &ViewOptions) -> Visible {
     }
 }
 
+impl Drawable for Voxels {
+    fn name(&self) -> &'static str {
+        "voxels"
+    }
+
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
+        let (grid, visible) = (shown.scene.grid, visible(shown.scene.options));
+        if visible == self.visible && same_bricks(grid, &self.grid) {
+            return Change::None;
+        }
+        self.update(gpu, grid, visible)
+    }
+
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
+        let spec = PipelineSpec {
+            shader: "voxels",
+            stride: STRIDE,
+            attributes: &wgpu::vertex_attr_array![0 => Uint32],
+            cull: true,
+            ..PipelineSpec::OPAQUE
+        };
+        self.pipelines
+            .build(samples, || spec.build(gpu.device, gpu.shared, samples));
+    }
+
+    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye. What `clip` maps beyond -1
+    /// or 1 is out of view.
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer) {
+        if layer != Layer::Opaque || !self.pipelines.set(pass, view) {
+            return;
+        }
+        for (b, _) in self.in_view(view.camera, &view.clip) {
+            let brick = &self.bricks[b];
+            for range in facing(b, &brick.quads, view.camera) {
+                brick.vertices.draw_quads(pass, view.shared, range);
+            }
+        }
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.bricks.iter().map(|b| b.vertices.memory_bytes()).sum()
+    }
+
+    fn quads(&self) -> usize {
+        self.bricks.iter().map(|b| b.vertices.quads() as usize).sum()
+    }
+}
+
 impl Voxels {
     pub fn new() -> Self {
         let grid = VoxelGrid::new();
         let visible = Visible::ALL;
         Self {
+            pipelines: Pipelines::default(),
             solid: Solidity::of(&grid, visible),
             grid,
             visible,
@@ -69,27 +120,8 @@ impl Voxels {
         }
     }
 
-    pub fn pipeline(device: &wgpu::Device, shared: &Shared, samples: u32) -> wgpu::RenderPipeline {
-        PipelineSpec {
-            shader: "voxels",
-            stride: STRIDE,
-            attributes: &wgpu::vertex_attr_array![0 => Uint32],
-            cull: true,
-            ..PipelineSpec::OPAQUE
-        }
-        .build(device, shared, samples)
-    }
-
     /// Takes over a grid; what of it is seen differently now.
-    pub fn update(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        shared: &Shared,
-        grid: &VoxelGrid,
-        options: &ViewOptions,
-    ) -> Change {
-        let visible = visible(options);
+    fn update(&mut self, gpu: Gpu<'_>, grid: &VoxelGrid, visible: Visible) -> Change {
         let same_view = visible == self.visible;
         let changed: Vec<usize> = if same_view {
             grid.changed_bricks(&self.grid)
@@ -123,11 +155,11 @@ impl Voxels {
             self.bricks[b].quads = quads;
             self.bricks[b]
                 .vertices
-                .write(device, queue, "voxel brick", &vertices);
+                .write(gpu.device, gpu.queue, "voxel brick", &vertices);
         }
         if let Some((origin, size)) = shape_changed.map(lit_area) {
             let block: LightBlock = self.rays.bake(&self.solid, origin, size);
-            shared.write_light(queue, &block);
+            gpu.shared.write_light(gpu.queue, &block);
             seen.add(self.keep_light(&block));
         }
         seen
@@ -166,22 +198,6 @@ impl Voxels {
             high_m: part.high_m + 2.0 * GridSpec::VOXEL_M,
         };
         Change::part(wider, EDGE_PX)
-    }
-
-    /// Draws the bricks in view, nearest first, and of each only the sides that face the eye. What `clip` maps beyond -1
-    /// or 1 is out of view.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared, camera: &ViewCamera, clip: &DMat4) {
-        for (b, _) in self.in_view(camera, clip) {
-            let brick = &self.bricks[b];
-            for range in facing(b, &brick.quads, camera) {
-                brick.vertices.draw_quads(pass, shared, range);
-            }
-        }
-    }
-
-    /// Rectangles held, seen or not.
-    pub fn quads(&self) -> usize {
-        self.bricks.iter().map(|b| b.vertices.quads() as usize).sum()
     }
 
     fn in_view(&self, camera: &ViewCamera, clip: &DMat4) -> Vec<(usize, f64)> {
@@ -275,11 +291,4 @@ fn lit_area((low, high): ColumnBox) -> ([usize; 2], [usize; 2]) {
 /// True if both hold the same bricks in memory.
 pub(super) fn same_bricks(a: &VoxelGrid, b: &VoxelGrid) -> bool {
     a.bricks().iter().zip(b.bricks()).all(|(a, b)| Arc::ptr_eq(a, b))
-}
-
-impl Voxels {
-    /// True if `grid` under `options` is what is uploaded.
-    pub fn holds(&self, grid: &VoxelGrid, options: &ViewOptions) -> bool {
-        visible(options) == self.visible && same_bricks(grid, &self.grid)
-    }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-fn sceneloom(args: &[&str]) -> Output {
+pub fn sceneloom(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_sceneloom"))
         .args(args)
         .env_remove("DISPLAY")
@@ -12,7 +12,7 @@ fn sceneloom(args: &[&str]) -> Output {
         .expect("the built program runs")
 }
 
-fn json(output: &Output) -> serde_json::Value {
+pub fn json(output: &Output) -> serde_json::Value {
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(
         output.status.success(),
@@ -23,7 +23,7 @@ fn json(output: &Output) -> serde_json::Value {
 }
 
 /// The command fails with exit 2 and one line that holds every one of `needles`.
-fn refused(args: &[&str], needles: &[&str]) {
+pub fn refused(args: &[&str], needles: &[&str]) {
     let output = sceneloom(args);
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{args:?}: {error}");
@@ -33,21 +33,21 @@ fn refused(args: &[&str], needles: &[&str]) {
     }
 }
 
-struct Folder(tempfile::TempDir);
+pub struct Folder(tempfile::TempDir);
 
 impl Folder {
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
-    fn path(&self, name: &str) -> String {
+    pub fn path(&self, name: &str) -> String {
         self.0.path().join(name).display().to_string()
     }
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> String {
         let path = self.path(name);
         std::fs::write(&path, bytes).expect("writable");
         path
     }
-    fn scene(&self) -> String {
+    pub fn scene(&self) -> String {
         let path = self.path("scene.loom");
         json(&sceneloom(&[
             "new",

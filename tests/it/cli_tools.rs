@@ -1,6 +1,7 @@
 //! `check`, `export` and `diff` on real scenes; exported files are read back by readers that share no code with the
 //! writers.
 
+use editor::Apply;
 use std::collections::HashMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};

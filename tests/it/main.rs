@@ -2,11 +2,14 @@
 
 mod appearance_gpu;
 mod bounded_memory;
+mod camera_files;
 mod candle;
 mod cli;
+mod cli_formats;
 mod cli_tools;
 mod diffusion;
 mod fuzz;
+mod house;
 mod inferred;
 mod opendrive;
 mod parity;
@@ -22,5 +25,6 @@ mod shaders;
 mod splat_gpu;
 mod splat_reference;
 mod threads;
+mod tidy;
 mod viewport;
 mod window;

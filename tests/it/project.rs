@@ -1,5 +1,6 @@
 //! Project files: what is saved comes back, equal scenes give equal bytes, and no bad file does harm.
 
+use editor::Apply;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Write};
 use std::sync::Arc;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use app::open;
 use editor::{Document, Edit, Shape};
 use glam::{DVec2, DVec3};
+use numeric::splitmix::SplitMix64;
 use scene::grid::{BRICKS, NOT_PAINTED};
 use scene::{BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SceneRev};
 
@@ -15,25 +16,18 @@ const COMMANDS: u64 = 10_000;
 /// States are compared voxel by voxel at every so many commands; by everything else at each.
 const DEEP_EVERY: u64 = 25;
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-struct Random(u64);
+/// Draws of what a user might do.
+struct Random(SplitMix64);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
     fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
+        self.0.below(n)
     }
     fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
     /// Now and then something that no user could type.
     fn number(&mut self, low: f64, high: f64) -> f64 {
@@ -261,7 +255,7 @@ fn random_commands_break_nothing() {
         env("SCENELOOM_RANDOM_COMMANDS", COMMANDS),
         env("SCENELOOM_RANDOM_SEED", 1),
     );
-    let mut random = Random(seed);
+    let mut random = Random(SplitMix64::new(seed));
     let mut start = open::bundled().expect("bundled");
     start.frames.push(start.frames[0].clone());
     let mut document = Document::new(start);

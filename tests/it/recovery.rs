@@ -1,6 +1,7 @@
 //! Killed in the middle of a save: the file on disk is a whole scene, old or new, and no more than the work of one
 //! interval is lost.
 
+use editor::Apply;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -90,7 +91,7 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
         random ^= random >> 7;
         random ^= random << 17;
         let mut child = Command::new(std::env::current_exe().expect("this test"))
-            .args(["--exact", "child", "--ignored", "--nocapture"])
+            .args(["--exact", "recovery::child", "--ignored", "--nocapture"])
             .env(FOLDER, folder.path())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -88,8 +88,8 @@ fn uniforms_are_as_large_here_as_there() {
         let (name, bytes) = match computes(&shader) {
             true if shader.name == "appearance" => ("View", APPEARANCE_UNIFORM_BYTES),
             true => ("Batch", SPLAT_UNIFORM_BYTES),
-            // Two numbers, as many to fill up, a colour; `viewport/panels.rs` binds so many bytes.
-            false if shader.name == "panels" => ("Screen", 32),
+            // Two numbers, as many to fill up, a colour; `viewport/ui_mesh.rs` binds so many bytes.
+            false if shader.name == "ui_mesh" => ("Screen", 32),
             false => ("Frame", FRAME_UNIFORM_BYTES),
         };
         let (handle, _) = module

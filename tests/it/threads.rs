@@ -15,6 +15,7 @@ use nets::layout::net::LayoutNet;
 use nets::lidar::LidarNet;
 use nets::{Heard, OccModels, fine_vae};
 use nn::Precision;
+use numeric::hash::Fnv1a;
 use place::to_graph::to_graph;
 use scene::{Class, Frame, Scene, SensorRig};
 use sensors::appearance::{
@@ -30,19 +31,16 @@ use world::{World, template, traffic};
 
 const THREADS: [usize; 3] = [1, 2, 16];
 
-/// FNV-1a (64 bit).
+/// Names results.
 #[derive(Clone, Copy)]
-struct Hash(u64);
+struct Hash(Fnv1a);
 
 impl Hash {
     fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
+        Self(Fnv1a::new())
     }
-    fn bytes(mut self, bytes: impl IntoIterator<Item = u8>) -> Self {
-        for b in bytes {
-            self.0 = (self.0 ^ u64::from(b)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-        self
+    fn bytes(self, bytes: impl IntoIterator<Item = u8>) -> Self {
+        Self(self.0.with(bytes))
     }
     fn f32s<'a>(self, values: impl IntoIterator<Item = &'a f32>) -> Self {
         self.bytes(values.into_iter().flat_map(|v| v.to_bits().to_le_bytes()))
@@ -56,10 +54,10 @@ impl Hash {
 fn same_bits(what: &str, job: impl Fn() -> Hash + Sync) {
     let hashes = THREADS.map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("a pool").install(|| job().0)
+        pool.expect("a pool").install(|| job().0.get())
     });
     println!("{what}: {:016x}", hashes[0]);
-    assert_ne!(hashes[0], Hash::new().0, "{what}: nothing was hashed");
+    assert_ne!(hashes[0], Hash::new().0.get(), "{what}: nothing was hashed");
     assert!(
         hashes.iter().all(|h| *h == hashes[0]),
         "{what}: {hashes:x?} on {THREADS:?} threads"

@@ -3,8 +3,8 @@
 
 use glam::DVec2;
 
-use crate::application::SceneloomApp;
-use crate::state::Pane;
+use crate::panes::id::PaneId;
+use crate::shell::app::SceneloomApp;
 use crate::tools::ToolCommand;
 use editor::arrange::{self, Clipboard};
 use editor::pick_things::{ground_in_world, way_in_world};
@@ -125,7 +125,7 @@ impl SceneloomApp {
     /// At the pointer over the bird's-eye view, else beside where they were; boxes come along.
     fn paste_things(&mut self, scene: &Scene) {
         let frame = scene.frame();
-        let over_bev = self.state.hovered_pane == Some(Pane::Bev);
+        let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
         let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
         let forms = self.state.tools.things.clipboard.clone();
         let middle = forms.iter().map(Form::middle_m).sum::<DVec2>() / forms.len() as f64;

@@ -5,11 +5,12 @@ mod things;
 
 use egui::Context;
 
-use crate::actions::ACTIONS;
-use crate::application::SceneloomApp;
 use crate::command::Command;
-use crate::panels::toasts::Level;
-use crate::state::{Pane, UiState};
+use crate::panes::id::PaneId;
+use crate::shell::actions::ACTIONS;
+use crate::shell::app::SceneloomApp;
+use crate::shell::toasts::Level;
+use crate::state::UiState;
 use crate::tools::{Choose, ToolCommand};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard};
@@ -61,7 +62,7 @@ impl SceneloomApp {
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
             ToolCommand::Paste => {
-                let over_bev = self.state.hovered_pane == Some(Pane::Bev);
+                let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
                 let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
                 let added = arrange::paste(&frame, &self.state.tools.clipboard, at_m);
                 let label = of(&added.ids, "Paste box", "Paste boxes");

@@ -1,6 +1,6 @@
 //! Carries out the commands of the tools for things.
 
-use crate::application::SceneloomApp;
+use crate::shell::app::SceneloomApp;
 use crate::tools::Choose;
 use editor::Edit;
 use scene::background::STOREY_M;

@@ -1,5 +1,6 @@
 //! `sceneloom check`: the quality checks of a scene, and what of it can be repaired.
 
+use editor::Apply;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -7,7 +8,9 @@ use anyhow::{anyhow, bail};
 use serde_json::{Value, json};
 
 use super::{Common, Outcome, Stop, output};
-use crate::{checking, open, panels};
+use crate::open;
+use crate::panes;
+use crate::shell::checking;
 use editor::checks::{self, Finding, Severity, waive};
 use formats::project;
 use scene::Scene;
@@ -87,7 +90,7 @@ impl Check {
             "files": files,
             "wall_s": wall_s,
         });
-        let summary = panels::checks::summary(&open);
+        let summary = panes::checks::summary(&open);
         output::report(&self.common, &report, || {
             let line = |f: &Finding| {
                 let p = f.where_m;

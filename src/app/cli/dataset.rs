@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::{Common, Outcome, output};
 use crate::memory;
 use crate::open;
-use crate::roads::Roads;
+use authoring::roads::Roads;
 use dataset::layout::layout_frame;
 use dataset::lidar::lidar_frame;
 use dataset::text::text_frame;

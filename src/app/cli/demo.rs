@@ -7,7 +7,7 @@ use anyhow::Context;
 use glam::{DVec2, DVec3};
 use serde_json::json;
 
-use super::generate::{models, run_and_adopt};
+use super::generate::run_and_adopt;
 use super::progress::Progress;
 use super::render::sense;
 use super::{Common, Outcome, output};
@@ -17,6 +17,7 @@ use editor::{Document, Edit, Shape};
 use formats::project;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
+use nets::OccModels;
 use scene::{BevLayer, BoxId, Class, GridSpec, Scene};
 use sensors::color;
 
@@ -164,7 +165,7 @@ impl Demo {
         std::fs::create_dir_all(&dir).with_context(|| format!("create {}", dir.display()))?;
         let progress = Progress::new(&self.common);
         let start = Instant::now();
-        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
         let mut document = Document::new(open::bundled()?);
         let mut sink = Sink {
             dir: &dir,

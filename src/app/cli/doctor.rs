@@ -2,8 +2,8 @@
 
 use serde_json::json;
 
-use super::generate::models;
 use super::{Common, Outcome, output};
+use nets::OccModels;
 use viewport::headless_device;
 
 /// Arguments.
@@ -47,9 +47,9 @@ impl Doctor {
             }
             Err(error) => json!({ "error": error.to_string() }),
         };
-        let weights = match models(self.common.weights.as_deref()) {
+        let weights = match OccModels::of(self.common.weights.as_deref()) {
             Ok(models) => json!({ "name": models.card.name, "ok": true }),
-            Err(error) => json!({ "ok": false, "error": output::one_line(&error) }),
+            Err(error) => json!({ "ok": false, "error": output::one_line(&error.into()) }),
         };
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let report = json!({
@@ -58,6 +58,7 @@ impl Doctor {
             "adapter": adapter,
             "threads": threads,
             "simd": simd(),
+            "log": crate::shell::logging::file(),
             "weights": weights,
         });
         output::report(&self.common, &report, || {
@@ -74,6 +75,7 @@ impl Doctor {
                 ("adapter", adapter.to_string()),
                 ("threads", threads.to_string()),
                 ("simd", simd().join(" ")),
+                ("log", report["log"].as_str().unwrap_or("nowhere").to_owned()),
                 ("weights", weights.to_string()),
             ];
             rows.map(|(name, value)| format!("{name:<8} {value}")).join("\n")

@@ -5,15 +5,16 @@ use std::path::PathBuf;
 use anyhow::Context;
 use serde_json::json;
 
-use super::generate::{models, run_and_adopt};
+use super::generate::run_and_adopt;
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, Stop, output};
 use crate::open;
 use editor::{Document, Edit};
-use formats::project;
+use formats::{input, project};
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
+use nets::OccModels;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -39,7 +40,7 @@ pub struct EditCommand {
 /// A JSON list of edits.
 pub fn read_edits(path: &std::path::Path) -> anyhow::Result<Vec<Edit>> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("read {name}"))?;
+    let text = input::read_text(path, input::LARGEST_TEXT)?;
     serde_json::from_str(&text).with_context(|| name.to_string())
 }
 
@@ -54,7 +55,7 @@ impl EditCommand {
         document
             .apply_all("Edit", &edits)
             .with_context(|| self.edits.display().to_string())?;
-        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
         let round_trip = if self.verify {
             let job = Job {
                 scene: before,

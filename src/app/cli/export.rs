@@ -6,20 +6,20 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use serde_json::json;
 
-use super::render::size;
+use super::render::{size, source};
 use super::{Common, Outcome, output};
 use crate::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
 use crate::open;
 use crate::picture::ShotOptions;
-use crate::state::{CameraSource, LidarModel};
+use crate::state::LidarModel;
+use sensors::cameras::SourceId;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Export {
     /// Scene to read.
     scene: Option<PathBuf>,
-    /// Kind of file; `list` names them all, `all` writes every kind into a folder.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = format!("Kind of file: {}; `list` tells what each holds, `all` writes every kind into a folder", names()))]
     format: String,
     /// File or folder to write.
     #[arg(short, long, value_name = "PATH")]
@@ -28,8 +28,8 @@ pub struct Export {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
     /// What classes and depths are rendered from.
-    #[arg(long, value_name = "NAME", value_parser = ["splats", "voxels", "shapes"], default_value = "shapes")]
-    source: String,
+    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "shapes")]
+    source: SourceId,
     /// How the LiDAR sweep comes about.
     #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
     lidar: String,
@@ -49,24 +49,34 @@ pub struct Export {
     common: Common,
 }
 
+/// Names of the formats.
+fn names() -> String {
+    let ids = formats::export::all().iter().map(|f| f.id);
+    ids.collect::<Vec<_>>().join(", ")
+}
+
 impl Export {
     pub(super) fn run(self) -> Outcome {
         if self.format == "list" {
-            let list: Vec<_> = Format::ALL
-                .map(|f| json!({ "name": f.name(), "holds": f.what() }))
-                .into();
+            let line = |f: &Format| json!({ "name": f.id, "holds": f.title });
+            let list: Vec<_> = formats::export::all().iter().map(line).collect();
             output::report(&self.common, &json!({ "formats": list }), || {
-                let lines = Format::ALL.map(|f| format!("{:<16} {}", f.name(), f.what()));
-                lines.join("\n")
+                let line = |f: &Format| format!("{:<16} {}", f.id, f.title);
+                formats::export::all()
+                    .iter()
+                    .map(line)
+                    .collect::<Vec<_>>()
+                    .join("\n")
             });
             return Ok(());
         }
-        let formats = match (self.format.as_str(), Format::from_name(&self.format)) {
-            ("all", _) => Format::ALL.to_vec(),
+        let formats = match (self.format.as_str(), formats::export::from_id(&self.format)) {
+            ("all", _) => formats::export::all().to_vec(),
             (_, Some(format)) => vec![format],
             (unknown, None) => {
-                let names = Format::ALL.map(Format::name).join(", ");
-                return Err(anyhow!("--format is {unknown:?}, expected one of {names}, all, list").into());
+                return Err(
+                    anyhow!("--format is {unknown:?}, expected one of {}, all, list", names()).into(),
+                );
             }
         };
         let path = self
@@ -75,11 +85,7 @@ impl Export {
         let scene = open::scene(&self.scene.context("the scene to read is missing")?)?;
         let options = ExportOptions {
             camera_size: self.size,
-            source: match self.source.as_str() {
-                "splats" => CameraSource::Splats,
-                "voxels" => CameraSource::Voxels,
-                _ => CameraSource::Shapes,
-            },
+            source: self.source,
             lidar: match self.lidar.as_str() {
                 "learned" => LidarModel::Learned,
                 _ => LidarModel::Exact,

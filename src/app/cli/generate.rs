@@ -1,7 +1,6 @@
 //! `sceneloom generate`: occupancy from layout and boxes, then the sensors.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use serde_json::json;
@@ -13,7 +12,7 @@ use crate::scenery::SceneryWish;
 use editor::Document;
 use formats::project;
 use job::pipeline::OccPipeline;
-use job::{GenParams, GenResult, Job, Named, Pipeline, RegionMode};
+use job::{GenParams, GenResult, Job, Pipeline, RegionMode};
 use metrics::agreement::layout_agreement;
 use nets::OccModels;
 use scene::Scene;
@@ -36,28 +35,6 @@ pub struct Generate {
     generation: Gen,
     #[command(flatten)]
     common: Common,
-}
-
-/// Parameters of a generation from the layout alone.
-pub fn full_params() -> GenParams {
-    GenParams {
-        region: RegionMode::Full,
-        steps: 20,
-        guidance: 1.5,
-        named: Named {
-            completeness: Some(1.0),
-            ..Named::default()
-        },
-        ..GenParams::default()
-    }
-}
-
-/// The networks of `--weights`, or the bundled ones.
-pub fn models(weights: Option<&Path>) -> anyhow::Result<Arc<OccModels>> {
-    Ok(match weights {
-        Some(dir) => OccModels::from_dir(dir)?,
-        None => OccModels::bundled()?,
-    })
 }
 
 /// Runs the pipeline on a document's scene and adopts the result.
@@ -103,9 +80,9 @@ fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<b
 impl Generate {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
-        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
         let progress = Progress::new(&self.common);
-        let params = self.generation.params(full_params())?;
+        let params = self.generation.params(GenParams::whole_scene())?;
         let mut document = Document::new(scene);
         let drawn = !self.bare && draw_scenery(&mut document, &params)?;
         let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;

@@ -1,21 +1,22 @@
-//! `sceneloom import`: a scene from a road network or from labels.
+//! `sceneloom import`: a scene from a file of any format that is read, see `formats::import`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow};
 use glam::DVec2;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::open::{self, Kind, Placement};
+use crate::open::{self, Imported, Placement};
+use formats::import::{self, Content, Importer, Loaded};
 use formats::project;
 use scene::{BevLayer, Scene};
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Import {
-    /// OpenDRIVE road network, or Occ3D labels (`labels.npz`).
+    #[arg(help = format!("File to read: {}", import::in_words()))]
     file: PathBuf,
     /// Ego position in the file's frame, m; without it a place on a lane near a junction.
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
@@ -53,38 +54,39 @@ impl Import {
         if let Some(heading) = self.heading
             && !heading.is_finite()
         {
-            return Err(anyhow::anyhow!("--heading is {heading}, expected a finite angle in degrees").into());
+            return Err(anyhow!("--heading is {heading}, expected a finite angle in degrees").into());
         }
-        if open::kind(&self.file)? == Kind::Occ3d {
-            return self.labels();
+        let (importer, content) = import::read(&self.file)?;
+        match content {
+            Content::Scene(loaded) => self.whole(importer, &loaded),
+            Content::Roads(network) => {
+                let placement = Placement {
+                    at_m: self.at,
+                    heading_rad: self.heading.map(f64::to_radians),
+                    seed: self.seed,
+                    empty: self.empty,
+                    bare: self.bare,
+                };
+                let name = import::scene_name(&self.file);
+                self.roads(importer, &open::on_roads(*network, &name, &placement))
+            }
         }
-        let placement = Placement {
-            at_m: self.at,
-            heading_rad: self.heading.map(f64::to_radians),
-            seed: self.seed,
-            empty: self.empty,
-            bare: self.bare,
-        };
-        let imported = open::import(&self.file, &placement)?;
+    }
+
+    /// A place on roads.
+    fn roads(&self, importer: &Importer, imported: &Imported) -> Outcome {
         let frame = imported.scene.frame();
+        let (at, heading) = imported.pose;
         if frame.layout.count(BevLayer::DrivableArea) == 0 {
-            let (at, _) = imported.pose;
-            (|| -> anyhow::Result<()> {
-                bail!(
-                    "{}: no road within 40 m of --at {:.1},{:.1}",
-                    self.file.display(),
-                    at.x,
-                    at.y
-                )
-            })()?;
+            let file = self.file.display();
+            return Err(anyhow!("{file}: no road within 40 m of --at {:.1},{:.1}", at.x, at.y).into());
         }
         project::save(&self.output, &imported.scene).context("write the scene")?;
         let heights_m = frame.layout.relief.heights_m().unwrap_or_default();
         let lowest_m = heights_m.iter().copied().fold(0.0, f32::min);
         let highest_m = heights_m.iter().copied().fold(0.0, f32::max);
-        let (at, heading) = imported.pose;
         let report = json!({
-            "format": "opendrive",
+            "format": importer.id,
             "boxes": frame.boxes.len(),
             "roads": imported.roads,
             "lanes": imported.lanes,
@@ -108,11 +110,6 @@ impl Import {
                 true => String::new(),
                 false => format!("; counted as drivable: {}", beside.join(", ")),
             };
-            let skipped: Vec<String> = imported
-                .skipped
-                .iter()
-                .map(|(kind, n)| format!("{kind} {n}"))
-                .collect();
             format!(
                 "{}: {} roads, {} lanes, {} bridges, {} boxes, {} things beside the road ({} of the file), ground {:.1} to \
                  {:.1} m; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}{note}",
@@ -128,34 +125,39 @@ impl Import {
                 at.x,
                 at.y,
                 heading.to_degrees(),
-                match skipped.is_empty() {
-                    true => "nothing".into(),
-                    false => skipped.join(", "),
-                }
+                listed(&imported.skipped),
             )
         });
         Ok(())
     }
 
-    /// Labels carry neither layout nor boxes nor things: all are inferred.
-    fn labels(&self) -> Outcome {
-        let scene = open::labels(&self.file)?;
-        project::save(&self.output, &scene).context("write the scene")?;
+    /// A scene as the file holds it, and what of it was inferred.
+    fn whole(&self, importer: &Importer, loaded: &Loaded) -> Outcome {
+        let scene = &loaded.scene;
+        project::save(&self.output, scene).context("write the scene")?;
         let frame = scene.frame();
         let report = json!({
-            "format": "occ3d",
+            "format": importer.id,
             "boxes": frame.boxes.len(),
             "roads": 0,
             "lanes": 0,
-            "skipped": {},
-            "inferred": ["layout", "boxes", "background"],
-            "things": things(&scene),
+            "skipped": loaded.skipped,
+            "inferred": loaded.inferred,
+            "things": things(scene),
             "occupied_voxels": frame.occupancy.count_set(),
             "file": self.output,
         });
         output::report(&self.common, &report, || {
+            let inferred = match loaded.inferred.is_empty() {
+                true => "",
+                false => "inferred: ",
+            };
+            let skipped = match loaded.skipped.is_empty() {
+                true => String::new(),
+                false => format!("; left out: {}", listed(&loaded.skipped)),
+            };
             format!(
-                "{}: {} occupied voxels; inferred: {} boxes, {} road and {} sidewalk columns, {} things beside the road",
+                "{}: {} occupied voxels; {inferred}{} boxes, {} road and {} sidewalk columns, {} things beside the road{skipped}",
                 self.output.display(),
                 frame.occupancy.count_set(),
                 frame.boxes.len(),
@@ -166,6 +168,22 @@ impl Import {
         });
         Ok(())
     }
+}
+
+/// Kinds with their numbers; `nothing` if there are none. Of very many the first are named.
+fn listed(counts: &BTreeMap<String, usize>) -> String {
+    const MOST: usize = 40;
+    let mut kinds: Vec<String> = counts
+        .iter()
+        .take(MOST)
+        .map(|(kind, n)| format!("{kind} {n}"))
+        .collect();
+    match counts.len() {
+        0 => return "nothing".into(),
+        n if n > MOST => kinds.push(format!("{} other kinds", n - MOST)),
+        _ => {}
+    }
+    kinds.join(", ")
 }
 
 /// Number of things of each kind.

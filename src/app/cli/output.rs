@@ -7,6 +7,8 @@ use anyhow::Context;
 use serde_json::Value;
 
 use super::Common;
+use formats::png;
+pub use judge::machine::peak_rss_mb;
 
 /// Prints the report: as JSON if asked, else the given text.
 pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
@@ -17,26 +19,9 @@ pub fn report(common: &Common, json: &Value, text: impl FnOnce() -> String) {
     }
 }
 
-/// An error with its causes on one line. A cause that its parent has quoted already is left out.
+/// An error with its causes on one line, see [`scene::message::of_error`].
 pub fn one_line(error: &anyhow::Error) -> String {
-    let mut text = String::new();
-    for cause in error.chain() {
-        let lines = cause.to_string();
-        let line = lines
-            .lines()
-            .map(str::trim)
-            .filter(|l| !l.is_empty())
-            .collect::<Vec<_>>()
-            .join("; ");
-        if !text.contains(&line) {
-            text = if text.is_empty() {
-                line
-            } else {
-                format!("{text}: {line}")
-            };
-        }
-    }
-    text
+    scene::message::of_error(error.as_ref())
 }
 
 /// Writes a file beside its final name and renames it: an interrupted command leaves the old file whole.
@@ -57,41 +42,15 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 
 /// Writes an RGBA8 picture as PNG.
 pub fn write_png(path: &Path, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {
-    let mut bytes = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    image::ImageEncoder::write_image(
-        encoder,
-        rgba,
-        width as u32,
-        height as u32,
-        image::ExtendedColorType::Rgba8,
-    )
-    .with_context(|| format!("encode {}", path.display()))?;
+    let bytes = png::rgba(width, height, rgba, &[]).with_context(|| format!("encode {}", path.display()))?;
     write_file(path, &bytes)
 }
 
 /// Writes 16-bit grey values as PNG.
 pub fn write_png16(path: &Path, width: usize, height: usize, values: &[u16]) -> anyhow::Result<()> {
-    let mut bytes = Vec::new();
-    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
-    let raw: Vec<u8> = values.iter().flat_map(|v| v.to_ne_bytes()).collect();
-    image::ImageEncoder::write_image(
-        encoder,
-        &raw,
-        width as u32,
-        height as u32,
-        image::ExtendedColorType::L16,
-    )
-    .with_context(|| format!("encode {}", path.display()))?;
+    let bytes =
+        png::grey16(width, height, values, &[]).with_context(|| format!("encode {}", path.display()))?;
     write_file(path, &bytes)
-}
-
-/// Largest memory this process has held, MB; `None` where the system does not tell.
-pub fn peak_rss_mb() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
-    let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some((kb / 102.4).round() / 10.0)
 }
 
 /// A line on stdout. Nobody is left to be told if its reader has closed it (`| head`).

@@ -13,6 +13,12 @@ pub struct Progress {
     state: Mutex<(String, Instant)>,
 }
 
+impl judge::Progress for Progress {
+    fn at(&self, stage: &str, step: usize, steps: usize) {
+        Self::at(self, stage, step, steps);
+    }
+}
+
 impl Progress {
     /// Shown if stderr is a terminal or `--progress` was given.
     pub fn new(common: &Common) -> Self {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use serde_json::json;
 
-use super::generate::{full_params, models, run_and_adopt};
+use super::generate::run_and_adopt;
 use super::new::class_counts;
 use super::progress::Progress;
 use super::{Common, Outcome, Stop, output};
@@ -17,6 +17,7 @@ use editor::{Document, Edit};
 use formats::project;
 use job::GenParams;
 use job::pipeline::OccPipeline;
+use nets::OccModels;
 use scene::Scene;
 use words::hear::{Heard, against};
 use words::notation;
@@ -112,7 +113,7 @@ impl Prompt {
         mut document: Document,
         params: GenParams,
     ) -> anyhow::Result<(Scene, serde_json::Value)> {
-        let mut pipeline = OccPipeline::new(models(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
         let params = GenParams {
             seed: self.seed,
             ..params
@@ -165,7 +166,7 @@ impl Prompt {
         let mut made = text::make(&self.text, &description, self.seed, &how);
         made.scene.words = std::sync::Arc::new(vec![self.text.clone()]);
         let generated = if self.generate {
-            let (scene, report) = self.generated(Document::new(made.scene), full_params())?;
+            let (scene, report) = self.generated(Document::new(made.scene), GenParams::whole_scene())?;
             made.scene = scene;
             Some(report)
         } else {

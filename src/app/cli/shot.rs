@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use anyhow::Context;
 use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
 use crate::export::view_camera;
 use crate::{open, picture};
+use sensors::cameras::bounds;
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -41,6 +43,7 @@ impl Shot {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
         let camera = view_camera(&scene, &self.view)?;
+        bounds::check(self.size, picture::SHOT_BYTES_PER_PIXEL, 0).context("--size")?;
         let options = picture::ShotOptions {
             camera,
             size: self.size,

@@ -3,8 +3,10 @@
 use egui::Ui;
 use egui::accesskit::Role;
 
-use crate::icons::{self, section};
 use crate::theme;
+use crate::widgets::fields::label;
+use crate::widgets::hint::caption;
+use crate::widgets::icons::{self, section};
 use editor::tools::setting::{Control, Number};
 use editor::tools::{Setting, Value};
 use scene::Class;
@@ -87,20 +89,6 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
         }
     }
     None
-}
-
-/// A hint in small letters.
-pub fn caption(ui: &mut Ui, text: &str) {
-    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
-}
-
-/// What stands to the right of it.
-pub fn label(ui: &mut Ui, text: &str, width: f32) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(width, theme::ROW), egui::Sense::hover());
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let at = rect.left_center();
-    ui.painter()
-        .text(at, egui::Align2::LEFT_CENTER, text, font, theme::text_weak());
 }
 
 fn changed(number: &Number, now: f64, response: &egui::Response) -> Option<Value> {

@@ -16,6 +16,7 @@ mod unsound;
 mod unsupported_parts;
 pub mod waive;
 
+use crate::Apply;
 use std::collections::BTreeMap;
 
 use glam::DVec3;

@@ -1,5 +1,6 @@
 //! Each check on a scene in which all is well, and on the same scene with one thing wrong.
 
+use crate::Apply;
 use std::sync::Arc;
 
 use glam::DVec2;

@@ -1,5 +1,6 @@
 //! OpenDRIVE roads (ASAM OpenDRIVE 1.4 to 1.8, `.xodr`): read a road network, cut a layout out of it.
 
+pub mod bounds;
 mod decks;
 pub mod elevation;
 pub mod geometry;
@@ -29,6 +30,9 @@ use elevation::SurfaceProfile;
 use geometry::ReferenceLine;
 use lanes::{Cubics, LaneSection};
 use objects::RoadObject;
+
+/// Largest file that is read, bytes.
+pub const LARGEST_FILE: u64 = 256 << 20;
 
 /// The roads of one file.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use roxmltree::{Document, Node};
+pub(super) use scene::message::quoted as shown;
 
 /// Why a file was refused. Each is shown as one line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -19,6 +20,16 @@ pub enum OpenDriveError {
     NotOpenDrive {
         /// Name of the root element.
         found: String,
+    },
+    /// More than is read, so that no file takes minutes.
+    #[error("{place}: more than {limit} {what}")]
+    TooMuch {
+        /// Element and line where it became too much.
+        place: String,
+        /// The bound.
+        limit: usize,
+        /// What is counted.
+        what: &'static str,
     },
     /// An element or attribute is missing or holds something unusable.
     #[error("{place}: {field}: expected {expected}, found {found}")]
@@ -69,6 +80,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
 }
 
 pub(super) fn parse_document(text: &str) -> Result<Document<'_>> {
+    super::bounds::check(text)?;
     Document::parse(text).map_err(|error| OpenDriveError::NotXml {
         detail: shown(&error.to_string(), 160),
     })
@@ -92,19 +104,6 @@ pub(super) fn child<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'static str) -> Optio
     named(node, name).next()
 }
 
-/// Text from a file, made safe to show on one line.
-pub(super) fn shown(text: &str, most: usize) -> String {
-    let mut out: String = text
-        .chars()
-        .take(most)
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    if text.chars().nth(most).is_some() {
-        out.push('…');
-    }
-    out
-}
-
 /// `road "3", lane "-1", width 2 (line 40)`: the element and those around it that have an id or a number.
 pub(super) fn place(node: Node<'_, '_>) -> String {
     const CONTAINERS: [&str; 10] = [
@@ -126,7 +125,7 @@ pub(super) fn place(node: Node<'_, '_>) -> String {
             continue;
         }
         parts.push(match n.attribute("id") {
-            Some(id) => format!("{name} \"{}\"", shown(id, 40)),
+            Some(id) => format!("{} \"{}\"", shown(name, 40), shown(id, 40)),
             None => {
                 let before = n.prev_siblings().filter(|s| s.has_tag_name(n.tag_name())).count();
                 format!("{} {before}", shown(name, 40)) // prev_siblings starts with the node itself

@@ -92,7 +92,7 @@ mod tests {
     use crate::schedule::{Schedule, Spacing};
     use crate::solver::tests::toy;
     use crate::solver::{Branch, Guidance, SolverKind};
-    use numeric::rng::{Stream, normal_field};
+    use numeric::philox::{Stream, normal_field};
 
     const CELLS: usize = 2500;
     const CHANNELS: usize = 8;

@@ -15,7 +15,7 @@ use nets::ModelError;
 use nets::layout::input::{VALUES, box_of, input_of, kind_of, line_of, map_raster};
 use nets::layout::net::{Embedded, LayoutNet, MOST_NODES};
 use nn::weights::WeightsError;
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 use scene::graph::{Edge, LaneRole, Locked, NodeKind, ObjectState, SceneGraph};
 use scene::raster::{draw_polyline, line_cells};
 use scene::road_map::RoadMap;

@@ -4,6 +4,7 @@
 //! between labels cannot.
 
 use super::region::Region;
+use numeric::hash::Fnv1a;
 use scene::grid::NOT_PAINTED;
 use scene::{GridSpec, VoxelGrid, VoxelPaint};
 
@@ -79,7 +80,7 @@ pub fn seam_change_share(source: &VoxelGrid, result: &VoxelGrid, region: &Region
 /// FNV-1a (64 bit) over the labels outside the region that are not painted, with their positions
 /// implied by order: the same before and after an edit.
 pub fn untouched_hash(grid: &VoxelGrid, region: &Region, painted: &VoxelPaint) -> u64 {
-    let mut hash = Fnv::new();
+    let mut hash = Fnv1a::new();
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| !**c) {
         let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
         let pairs = grid.column(x, y).iter().zip(painted.column(x, y));
@@ -91,23 +92,12 @@ pub fn untouched_hash(grid: &VoxelGrid, region: &Region, painted: &VoxelPaint) -
             })
         });
     }
-    hash.0
+    hash.get()
 }
 
 /// FNV-1a (64 bit) over all labels in C order: names the content of a grid.
 pub fn label_hash(grid: &VoxelGrid) -> u64 {
     untouched_hash(grid, &Region::empty(), &VoxelPaint::new())
-}
-
-struct Fnv(u64);
-
-impl Fnv {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-    fn add(&mut self, byte: u8) {
-        self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-    }
 }
 
 #[cfg(test)]

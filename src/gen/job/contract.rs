@@ -11,7 +11,10 @@ use thiserror::Error;
 
 use diffusion::schedule::ScheduleError;
 use diffusion::solver::SolverError;
+use scene::message::one_line;
 use scene::{Scene, SceneRev, VoxelGrid};
+
+use crate::product::Event;
 
 pub use super::params::{GenParams, Named, Quality, RegionMode};
 pub use nn::Precision;
@@ -26,10 +29,16 @@ pub struct Job {
 }
 
 impl Job {
+    /// Index of the frame that is generated: the one that was current when the job was made, whatever is shown later.
+    pub fn frame(&self) -> usize {
+        self.scene.current
+    }
+
     /// What names this job's result.
     pub fn key(&self) -> JobKey {
         JobKey {
             rev: self.scene.rev,
+            frame: self.frame(),
             params: self.params,
         }
     }
@@ -40,6 +49,8 @@ impl Job {
 pub struct JobKey {
     /// State of the scene.
     pub rev: SceneRev,
+    /// Index of the frame in the clip.
+    pub frame: usize,
     /// Parameters.
     pub params: GenParams,
 }
@@ -207,26 +218,12 @@ impl GenError {
     pub fn failed(error: impl Display) -> Self {
         Self::Failed(one_line(&error.to_string()))
     }
-
-    /// From what a panic left behind.
-    pub fn panicked(payload: &(dyn std::any::Any + Send)) -> Self {
-        let text = payload
-            .downcast_ref::<&str>()
-            .copied()
-            .or_else(|| payload.downcast_ref::<String>().map(String::as_str));
-        Self::Panicked(one_line(text.unwrap_or("no message")))
-    }
 }
 
 impl From<ScheduleError> for GenError {
     fn from(error: ScheduleError) -> Self {
         Self::Solver(error.into())
     }
-}
-
-fn one_line(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
-    lines.join("; ")
 }
 
 /// News about a job.
@@ -259,13 +256,7 @@ impl JobUpdate {
 }
 
 /// A [`JobUpdate`] with its job.
-#[derive(Clone, Debug)]
-pub struct JobEvent {
-    /// Which job.
-    pub id: JobId,
-    /// What became of it.
-    pub update: JobUpdate,
-}
+pub type JobEvent = Event<JobUpdate>;
 
 /// How a running job talks to whoever asked for it.
 pub struct JobCtx<'a> {
@@ -365,16 +356,8 @@ mod tests {
     fn errors_are_one_line() {
         let error = GenError::failed("weights:\n\n  tensor \"a\" is missing\n");
         assert_eq!(error.to_string(), "weights:; tensor \"a\" is missing");
-        let payload: Box<dyn std::any::Any + Send> = Box::new("a\nb");
-        assert_eq!(
-            GenError::panicked(&*payload).to_string(),
-            "generation panicked: a; b"
-        );
-        let payload: Box<dyn std::any::Any + Send> = Box::new(7);
-        assert_eq!(
-            GenError::panicked(&*payload).to_string(),
-            "generation panicked: no message"
-        );
+        let panicked = GenError::Panicked("a; b".into());
+        assert_eq!(panicked.to_string(), "generation panicked: a; b");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::contract::GenError;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::column_heights;
 use nets::scenery::{self, CELLS, NAMED, NUMBERS, SceneryCondition, SceneryNet, columns_of};
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 use scene::{Background, BevLayer, Class, GridSpec, Scene, VoxelGrid, draft, infer, raster};
 
 /// Steps of the sampler.

@@ -86,11 +86,11 @@ mod tests {
         expected.set(92, 90, 0, Class::DriveableSurface.id());
         assert_eq!(found, expected);
         // Where something new is asked for, nothing of the source comes back.
-        let mut anew = RedrawMask::default();
-        anew.set_columns(&[[90, 90], [91, 90]], true);
+        let mut inpaint = RedrawMask::default();
+        inpaint.set_columns(&[[90, 90], [91, 90]], true);
         let mut found = generated.clone();
         assert_eq!(
-            keep_unchanged(&frame, &region, &anew, &request, &decoded, &mut found),
+            keep_unchanged(&frame, &region, &inpaint, &request, &decoded, &mut found),
             0
         );
         assert_eq!(found, generated);

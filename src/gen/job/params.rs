@@ -93,7 +93,7 @@ pub struct GenParams {
     /// Cells that are regenerated in automatic mode although nothing was edited there; something new comes only
     /// with a `strength` above 0.
     pub redraw: RedrawMask,
-    /// 0: the region starts from the noise that its source comes from (inversion). Above: it is drawn anew from the source
+    /// 0: the region starts from the noise that its source comes from (inversion). Above: it is inpainted from the source
     /// with fresh noise, at this share of the steps (SDEdit); 1 keeps nothing of it. Then all tokens are computed.
     pub strength: f64,
     /// Fixed-point updates per inversion step; 0 = plain DDIM inversion.
@@ -149,6 +149,20 @@ type Bits = ([u32; 6], [u64; 4], [Option<u32>; 4], Choices);
 type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
+    /// For all of a scene from its layout and boxes alone.
+    pub fn whole_scene() -> Self {
+        Self {
+            region: RegionMode::Full,
+            steps: 20,
+            guidance: 1.5,
+            named: Named {
+                completeness: Some(1.0),
+                ..Named::default()
+            },
+            ..Self::default()
+        }
+    }
+
     /// Everything as bits: the basis of equality and hashing.
     fn bits(&self) -> Bits {
         // Adding 0 turns -0 into 0.

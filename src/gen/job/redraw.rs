@@ -1,4 +1,4 @@
-//! Parts of a scene that are drawn anew although nothing was edited there.
+//! Parts of a scene that are inpainted although nothing was edited there.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};

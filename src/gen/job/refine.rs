@@ -7,7 +7,7 @@ use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::pieces::pieces;
 use nets::refiner::{Refiner, Rough};
 use nets::{CHANNELS, Heard, OccModels, Window};
-use numeric::rng::{Stream, normal};
+use numeric::philox::{Stream, normal};
 use scene::VoxelGrid;
 
 /// Coarse cells around the wanted ones that are computed with them, 3.2 m: half of what the network sees. Training had crops, so it knows how to do

@@ -202,7 +202,7 @@ pub(super) mod tests {
 
     use super::*;
     use crate::composite::composite;
-    use numeric::rng::philox4x32;
+    use numeric::philox::philox4x32;
     use scene::{BevLayer, BevLayout, BoxId, Class, VoxelGrid};
 
     /// Numbers for tests, one after another.

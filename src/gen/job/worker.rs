@@ -1,46 +1,14 @@
-//! The background thread of generation: newest job wins, a stopped job ends between two steps, a panic
-//! ends one job and not the program.
-//!
-//! Every submitted job gets exactly one terminal update, in the order of submission. Progress and
-//! previews are dropped while the receiver is behind; terminal updates never are.
+//! The background thread of occupancy generation: the [`Product`] that runs a [`Pipeline`].
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread::JoinHandle;
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
-
-use crate::contract::{GenError, GenResult, Job, JobCtx, JobEvent, JobId, JobUpdate, Pipeline};
-
-/// Called after every update, from the worker's thread: wakes the event loop.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
-
-/// Updates that may wait for the receiver before progress and previews are dropped.
-const MOST_WAITING: usize = 64;
-
-/// What submitter and worker both see.
-#[derive(Default)]
-struct Orders {
-    /// Id of the newest submitted job; 0 before the first.
-    newest: AtomicU64,
-    /// Jobs up to this id are not wanted any more.
-    cancelled: AtomicU64,
-}
-
-impl Orders {
-    fn is_unwanted(&self, id: JobId) -> bool {
-        id.0 < self.newest.load(Ordering::Acquire) || id.0 <= self.cancelled.load(Ordering::Acquire)
-    }
-}
+use crate::contract::{GenError, Job, JobCtx, JobUpdate, Pipeline};
+use crate::guard::Panicked;
+pub use crate::product::Wake;
+use crate::product::{Ctx, Product, Worker};
 
 /// Owns the thread `gen-worker`. Dropping it stops the running job and waits for the thread.
-pub struct GenWorker {
-    jobs: Option<Sender<(JobId, Job)>>, // None only while dropping
-    updates: Receiver<JobEvent>,
-    orders: Arc<Orders>,
-    thread: Option<JoinHandle<()>>,
-}
+pub type GenWorker = Worker<Job, JobUpdate>;
 
 impl GenWorker {
     /// Starts the thread. `build` makes the pipeline there, for the first job and again after a panic or
@@ -50,143 +18,74 @@ impl GenWorker {
         P: Pipeline + 'static,
         B: FnMut() -> Result<P, GenError> + Send + 'static,
     {
-        let (jobs, jobs_in) = unbounded();
-        let (updates_out, updates) = unbounded();
-        let orders = Arc::new(Orders::default());
-        let outbox = Outbox {
-            updates: updates_out,
-            wake,
+        let product = move || Occupancy {
+            build,
+            pipeline: None::<P>,
         };
-        let seen_by_thread = orders.clone();
-        let thread = std::thread::Builder::new()
-            .name("gen-worker".into())
-            .spawn(move || work(&jobs_in, &seen_by_thread, &outbox, build))?;
-        Ok(Self {
-            jobs: Some(jobs),
-            updates,
-            orders,
-            thread: Some(thread),
-        })
-    }
-
-    /// Asks for a job; the running one and those that wait are given up.
-    pub fn submit(&mut self, job: Job) -> JobId {
-        let id = JobId(self.orders.newest.load(Ordering::Acquire) + 1);
-        // Before sending: the running job should end now, not when this one is looked at.
-        self.orders.newest.store(id.0, Ordering::Release);
-        if let Some(jobs) = &self.jobs {
-            // The thread ends only when this sender is gone, so somebody listens.
-            let _ = jobs.send((id, job));
-        }
-        id
-    }
-
-    /// Gives up every job submitted so far. Their terminal updates still come.
-    pub fn cancel(&self) {
-        let newest = self.orders.newest.load(Ordering::Acquire);
-        self.orders.cancelled.fetch_max(newest, Ordering::AcqRel);
-    }
-
-    /// What has happened, oldest first. `try_iter` it once per frame; all clones share one stream.
-    pub fn updates(&self) -> &Receiver<JobEvent> {
-        &self.updates
+        Self::start("gen-worker", product, wake)
     }
 }
 
-impl Drop for GenWorker {
-    fn drop(&mut self) {
-        self.orders.cancelled.store(u64::MAX, Ordering::Release);
-        self.jobs = None;
-        if let Some(thread) = self.thread.take() {
-            // An error would be a panic outside any job; there is nobody left to tell.
-            let _ = thread.join();
-        }
-    }
+/// Occupancy as a product: its pipeline is built when it is first needed.
+struct Occupancy<P, B> {
+    build: B,
+    pipeline: Option<P>,
 }
 
-struct Outbox {
-    updates: Sender<JobEvent>,
-    wake: Wake,
-}
+impl<P, B> Product for Occupancy<P, B>
+where
+    P: Pipeline + 'static,
+    B: FnMut() -> Result<P, GenError> + 'static,
+{
+    type Request = Job;
+    type Update = JobUpdate;
 
-impl Outbox {
-    fn send(&self, id: JobId, update: JobUpdate) {
-        if update.is_terminal() || self.updates.len() < MOST_WAITING {
-            // The receiver lives as long as the worker, except at the very end.
-            let _ = self.updates.send(JobEvent { id, update });
-            // A wake-up that panics must cost neither the job nor the thread.
-            let _ = catch_unwind(AssertUnwindSafe(|| (self.wake)()));
-        }
-    }
-}
-
-fn work<P: Pipeline>(
-    jobs: &Receiver<(JobId, Job)>,
-    orders: &Orders,
-    outbox: &Outbox,
-    mut build: impl FnMut() -> Result<P, GenError>,
-) {
-    let mut pipeline: Option<P> = None;
-    for (id, job) in jobs {
-        let result = if orders.is_unwanted(id) {
-            Err(GenError::Superseded)
-        } else {
-            let stop = || orders.is_unwanted(id);
-            // A pipeline must not end its own job twice: only news on the way pass.
-            let report = |update: JobUpdate| {
-                if !update.is_terminal() {
-                    outbox.send(id, update);
-                }
+    fn make(&mut self, job: &Job, ctx: &Ctx<'_, JobUpdate>) -> JobUpdate {
+        let (stop, report) = (|| ctx.should_stop(), |update| ctx.tell(update));
+        let ctx = JobCtx::new(&stop, &report).with_previews();
+        let mut run = || {
+            job.params.check()?;
+            let ready = match &mut self.pipeline {
+                Some(ready) => ready,
+                None => self.pipeline.insert((self.build)()?),
             };
-            run_guarded(
-                &mut pipeline,
-                &mut build,
-                &job,
-                &JobCtx::new(&stop, &report).with_previews(),
-            )
+            ready.run(job, &ctx)
         };
-        outbox.send(
-            id,
-            match result {
-                Ok(result) => JobUpdate::Finished(Arc::new(result)),
-                Err(GenError::Superseded) => JobUpdate::Superseded,
-                Err(error) => JobUpdate::Failed(error),
-            },
-        );
+        match run() {
+            Ok(result) => JobUpdate::Finished(Arc::new(result)),
+            Err(GenError::Superseded) => JobUpdate::Superseded,
+            Err(error) => JobUpdate::Failed(error),
+        }
     }
-}
 
-/// Runs a job, building the pipeline if there is none. After a panic the pipeline is thrown away: what
-/// it left half-done must not reach the next job.
-fn run_guarded<P: Pipeline>(
-    pipeline: &mut Option<P>,
-    build: &mut impl FnMut() -> Result<P, GenError>,
-    job: &Job,
-    ctx: &JobCtx<'_>,
-) -> Result<GenResult, GenError> {
-    let attempt = catch_unwind(AssertUnwindSafe(|| {
-        job.params.check()?;
-        let ready = match pipeline {
-            Some(ready) => ready,
-            None => pipeline.insert(build()?),
-        };
-        ready.run(job, ctx)
-    }));
-    attempt.unwrap_or_else(|payload| {
-        // Its destructor may panic as well.
-        let _ = catch_unwind(AssertUnwindSafe(|| drop(pipeline.take())));
-        Err(GenError::panicked(&*payload))
-    })
+    fn reset(&mut self) {
+        drop(self.pipeline.take());
+    }
+
+    fn given_up() -> JobUpdate {
+        JobUpdate::Superseded
+    }
+
+    fn panicked(panic: Panicked) -> JobUpdate {
+        JobUpdate::Failed(GenError::Panicked(panic.message))
+    }
+
+    fn is_terminal(update: &JobUpdate) -> bool {
+        update.is_terminal()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
-    use std::sync::atomic::AtomicUsize;
+    use std::sync::atomic::{AtomicUsize, Ordering};
     use std::time::Duration;
 
+    use crossbeam_channel::{Receiver, Sender, unbounded};
+
     use super::*;
-    use crate::contract::{GenParams, GenReport, Stage, UpdateGate};
+    use crate::contract::{GenParams, GenReport, GenResult, JobEvent, Stage, UpdateGate};
+    use crate::product::MOST_WAITING;
     use scene::{BevLayout, Frame, Scene, SensorRig, VoxelGrid};
 
     /// What the test tells the running job to do next.
@@ -214,7 +113,7 @@ mod tests {
     fn result_of(job: &Job) -> GenResult {
         GenResult {
             key: job.key(),
-            frame: job.scene.current,
+            frame: job.frame(),
             occupancy: VoxelGrid::new(),
             report: GenReport::default(),
         }
@@ -340,9 +239,13 @@ mod tests {
             panic!("{event:?}");
         };
         assert_eq!(
-            (event.id, result.key, result.rev()),
-            (id, asked.key(), asked.scene.rev)
+            (event.id, result.key, result.rev(), result.frame),
+            (id, asked.key(), asked.scene.rev, asked.frame())
         );
+        // Another frame of the same state is another result.
+        let mut other = asked.clone();
+        Arc::make_mut(&mut other.scene).current = 1;
+        assert!(other.key() != asked.key() && other.key().rev == asked.key().rev);
         drop(b.worker); // joins, so that the wake-up after the last update is counted
         assert_eq!(b.wakes.load(Ordering::SeqCst), 3);
     }

@@ -72,7 +72,7 @@ pub(super) fn check(samples: &[Vec<f64>], which: &'static str) -> Result<usize, 
 mod tests {
     use super::super::reference::{Reference, rows};
     use super::*;
-    use numeric::rng::{Stream, normal_field};
+    use numeric::philox::{Stream, normal_field};
 
     /// Row 54 of the extremes table; SciPy 1.17.1, tolerance of metrics.json: 1e-8 (1 + traces).
     #[test]

@@ -29,7 +29,7 @@ impl Kernel {
             distances.extend(all[..i].iter().map(|b| squared_distance(a, b).sqrt()));
         }
         Kernel::Gaussian {
-            bandwidth: super::stats::median(&distances).max(LEAST_BANDWIDTH),
+            bandwidth: numeric::quantile::median(&distances).max(LEAST_BANDWIDTH),
         }
     }
 
@@ -114,7 +114,7 @@ pub fn mmd2_with_interval(
 mod tests {
     use super::super::reference::{Reference, rows};
     use super::*;
-    use numeric::rng::{Stream, normal_field};
+    use numeric::philox::{Stream, normal_field};
 
     /// Row 56 of the extremes table; NumPy 2.4.6, U-statistics, tolerance 1e-12 (cubic 1e-11 relative).
     #[test]

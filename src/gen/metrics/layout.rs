@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::stats::{mean_ci95, quantile};
+use super::stats::mean_ci95;
+use numeric::quantile::quantile;
 use scene::raster::box_cells;
 use scene::relations::{STANDING_MPS, overlap_m};
 use scene::road_map::RoadMap;

@@ -1,6 +1,6 @@
 //! How well label and depth maps of a camera agree with the true ones: labels, depths, outlines.
 
-use super::stats::{median, quantile};
+use numeric::quantile::{median, quantile};
 use scene::sensor_data::RenderId;
 
 /// A label map with depths, row-major; depth is not above 0 where there is none.

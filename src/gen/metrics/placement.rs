@@ -6,11 +6,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::layout::{Diversity, LayoutFigures, Row, Soundness, diversity};
-use crate::stats::{mean_ci95, median};
+use crate::stats::mean_ci95;
 use dataset::layout::street;
 use graph_layout::diffuse::{PlacementError, PlacementReport, locked_objects};
 use graph_layout::graph_of::graph_of;
 use graph_layout::project::project;
+use numeric::quantile::median;
 use scene::graph::{NodeKind, SceneGraph};
 use scene::road_map::RoadMap;
 use scene::{BevLayout, GridSpec, SceneBox};

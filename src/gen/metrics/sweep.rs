@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::logistic::{Logistic, auc};
+use numeric::quantile::Sorted;
 use scene::{Class, LidarPattern, LidarSweep};
 use sensors::truth::{Echo, TruthRay};
 
@@ -140,26 +141,22 @@ impl SweepFigures {
             let sum = |k: usize| self.by_ring[rings.clone()].iter().map(|r| r[k]).sum::<usize>();
             put(name, share(sum(2), sum(0)));
         }
-        let sorted = |values: &[f64]| {
-            let mut values = values.to_vec();
-            values.sort_by(f64::total_cmp);
-            values
-        };
+        let sorted = |values: &[f64]| Sorted::new(values.iter().copied());
         let ranges_m = sorted(&self.ranges_m);
         for (name, q) in [("p50", 0.5), ("p90", 0.9), ("p99", 0.99)] {
-            put(&format!("range_m.{name}"), quantile(&ranges_m, q));
+            put(&format!("range_m.{name}"), ranges_m.quantile(q));
         }
-        let far = ranges_m.iter().filter(|m| **m > 40.0).count();
-        put("range_m.share_beyond_40", share(far, ranges_m.len()));
+        let far = self.ranges_m.iter().filter(|m| **m > 40.0).count();
+        put("range_m.share_beyond_40", share(far, self.ranges_m.len()));
         let strengths = sorted(&self.strengths);
         for (name, q) in [("p50", 0.5), ("p95", 0.95), ("p99", 0.99)] {
-            put(&format!("strength.{name}"), quantile(&strengths, q));
+            put(&format!("strength.{name}"), strengths.quantile(q));
         }
         let named = |id: u8| Class::from_id(id).map_or("unknown", Class::name);
         for (id, of) in &self.strengths_of {
             let of = sorted(of);
-            put(&format!("strength.{}.p50", named(*id)), quantile(&of, 0.5));
-            put(&format!("strength.{}.p95", named(*id)), quantile(&of, 0.95));
+            put(&format!("strength.{}.p50", named(*id)), of.quantile(0.5));
+            put(&format!("strength.{}.p95", named(*id)), of.quantile(0.95));
         }
         for (id, [lost, all]) in &self.lost_of {
             put(&format!("lost.{}", named(*id)), share(*lost, *all));
@@ -207,14 +204,6 @@ pub fn loss_features(ray: &TruthRay, ring: usize) -> Vec<f64> {
 
 fn share(n: usize, of: usize) -> f64 {
     n as f64 / of as f64
-}
-
-fn quantile(sorted: &[f64], q: f64) -> f64 {
-    sorted
-        .get((sorted.len().max(1) as f64 * q) as usize)
-        .or(sorted.last())
-        .copied()
-        .unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 
 use super::ModelError;
-use nn::layers::{Linear, Norm, ResBlock};
+use nn::Cpu;
 use nn::map::{Map, Window};
+use nn::ops::{Ops, OpsError};
 use nn::weights::{WeightFile, WeightsError};
 use scene::{Class, GridSpec, VoxelGrid};
 
@@ -12,123 +13,130 @@ use scene::{Class, GridSpec, VoxelGrid};
 pub const HEIGHT: usize = GridSpec::NZ;
 /// Classes that are not free; free is the last class.
 pub const OCCUPIED: usize = Class::FREE as usize;
-/// Rows of a map that go through a linear layer in one piece.
+/// Places of a map that go through a linear layer in one piece.
 pub const PIECE: usize = 200;
 
 /// Residual blocks of one width.
-pub struct Level(Vec<ResBlock>);
+pub struct Level<B: Ops = Cpu>(Vec<B::Residual>);
 
-impl Level {
+impl<B: Ops> Level<B> {
     /// The blocks `name.blocks.0` and so on.
     pub fn new(
+        ops: &B,
         w: &mut WeightFile<'_>,
         name: &str,
         width: usize,
         kernels: &[usize],
     ) -> Result<Self, WeightsError> {
         let all = kernels.iter().enumerate();
-        let blocks = all.map(|(i, k)| ResBlock::new(w, &format!("{name}.blocks.{i}"), width, *k));
+        let blocks = all.map(|(i, k)| ops.load_residual(w, &format!("{name}.blocks.{i}"), width, *k));
         Ok(Self(blocks.collect::<Result<_, _>>()?))
     }
 
-    /// In place.
-    pub fn apply(&self, map: &mut Map) {
-        self.0.iter().for_each(|block| block.apply(map));
+    /// One block after the other.
+    pub fn apply(&self, ops: &B, map: B::Tensor) -> Result<B::Tensor, OpsError> {
+        self.0.iter().try_fold(map, |map, block| ops.residual(block, map))
     }
 
     /// How many places around a changed one may change.
     pub fn reach(&self) -> usize {
-        self.0.iter().map(ResBlock::reach).sum()
+        self.0.iter().map(B::reach).sum()
     }
 }
 
 /// Levels `name.0` and so on.
-pub fn levels(
+pub fn levels<B: Ops>(
+    ops: &B,
     w: &mut WeightFile<'_>,
     name: &str,
     widths: &[usize],
     kernels: &[Vec<usize>],
-) -> Result<Vec<Level>, WeightsError> {
+) -> Result<Vec<Level<B>>, WeightsError> {
     let each = widths.iter().zip(kernels).enumerate();
-    each.map(|(i, (width, kernels))| Level::new(w, &format!("{name}.{i}"), *width, kernels))
+    each.map(|(i, (width, kernels))| Level::new(ops, w, &format!("{name}.{i}"), *width, kernels))
         .collect()
 }
 
 /// Linear layers `name.0` and so on, of these inputs and outputs.
-pub fn steps(
+pub fn steps<B: Ops>(
+    ops: &B,
     w: &mut WeightFile<'_>,
     name: &str,
-    sizes: Vec<(usize, usize)>,
-) -> Result<Vec<Linear>, WeightsError> {
+    sizes: Vec<[usize; 2]>,
+) -> Result<Vec<B::Linear>, WeightsError> {
     let each = sizes.into_iter().enumerate();
-    each.map(|(i, (from, to))| Linear::new(w, &format!("{name}.{i}"), from, to, &[1, 1]))
+    each.map(|(i, sizes)| ops.linear(w, &format!("{name}.{i}"), sizes, &[1, 1]))
         .collect()
 }
 
 /// One vector per bin and class.
-pub struct VoxelTable {
-    width: usize,
-    entries: Vec<f32>, // [z][class][width]
-}
+pub struct VoxelTable<B: Ops = Cpu>(B::Table);
 
-impl VoxelTable {
+impl<B: Ops> VoxelTable<B> {
     /// Takes the tensor `name.weight`.
-    pub fn new(w: &mut WeightFile<'_>, name: &str, width: usize) -> Result<Self, WeightsError> {
-        Ok(Self {
-            width,
-            entries: w.take(&format!("{name}.weight"), &[HEIGHT * OCCUPIED, width])?,
-        })
+    pub fn new(ops: &B, w: &mut WeightFile<'_>, name: &str, width: usize) -> Result<Self, WeightsError> {
+        let entries = w.take(&format!("{name}.weight"), &[HEIGHT * OCCUPIED, width])?;
+        let table = ops.table_from(entries, width);
+        Ok(Self(table.map_err(|e| w.backend_error(e))?))
     }
 
     /// Adds to every column of a window the sum over its occupied voxels; `map` has one place per column.
-    pub fn add_to(&self, map: &mut Map, grid: &VoxelGrid, window: Window) -> Result<(), ModelError> {
-        let width = self.width;
-        let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));
-        let wide = map.columns * width;
-        map.data
-            .par_chunks_mut(wide)
-            .enumerate()
-            .try_for_each(|(row_index, row)| {
-                for (column_index, sum) in row.chunks_exact_mut(width).enumerate() {
-                    let (x, y) = (corner[0] + row_index, corner[1] + column_index);
-                    for (z, label) in grid.column(x, y).iter().enumerate() {
-                        if *label == Class::FREE {
-                            continue;
-                        }
-                        if *label > Class::FREE {
-                            let found = *label;
-                            return Err(ModelError::Label { x, y, z, found });
-                        }
-                        let entry = z * OCCUPIED + usize::from(*label);
-                        let vector = &self.entries[entry * width..][..width];
-                        sum.iter_mut().zip(vector).for_each(|(s, e)| *s += e);
-                    }
+    pub fn add_to(
+        &self,
+        ops: &B,
+        map: B::Tensor,
+        grid: &VoxelGrid,
+        window: Window,
+    ) -> Result<B::Tensor, ModelError> {
+        let per_cell = GridSpec::NX / window.side;
+        let corner = [window.x * per_cell, window.y * per_cell];
+        let column = |row: usize, column: usize| grid.column(corner[0] + row, corner[1] + column);
+        (0..window.rows * per_cell).into_par_iter().try_for_each(|row| {
+            for at in 0..window.columns * per_cell {
+                let labels = column(row, at);
+                if let Some(z) = labels.iter().position(|label| *label > Class::FREE) {
+                    let (x, y) = (corner[0] + row, corner[1] + at);
+                    let found = labels[z];
+                    return Err(ModelError::Label { x, y, z, found });
                 }
-                Ok(())
-            })
+            }
+            Ok(())
+        })?;
+        let entries = |row: usize, at: usize| {
+            let occupied = column(row, at)
+                .iter()
+                .enumerate()
+                .filter(|(_, l)| **l != Class::FREE);
+            occupied.map(|(z, label)| z * OCCUPIED + usize::from(*label))
+        };
+        Ok(ops.bag(&self.0, map, entries)?)
     }
 }
 
 /// Labels to one vector per latent cell.
-pub struct Encoder {
-    embed: VoxelTable,
-    levels: Vec<Level>, // finest first
-    down: Vec<Linear>,
-    norm: Norm,
+pub struct Encoder<B: Ops = Cpu> {
+    width: usize,
+    embed: VoxelTable<B>,
+    levels: Vec<Level<B>>, // finest first
+    down: Vec<B::Linear>,
+    norm: B::Norm,
 }
 
-impl Encoder {
+impl<B: Ops> Encoder<B> {
     /// Takes the encoder's tensors of a file; `widths` and `kernels` are of every level, finest first.
     pub fn new(
+        ops: &B,
         w: &mut WeightFile<'_>,
         widths: &[usize],
         kernels: &[Vec<usize>],
     ) -> Result<Self, WeightsError> {
+        let down = widths.windows(2).map(|p| [4 * p[0], p[1]]).collect();
         Ok(Self {
-            embed: VoxelTable::new(w, "embed", widths[0])?,
-            levels: levels(w, "encoder", widths, kernels)?,
-            down: steps(w, "down", widths.windows(2).map(|p| (4 * p[0], p[1])).collect())?,
-            norm: Norm::new(w, "encoder_norm", widths[widths.len() - 1])?,
+            width: widths[0],
+            embed: VoxelTable::new(ops, w, "embed", widths[0])?,
+            levels: levels(ops, w, "encoder", widths, kernels)?,
+            down: steps(ops, w, "down", down)?,
+            norm: ops.load_norm(w, "encoder_norm", widths[widths.len() - 1])?,
         })
     }
 
@@ -141,38 +149,20 @@ impl Encoder {
     }
 
     /// Features of the cells of a window, as if nothing were around it.
-    pub fn features(&self, grid: &VoxelGrid, window: Window) -> Result<Map, ModelError> {
+    pub fn features(&self, ops: &B, grid: &VoxelGrid, window: Window) -> Result<B::Tensor, ModelError> {
         let per_cell = GridSpec::NX / window.side;
-        let (rows, columns, width) = (
-            window.rows * per_cell,
-            window.columns * per_cell,
-            self.embed.width,
-        );
-        let mut map = Map {
+        let (rows, columns, width) = (window.rows * per_cell, window.columns * per_cell, self.width);
+        let map = ops.upload(Map {
             data: vec![0.0; rows * columns * width],
             rows,
             columns,
             width,
-        };
-        self.embed.add_to(&mut map, grid, window)?;
-        self.levels[0].apply(&mut map);
+        })?;
+        let map = self.embed.add_to(ops, map, grid, window)?;
+        let mut map = self.levels[0].apply(ops, map)?;
         for (down, level) in self.down.iter().zip(&self.levels[1..]) {
-            map = through(down, &map.fold());
-            level.apply(&mut map);
+            map = level.apply(ops, ops.apply(down, &ops.fold(&map)?, PIECE)?)?;
         }
-        let mut normed = vec![0.0; map.data.len()];
-        self.norm.rows(&map.data, &mut normed);
-        map.data = normed;
-        Ok(map)
-    }
-}
-
-/// A linear layer at every place of a map.
-pub fn through(linear: &Linear, map: &Map) -> Map {
-    let data = linear.parallel(&map.data, PIECE);
-    Map {
-        width: data.len() / (map.rows * map.columns),
-        data,
-        ..*map
+        Ok(ops.norm(&self.norm, map)?)
     }
 }

@@ -1,8 +1,7 @@
-//! The two networks of occupancy generation, run on the CPU in f32. Trained by `training/`, whose
+//! The networks. Those of occupancy and scenery are written against [`nn::Ops`] and run on any backend; those of LiDAR, layout
+//! and text on the processor. Trained by `training/`, whose
 //! files have the same names and the same order of blocks.
 
-pub mod candle_dit;
-pub mod candle_vae;
 pub mod column_heights;
 pub mod encoder;
 pub mod layout;
@@ -29,6 +28,7 @@ pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared,
 pub use occ_vae::{Heard, OccVae, VaeConfig};
 pub use refiner::Refiner;
 
+use nn::ops::OpsError;
 use nn::weights::{self, WeightFile, WeightsError};
 
 /// Latent cells along x and along y.
@@ -81,6 +81,9 @@ pub enum ModelError {
         /// The label.
         found: u8,
     },
+    /// The backend could not compute.
+    #[error(transparent)]
+    Backend(#[from] OpsError),
     /// A time outside the schedule.
     #[error("timestep is {0}, expected 0 to 999")]
     Timestep(f32),
@@ -154,6 +157,11 @@ impl OccModels {
         Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
     }
 
+    /// Those of a folder, or the bundled ones without one.
+    pub fn of(folder: Option<&Path>) -> Result<Arc<Self>, WeightsError> {
+        folder.map_or_else(Self::bundled, Self::from_dir)
+    }
+
     /// `occ_vae.safetensors` and `occ_dit.safetensors` of a folder, and `refiner.safetensors` with `occ_vae_fine.safetensors` where it
     /// has them.
     pub fn from_dir(folder: &Path) -> Result<Arc<Self>, WeightsError> {
@@ -214,4 +222,59 @@ impl OccModels {
 
     /// Tokens of a whole map.
     pub const TOKENS: usize = occ_dit::TOKENS;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Row 62 of the extremes table: every file that ships, cut or with more behind it, is refused in one line.
+    #[test]
+    fn row_62_shipped_files_that_were_cut() {
+        use assets::weights as shipped;
+        for (name, bytes) in [
+            ("f3d", shipped::F3D),
+            ("layout", shipped::LAYOUT),
+            ("lidar", shipped::LIDAR),
+            ("lidar_flat", shipped::LIDAR_FLAT),
+            ("occ_dit", shipped::OCC_DIT),
+            ("occ_vae", shipped::OCC_VAE),
+            ("occ_vae_fine", shipped::OCC_VAE_FINE),
+            ("reader", shipped::READER),
+            ("refiner", shipped::REFINER),
+            ("scenery", shipped::SCENERY),
+            ("text", shipped::TEXT),
+        ] {
+            let refusal = |bytes: &[u8]| match WeightFile::parse(name, bytes) {
+                Ok(_) => "accepted".to_owned(),
+                Err(error) => error.to_string(),
+            };
+            let all = bytes.len();
+            let expected = |found| {
+                format!(
+                    "{name}: not a usable safetensors file: expected {all} bytes, as its header says, found {found}"
+                )
+            };
+            for cut in [1, 2, 7, 4096] {
+                assert_eq!(refusal(&bytes[..all - cut]), expected(all - cut));
+            }
+            assert_eq!(refusal(&[bytes, &[0]].concat()), expected(all + 1));
+        }
+        // A folder of weights says which file it is.
+        let folder = std::env::temp_dir().join(format!("sceneloom-cut-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let dit = &shipped::OCC_DIT[..shipped::OCC_DIT.len() - 1];
+        for (name, bytes) in FILES.iter().zip([shipped::OCC_VAE, dit]) {
+            std::fs::write(folder.join(name), bytes).expect("written");
+        }
+        let told = OccModels::from_dir(&folder)
+            .map(|_| ())
+            .expect_err("cut")
+            .to_string();
+        assert!(
+            told.starts_with("occ_dit.safetensors: not a usable safetensors file: expected 11840048 bytes"),
+            "{told}"
+        );
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
 }

@@ -3,16 +3,14 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::encoder::{Level, PIECE, through};
+use super::encoder::{Level, PIECE};
 use super::occ_dit::timestep_embedding;
 use super::{CHANNELS, ModelError, OccVae, check_finite, check_length, fine_file};
-use nn::kernels;
-use nn::layers::{Linear, Norm};
 use nn::map::{Map, Window};
 use nn::weights::{WeightFile, WeightsError};
+use nn::{Cpu, Ops};
 
 /// File name of the weights.
 pub const FILE: &str = "refiner.safetensors";
@@ -59,25 +57,26 @@ impl RefinerConfig {
     }
 }
 
-/// The network with its weights, and the fine VAE whose latents it knows.
-pub struct Refiner {
+/// The network with its weights, on a backend, and the fine VAE whose latents it knows.
+pub struct Refiner<B: Ops = Cpu> {
     /// Labels to fine latents and back.
-    pub vae: OccVae,
+    pub vae: OccVae<B>,
     /// Names both files.
     pub hash: u64,
     config: RefinerConfig,
-    stem: Linear,
-    hint: Linear,
-    time1: Linear,
-    time2: Linear,
-    tell: [Linear; 3],
-    enter: Level,
-    down: Linear,
-    middle: Level,
-    up: Linear,
-    leave: Level,
-    norm: Norm,
-    head: Linear,
+    ops: B,
+    stem: B::Linear,
+    hint: B::Linear,
+    time1: B::Linear,
+    time2: B::Linear,
+    tell: [B::Linear; 3],
+    enter: Level<B>,
+    down: B::Linear,
+    middle: Level<B>,
+    up: B::Linear,
+    leave: Level<B>,
+    norm: B::Norm,
+    head: B::Linear,
 }
 
 /// What is refined: latents of a window.
@@ -104,9 +103,16 @@ impl Refiner {
         Ok(NET.get_or_init(|| Arc::new(net)).clone())
     }
 
-    /// Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown, and another fine VAE than the
-    /// one that it was trained with.
-    pub fn new(mut file: WeightFile<'_>, fine: WeightFile<'_>) -> Result<Self, WeightsError> {
+    /// On the processor. Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown, and another
+    /// fine VAE than the one that it was trained with.
+    pub fn new(file: WeightFile<'_>, fine: WeightFile<'_>) -> Result<Self, WeightsError> {
+        Self::on(Cpu, file, fine)
+    }
+}
+
+impl<B: Ops + Clone> Refiner<B> {
+    /// The same on a backend.
+    pub fn on(ops: B, mut file: WeightFile<'_>, fine: WeightFile<'_>) -> Result<Self, WeightsError> {
         let (knows, name) = (file.metadata("fine"), fine.metadata("name"));
         if knows.is_some() && knows != name {
             let [knows, name] = [knows, name].map(|n| n.unwrap_or("none").to_owned());
@@ -117,7 +123,7 @@ impl Refiner {
             return Err(file.config_error("fine", reason));
         }
         let hash = file.hash() ^ fine.hash().rotate_left(1);
-        let vae = OccVae::new(fine)?;
+        let vae = OccVae::on(ops.clone(), fine)?;
         let config: RefinerConfig = file.config("config")?;
         config
             .check()
@@ -129,20 +135,38 @@ impl Refiner {
         }
         let ([fine, wide], latent) = (config.widths, config.latent);
         let w = &mut file;
-        let told = |w: &mut WeightFile<'_>, i: usize, to| Linear::new(w, &format!("tell.{i}"), wide, to, &[]);
+        let mut linear = |name: &str, sizes, tail: &[usize]| ops.linear(w, name, sizes, tail);
+        let (stem, hint) = (
+            linear("stem", [3 * latent, fine], &[1, 1])?,
+            linear("hint", [config.coarse, wide], &[1, 1])?,
+        );
+        let (time1, time2) = (
+            linear("time1", [config.frequencies, wide], &[])?,
+            linear("time2", [wide, wide], &[])?,
+        );
+        let tell = [
+            linear("tell.0", [wide, fine], &[])?,
+            linear("tell.1", [wide, wide], &[])?,
+            linear("tell.2", [wide, fine], &[])?,
+        ];
+        let (down, up) = (
+            linear("down", [4 * fine, wide], &[1, 1])?,
+            linear("up", [wide, 4 * fine], &[1, 1])?,
+        );
         let net = Self {
-            stem: Linear::new(w, "stem", 3 * latent, fine, &[1, 1])?,
-            hint: Linear::new(w, "hint", config.coarse, wide, &[1, 1])?,
-            time1: Linear::new(w, "time1", config.frequencies, wide, &[])?,
-            time2: Linear::new(w, "time2", wide, wide, &[])?,
-            tell: [told(w, 0, fine)?, told(w, 1, wide)?, told(w, 2, fine)?],
-            enter: Level::new(w, "enter", fine, &config.kernels[0])?,
-            down: Linear::new(w, "down", 4 * fine, wide, &[1, 1])?,
-            middle: Level::new(w, "middle", wide, &config.kernels[1])?,
-            up: Linear::new(w, "up", wide, 4 * fine, &[1, 1])?,
-            leave: Level::new(w, "leave", fine, &config.kernels[0])?,
-            norm: Norm::new(w, "norm", fine)?,
-            head: Linear::new(w, "head", fine, latent, &[1, 1])?,
+            head: linear("head", [fine, latent], &[1, 1])?,
+            stem,
+            hint,
+            time1,
+            time2,
+            tell,
+            enter: Level::new(&ops, w, "enter", fine, &config.kernels[0])?,
+            down,
+            middle: Level::new(&ops, w, "middle", wide, &config.kernels[1])?,
+            up,
+            leave: Level::new(&ops, w, "leave", fine, &config.kernels[0])?,
+            norm: ops.load_norm(w, "norm", fine)?,
+            ops,
             config,
             vae,
             hash,
@@ -180,41 +204,34 @@ impl Refiner {
                 .iter()
                 .for_each(|part| features.extend_from_slice(&part[place..place + latent]));
         }
-        let mut time = self.time1.vector(&timestep_embedding(t, self.config.frequencies));
-        time.iter_mut().for_each(|v| *v = kernels::silu(*v));
-        let mut time = self.time2.vector(&time);
-        time.iter_mut().for_each(|v| *v = kernels::silu(*v));
-        let [entered, between, left] = self.tell.each_ref().map(|tell| tell.vector(&time));
+        let ops = &self.ops;
+        let time = ops.vector(timestep_embedding(t, self.config.frequencies))?;
+        let time = ops.silu(ops.apply(&self.time1, &time, 1)?)?;
+        let time = ops.silu(ops.apply(&self.time2, &time, 1)?)?;
+        let told = |i: usize| ops.apply(&self.tell[i], &time, 1);
 
-        let mut map = Map {
-            data: self.stem.parallel(&features, PIECE),
+        let features = ops.upload(Map {
+            data: features,
             rows,
             columns,
-            width: self.config.widths[0],
-        };
-        add_to_rows(&mut map, &entered);
-        self.enter.apply(&mut map);
-        let mut coarser = through(&self.down, &map.fold());
-        add(&mut coarser, &self.hint.parallel(rough.coarse, PIECE));
-        add_to_rows(&mut coarser, &between);
-        self.middle.apply(&mut coarser);
-        let mut out = through(&self.up, &coarser).unfold();
-        add(&mut out, &map.data);
-        add_to_rows(&mut out, &left);
-        self.leave.apply(&mut out);
-        let mut normed = vec![0.0; out.data.len()];
-        self.norm.rows(&out.data, &mut normed);
-        let v = self.head.parallel(&normed, PIECE);
+            width: 3 * latent,
+        })?;
+        let hint = ops.upload(Map {
+            data: rough.coarse.to_vec(),
+            rows: rough.window.rows,
+            columns: rough.window.columns,
+            width: CHANNELS,
+        })?;
+        let map = ops.add(ops.apply(&self.stem, &features, PIECE)?, &told(0)?)?;
+        let map = self.enter.apply(ops, map)?;
+        let coarser = ops.apply(&self.down, &ops.fold(&map)?, PIECE)?;
+        let coarser = ops.add(coarser, &ops.apply(&self.hint, &hint, PIECE)?)?;
+        let coarser = self.middle.apply(ops, ops.add(coarser, &told(1)?)?)?;
+        let out = ops.unfold(&ops.apply(&self.up, &coarser, PIECE)?)?;
+        let out = ops.add(ops.add(out, &map)?, &told(2)?)?;
+        let normed = ops.norm(&self.norm, self.leave.apply(ops, out)?)?;
+        let v = ops.download(ops.apply(&self.head, &normed, PIECE)?)?.data;
         check_finite("predicted v", &v)?;
         Ok(v)
     }
-}
-
-fn add(map: &mut Map, values: &[f32]) {
-    map.data.iter_mut().zip(values).for_each(|(m, v)| *m += v);
-}
-
-fn add_to_rows(map: &mut Map, adds: &[f32]) {
-    let rows = map.data.par_chunks_exact_mut(map.width);
-    rows.for_each(|row| row.iter_mut().zip(adds).for_each(|(v, a)| *v += a));
 }

@@ -4,16 +4,14 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::encoder::{Level, PIECE, levels, steps, through};
+use super::encoder::{Level, PIECE, levels, steps};
 use super::occ_dit::timestep_embedding;
 use super::{ColumnHeights, ModelError, check_finite, check_length};
-use nn::kernels;
-use nn::layers::{Linear, Norm};
 use nn::map::Map;
 use nn::weights::{WeightFile, WeightsError};
+use nn::{Cpu, Ops};
 use scene::GridSpec;
 
 /// File name of the weights.
@@ -127,37 +125,40 @@ pub fn bins_above(number: f32) -> f32 {
     (number + 1.0) * HEIGHTS / 2.0
 }
 
-/// The network with its weights.
-pub struct SceneryNet {
+/// The network with its weights, on a backend.
+pub struct SceneryNet<B: Ops = Cpu> {
+    ops: B,
     config: SceneryConfig,
-    stem: Linear,
-    time1: Linear,
-    time2: Linear,
-    named: Linear,
-    tell: Vec<Linear>,
-    enter: Vec<Level>,
-    down: Vec<Linear>,
-    middle: Level,
-    up: Vec<Linear>,
-    leave: Vec<Level>,
-    norm: Norm,
-    head: Linear,
+    stem: B::Linear,
+    time1: B::Linear,
+    time2: B::Linear,
+    named: B::Linear,
+    tell: Vec<B::Linear>,
+    enter: Vec<Level<B>>,
+    down: Vec<B::Linear>,
+    middle: Level<B>,
+    up: Vec<B::Linear>,
+    leave: Vec<Level<B>>,
+    norm: B::Norm,
+    head: B::Linear,
 }
 
 impl SceneryNet {
-    /// The weights that ship with the program; unpacked once.
+    /// The weights that ship with the program, on the processor; unpacked once.
     pub fn bundled() -> Result<Arc<Self>, WeightsError> {
         static NET: OnceLock<Arc<SceneryNet>> = OnceLock::new();
         if let Some(net) = NET.get() {
             return Ok(net.clone());
         }
         let bytes = assets::weights::SCENERY;
-        let net = Self::new(WeightFile::parse(FILE, bytes)?)?;
+        let net = Self::on(Cpu, WeightFile::parse(FILE, bytes)?)?;
         Ok(NET.get_or_init(|| Arc::new(net)).clone())
     }
+}
 
+impl<B: Ops> SceneryNet<B> {
     /// Takes all tensors of the file; refuses one that is missing, misshapen, not finite or unknown.
-    pub fn new(mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
+    pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: SceneryConfig = file.config("config")?;
         config
             .check()
@@ -168,23 +169,25 @@ impl SceneryNet {
         let back: Vec<usize> = widths[..coarsest].iter().rev().copied().collect();
         let back_kernels: Vec<Vec<usize>> = config.kernels[..coarsest].iter().rev().cloned().collect();
         let told = widths.iter().chain(&back).enumerate();
-        let told = told.map(|(i, width)| Linear::new(w, &format!("tell.{i}"), wide, *width, &[]));
+        let told = told.map(|(i, width)| ops.linear(w, &format!("tell.{i}"), [wide, *width], &[]));
         let tell = told.collect::<Result<_, _>>()?;
-        let upwards: Vec<usize> = widths.iter().rev().copied().collect();
+        let downwards = widths.windows(2).map(|p| [4 * p[0], p[1]]).collect();
+        let upwards = widths.windows(2).rev().map(|p| [p[1], 4 * p[0]]).collect();
         let net = Self {
             tell,
-            stem: Linear::new(w, "stem", NUMBERS + CONDITION, widths[0], &[1, 1])?,
-            time1: Linear::new(w, "time1", config.frequencies, wide, &[])?,
-            time2: Linear::new(w, "time2", wide, wide, &[])?,
-            named: Linear::new(w, "named", 2 * NAMED, wide, &[])?,
-            enter: levels(w, "enter", &widths[..coarsest], &config.kernels)?,
-            down: steps(w, "down", widths.windows(2).map(|p| (4 * p[0], p[1])).collect())?,
-            middle: Level::new(w, "middle", wide, &config.kernels[coarsest])?,
-            up: steps(w, "up", upwards.windows(2).map(|p| (p[0], 4 * p[1])).collect())?,
-            leave: levels(w, "leave", &back, &back_kernels)?,
-            norm: Norm::new(w, "norm", widths[0])?,
-            head: Linear::new(w, "head", widths[0], NUMBERS, &[1, 1])?,
+            stem: ops.linear(w, "stem", [NUMBERS + CONDITION, widths[0]], &[1, 1])?,
+            time1: ops.linear(w, "time1", [config.frequencies, wide], &[])?,
+            time2: ops.linear(w, "time2", [wide, wide], &[])?,
+            named: ops.linear(w, "named", [2 * NAMED, wide], &[])?,
+            enter: levels(&ops, w, "enter", &widths[..coarsest], &config.kernels)?,
+            down: steps(&ops, w, "down", downwards)?,
+            middle: Level::new(&ops, w, "middle", wide, &config.kernels[coarsest])?,
+            up: steps(&ops, w, "up", upwards)?,
+            leave: levels(&ops, w, "leave", &back, &back_kernels)?,
+            norm: ops.load_norm(w, "norm", widths[0])?,
+            head: ops.linear(w, "head", [widths[0], NUMBERS], &[1, 1])?,
             config,
+            ops,
         };
         file.finish()?;
         Ok(net)
@@ -197,46 +200,39 @@ impl SceneryNet {
         if !(0.0..1000.0).contains(&t) {
             return Err(ModelError::Timestep(t));
         }
-        let features = condition.features(x)?;
-        let mut map = Map {
-            data: self.stem.parallel(&features, PIECE),
+        let ops = &self.ops;
+        let features = ops.upload(Map {
+            data: condition.features(x)?,
             rows: SIDE,
             columns: SIDE,
-            width: self.config.widths[0],
-        };
-        let mut time = self.time1.vector(&timestep_embedding(t, self.config.frequencies));
-        time.iter_mut().for_each(|v| *v = kernels::silu(*v));
-        let named = self.named.vector(&condition.numbers());
-        let mut time = self.time2.vector(&time);
-        for (t, n) in time.iter_mut().zip(&named) {
-            *t = kernels::silu(*t + n);
-        }
+            width: NUMBERS + CONDITION,
+        })?;
+        let mut map = ops.apply(&self.stem, &features, PIECE)?;
+        let time = ops.vector(timestep_embedding(t, self.config.frequencies))?;
+        let time = ops.silu(ops.apply(&self.time1, &time, 1)?)?;
+        let named = ops.apply(&self.named, &ops.vector(condition.numbers())?, 1)?;
+        let time = ops.silu(ops.add(ops.apply(&self.time2, &time, 1)?, &named)?)?;
         let mut tell = self.tell.iter();
-        let mut told = |map: &mut Map| {
-            let adds = tell.next().map(|t| t.vector(&time)).unwrap_or_default();
-            let rows = map.data.par_chunks_exact_mut(map.width);
-            rows.for_each(|row| row.iter_mut().zip(&adds).for_each(|(v, a)| *v += a));
+        let mut told = |map: B::Tensor| match tell.next() {
+            Some(tell) => ops.add(map, &ops.apply(tell, &time, 1)?),
+            None => Ok(map),
         };
         let mut kept = Vec::new();
         for (level, down) in self.enter.iter().zip(&self.down) {
-            told(&mut map);
-            level.apply(&mut map);
-            let coarser = through(down, &map.fold());
+            map = level.apply(ops, told(map)?)?;
+            let coarser = ops.apply(down, &ops.fold(&map)?, PIECE)?;
             kept.push(std::mem::replace(&mut map, coarser));
         }
-        told(&mut map);
-        self.middle.apply(&mut map);
+        map = self.middle.apply(ops, told(map)?)?;
         for (up, level) in self.up.iter().zip(&self.leave) {
-            map = through(up, &map).unfold();
+            map = ops.unfold(&ops.apply(up, &map, PIECE)?)?;
             if let Some(before) = kept.pop() {
-                map.data.iter_mut().zip(&before.data).for_each(|(v, b)| *v += b);
+                map = ops.add(map, &before)?;
             }
-            told(&mut map);
-            level.apply(&mut map);
+            map = level.apply(ops, told(map)?)?;
         }
-        let mut normed = vec![0.0; map.data.len()];
-        self.norm.rows(&map.data, &mut normed);
-        let v = self.head.parallel(&normed, PIECE);
+        let normed = ops.norm(&self.norm, map)?;
+        let v = ops.download(ops.apply(&self.head, &normed, PIECE)?)?.data;
         check_finite("predicted v", &v)?;
         Ok(v)
     }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use nn::layers::Linear;
 use nn::weights::{WeightFile, WeightsError};
+use numeric::hash::fnv1a_32;
 
 /// File name of the weights.
 pub const FILE: &str = "text.safetensors";
@@ -19,8 +20,7 @@ const LETTERS: usize = 2000;
 
 /// FNV-1a of the bytes of a text.
 pub fn hash(text: &str) -> u32 {
-    text.bytes()
-        .fold(0x811c_9dc5, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193))
+    fnv1a_32(text.as_bytes())
 }
 
 /// Hashed n-grams of a text: words, pairs of neighbouring words, and triples of letters within words; lower case, letters

@@ -388,9 +388,9 @@ mod tests {
             x.iter_mut()
                 .enumerate()
                 .for_each(|(i, v)| *v *= [1e9, 1.0, 1e-9, 1e-40][i / k % 4]);
-            let panels = Int8Matrix::new(View::rows(&w, n), k, n);
+            let packed = Int8Matrix::new(View::rows(&w, n), k, n);
             let mut out = vec![f32::NAN; m * n];
-            panels.multiply(&x, &bias, &mut out);
+            packed.multiply(&x, &bias, &mut out);
             let largest = |v: &mut dyn Iterator<Item = f32>| f64::from(v.fold(0.0f32, |m, v| m.max(v.abs())));
             for row in 0..m {
                 let x = &x[row * k..][..k];
@@ -411,7 +411,7 @@ mod tests {
                 }
             }
             let mut alone = vec![f32::NAN; n];
-            panels.multiply(&x[(m - 1) * k..], &bias, &mut alone);
+            packed.multiply(&x[(m - 1) * k..], &bias, &mut alone);
             assert_eq!(alone, out[(m - 1) * n..]);
         }
     }
@@ -434,9 +434,9 @@ mod tests {
     /// Row 16, for eight bits: what is not finite stays so, zeros stay zeros.
     #[test]
     fn row_16_int8_inputs() {
-        let panels = Int8Matrix::new(View::rows(&[0.0, 1.0, 0.0, -2.0], 2), 2, 2);
+        let packed = Int8Matrix::new(View::rows(&[0.0, 1.0, 0.0, -2.0], 2), 2, 2);
         let mut out = [9.0; 8];
-        panels.multiply(
+        packed.multiply(
             &[0.0, 0.0, f32::NAN, 1.0, f32::INFINITY, 1.0, 3e38, 0.0],
             &[0.5, 0.25],
             &mut out,

@@ -83,7 +83,7 @@ vectorised! {
 }
 
 vectorised! {
-    #[allow(clippy::approx_constant)] // fitted coefficients; the measured results of the stops hang on their bits
+    #[allow(clippy::approx_constant)] // fitted coefficients; the measured results of the presets hang on their bits
     /// exp(score - largest) in steps of 1/255, within half a step and a thousandth, and the sum of them.
     pub fn softmax_steps(scores: &[f32], steps: &mut [u8], total: &mut u32) {
         let mut maxima = [f32::NEG_INFINITY; 16];

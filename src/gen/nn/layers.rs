@@ -173,9 +173,9 @@ impl Linear {
         self.weight.outputs()
     }
 
-    /// One vector to one vector.
+    /// Rows to rows, on the calling thread.
     pub fn vector(&self, x: &[f32]) -> Vec<f32> {
-        let mut out = vec![0.0; self.weight.outputs()];
+        let mut out = vec![0.0; x.len() / self.weight.inputs() * self.weight.outputs()];
         self.rows(x, &mut out);
         out
     }
@@ -226,21 +226,15 @@ pub struct ResBlock {
 }
 
 impl ResBlock {
-    /// Takes `name.norm`, `name.conv1`, `name.conv2`; the kernel is 1 or 3.
-    pub fn new(
-        w: &mut WeightFile<'_>,
-        name: &str,
-        width: usize,
-        kernel: usize,
-    ) -> Result<Self, WeightsError> {
-        let weight = w.take(&format!("{name}.conv1.weight"), &[width, width, kernel, kernel])?;
-        let bias = w.take(&format!("{name}.conv1.bias"), &[width])?;
-        Ok(Self {
-            norm: Norm::new(w, &format!("{name}.norm"), width)?,
-            first: Self::convolution(&weight, bias, width, kernel),
+    /// Of its parts; `weight` is that of the convolution, `[out][in][kernel][kernel]`.
+    pub fn from_parts(norm: Norm, weight: &[f32], bias: Vec<f32>, kernel: usize, second: Linear) -> Self {
+        let width = bias.len();
+        Self {
+            norm,
+            first: Self::convolution(weight, bias, width, kernel),
             kernel,
-            second: Linear::new(w, &format!("{name}.conv2"), width, width, &[1, 1])?,
-        })
+            second,
+        }
     }
 
     /// `[out][in][kernel][kernel]` to `[out][kernel * kernel * in]`.

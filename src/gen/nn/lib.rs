@@ -1,5 +1,6 @@
 //! What networks are built from: weight files, blocks, and the processor's kernels.
 
+mod cpu;
 #[cfg(test)]
 mod golden;
 pub mod int8;
@@ -7,8 +8,12 @@ pub mod int8_attention;
 pub mod kernels;
 pub mod layers;
 pub mod map;
+pub mod ops;
 pub mod packed_matrix;
 mod precision;
+pub mod transformer;
 pub mod weights;
 
+pub use cpu::Cpu;
+pub use ops::Ops;
 pub use precision::Precision;

@@ -1,7 +1,7 @@
 //! Feature maps over the top view, and rectangles of latent cells.
 
 /// A feature map: `rows x columns` places of `width` channels, channel fastest.
-#[derive(Clone)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// Values.
     pub data: Vec<f32>,

@@ -1,10 +1,18 @@
 //! Reads a weight file (safetensors, f16 or f32) and checks all of it before a network sees it.
 
 use std::collections::{BTreeMap, HashMap};
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use safetensors::{Dtype, SafeTensors};
+use numeric::hash::fnv1a_64;
+use safetensors::{Dtype, SafeTensorError, SafeTensors};
 use thiserror::Error;
+
+use crate::ops::OpsError;
+
+/// Most bytes of a weight file that is read: 2 GiB, some hundred times the largest that ships.
+pub const MOST_BYTES: u64 = 1 << 31;
 
 /// Why weights were refused. Every message is one line that names the file.
 #[derive(Debug, Error)]
@@ -16,6 +24,42 @@ pub enum WeightsError {
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// A folder, a device, a pipe.
+    #[error("{}: expected a regular file of weights, found {found}", path.display())]
+    NotAFile {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What stands there.
+        found: &'static str,
+    },
+    /// More than any network of this program can use.
+    #[error("{}: expected weights of at most {MOST_BYTES} bytes, found {found}", path.display())]
+    TooLarge {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// Its size, bytes.
+        found: u64,
+    },
+    /// The backend could not take the weights in.
+    #[error("{file}: {reason}")]
+    Backend {
+        /// Name of the file.
+        file: String,
+        /// What the backend said.
+        reason: OpsError,
+    },
+    /// The bytes end before or after the place that the header names.
+    #[error(
+        "{file}: not a usable safetensors file: expected {expected} bytes, as its header says, found {found}"
+    )]
+    Size {
+        /// Name of the file.
+        file: String,
+        /// What header and tensors take, bytes.
+        expected: u64,
+        /// What is there, bytes.
+        found: u64,
     },
     /// Not a safetensors file, or a damaged one.
     #[error("{file}: not a usable safetensors file: {reason}")]
@@ -107,9 +151,16 @@ impl<'data> WeightFile<'data> {
     /// Parses the header; sizes are checked against the bytes that are there, so a header that
     /// promises more than the file holds allocates nothing.
     pub fn parse(name: &str, bytes: &'data [u8]) -> Result<Self, WeightsError> {
-        let malformed = |reason: safetensors::SafeTensorError| WeightsError::Malformed {
-            file: name.to_owned(),
-            reason: reason.to_string(),
+        let malformed = |reason: SafeTensorError| match (&reason, size_by_header(bytes)) {
+            (SafeTensorError::MetadataIncompleteBuffer, Some(expected)) => WeightsError::Size {
+                file: name.to_owned(),
+                expected,
+                found: bytes.len() as u64,
+            },
+            _ => WeightsError::Malformed {
+                file: name.to_owned(),
+                reason: reason.to_string().replace('\n', " "),
+            },
         };
         let (_, header) = SafeTensors::read_metadata(bytes).map_err(malformed)?;
         let metadata = header.metadata().clone().unwrap_or_default();
@@ -119,7 +170,7 @@ impl<'data> WeightFile<'data> {
             tensors,
             metadata,
             taken: BTreeMap::new(),
-            hash: fnv1a(bytes),
+            hash: fnv1a_64(bytes),
         })
     }
 
@@ -152,6 +203,14 @@ impl<'data> WeightFile<'data> {
         WeightsError::Config {
             file: self.name.clone(),
             field,
+            reason,
+        }
+    }
+
+    /// What a backend said of weights of this file.
+    pub fn backend_error(&self, reason: OpsError) -> WeightsError {
+        WeightsError::Backend {
+            file: self.name.clone(),
             reason,
         }
     }
@@ -226,18 +285,50 @@ impl<'data> WeightFile<'data> {
     }
 }
 
-/// Reads a file whole.
-pub fn read(path: &Path) -> Result<Vec<u8>, WeightsError> {
-    std::fs::read(path).map_err(|source| WeightsError::Read {
-        path: path.to_owned(),
-        source,
-    })
+/// Bytes of a file by its header: the eight of the length, the header, and the tensors up to the last offset.
+fn size_by_header(bytes: &[u8]) -> Option<u64> {
+    let length = u64::from_le_bytes(bytes.first_chunk().copied()?);
+    let text = bytes.get(8..8 + usize::try_from(length).ok()?)?;
+    let header: serde_json::Map<String, serde_json::Value> = serde_json::from_slice(text).ok()?;
+    let ends = header.values().filter_map(|t| t["data_offsets"][1].as_u64());
+    Some(8 + length + ends.max().unwrap_or(0))
 }
 
-fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |h, b| {
-        (h ^ u64::from(*b)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+/// Reads a file whole. Refuses what is no regular file, and more than [`MOST_BYTES`], before reading.
+pub fn read(path: &Path) -> Result<Vec<u8>, WeightsError> {
+    let refused = |source| WeightsError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    let too_large = |found| WeightsError::TooLarge {
+        path: path.to_owned(),
+        found,
+    };
+    // Before opening: that of a pipe waits until somebody writes.
+    let kind = fs::metadata(path).map_err(refused)?;
+    if !kind.is_file() {
+        return Err(WeightsError::NotAFile {
+            path: path.to_owned(),
+            found: if kind.is_dir() {
+                "a folder"
+            } else {
+                "a device or a pipe"
+            },
+        });
+    }
+    if kind.len() > MOST_BYTES {
+        return Err(too_large(kind.len()));
+    }
+    let mut bytes = Vec::with_capacity(kind.len() as usize);
+    let file = File::open(path).map_err(refused)?;
+    // It may grow while it is read.
+    file.take(MOST_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(refused)?;
+    match bytes.len() as u64 {
+        found if found > MOST_BYTES => Err(too_large(found)),
+        _ => Ok(bytes),
+    }
 }
 
 #[cfg(test)]
@@ -315,7 +406,7 @@ mod tests {
                 .map(|_| ())
                 .expect_err("truncated");
             assert!(
-                matches!(error, WeightsError::Malformed { .. }),
+                matches!(error, WeightsError::Malformed { .. } | WeightsError::Size { .. }),
                 "{length}: {error}"
             );
             assert!(!error.to_string().contains('\n'));
@@ -331,7 +422,42 @@ mod tests {
             bomb.extend([0; 16]);
             assert!(WeightFile::parse("bomb", &bomb).is_err());
         }
+        let mut longer = bytes.clone();
+        longer.push(0);
+        let error = WeightFile::parse("w", &longer)
+            .map(|_| ())
+            .expect_err("too long")
+            .to_string();
+        let (all, more) = (bytes.len(), longer.len());
+        assert_eq!(
+            error,
+            format!(
+                "w: not a usable safetensors file: expected {all} bytes, as its header says, found {more}"
+            )
+        );
         let missing = read(Path::new("/nowhere/at/all")).expect_err("no such file");
         assert!(missing.to_string().starts_with("/nowhere/at/all: "));
+    }
+
+    /// Row 62: what never ends or is too large is refused before it is read, in one line.
+    #[cfg(unix)]
+    #[test]
+    fn row_62_endless_files() {
+        let folder = std::env::temp_dir().join(format!("sceneloom-weights-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a folder");
+        let (pipe, sparse) = (folder.join("pipe"), folder.join("sparse"));
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.expect("mkfifo runs").success());
+        File::create(&sparse)
+            .and_then(|f| f.set_len(MOST_BYTES + 1))
+            .expect("a sparse file");
+        let told = |path: &Path| read(path).expect_err("refused").to_string();
+        let no_file = "expected a regular file of weights, found a device or a pipe";
+        assert_eq!(told(Path::new("/dev/zero")), format!("/dev/zero: {no_file}"));
+        assert_eq!(told(&pipe), format!("{}: {no_file}", pipe.display()));
+        assert!(told(&folder).ends_with("found a folder"));
+        let most = "expected weights of at most 2147483648 bytes, found 2147483649";
+        assert_eq!(told(&sparse), format!("{}: {most}", sparse.display()));
+        fs::remove_dir_all(&folder).expect("removed");
     }
 }

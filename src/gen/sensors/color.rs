@@ -1,25 +1,11 @@
 //! Pictures of the maps: render ids and depths as RGBA, depths as 16-bit millimetres.
 
 use scene::sensor_data::{RENDER_IDS, RenderId};
+pub use scene::sensor_data::{SKY, depth_mm, render_id_color};
 use scene::{BevLayer, CameraMaps, Class, MultiPlaneImage, PerspectiveMap};
-
-/// sRGB colour of pixels on which nothing was drawn.
-pub const SKY: [u8; 3] = [46, 58, 78];
 
 /// sRGB colour of a pixel without a depth.
 pub const NO_DEPTH: [u8; 3] = [14, 14, 18];
-
-/// sRGB colour of a render id: the classes' colours, and those of the painted lines for 17 to 19.
-/// Id 0 is the sky; ids from 20 on are drawn as the class "others".
-pub fn render_id_color(id: RenderId) -> [u8; 3] {
-    match id {
-        0 => SKY,
-        17 => BevLayer::PedCrossing.color(),
-        18 => BevLayer::RoadDivider.color(),
-        19 => BevLayer::LaneDivider.color(),
-        _ => Class::from_id(id).unwrap_or(Class::Others).color(),
-    }
-}
 
 /// The semantic map as RGBA, 4 bytes per pixel, opaque. With `shaded`, surfaces are toned by where
 /// they face, edges of nearer things outlined and far things dimmed, all from the depth map, so that
@@ -174,13 +160,6 @@ pub fn perspective_rgba(map: &PerspectiveMap) -> Vec<u8> {
         out.push(255);
     }
     out
-}
-
-/// Depth in whole millimetres for a 16-bit picture, as in common RGB-D data: 0 where there is none
-/// (not above 0, or NaN), 65,535 for that many millimetres and more.
-pub fn depth_mm(depth_m: &[f32]) -> Vec<u16> {
-    let mm = |&d: &f32| if d > 0.0 { (d * 1000.0).round() as u16 } else { 0 };
-    depth_m.iter().map(mm).collect()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ pub mod appearance;
 pub mod around;
 pub mod backdrop;
 pub mod border;
+pub mod cameras;
 pub mod caster;
 pub mod cloud;
 pub mod color;

@@ -7,6 +7,7 @@ pub mod paint;
 pub mod solids;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
@@ -27,6 +28,8 @@ const HEIGHT_MARGIN_M: f64 = 0.5;
 const SMEAR_M: f64 = 0.8;
 /// Pixels of a row that share a list of the boxes that may cover them.
 const PIECE: usize = 16;
+/// Rows that are turned from hits into maps at a time.
+const BAND: usize = 256;
 
 /// What is marched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,18 +183,28 @@ impl MarchScene {
 
     /// Marches one camera at `width` x `height` pixels (0 gives empty maps).
     pub fn render(&self, camera: &Camera, width: u32, height: u32) -> MarchMaps {
-        let (w, h) = (width as usize, height as usize);
-        let mut hits = vec![None; w * h];
+        MarchMaps {
+            width: width as usize,
+            height: height as usize,
+            hits: self.rows(camera, [width, height], 0..height as usize),
+        }
+    }
+
+    /// The hits of some rows of a picture of that size.
+    fn rows(&self, camera: &Camera, size: [u32; 2], rows: Range<usize>) -> Vec<Option<MarchHit>> {
+        let w = size[0] as usize;
+        let mut hits = vec![None; w * rows.len()];
         if !hits.is_empty() {
-            let rays = CameraRays::new(camera, width, height);
+            let rays = CameraRays::new(camera, size[0], size[1]);
             let boxes = self.solids.in_view(|p| rays.project(p));
-            hits.par_chunks_mut(w).enumerate().for_each(|(v, row)| {
-                let boxes = boxes.row(v as f64 + 0.5);
+            hits.par_chunks_mut(w).enumerate().for_each(|(i, row)| {
+                let v = (rows.start + i) as f64 + 0.5;
+                let boxes = boxes.row(v);
                 for (i, piece) in row.chunks_mut(PIECE).enumerate() {
                     let first = i * PIECE;
                     let boxes = boxes.piece(first as f64, (first + PIECE) as f64);
                     for (u, out) in piece.iter_mut().enumerate() {
-                        let direction = rays.direction((first + u) as f64 + 0.5, v as f64 + 0.5);
+                        let direction = rays.direction((first + u) as f64 + 0.5, v);
                         *out = self.cast_among(rays.origin, direction, |unit, limit_m| {
                             self.solids.cast_pixel(&boxes, rays.origin, unit, limit_m)
                         });
@@ -199,19 +212,52 @@ impl MarchScene {
                 }
             });
         }
-        MarchMaps {
-            width: w,
-            height: h,
-            hits,
+        hits
+    }
+
+    /// The maps of [`MarchMaps::into_camera_maps`], made a band of rows at a time: hits take four times the memory of maps.
+    pub fn render_maps(&self, camera: &Camera, width: u32, height: u32) -> CameraMaps {
+        let mut maps = CameraMaps {
+            camera: camera.name.clone(),
+            width: width as usize,
+            height: height as usize,
+            semantic: Vec::new(),
+            depth_m: Vec::new(),
+            expected_m: Vec::new(),
+            median_m: Vec::new(),
+            coverage: Vec::new(),
+        };
+        let pixels = maps.width * maps.height;
+        maps.semantic.reserve_exact(pixels);
+        for plane in [
+            &mut maps.depth_m,
+            &mut maps.expected_m,
+            &mut maps.median_m,
+            &mut maps.coverage,
+        ] {
+            plane.reserve_exact(pixels);
         }
+        for first in (0..maps.height).step_by(BAND) {
+            let rows = first..(first + BAND).min(maps.height);
+            let band = MarchMaps {
+                width: maps.width,
+                height: rows.len(),
+                hits: self.rows(camera, [width, height], rows),
+            };
+            let band = band.into_camera_maps("");
+            maps.semantic.extend(band.semantic);
+            maps.depth_m.extend(band.depth_m);
+            maps.expected_m.extend(band.expected_m);
+            maps.median_m.extend(band.median_m);
+            maps.coverage.extend(band.coverage);
+        }
+        maps
     }
 
     /// The maps of every camera of a rig, in the rig's order.
     pub fn render_rig(&self, rig: &SensorRig, width: u32, height: u32) -> Vec<CameraMaps> {
         let cameras = rig.cameras.par_iter();
-        cameras
-            .map(|c| self.render(c, width, height).into_camera_maps(&c.name))
-            .collect()
+        cameras.map(|c| self.render_maps(c, width, height)).collect()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use metrics::stats::{median, quantile};
+use numeric::quantile::{median, quantile};
 use world::draw::Draw;
 
 /// Resamples of a bootstrap.

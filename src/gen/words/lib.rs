@@ -22,7 +22,6 @@ pub mod reading;
 pub mod remark;
 mod resolve;
 pub mod stage;
-pub mod text_edit;
 pub mod tokens;
 
 #[cfg(test)]

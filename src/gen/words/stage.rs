@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::Serialize;
 
 use super::nouns::Noun;
 use super::remark::Remark;
-use crate::text_edit::TextEdit;
 use place::holds::{in_role, overlap_m, role_of};
 use place::lanes::LaneMap;
 use scene::graph::{LaneRole, ObjectState};
-use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
+use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Edit, Polyline, PolylineKind, SceneBox, Shape};
 
 /// An open scene, as far as words need it.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +71,7 @@ impl Done {
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Outcome {
     /// Changes, in order.
-    pub edits: Vec<TextEdit>,
+    pub edits: Vec<Edit>,
     /// What must be answered first; whoever applies the edits waits for that.
     pub questions: Vec<Question>,
     /// What could not be done as it was said, by act.
@@ -142,46 +141,75 @@ impl<'a> Stage<'a> {
         &mut self.out.done[self.act]
     }
 
-    /// Carries out one change.
-    pub(super) fn push(&mut self, edit: TextEdit) {
-        match &edit {
-            TextEdit::Remove { id } => {
-                let Some(b) = self.boxes.remove(id) else { return };
-                self.gone.push(b);
-                self.done().removed.push(b);
-            }
-            TextEdit::Add { object } => {
-                self.boxes.insert(object.id, *object);
-                self.done().added.push(object.id);
-            }
-            TextEdit::Move {
-                id,
-                center_m,
-                yaw_rad,
-            } => {
-                let Some(b) = self.boxes.get_mut(id) else { return };
-                let speed = b.velocity_mps.length();
-                b.center_m = *center_m;
-                b.yaw_rad = *yaw_rad;
-                b.velocity_mps = DVec2::from_angle(*yaw_rad) * speed;
-                self.done().changed.push(*id);
-            }
-            TextEdit::Replace { id, object } => {
-                self.boxes.insert(*id, *object);
-                self.done().changed.push(*id);
-            }
-            TextEdit::Label { id, label } => {
-                let Some(b) = self.boxes.get_mut(id) else { return };
-                b.label = *label;
-                self.done().changed.push(*id);
-            }
-            TextEdit::Crossing { .. } | TextEdit::EraseCrossing { .. } => self.done().scene = true,
-            TextEdit::Style { prompt } => {
-                self.prompt.clone_from(prompt);
-                self.done().scene = true;
-            }
-        }
-        self.out.edits.push(edit);
+    pub(super) fn take_box(&mut self, id: BoxId) {
+        let Some(b) = self.boxes.remove(&id) else { return };
+        self.gone.push(b);
+        self.done().removed.push(b);
+        self.out.edits.push(Edit::RemoveBox { id });
+    }
+
+    /// Puts a box in; its id is free.
+    pub(super) fn add_box(&mut self, b: SceneBox) {
+        self.boxes.insert(b.id, b);
+        self.done().added.push(b.id);
+        self.out.edits.push(b.into());
+    }
+
+    /// Moves and turns a box; its speed stays and points where it heads.
+    pub(super) fn move_box(&mut self, id: BoxId, center_m: DVec3, yaw_rad: f64) {
+        let Some(b) = self.boxes.get_mut(&id) else { return };
+        let speed = b.velocity_mps.length();
+        b.center_m = center_m;
+        b.yaw_rad = yaw_rad;
+        b.velocity_mps = DVec2::from_angle(yaw_rad) * speed;
+        self.done().changed.push(id);
+        self.out.edits.push(Edit::MoveBox {
+            id,
+            center_m: Some(center_m),
+            yaw_deg: Some(yaw_rad.to_degrees()),
+            size_m: None,
+        });
+    }
+
+    /// Puts a box in the place of that of the same id.
+    pub(super) fn replace_box(&mut self, b: SceneBox) {
+        self.boxes.insert(b.id, b);
+        self.done().changed.push(b.id);
+        self.out.edits.push(Edit::RemoveBox { id: b.id });
+        self.out.edits.push(b.into());
+    }
+
+    pub(super) fn label_box(&mut self, id: BoxId, label: BoxLabel) {
+        let Some(b) = self.boxes.get_mut(&id) else { return };
+        b.label = label;
+        self.done().changed.push(id);
+        self.out.edits.push(Edit::LabelBox { id, label });
+    }
+
+    /// Paints a pedestrian crossing with these corners, ego frame, m.
+    pub(super) fn paint_crossing(&mut self, outline_m: Vec<DVec2>) {
+        self.done().scene = true;
+        let lines = vec![Polyline {
+            kind: PolylineKind::PedCrossing,
+            points_m: outline_m,
+        }];
+        self.out.edits.push(Edit::AddPolylines { lines });
+    }
+
+    pub(super) fn clear_crossing(&mut self, points_m: Vec<DVec2>) {
+        self.done().scene = true;
+        self.out.edits.push(Edit::PaintBev {
+            layer: BevLayer::PedCrossing,
+            shape: Shape::Polygon { points_m },
+            value: false,
+        });
+    }
+
+    /// Replaces the text that describes the style.
+    pub(super) fn restyle(&mut self, prompt: String) {
+        self.prompt.clone_from(&prompt);
+        self.done().scene = true;
+        self.out.edits.push(Edit::SetPrompt { prompt });
     }
 
     pub(super) fn next_id(&self) -> BoxId {

@@ -92,7 +92,6 @@ fn random_and_hostile_texts_end() {
     use super::carry_out::carry_out;
     use super::describe::{describe, described};
     use super::stage::OpenScene;
-    use super::text_edit::TextEdit;
     use place::road;
     use place::rules::place_with;
     use place::to_graph::to_graph;
@@ -190,8 +189,8 @@ fn random_and_hostile_texts_end() {
         let edit = hear(&text, Mode::Edit).expect("weights");
         let done = carry_out(&edit.reading, &scene, i);
         for e in &done.edits {
-            if let TextEdit::Add { object } | TextEdit::Replace { object, .. } = e {
-                assert_eq!(object.problem(), None, "{text}");
+            if let Some(b) = e.added_box() {
+                assert_eq!(b.problem(), None, "{text}");
             }
         }
         let said = answer(&edit.reading, Some(&done), &done.remarks, &edit.missing);

@@ -12,6 +12,7 @@ use std::time::Duration;
 use editor::Edit;
 use formats::{box_list, occ3d, project};
 use job::GenParams;
+use numeric::splitmix::SplitMix64;
 use scene::{Class, SensorRig, VoxelGrid};
 use zip::write::SimpleFileOptions;
 
@@ -19,7 +20,7 @@ mod mutate;
 #[path = "../../../fuzz/src/targets.rs"]
 mod targets;
 
-use mutate::{Dice, damage};
+use mutate::damage;
 
 /// An input that takes longer hangs: far above what any needs, also on a crowded machine.
 const HANG: Duration = Duration::from_secs(120);
@@ -77,7 +78,7 @@ fn run(
     target: &'static str,
     valid: Vec<Vec<u8>>,
     rounds: u64,
-    also: impl Fn(&[u8], &mut Dice) -> Option<Vec<u8>>,
+    also: impl Fn(&[u8], &mut SplitMix64) -> Option<Vec<u8>>,
 ) {
     let found = targets::ALL.iter().find(|(name, _)| *name == target);
     let (_, test) = found.expect("a target of that name");
@@ -117,7 +118,7 @@ fn run(
     let seed = env("SCENELOOM_FUZZ_SEED", 62);
     let rounds = rounds * env("SCENELOOM_FUZZ_ROUNDS", 1);
     for round in 0..rounds {
-        let mut dice = Dice(seed.wrapping_mul(0x1000_0000_01b3) ^ round.wrapping_mul(0x9e37_79b9));
+        let mut dice = SplitMix64::new(seed.wrapping_mul(0x1000_0000_01b3) ^ round.wrapping_mul(0x9e37_79b9));
         let whole = &seeds[dice.below(seeds.len())];
         let bytes = match dice.below(2) {
             0 => also(whole, &mut dice),
@@ -135,7 +136,7 @@ fn plain(target: &'static str, valid: Vec<Vec<u8>>, rounds: u64) {
 }
 
 /// A zip whose entries are damaged before they are packed, so that no checksum tells.
-fn repacked(whole: &[u8], dice: &mut Dice) -> Option<Vec<u8>> {
+fn repacked(whole: &[u8], dice: &mut SplitMix64) -> Option<Vec<u8>> {
     let mut zip = zip::ZipArchive::new(Cursor::new(whole)).ok()?;
     let victim = dice.below(zip.len());
     let mut out = zip::ZipWriter::new(Cursor::new(Vec::new()));
@@ -257,14 +258,14 @@ fn edit_lists() {
 /// Sessions: the bytes themselves are the random choices.
 #[test]
 fn edit_sequences() {
-    let mut dice = Dice(7);
-    let valid = (0..30).map(|i| (0..40 * (i + 1)).map(|_| dice.next() as u8).collect());
+    let mut dice = SplitMix64::new(7);
+    let valid = (0..30).map(|i| (0..40 * (i + 1)).map(|_| dice.bits() as u8).collect());
     plain("edit_sequence", valid.collect(), 120);
 }
 
 #[test]
 fn weight_files() {
-    let config = |whole: &[u8], dice: &mut Dice| {
+    let config = |whole: &[u8], dice: &mut SplitMix64| {
         // Only the header is damaged, and its length put right.
         let length = u64::from_le_bytes(whole.get(..8)?.try_into().ok()?) as usize;
         let header = damage(whole.get(8..8 + length)?, dice);

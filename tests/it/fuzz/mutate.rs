@@ -1,21 +1,6 @@
 //! Seeded damage to valid files: cut, flipped, repeated, numbers at the edge, lengths that lie, nests of brackets.
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
-pub struct Dice(pub u64);
-
-impl Dice {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-}
+use numeric::splitmix::SplitMix64;
 
 /// What a number in a text may become.
 const NUMBERS: [&str; 22] = [
@@ -56,7 +41,7 @@ const LENGTHS: [u64; 8] = [
 ];
 
 /// One to four pieces of damage.
-pub fn damage(valid: &[u8], dice: &mut Dice) -> Vec<u8> {
+pub fn damage(valid: &[u8], dice: &mut SplitMix64) -> Vec<u8> {
     let mut bytes = valid.to_vec();
     for _ in 0..=dice.below(4) {
         once(&mut bytes, dice);
@@ -64,13 +49,13 @@ pub fn damage(valid: &[u8], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-fn once(bytes: &mut Vec<u8>, dice: &mut Dice) {
+fn once(bytes: &mut Vec<u8>, dice: &mut SplitMix64) {
     let n = bytes.len();
     let at = dice.below(n);
     match dice.below(12) {
         0 => bytes.truncate(at),
         1 | 2 if n > 0 => bytes[at] ^= 1 << dice.below(8),
-        3 if n > 0 => bytes[at] = dice.next() as u8,
+        3 if n > 0 => bytes[at] = dice.bits() as u8,
         4 => {
             // A piece goes.
             let to = (at + 1 + dice.below(64)).min(n);
@@ -104,7 +89,7 @@ fn once(bytes: &mut Vec<u8>, dice: &mut Dice) {
 }
 
 /// Replaces a number, or a text in quotes, of a text.
-fn number(bytes: &mut Vec<u8>, dice: &mut Dice) {
+fn number(bytes: &mut Vec<u8>, dice: &mut SplitMix64) {
     let digit = |b: &u8| b.is_ascii_digit();
     let start = dice.below(bytes.len());
     let Some(from) = bytes[start..].iter().position(digit).map(|i| start + i) else {

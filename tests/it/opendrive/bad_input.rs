@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use formats::opendrive::{self, OpenDriveError};
 use glam::DVec2;
+use numeric::splitmix::SplitMix64;
 use scene::Relief;
 
 use super::{OWN, own_bytes};
@@ -194,19 +195,6 @@ fn the_unknown_is_counted() {
     assert_eq!(skipped.values().sum::<usize>(), expected.len(), "{skipped:?}");
 }
 
-/// A small generator with a fixed seed: splitmix64, Steele et al. 2014.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % n as u64) as usize
-    }
-}
-
 /// Row 62 of the extremes table: truncated files.
 #[test]
 fn row_62_truncated_roads_are_refused() {
@@ -225,7 +213,7 @@ fn row_62_truncated_roads_are_refused() {
 /// Row 62 of the extremes table: damaged bytes.
 #[test]
 fn row_62_flipped_bytes_never_panic() {
-    let mut dice = Dice(62);
+    let mut dice = SplitMix64::new(62);
     let (mut fine, mut refused) = (0, 0);
     for name in OWN {
         let whole = own_bytes(name);
@@ -257,7 +245,7 @@ fn row_62_extreme_numbers_never_panic_or_hang() {
         "NaN", "inf", "0", "-0", "-1", "1", "1e-300", "1e-9", "1e5", "1e12", "-1e12", "1e308", "-1e308", "",
     ];
     let started = Instant::now();
-    let mut dice = Dice(7);
+    let mut dice = SplitMix64::new(7);
     let (mut fine, mut refused) = (0, 0);
     for name in OWN {
         let text = String::from_utf8(own_bytes(name)).expect("UTF-8");

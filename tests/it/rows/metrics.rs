@@ -3,7 +3,7 @@
 use metrics::frechet::frechet_distance;
 use metrics::kernel::{Kernel, mmd2};
 use nalgebra::{DMatrix, SymmetricEigen};
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 
 fn sample(seed: u64, n: usize, d: usize) -> Vec<Vec<f64>> {
     let flat = normal_field(seed, Stream::Start, n, d);

@@ -3,7 +3,7 @@
 use diffusion::inversion::{Refinement, invert, round_trip_error};
 use diffusion::schedule::{Betas, Level, Schedule, Spacing};
 use diffusion::solver::{Branch, Denoiser, Guidance, Prediction, Sampler, SolverError, SolverKind};
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 
 const N: [usize; 6] = [1, 2, 5, 10, 20, 50];
 

@@ -4,16 +4,10 @@ use std::collections::{BTreeSet, HashSet};
 
 use editor::Shape;
 use glam::{DVec2, DVec3};
+use numeric::splitmix::scatter;
 use scene::raster::line_cells;
 use scene::{GridSpec, LidarPattern, SensorRig};
 use sensors::lidar::Rays;
-
-/// Numbers in 0..1.
-fn scatter(i: u64) -> f64 {
-    let mut v = i.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    ((v ^ (v >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-}
 
 /// Row 34: any point is in range or none, and its voxel's centre is within half a voxel.
 #[test]

@@ -7,6 +7,7 @@ mod street;
 
 use std::time::Instant;
 
+use numeric::quantile::{median, quantile};
 use scene::SensorRig;
 use viewport::{
     Background, BrushCells, LayoutPlane, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset,
@@ -95,6 +96,9 @@ fn pictures_of_a_street() {
         clip_above_m: Some(1.2),
         ..options.clone()
     };
+    fn under<'a>(scene: ViewScene<'a>, options: &'a ViewOptions) -> ViewScene<'a> {
+        ViewScene { options, ..scene }
+    }
     let ego = ViewCamera::preset(ViewPreset::Ego);
     let mut ego_near = start;
     ego_near.focus(glam::DVec3::new(1.2, 0.0, 0.0), 3.2);
@@ -107,46 +111,11 @@ fn pictures_of_a_street() {
         ("side", ViewCamera::preset(ViewPreset::Side), base),
         ("front", ViewCamera::preset(ViewPreset::Front), base),
         ("ego", ego, only_boxes),
-        (
-            "frusta",
-            ego_near,
-            ViewScene {
-                options: &frusta,
-                ..only_boxes
-            },
-        ),
-        (
-            "plane",
-            start,
-            ViewScene {
-                options: &plane,
-                ..only_boxes
-            },
-        ),
-        (
-            "light",
-            start,
-            ViewScene {
-                options: &light,
-                ..only_boxes
-            },
-        ),
-        (
-            "transparent",
-            start,
-            ViewScene {
-                options: &bare,
-                ..only_boxes
-            },
-        ),
-        (
-            "clip",
-            start,
-            ViewScene {
-                options: &clip,
-                ..only_boxes
-            },
-        ),
+        ("frusta", ego_near, under(only_boxes, &frusta)),
+        ("plane", start, under(only_boxes, &plane)),
+        ("light", start, under(only_boxes, &light)),
+        ("transparent", start, under(only_boxes, &bare)),
+        ("clip", start, under(only_boxes, &clip)),
     ] {
         let picture = viewport
             .render_to_image(&device, &queue, &camera, &scene, size, 1)
@@ -166,7 +135,18 @@ fn pictures_of_a_street() {
         folder.display(),
         viewport.voxel_quads()
     );
+    costs(&device, &queue, &mut viewport, [base, all], size);
+}
 
+/// Prints what pictures of a street cost, first the voxels alone, then everything.
+fn costs(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    viewport: &mut Viewport,
+    [base, all]: [ViewScene<'_>; 2],
+    size: [u32; 2],
+) {
+    let (start, options) = (ViewCamera::default(), all.options);
     let wait = || device.poll(wgpu::PollType::wait_indefinitely()).expect("drawn");
     for (name, scene) in [("voxels", &base), ("all", &all)] {
         for samples in [1, 4] {
@@ -180,24 +160,24 @@ fn pictures_of_a_street() {
             };
             let mut camera = start;
             let cpu = cpu_ms();
-            let mut times: Vec<f64> = (0..6)
+            let times: Vec<f64> = (0..6)
                 .map(|_| {
                     camera.orbit(0.01, 0.0);
                     let begin = Instant::now();
-                    assert!(viewport.render(&device, &queue, &camera, &scene, size[0], size[1]));
+                    assert!(viewport.render(device, queue, &camera, &scene, size[0], size[1]));
                     wait();
                     begin.elapsed().as_secs_f64() * 1e3
                 })
                 .collect();
             let cpu = (cpu_ms() - cpu) / times.len() as f64;
-            times.sort_by(f64::total_cmp);
             println!(
                 "{name}, {samples} samples: median {:.0} ms, best {:.0} ms, {cpu:.0} ms of CPU",
-                times[3], times[0]
+                median(&times),
+                quantile(&times, 0.0)
             );
         }
     }
-    let mut grid = street.grid.clone();
+    let mut grid = all.grid.clone();
     let mut camera = start;
     let mut times = [0.0; 6];
     for (i, time) in times.iter_mut().enumerate() {
@@ -205,8 +185,8 @@ fn pictures_of_a_street() {
         grid.set(100 + i, 90, 3, 4);
         let begin = Instant::now();
         assert!(viewport.render(
-            &device,
-            &queue,
+            device,
+            queue,
             &start,
             &ViewScene { grid: &grid, ..all },
             size[0],
@@ -217,9 +197,9 @@ fn pictures_of_a_street() {
     }
     println!("CPU side of one edited voxel: {times:.1?} ms");
     let begin = Instant::now();
-    let mut fresh = Viewport::new(&device, &queue);
+    let mut fresh = Viewport::new(device, queue);
     let made = begin.elapsed().as_secs_f64() * 1e3;
-    fresh.render(&device, &queue, &start, &all, size[0], size[1]);
+    fresh.render(device, queue, &start, &all, size[0], size[1]);
     println!(
         "new viewport {made:.0} ms, first upload and pipelines {:.0} ms",
         begin.elapsed().as_secs_f64() * 1e3 - made

@@ -204,6 +204,7 @@ impl Bench {
     pub fn bev(&self, x_m: f64, y_m: f64) -> Pos2 {
         self.harness
             .state()
+            .views
             .canvas
             .map
             .expect("drawn")
@@ -257,7 +258,7 @@ impl Bench {
     }
 
     pub fn off(&mut self) {
-        self.app().live.on = false;
+        self.app().generation.live.on = false;
     }
 }
 

@@ -297,7 +297,7 @@ fn things_are_chosen_raised_and_drawn_in_the_3d_view() {
     bench.app().execute(Command::Apply("Add", vec![add]), &ctx);
     bench.steps(6);
     let pane = bench.pane("3D view");
-    let camera = bench.app().view3d.camera;
+    let camera = bench.app().views.view3d.camera;
     let on_screen = |p_m: DVec3| {
         let size = [pane.width().round() as u32, pane.height().round() as u32];
         let pixel = camera.project(p_m, size).expect("in front");

@@ -1,9 +1,9 @@
 //! The list of what the quality checks found: beside what it speaks of, and marking it.
 
-use app::Command;
+use app::command::{Command, ViewCommand};
 use app::dock::Dock;
+use app::panes::id::PaneId;
 use app::settings::Settings;
-use app::state::Pane;
 use editor::Edit;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
@@ -25,7 +25,7 @@ impl Bench {
     fn all_checked(&mut self) {
         self.wait_until("the checks", |b| {
             let rev = b.app().document.scene().rev;
-            !b.app().checking.is_stale(rev)
+            !b.app().background.checking.is_stale(rev)
         });
         self.steps(3);
     }
@@ -45,7 +45,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
     };
     bench.command(Command::Apply("Paint voxels", vec![paint]));
     bench.all_checked();
-    bench.command(Command::ToggleChecks);
+    bench.command(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)));
     assert!(bench.shows("Fix all ("));
     let floats = "Warning: 3 voxels of manmade float 2.6 m above the ground";
     let row = bench.harness.get_by_label(floats).rect();
@@ -76,7 +76,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
     bench.key(Modifiers::CTRL, Key::Z);
     bench.all_checked();
     assert_eq!(meant(&mut bench), None, "it is gone, and so is its mark");
-    bench.command(Command::ToggleChecks);
+    bench.command(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)));
     assert!(!bench.shows("All is well") && !bench.shows("Fix all ("));
 }
 
@@ -85,9 +85,9 @@ fn a_kept_dock_gains_the_panes_that_are_new() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("settings.json");
     let mut old = Dock::default();
-    let tile = old.find(Pane::History).expect("there");
+    let tile = old.find(PaneId::HISTORY).expect("there");
     old.close(tile);
-    let keep = |known: &[Pane]| {
+    let keep = |known: &[PaneId]| {
         let settings = Settings {
             start_screen: false,
             dock: Some(old.tree().clone()),
@@ -101,7 +101,7 @@ fn a_kept_dock_gains_the_panes_that_are_new() {
     assert!(bench.shows("History 0 Open"), "settings of a version without it");
     drop(bench);
     // Closed by the user, it stays closed; a tick in the menu brings it back and takes it away.
-    keep(&Pane::CHOICES);
+    keep(&app::panes::infos().iter().map(|p| p.id).collect::<Vec<_>>());
     let mut bench = Bench::with_settings(&file);
     assert!(!bench.shows("History 0 Open"));
     for shown in [true, false] {
@@ -117,4 +117,35 @@ fn a_kept_dock_gains_the_panes_that_are_new() {
         bench.key(Modifiers::NONE, Key::Escape);
         bench.steps(3);
     }
+}
+
+#[test]
+fn the_statistics_open_from_the_view_menu_and_follow_the_scene() {
+    let mut bench = Bench::new();
+    bench.off();
+    assert!(bench.harness.query_by_label_contains("Drivable area: ").is_none());
+    let menu = bench.harness.query_all_by_label("View").next().expect("the bar");
+    menu.click();
+    bench.steps(3);
+    let panes = bench.harness.get_by_label_contains("Panes").rect().center();
+    bench.harness.hover_at(panes);
+    bench.steps(20);
+    bench.click("Statistics");
+    bench.key(Modifiers::NONE, Key::Escape);
+    bench.steps(3);
+    let cells = bench.frame().layout.count(scene::BevLayer::DrivableArea);
+    let area = format!("Drivable area: {:.0} m²", cells as f64 * 0.16);
+    assert!(bench.shows(&area), "{area}");
+    assert!(bench.shows("Car: 1 box"));
+    let cars = |bench: &Bench| bench.frame().occupancy.class_counts()[usize::from(Class::Car.id())];
+    let before = cars(&bench);
+    assert!(before > 0 && bench.shows(&format!("Car: {before} voxels")));
+    let more = Edit::PaintVoxels {
+        cells: vec![[150, 150, 9], [150, 150, 10]],
+        class: Class::Car,
+    };
+    bench.command(Command::Apply("Paint voxels", vec![more]));
+    bench.steps(3);
+    assert_eq!(cars(&bench), before + 2);
+    assert!(bench.shows(&format!("Car: {} voxels", before + 2)));
 }

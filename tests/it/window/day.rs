@@ -93,7 +93,7 @@ fn a_day_of_work() {
     bench.key(Modifiers::CTRL, Key::Enter);
     bench.started.recv_timeout(PATIENCE).expect("it starts");
     bench.orders.send(Do::Finish).expect("it listens");
-    bench.wait_until("a version", |b| b.app().versions.list().len() == 2);
+    bench.wait_until("a version", |b| b.app().generation.versions.list().len() == 2);
     bench.steps(2);
     bench.click("Accept");
     bench.key(Modifiers::SHIFT, Key::Backslash);

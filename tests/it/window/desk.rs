@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use app::Command;
-use app::state::Pane;
+use app::command::{Command, ViewCommand};
+use app::panes::id::PaneId;
 use app::tools::RegionShape;
 use editor::{Edit, Shape as Area};
 use egui::{Key, Modifiers, Rect, Shape};
@@ -30,7 +30,7 @@ impl Bench {
     fn checked(&mut self) {
         self.wait_until("the checks", |b| {
             let rev = b.app().document.scene().rev;
-            !b.app().checking.is_stale(rev)
+            !b.app().background.checking.is_stale(rev)
         });
         self.steps(3);
     }
@@ -59,13 +59,13 @@ fn the_window_measures_itself() {
     for _ in 0..5 {
         bench.key(Modifiers::NONE, Key::ArrowUp);
     }
-    let perf = &bench.app().perf;
+    let perf = &bench.app().frames.perf;
     assert!(perf.frames.quantiles().n > 10);
     assert_eq!(perf.visible.quantiles().n, 5, "each edit was seen");
     assert!(perf.visible.quantiles().max > 0.0);
     bench.key(Modifiers::NONE, Key::F10);
     assert!(!bench.sees("Edit to picture"));
-    bench.app().perf.finish(None);
+    bench.app().frames.perf.finish(None);
     let text = std::fs::read_to_string(&path).expect("written");
     let last = text.lines().last().expect("lines");
     let summary: serde_json::Value = serde_json::from_str(last).expect("JSON");
@@ -97,23 +97,26 @@ fn views_are_kept_and_gone_back_to() {
         distance_m: 17.0,
         ..ViewCamera::default()
     };
-    bench.app().view3d.camera = here;
-    bench.app().canvas.go_to(DVec2::new(5.0, -3.0), 11.0);
+    bench.app().views.view3d.camera = here;
+    bench.app().views.canvas.go_to(DVec2::new(5.0, -3.0), 11.0);
     bench.steps(2);
     bench.key(Modifiers::CTRL, Key::F3);
-    bench.app().view3d.camera = ViewCamera::preset(ViewPreset::Top);
-    bench.app().canvas.go_to(DVec2::ZERO, 4.0);
+    bench.app().views.view3d.camera = ViewCamera::preset(ViewPreset::Top);
+    bench.app().views.canvas.go_to(DVec2::ZERO, 4.0);
     bench.key(Modifiers::NONE, Key::F4);
     assert!(bench.sees("No view is kept as 4: Ctrl+F4 keeps this one"));
-    assert_eq!(bench.app().view3d.camera, ViewCamera::preset(ViewPreset::Top));
+    assert_eq!(
+        bench.app().views.view3d.camera,
+        ViewCamera::preset(ViewPreset::Top)
+    );
     bench.key(Modifiers::NONE, Key::F3);
-    let now = bench.app().view3d.camera;
+    let now = bench.app().views.view3d.camera;
     assert!(
         (now.distance_m, now.ortho) == (17.0, false) && (now.yaw_rad - here.yaw_rad).abs() < 1e-9,
         "{now:?}"
     );
-    assert_eq!(bench.app().canvas.place(), (DVec2::new(5.0, -3.0), 11.0));
-    let kept = serde_json::to_string(&bench.app().settings).expect("JSON");
+    assert_eq!(bench.app().views.canvas.place(), (DVec2::new(5.0, -3.0), 11.0));
+    let kept = serde_json::to_string(&bench.app().preferences.settings).expect("JSON");
     assert!(kept.contains("\"bookmarks\":{\"3\":{"), "{kept}");
 }
 
@@ -129,7 +132,7 @@ fn large_edits_wait_and_say_why() {
     // Cancelled for good: nothing runs, nothing waits.
     bench.steps(2);
     bench.click("Cancel all");
-    bench.wait_until("rest", |b| b.app().live.running.is_none());
+    bench.wait_until("rest", |b| b.app().generation.live.running.is_none());
     bench.steps(5);
     assert!(bench.started.is_empty());
     bench.key(Modifiers::CTRL, Key::Z);
@@ -141,7 +144,7 @@ fn large_edits_wait_and_say_why() {
 fn the_history_keeps_to_its_memory() {
     let mut bench = Bench::new();
     bench.off();
-    bench.app().settings.history_mb = 16;
+    bench.app().preferences.settings.history_mb = 16;
     bench.steps(2);
     assert_eq!(bench.app().document.history_limit(), 16 << 20);
     for i in 0..80 {
@@ -171,7 +174,7 @@ fn while_the_state_before_is_shown_nothing_answers() {
     bench.key(Modifiers::CTRL, Key::Enter);
     bench.started.recv_timeout(PATIENCE).expect("generation starts");
     bench.orders.send(Do::Finish).expect("it runs");
-    bench.wait_until("versions", |b| b.app().versions.list().len() == 2);
+    bench.wait_until("versions", |b| b.app().generation.versions.list().len() == 2);
     bench.steps(3);
     let steps = bench.history().len();
     bench.harness.key_down(Key::Backslash);
@@ -254,7 +257,7 @@ fn the_status_bar_says_what_the_buttons_do() {
 fn a_finding_is_waived_with_a_reason_and_taken_back() {
     let mut bench = Bench::new();
     bench.off();
-    bench.run_command(Command::ShowPane(Pane::Checks));
+    bench.run_command(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)));
     bench.checked();
     let finding = "car 7 faces against its lane, 180 degrees from it";
     bench.click(&format!("Waive: {finding}"));

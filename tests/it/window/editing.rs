@@ -152,7 +152,7 @@ fn an_edit_is_generated_in_the_background_and_adopted() {
     assert!(bench.harness.query_by_label("Generation progress").is_some());
     assert_eq!(bench.frame(), rough, "nothing changes before it is done");
     bench.orders.send(Do::Finish).expect("listens");
-    bench.wait_until("the result", |b| b.app().live.running.is_none());
+    bench.wait_until("the result", |b| b.app().generation.live.running.is_none());
     bench.steps(3);
     let frame = bench.frame();
     let [x, y] = GridSpec::column_at(14.0, 3.0).expect("inside");
@@ -161,7 +161,7 @@ fn an_edit_is_generated_in_the_background_and_adopted() {
         frame.occupancy, frame.source.occupancy,
         "the source of what comes next"
     );
-    let receipt = bench.app().receipt.clone().expect("a receipt");
+    let receipt = bench.app().generation.receipt.clone().expect("a receipt");
     assert_eq!((receipt.network_calls, receipt.untouched_voxels_changed), (20, 0));
     assert!(
         bench
@@ -191,7 +191,7 @@ fn everything_is_generated_on_request_and_cancelled_on_request() {
     bench.wait_until("the job", |b| !b.started.is_empty());
     assert_eq!(bench.started.recv(), Ok(RegionMode::Full));
     bench.click("Cancel generation");
-    bench.wait_until("its end", |b| b.app().live.running.is_none());
+    bench.wait_until("its end", |b| b.app().generation.live.running.is_none());
     bench.steps(5);
     assert_eq!(bench.frame(), before);
     assert!(
@@ -202,7 +202,7 @@ fn everything_is_generated_on_request_and_cancelled_on_request() {
     bench.wait_until("the job", |b| !b.started.is_empty());
     bench.started.recv().expect("it started");
     bench.orders.send(Do::Finish).expect("listens");
-    bench.wait_until("the result", |b| b.app().live.running.is_none());
+    bench.wait_until("the result", |b| b.app().generation.live.running.is_none());
     bench.steps(2);
     assert_eq!(bench.frame().occupancy.get(3, 3, 0), Class::Vegetation.id());
 }
@@ -218,7 +218,7 @@ fn the_newest_edit_wins_and_undo_stops_what_is_useless() {
     bench.key(Modifiers::CTRL, Key::Z);
     bench.wait_until("a job for the state before", |b| b.started.len() == 3);
     bench.key(Modifiers::CTRL, Key::Z);
-    bench.wait_until("rest", |b| b.app().live.running.is_none());
+    bench.wait_until("rest", |b| b.app().generation.live.running.is_none());
     bench.steps(5);
     assert_eq!((bench.started.len(), bench.frame().boxes[&BoxId(7)]), (3, car()));
 }

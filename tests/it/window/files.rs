@@ -17,9 +17,9 @@ fn a_failure_is_told_once_and_live_stops() {
     bench.key(Modifiers::NONE, Key::C);
     bench.wait_until("the job", |b| !b.started.is_empty());
     bench.orders.send(Do::Fail).expect("listens");
-    bench.wait_until("its end", |b| b.app().live.running.is_none());
+    bench.wait_until("its end", |b| b.app().generation.live.running.is_none());
     bench.steps(5);
-    assert!(!bench.app().live.on);
+    assert!(!bench.app().generation.live.on);
     let told = "Generation failed: weights are missing. Live is off now.";
     assert!(bench.harness.query_by_label(told).is_some());
     assert!(
@@ -30,7 +30,7 @@ fn a_failure_is_told_once_and_live_stops() {
     );
     assert_eq!(bench.started.len(), 1, "never a loop");
     bench.key(Modifiers::CTRL, Key::Space);
-    assert!(bench.app().live.on);
+    assert!(bench.app().generation.live.on);
     bench.wait_until("another try", |b| b.started.len() == 2);
 }
 

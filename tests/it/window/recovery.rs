@@ -6,8 +6,8 @@ use egui_kittest::kittest::Queryable;
 use formats::project;
 use scene::{BoxId, Class};
 
-use app::Command;
-use app::state::Pane;
+use app::command::{Command, ViewCommand};
+use app::panes::id::PaneId;
 
 use super::bench::Bench;
 
@@ -17,7 +17,7 @@ fn work_is_offered_after_a_crash_and_comes_back_unsaved() {
     let session = || Recovery::start(root.path(), 30.0, || {}).expect("a session");
     let mut bench = Bench::new();
     bench.off();
-    bench.app().recovery = Some(session());
+    bench.app().files.recovery = Some(session());
     bench.click("Box 7 car");
     bench.key(Modifiers::NONE, Key::ArrowLeft);
     let worked = bench.frame();
@@ -28,7 +28,7 @@ fn work_is_offered_after_a_crash_and_comes_back_unsaved() {
     let mut bench = Bench::new();
     bench.off();
     assert_ne!(bench.frame(), worked);
-    bench.app().recovery = Some(session());
+    bench.app().files.recovery = Some(session());
     bench.steps(3);
     assert!(bench.harness.query_by_label("Recover “Test road”?").is_some());
     bench.click("Recover");
@@ -51,10 +51,12 @@ fn findings_lead_to_their_place_and_are_fixed() {
     let mut bench = Bench::new();
     bench.off();
     let ctx = bench.harness.ctx.clone();
-    bench.app().execute(Command::ShowPane(Pane::Checks), &ctx);
+    bench
+        .app()
+        .execute(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)), &ctx);
     let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
-        !b.app().checking.is_stale(rev)
+        !b.app().background.checking.is_stale(rev)
     };
     bench.wait_until("the checks", checked);
     bench.steps(3);

@@ -1,11 +1,12 @@
 //! The camera strip, the sensors' window and the LiDAR's choices.
 
 use app::camera_views::CameraPicture;
-use app::state::{CameraMode, LidarModel};
+use app::state::LidarModel;
 use editor::Edit;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use scene::SensorRig;
+use sensors::cameras::{self, ViewId, layout, normals, pictures, planes};
 
 use super::bench::Bench;
 
@@ -26,23 +27,19 @@ fn the_strip_shows_what_is_asked_for() {
     let mut bench = Bench::new();
     bench.off();
     bench.sensed();
-    for (name, mode) in [
-        ("Depth", CameraMode::Depth),
-        ("Picture", CameraMode::Picture),
-        ("Planes", CameraMode::Planes),
-        ("Boxes, lanes", CameraMode::Layout),
-        ("Semantic", CameraMode::Semantic),
-    ] {
+    // The last one is what it shows at first.
+    for view in cameras::views().into_iter().rev() {
+        let name = view.title;
         bench.click(name);
-        assert_eq!(bench.app().state.camera_mode, mode);
+        assert_eq!(bench.app().state.camera_view, view.id);
         bench.sensed();
         let views = bench.app().sensing().cameras().expect("pictures").clone();
         assert_eq!(views.len(), 6);
-        let fits = |p: &CameraPicture| match mode {
-            CameraMode::Semantic | CameraMode::Depth => matches!(p, CameraPicture::Maps(_)),
-            CameraMode::Picture => matches!(p, CameraPicture::Picture(_)),
-            CameraMode::Planes => matches!(p, CameraPicture::Planes(_)),
-            CameraMode::Layout => matches!(p, CameraPicture::Layout(_)),
+        let fits = |p: &CameraPicture| match p {
+            CameraPicture::Maps(_) => [ViewId::SEMANTIC, ViewId::DEPTH].contains(&view.id),
+            CameraPicture::Planes(_) => view.id == planes::VIEW.id,
+            CameraPicture::Layout(_) => view.id == layout::VIEW.id,
+            CameraPicture::Picture(_) => [pictures::VIEW.id, normals::VIEW.id].contains(&view.id),
         };
         assert!(views.iter().all(|v| fits(&v.picture)), "{name}");
     }

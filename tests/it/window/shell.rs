@@ -2,8 +2,8 @@
 
 use app::compare::CompareMode;
 use app::dock::Workspace;
+use app::panes::id::PaneId;
 use app::settings::Settings;
-use app::state::Pane;
 use app::theme::Look;
 use editor::tools::{add_box, measure, select};
 use egui::{Key, Modifiers, vec2};
@@ -83,7 +83,7 @@ fn keys_are_changed_in_the_sheet() {
     // A keyboard sends the modifier first.
     bench.key(Modifiers::CTRL, Key::ControlLeft);
     bench.key(Modifiers::CTRL, Key::G);
-    assert_eq!(bench.app().keymap.text("measure_tool"), "Ctrl+G");
+    assert_eq!(bench.app().preferences.keymap.text("measure_tool"), "Ctrl+G");
     bench.key(Modifiers::NONE, Key::Escape);
     bench.key(Modifiers::NONE, Key::M);
     assert_eq!(bench.app().state.tool, select::ID, "the old chord is free");
@@ -102,7 +102,7 @@ fn versions_are_compared_and_gone_back_to() {
         .recv_timeout(super::bench::PATIENCE)
         .expect("generation starts");
     bench.orders.send(Do::Finish).expect("it runs");
-    bench.wait_until("versions", |b| b.app().versions.list().len() == 2);
+    bench.wait_until("versions", |b| b.app().generation.versions.list().len() == 2);
     bench.steps(2);
     bench.click("Accept");
     let generated = bench.frame().occupancy.clone();
@@ -152,8 +152,8 @@ fn settings_are_kept() {
     assert!(bench.app().state.start_open, "a new user sees the start screen");
     bench.click("Go on with this scene");
     assert!(!bench.app().state.start_open);
-    bench.app().settings.look = Look::Light;
-    bench.app().settings.start_screen = false;
+    bench.app().preferences.settings.look = Look::Light;
+    bench.app().preferences.settings.start_screen = false;
     bench.click("Sensors");
     bench.wait_until("settings", |_| {
         Settings::load(&file).is_ok_and(|s| s.look == Look::Light && s.workspace == Workspace::Sensors)
@@ -162,9 +162,9 @@ fn settings_are_kept() {
     let mut again = Bench::with_settings(&file);
     assert!(!again.app().state.start_open);
     assert!(again.harness.query_by_label("LiDAR sweep").is_some());
-    again.app().settings.look = Look::Dark; // the colours of a theme are the process's
+    again.app().preferences.settings.look = Look::Dark; // the colours of a theme are the process's
     again.steps(3);
-    assert_eq!(again.app().state.hovered_pane, None::<Pane>);
+    assert_eq!(again.app().state.hovered_pane, None::<PaneId>);
 }
 
 #[test]

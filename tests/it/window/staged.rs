@@ -1,6 +1,6 @@
 //! Results that wait for a verdict beside what was there before.
 
-use app::Command;
+use app::command::{Command, GenerationCommand};
 use app::compare::CompareMode;
 use app::scenery::Drawer;
 use editor::Edit;
@@ -27,7 +27,7 @@ fn finish(bench: &mut Bench) {
     let started = bench.started.recv_timeout(PATIENCE);
     assert_eq!(started, Ok(RegionMode::Full));
     bench.orders.send(Do::Finish).expect("the pipeline listens");
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
     bench.steps(3);
 }
 
@@ -83,7 +83,15 @@ fn another_seed_takes_its_place() {
     bench.click("Next seed");
     // Other scenery, on which it is generated.
     assert!(bench.frame().occupancy != before && things(&mut bench) != first);
-    let params = bench.app().live.running.as_ref().expect("asked for").key.params;
+    let params = bench
+        .app()
+        .generation
+        .live
+        .running
+        .as_ref()
+        .expect("asked for")
+        .key
+        .params;
     assert_eq!((params.seed, params.region), (seed + 1, RegionMode::Full));
     finish(&mut bench);
     assert_eq!(bench.history(), ["Open", "Generate"]);
@@ -149,7 +157,7 @@ fn a_generation_is_stopped_with_what_it_shows() {
     bench.orders.send(Do::Show).expect("the pipeline listens");
     bench.wait_until("what comes", |b| b.harness.query_by_label("Keep this").is_some());
     bench.click("Keep this");
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
     assert_eq!(bench.history(), ["Open", "Generate"]);
     assert!(bench.frame().occupancy == VoxelGrid::new());
     bench.click("Decline");
@@ -163,7 +171,9 @@ fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
     let before = bench.frame().occupancy.clone();
     bench.app().state.tools.drawer = Drawer::Rules(Some(Setting::OldTown));
     let ctx = bench.harness.ctx.clone();
-    bench.app().execute(Command::DrawScenery, &ctx);
+    bench
+        .app()
+        .execute(Command::Generation(GenerationCommand::DrawScenery), &ctx);
     bench.steps(3);
     bench.steps(3);
     assert_eq!(bench.history(), ["Open", "Draw scenery"]);
@@ -177,7 +187,9 @@ fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
     let second = things(&mut bench);
     assert_ne!(first, second);
     // So does drawing again while it waits.
-    bench.app().execute(Command::DrawScenery, &ctx);
+    bench
+        .app()
+        .execute(Command::Generation(GenerationCommand::DrawScenery), &ctx);
     bench.steps(3);
     assert_eq!(bench.history(), ["Open", "Draw scenery"]);
     assert_ne!(things(&mut bench), second);
@@ -206,7 +218,9 @@ fn a_network_draws_scenery_while_the_window_goes_on() {
     bench.off();
     bench.app().state.tools.drawer = Drawer::Network;
     let ctx = bench.harness.ctx.clone();
-    bench.app().execute(Command::DrawScenery, &ctx);
+    bench
+        .app()
+        .execute(Command::Generation(GenerationCommand::DrawScenery), &ctx);
     assert_eq!(bench.history(), ["Open"]);
     bench.wait_until("the scenery", |b| b.app().staged().is_some());
     assert_eq!(bench.history(), ["Open", "Draw scenery"]);
@@ -215,7 +229,9 @@ fn a_network_draws_scenery_while_the_window_goes_on() {
     bench.click("Decline");
     assert!(bench.app().document.scene().background.is_empty());
     // Who edits meanwhile keeps the edit, and is told.
-    bench.app().execute(Command::DrawScenery, &ctx);
+    bench
+        .app()
+        .execute(Command::Generation(GenerationCommand::DrawScenery), &ctx);
     let id = *bench.frame().boxes.keys().next().expect("a box");
     let edits = vec![Edit::RemoveBox { id }];
     bench.app().execute(Command::Apply("Delete", edits), &ctx);
@@ -235,7 +251,7 @@ fn scenery_drawn_for_a_generation_that_is_cancelled_goes_with_it() {
     assert!(bench.frame().occupancy != before);
     assert!(!bench.app().document.scene().background.is_empty());
     bench.key(Modifiers::CTRL, egui::Key::Backspace);
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
     assert!(bench.frame().occupancy == before);
     assert!(bench.app().document.scene().background.is_empty());
 }

@@ -202,7 +202,7 @@ fn keys_steer_a_drag() {
     assert_eq!(at.truncate(), at.truncate().round(), "{at}");
     // An arrow keeps to its axis; scaling by it changes the length alone.
     bench.ask(ToolCommand::Shortcut("gizmo_scale"));
-    let map = bench.app().canvas.map.expect("drawn");
+    let map = bench.app().views.canvas.map.expect("drawn");
     let arm_m = 45.0 / map.scale;
     let (x, y) = (at.x, at.y);
     let way = [bench.bev(x + arm_m, y), bench.bev(x + 2.0 * arm_m, y + 1.0)];
@@ -433,7 +433,7 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     let mut bench = Bench::with(true);
     bench.off();
     bench.steps(4);
-    bench.app().view3d.preset(viewport::ViewPreset::Top);
+    bench.app().views.view3d.preset(viewport::ViewPreset::Top);
     bench.steps(4);
     let pane = bench.pane("3D view");
     let at = |x: f32, y: f32| pane.center() + egui::vec2(x, y);
@@ -469,7 +469,7 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     let vegetation = count(&bench, Class::Vegetation);
     assert!(vegetation >= block);
     // Pulled up from above nothing moves along the ray; seen from the side it does.
-    bench.app().view3d.preset(viewport::ViewPreset::Perspective);
+    bench.app().views.view3d.preset(viewport::ViewPreset::Perspective);
     bench.steps(4);
     bench.ask(ToolCommand::Shortcut("symmetry"));
     bench.ask(ToolCommand::Shortcut("voxel_fill"));
@@ -497,7 +497,15 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
     assert!(bench.app().state.tools.region.count() < marked);
     assert_eq!(bench.history(), ["Open"]);
     bench.click("Draw anew");
-    let params = bench.app().live.running.as_ref().expect("asked for").key.params;
+    let params = bench
+        .app()
+        .generation
+        .live
+        .running
+        .as_ref()
+        .expect("asked for")
+        .key
+        .params;
     assert_eq!(params.redraw, bench.app().state.tools.region);
     assert!(params.strength > 0.0);
     assert_eq!(
@@ -508,8 +516,11 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
         .orders
         .send(super::bench::Do::Finish)
         .expect("the pipeline listens");
-    bench.wait_until("the end", |b| b.app().live.running.is_none());
-    assert!(bench.app().receipt.is_some(), "a result, not a warm-up");
+    bench.wait_until("the end", |b| b.app().generation.live.running.is_none());
+    assert!(
+        bench.app().generation.receipt.is_some(),
+        "a result, not a warm-up"
+    );
     bench.click("Clear region");
     assert!(bench.app().state.tools.region.is_empty());
 }

@@ -18,31 +18,32 @@ fn a_stop_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost() {
             .query_by_label("Edit something: what it cost is written here.")
             .is_some()
     );
-    let stops = bench.app().tuning.stops.stops.clone();
+    let stops = bench.app().generation.tuning.stops.stops.clone();
     let draft = stops.iter().position(|s| s.name == "draft").expect("shipped");
-    let params = bench.app().live.params;
+    let params = bench.app().generation.live.params;
     let now = bench
         .app()
+        .generation
         .tuning
         .current(&params)
         .map_or("own settings".to_owned(), |i| stops[i].name.clone());
     bench.click(&format!("Quality: {now} menu"));
     bench.steps(2);
-    let foretold = bench.app().tuning.foretold()[draft].1.clone();
+    let foretold = bench.app().generation.tuning.foretold()[draft].1.clone();
     bench.click(&format!("Draft   {foretold}"));
     bench.steps(2);
-    let params = bench.app().live.params;
+    let params = bench.app().generation.live.params;
     assert_eq!(StopKnobs::of(&params), stops[draft].knobs);
-    assert_eq!(bench.app().tuning.current(&params), Some(draft));
+    assert_eq!(bench.app().generation.tuning.current(&params), Some(draft));
     assert!(bench.harness.query_by_label("Quality: draft").is_some());
 
     bench.app().state.selected = Some(BoxId(7));
     bench.key(Modifiers::NONE, Key::Delete);
-    bench.wait_until("generation", |b| b.app().live.running.is_some());
+    bench.wait_until("generation", |b| b.app().generation.live.running.is_some());
     bench.orders.send(Do::Finish).expect("the worker listens");
-    bench.wait_until("receipt", |b| b.app().tuning.last.is_some());
+    bench.wait_until("receipt", |b| b.app().generation.tuning.last.is_some());
     bench.steps(3);
-    let last = bench.app().tuning.last.as_ref().expect("noted");
+    let last = bench.app().generation.tuning.last.as_ref().expect("noted");
     assert!(last.predicted_s.is_some() && last.predicted_error.is_some() && last.measured_error.is_none());
     assert!(last.region.column_count() > 0 && !last.tokens.is_empty() && !last.bricks.is_empty());
     let (shares, bricks) = (last.tokens.len(), last.bricks.len());
@@ -50,10 +51,10 @@ fn a_stop_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost() {
         shares < 100 && bricks < 12,
         "{shares} tokens, {bricks} bricks for one car"
     );
-    assert_eq!(bench.app().tuning.stability.untouched_changed, 0);
-    assert_eq!(bench.app().tuning.stability.runs, 1);
+    assert_eq!(bench.app().generation.tuning.stability.untouched_changed, 0);
+    assert_eq!(bench.app().generation.tuning.stability.runs, 1);
     assert!(bench.harness.query_by_label("Refine").is_some());
     bench.click("Show what was computed");
-    assert!(bench.app().tuning.show_modelled);
+    assert!(bench.app().generation.tuning.show_modelled);
     bench.steps(2);
 }

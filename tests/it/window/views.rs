@@ -1,6 +1,6 @@
 //! Views, layers and the 3D view.
 
-use app::state::Pane;
+use app::panes::id::PaneId;
 use editor::tools::{VoxelVerb, voxel};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
@@ -56,7 +56,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let pane = bench.pane("3D view");
     bench.harness.hover_at(pane.center());
     bench.steps(2);
-    assert_eq!(bench.app().state.hovered_pane, Some(Pane::View3d));
+    assert_eq!(bench.app().state.hovered_pane, Some(PaneId::VIEW3D));
     bench.key(Modifiers::NONE, Key::B);
     assert_eq!(
         (bench.app().state.tool, bench.app().state.verb),
@@ -82,7 +82,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     // A click chooses the car where it is seen.
     bench.key(Modifiers::NONE, Key::V);
     bench.key(Modifiers::NONE, Key::Num7);
-    let view = &bench.harness.state().view3d;
+    let view = &bench.harness.state().views.view3d;
     let size = [view.rect.width() as u32, view.rect.height() as u32];
     let at = view.camera.project(car().center_m, size).expect("in view");
     let at = view.rect.min + egui::vec2(at.x as f32, at.y as f32);
@@ -100,9 +100,10 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let path = bench.folder.path().join("scene.loom");
     project::save(&path, bench.app().document.scene()).expect("saved");
     bench.app().document.mark_saved();
-    bench
-        .app()
-        .execute(app::Command::OpenPath(path.clone()), &egui::Context::default());
+    bench.app().execute(
+        app::Command::File(app::command::FileCommand::OpenPath(path.clone())),
+        &egui::Context::default(),
+    );
     bench.wait_until("the scene", |b| b.app().path().is_some());
     bench.key(Modifiers::NONE, Key::F12);
     let shot = image::open(path.with_extension("png"))

@@ -1,8 +1,8 @@
 //! Words: typed into the prompt, they change the scene or make another one, and all of it can be undone.
 
-use app::state::CameraMode;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use sensors::cameras::pictures;
 
 use super::bench::Bench;
 
@@ -21,8 +21,8 @@ fn a_sentence_names_its_step_and_the_next_one_replaces_it() {
     bench.key(Modifiers::NONE, Key::Enter);
     assert_eq!(bench.history(), ["Open", "“make it night”"]);
     assert_eq!(
-        bench.app().state.camera_mode,
-        CameraMode::Picture,
+        bench.app().state.camera_view,
+        pictures::VIEW.id,
         "night is seen in pictures"
     );
     // The field keeps the keyboard: undo is still that of the scene, letters are no shortcuts.

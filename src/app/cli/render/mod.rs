@@ -1,48 +1,35 @@
 //! `sceneloom render`: what the sensors see, as pictures and as data.
 
+mod arguments;
+mod plan;
 mod write;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::{Context, bail};
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::camera_views::march;
-use crate::graphics::{Graphics, OnCard};
+use crate::camera_views::camera_input;
+use crate::graphics::Graphics;
 use crate::{open, picture};
-use nets::lidar::LidarNet;
-use scene::sensor_data::Planes;
 use scene::{CameraMaps, LidarSweep, Scene};
-use sensors::appearance::{
-    CameraImage, Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
-};
-use sensors::learned::{self, Drops};
+use sensors::appearance::{Conditions, Quality, TimeOfDay, Weather};
+use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderContext, RenderOptions, SourceId};
+use sensors::lidar;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
-use sensors::{lidar, mpi, perspective};
-use write::Writer;
 
-/// What can be rendered.
-const KINDS: [&str; 8] = [
-    "semantic",
-    "depth",
-    "appearance",
-    "perspective",
-    "mpi",
-    "lidar",
-    "bev",
-    "view",
-];
+pub use arguments::{size, source};
+use plan::{Cameras, Plan};
+use write::Writer;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Render {
     /// Scene to read.
     scene: PathBuf,
-    /// Comma-separated: semantic, depth, appearance, perspective, mpi, lidar, bev, view.
-    #[arg(long, value_delimiter = ',', value_name = "LIST")]
+    #[arg(long, value_delimiter = ',', value_name = "LIST", help = arguments::what_help())]
     what: Vec<String>,
     /// JSON file with another sensor rig (as in assets/rigs).
     #[arg(long, value_name = "FILE")]
@@ -51,8 +38,8 @@ pub struct Render {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
     /// What classes and depths are rendered from: Gaussians, exact rays to the voxels, or those with boxes as shapes.
-    #[arg(long, value_name = "NAME", value_parser = ["splats", "voxels", "shapes"], default_value = "splats")]
-    source: String,
+    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "splats")]
+    source: SourceId,
     /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the prompt's.
     #[arg(long, value_name = "NAME")]
     weather: Option<Weather>,
@@ -72,146 +59,110 @@ pub struct Render {
     common: Common,
 }
 
-/// `WxH`, each 1 to 8192.
-pub fn size(text: &str) -> Result<[u32; 2], String> {
-    let sides: Option<Vec<u32>> = text.split('x').map(|v| v.parse().ok()).collect();
-    match sides.as_deref() {
-        Some(&[w, h]) if (1..=8192).contains(&w) && (1..=8192).contains(&h) => Ok([w, h]),
-        _ => Err("expected WxH, each 1 to 8192 pixels".into()),
-    }
-}
-
 /// The six cameras' maps and the LiDAR sweep of a scene.
-pub fn sense(scene: &Scene, size: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
-    let sweep = lidar::rig_sweep(&scene.frame().occupancy, &scene.rig).unwrap_or_default();
-    (splats(scene, size), sweep)
+pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
+    let frame = scene.frame();
+    let sweep = lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default();
+    let cloud = GaussianCloud::from_grid(&frame.occupancy, frame.layout.cells());
+    let maps = splat::render_rig(&cloud, &scene.rig, width, height, &SplatOptions::default());
+    (maps, sweep)
 }
 
-fn splats(scene: &Scene, [width, height]: [u32; 2]) -> Vec<CameraMaps> {
-    let frame = scene.frame();
-    let cloud = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
-    splat::render_rig(&cloud, &scene.rig, width, height, &SplatOptions::default())
-}
+/// Seconds that each part took, by its name in the report.
+type Times = BTreeMap<&'static str, f64>;
 
 impl Render {
-    fn maps(&self, scene: &Scene) -> Vec<CameraMaps> {
-        let [width, height] = self.size;
-        match self.source.as_str() {
-            "splats" => splats(scene, self.size),
-            source => march(scene, source == "shapes").render_rig(&scene.rig, width, height),
+    /// The scene as camera sources take it, under the weather and time that were asked for.
+    fn input<'a>(&self, scene: &'a Scene) -> CameraInput<'a> {
+        let input = camera_input(scene, Detail::Full);
+        CameraInput {
+            conditions: Conditions {
+                time: self.time.unwrap_or(input.conditions.time),
+                weather: self.weather.unwrap_or(input.conditions.weather),
+                ..input.conditions
+            },
+            ..input
         }
     }
 
-    fn appearance(&self, scene: &Scene) -> anyhow::Result<Vec<CameraImage>> {
-        let said = Conditions::from_prompt(&scene.prompt);
+    /// Renders and writes the pictures of one source, camera by camera.
+    fn cameras(
+        &self,
+        scene: &Scene,
+        cameras: &Cameras,
+        (writer, wall_s): (&mut Writer, &mut Times),
+    ) -> anyhow::Result<()> {
+        let mut time_s = 0.0;
+        let start = Instant::now();
+        let ready = Ready::new(cameras.source, &self.input(scene));
         // The same bytes on every machine, unless a card is asked for.
-        let marched: Box<dyn ViewSynthesizer> = match Graphics::forced() {
-            Some(card) => Box::new(OnCard::new(card)),
-            None => Box::new(RayMarched),
-        };
-        let images = marched.synthesize(&SynthesisInput {
-            frame: scene.frame(),
-            rig: &scene.rig,
+        let mut card = Graphics::forced();
+        let on_card = ready.upload_to(|| card.as_mut().map(|card| card as &mut dyn Card));
+        time_s += start.elapsed().as_secs_f64();
+        let options = RenderOptions {
             size: self.size,
-            prompt: &scene.prompt,
-            conditions: Conditions {
-                time: self.time.unwrap_or(said.time),
-                weather: self.weather.unwrap_or(said.weather),
-                seed: scene.seed,
-            },
             quality: if self.preview {
                 Quality::Preview
             } else {
                 Quality::Full
             },
-        })?;
-        Ok(images)
-    }
-
-    fn sweep(&self, scene: &Scene) -> anyhow::Result<LidarSweep> {
-        if scene.rig.lidars.is_empty() {
-            bail!("the rig {:?} has no lidar", scene.rig.name);
+        };
+        for (i, camera) in scene.rig.cameras.iter().enumerate() {
+            let start = Instant::now();
+            let context = RenderContext {
+                card: card
+                    .as_mut()
+                    .filter(|_| on_card)
+                    .map(|card| card as &mut dyn Card),
+                ..RenderContext::processor()
+            };
+            let picture = ready.render(camera, &options, context)?;
+            time_s += start.elapsed().as_secs_f64();
+            writer.camera(picture, &cameras.views, (i, scene.rig.cameras.len()))?;
         }
-        let occupancy = &scene.frame().occupancy;
-        if self.lidar == "exact" {
-            return Ok(lidar::rig_sweep(occupancy, &scene.rig).unwrap_or_default());
-        }
-        let net = LidarNet::bundled().context("the LiDAR network")?;
-        learned::rig_sweep(&net, occupancy, &scene.rig, Drops::Likely).context("the LiDAR network")
+        writer.finish_sheet(&cameras.views)?;
+        *wall_s.entry(cameras.source.report_key()).or_default() += time_s;
+        Ok(())
     }
 
     pub(super) fn run(self) -> Outcome {
-        if self.what.is_empty() {
-            return Err(anyhow::anyhow!("--what is empty, expected some of {}", KINDS.join(", ")).into());
-        }
-        if let Some(unknown) = self.what.iter().find(|w| !KINDS.contains(&w.as_str())) {
-            return Err(anyhow::anyhow!("--what holds {unknown:?}, expected {}", KINDS.join(", ")).into());
-        }
+        arguments::check_what(&self.what)?;
         let mut scene = open::scene(&self.scene)?;
         if let Some(path) = &self.rig {
             scene.rig = open::rig(path)?.into();
         }
+        // Whatever cannot be had is told before anything is written.
+        let plan = Plan::new(&self, &scene)?;
         let mut writer = Writer::new(&self.output)?;
-        let mut wall_s = BTreeMap::new();
+        let mut wall_s = Times::new();
         let mut lidar_report = serde_json::Value::Null;
-        let wants = |kind: &str| self.what.iter().any(|w| w == kind);
-        let frame = scene.frame().clone();
-        let [width, height] = self.size;
-        if wants("semantic") || wants("depth") {
-            let start = Instant::now();
-            let maps = self.maps(&scene);
-            wall_s.insert("cameras", start.elapsed().as_secs_f64());
-            for maps in &maps {
-                writer.maps(maps, wants("semantic"), wants("depth"))?;
-            }
+        let frame = scene.frame();
+        for cameras in &plan.cameras {
+            self.cameras(&scene, cameras, (&mut writer, &mut wall_s))?;
         }
-        if wants("appearance") {
+        if let Some(model) = &plan.lidar {
             let start = Instant::now();
-            let images = self.appearance(&scene)?;
-            wall_s.insert("appearance", start.elapsed().as_secs_f64());
-            writer.appearance(images)?;
-        }
-        if wants("perspective") {
-            let start = Instant::now();
-            let cameras = scene.rig.cameras.iter();
-            let maps: Vec<_> = cameras
-                .map(|c| perspective::render(&frame.layout, frame.boxes.values(), c, width, height))
-                .collect();
-            wall_s.insert("perspective", start.elapsed().as_secs_f64());
-            maps.iter().try_for_each(|map| writer.perspective(map))?;
-        }
-        if wants("mpi") {
-            let start = Instant::now();
-            let ids = mpi::RenderIds::new(&frame.occupancy, &frame.bev_channels());
-            let cameras = scene.rig.cameras.iter();
-            let images: Vec<_> = cameras
-                .map(|c| mpi::render(&ids, c, width, height, Planes::default()))
-                .collect();
-            wall_s.insert("mpi", start.elapsed().as_secs_f64());
-            images.iter().try_for_each(|image| writer.planes(image))?;
-        }
-        if wants("lidar") {
-            let start = Instant::now();
-            let sweep = self.sweep(&scene)?;
+            let sweep = model.sweep(&scene)?;
             wall_s.insert("lidar", start.elapsed().as_secs_f64());
             let returns = sweep.points.len();
             lidar_report = json!({ "rays": sweep.rays, "returns": returns, "dropped": sweep.rays - returns });
             writer.lidar(&sweep)?;
         }
-        if wants("bev") {
+        if plan.bev {
             let start = Instant::now();
-            writer.picture("bev.png", &picture::layout_top(&frame, 4))?;
+            writer.picture("bev.png", &picture::layout_top(frame, 4))?;
             writer.picture("occupancy_top.png", &picture::occupancy_top(&frame.occupancy, 4))?;
             wall_s.insert("bev", start.elapsed().as_secs_f64());
         }
-        if wants("view") {
+        if let Some(mut view) = plan.view {
             let start = Instant::now();
-            let shot = picture::View3d::new()?.shot(&scene, &Default::default())?;
+            let shot = view.shot(&scene, &Default::default())?;
             writer.picture("view.png", &shot)?;
             wall_s.insert("view", start.elapsed().as_secs_f64());
         }
         let files = writer.files;
-        let report = json!({ "files": files, "wall_s": wall_s, "lidar": lidar_report });
+        let peak = output::peak_rss_mb();
+        let report = json!({ "files": files, "wall_s": wall_s, "lidar": lidar_report, "peak_rss_mb": peak });
         output::report(&self.common, &report, || {
             files
                 .iter()

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use crate::cli::output;
-use crate::picture::{self, Picture};
-use formats::npz::{self, Array};
-use formats::{multi_plane, point_cloud};
+use crate::picture::{self, Picture, SHEET_COLOR};
+use formats::export::ply;
+use formats::multi_plane;
+use formats::npz::{self, Array, Values};
 use scene::{CameraMaps, LidarSweep, MultiPlaneImage, PerspectiveMap};
 use sensors::appearance::CameraImage;
+use sensors::cameras::{CameraPicture, View, ViewId};
 use sensors::color;
 
 /// A folder, and what was written into it.
@@ -17,6 +19,26 @@ pub struct Writer {
     dir: PathBuf,
     /// Paths of the files.
     pub files: Vec<PathBuf>,
+    /// Pictures in colours of the cameras so far.
+    sheet: Option<Picture>,
+}
+
+/// Pictures in a row of a sheet, and the space around each, pixels.
+const SHEET_COLUMNS: usize = 3;
+const SHEET_MARGIN: usize = 6;
+
+/// A sheet for so many pictures of a size.
+fn empty_sheet([width, height]: [usize; 2], count: usize) -> Picture {
+    let side = |n: usize, side: usize| n * (side + SHEET_MARGIN) + SHEET_MARGIN;
+    let (columns, rows) = (count.min(SHEET_COLUMNS), count.div_ceil(SHEET_COLUMNS));
+    Picture::filled(side(columns, width), side(rows, height), SHEET_COLOR)
+}
+
+/// Memory that the sheet of so many pictures of a size takes, bytes.
+pub fn sheet_bytes(size: [u32; 2], count: usize) -> u64 {
+    let side = |n: usize, side: u32| n as u64 * (u64::from(side) + SHEET_MARGIN as u64) + SHEET_MARGIN as u64;
+    let (columns, rows) = (count.min(SHEET_COLUMNS), count.div_ceil(SHEET_COLUMNS));
+    4 * side(columns, size[0]) * side(rows, size[1])
 }
 
 impl Writer {
@@ -26,6 +48,7 @@ impl Writer {
         Ok(Self {
             dir: dir.into(),
             files: Vec::new(),
+            sheet: None,
         })
     }
 
@@ -56,7 +79,7 @@ impl Writer {
     }
 
     /// Classes and depths of a camera as pictures, and all of it as arrays.
-    pub fn maps(&mut self, m: &CameraMaps, semantic: bool, depth: bool) -> anyhow::Result<()> {
+    fn maps(&mut self, m: &CameraMaps, semantic: bool, depth: bool) -> anyhow::Result<()> {
         let (name, w, h) = (&m.camera, m.width, m.height);
         if semantic {
             self.png(
@@ -83,15 +106,13 @@ impl Writer {
         let shape = [h, w];
         let floats = |name, values: &[f32]| Array {
             name,
-            descr: "<f4",
             shape: &shape,
-            bytes: values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            values: Values::F32(values.to_vec()),
         };
         let labels = Array {
             name: "semantic",
-            descr: "|u1",
             shape: &shape,
-            bytes: m.semantic.clone(),
+            values: Values::U8(m.semantic.clone()),
         };
         let arrays = [
             labels,
@@ -100,27 +121,55 @@ impl Writer {
             floats("median_depth_m", &m.median_m),
             floats("coverage", &m.coverage),
         ];
-        self.bytes(&format!("{name}_maps.npz"), &npz::to_bytes(&arrays))
+        self.bytes(&format!("{name}_maps.npz"), &npz::to_bytes(&arrays)?)
     }
 
-    /// Pictures as the cameras would take them, and a sheet of all, three to a row.
-    pub fn appearance(&mut self, images: Vec<CameraImage>) -> anyhow::Result<()> {
-        let mut pictures = Vec::new();
-        for image in images {
-            let picture = Picture {
-                width: image.width,
-                height: image.height,
-                rgba: image.rgba,
-            };
-            self.picture(&format!("{}_appearance.png", image.camera), &picture)?;
-            pictures.push(picture);
+    /// The files of one camera's picture: what it shows of these views. `place` is the camera's number of how many.
+    pub fn camera(
+        &mut self,
+        picture: CameraPicture,
+        views: &[View],
+        place: (usize, usize),
+    ) -> anyhow::Result<()> {
+        let wants = |id: ViewId| views.iter().any(|v| v.id == id);
+        match picture {
+            CameraPicture::Maps(maps) => self.maps(&maps, wants(ViewId::SEMANTIC), wants(ViewId::DEPTH)),
+            CameraPicture::Planes(image) => self.planes(&image),
+            CameraPicture::Layout(map) => self.perspective(&map),
+            CameraPicture::Picture(image) => match views.first() {
+                Some(view) => self.image(image, view.id, place),
+                None => Ok(()),
+            },
         }
-        let rows: Vec<Vec<Picture>> = pictures.chunks(3).map(<[Picture]>::to_vec).collect();
-        self.picture("appearance.png", &Picture::sheet(&rows, 6))
+    }
+
+    /// A picture in colours; it is kept in the sheet of all cameras too.
+    fn image(&mut self, image: CameraImage, view: ViewId, place: (usize, usize)) -> anyhow::Result<()> {
+        let picture = Picture {
+            width: image.width,
+            height: image.height,
+            rgba: image.rgba,
+        };
+        self.picture(&format!("{}_{}.png", image.camera, view.name()), &picture)?;
+        let (number, count) = place;
+        let size = [picture.width, picture.height];
+        let sheet = self.sheet.get_or_insert_with(|| empty_sheet(size, count));
+        let (column, row) = (number % SHEET_COLUMNS, number / SHEET_COLUMNS);
+        let at = |i: usize, side: usize| SHEET_MARGIN + i * (side + SHEET_MARGIN);
+        sheet.put(&picture, at(column, size[0]), at(row, size[1]));
+        Ok(())
+    }
+
+    /// Writes the sheet of all cameras, where pictures in colours were written.
+    pub fn finish_sheet(&mut self, views: &[View]) -> anyhow::Result<()> {
+        match (self.sheet.take(), views.first()) {
+            (Some(sheet), Some(view)) => self.picture(&format!("{}.png", view.id.name()), &sheet),
+            _ => Ok(()),
+        }
     }
 
     /// Boxes and lanes: a picture, and the channels as bits.
-    pub fn perspective(&mut self, map: &PerspectiveMap) -> anyhow::Result<()> {
+    fn perspective(&mut self, map: &PerspectiveMap) -> anyhow::Result<()> {
         let (name, w, h) = (&map.camera, map.width, map.height);
         self.png(
             &format!("{name}_perspective.png"),
@@ -132,14 +181,14 @@ impl Writer {
     }
 
     /// A multi-plane image: its runs, and nine planes to look at.
-    pub fn planes(&mut self, image: &MultiPlaneImage) -> anyhow::Result<()> {
+    fn planes(&mut self, image: &MultiPlaneImage) -> anyhow::Result<()> {
         self.bytes(&format!("{}_mpi.npz", image.camera), &multi_plane::sparse(image))?;
         self.picture(&format!("{}_mpi.png", image.camera), &picture::plane_sheet(image))
     }
 
     /// Points, and a picture from above.
     pub fn lidar(&mut self, sweep: &LidarSweep) -> anyhow::Result<()> {
-        self.bytes("lidar.ply", &point_cloud::ply(sweep))?;
+        self.bytes("lidar.ply", &ply::to_bytes(sweep))?;
         self.picture("lidar.png", &picture::lidar_top(sweep, 4))
     }
 }

@@ -12,7 +12,7 @@ use super::schedule::Level;
 use super::solver::{
     DdimStep, Denoiser, Sampler, SolverError, SolverKind, check_finite, check_length, standard_deviation,
 };
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 
 /// All states between noise and data of one latent, from noise to data.
 #[derive(Clone, Debug, PartialEq)]
@@ -249,7 +249,7 @@ mod tests {
     use crate::schedule::{Schedule, Spacing};
     use crate::solver::Guidance;
     use crate::solver::tests::toy;
-    use numeric::rng::Stream;
+    use numeric::philox::Stream;
 
     fn sampler(n: usize, weight: f64) -> Sampler {
         let guidance = Guidance { weight, rescale: 0.0 };

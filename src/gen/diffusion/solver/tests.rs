@@ -35,7 +35,7 @@ impl<C: Fn(f64, f64) -> f64, U: Fn(f64, f64) -> f64> Denoiser for Toy<C, U> {
 }
 
 fn noise(n: usize) -> Vec<f64> {
-    numeric::rng::normal_field(5, numeric::rng::Stream::Start, n, 1)
+    numeric::philox::normal_field(5, numeric::philox::Stream::Start, n, 1)
 }
 
 /// Row 2 of the extremes table: the step out of pure noise.

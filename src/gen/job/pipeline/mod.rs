@@ -29,7 +29,7 @@ use diffusion::replay::edit_with_replay;
 use diffusion::solver::Sampler;
 use nets::{DitCondition, GROUPS, Heard, OccModels, tokens_of};
 use network::{Condition, Network, density_of_source};
-use numeric::rng::{Stream, normal_field};
+use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
 use source::{Source, stored_for};
 use standing::Standing;
@@ -301,7 +301,7 @@ impl OccPipeline {
         let frame = job.scene.frame();
         ctx.preview(GenResult {
             key: job.key(),
-            frame: job.scene.current,
+            frame: job.frame(),
             occupancy: composite(&frame.source.occupancy, &grid, &region, &frame.painted),
             report: report.clone(),
         });
@@ -325,10 +325,10 @@ impl OccPipeline {
     ) -> Result<GenResult, GenError> {
         job.params.check()?;
         // Something new is wanted in all of it.
-        let mut anew = RedrawMask::default();
+        let mut inpaint = RedrawMask::default();
         let columns = region.columns.iter().enumerate().filter(|(_, c)| **c);
-        columns.for_each(|(c, _)| anew.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
-        self.redraw(job, region, &anew, GenReport::default(), ctx)
+        columns.for_each(|(c, _)| inpaint.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
+        self.redraw(job, region, &inpaint, GenReport::default(), ctx)
     }
 
     fn redraw(
@@ -345,9 +345,9 @@ impl OccPipeline {
             // Nothing to redraw: no network is asked.
             return Ok(self.finish(job, before, before, &region, &mut report));
         }
-        let anew = params.strength > 0.0;
+        let inpaint = params.strength > 0.0;
         let condition_before = self.condition_of_source(&job.scene);
-        let (sampler, source) = match anew {
+        let (sampler, source) = match inpaint {
             true => self.noised(&job.scene, &condition_before, params, &mut report, ctx)?,
             false => self.inverted(&job.scene, &condition_before, params, &mut report, ctx)?,
         };
@@ -366,7 +366,7 @@ impl OccPipeline {
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
         let keys_values = match kept {
             Some(kept) => Some(kept.clone()),
-            None => stored_for(params).filter(|_| !anew),
+            None => stored_for(params).filter(|_| !inpaint),
         };
         let mut network = report.timed(Stage::Encode, |_| {
             self.network(&condition, local, mask, context, params)
@@ -396,7 +396,7 @@ impl OccPipeline {
                         let occupancy = composite(before, &grid, &region, &frame.painted);
                         ctx.preview(GenResult {
                             key: job.key(),
-                            frame: job.scene.current,
+                            frame: job.frame(),
                             occupancy,
                             report: report.clone(),
                         });
@@ -436,7 +436,7 @@ impl OccPipeline {
             report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
-        if anew {
+        if inpaint {
             return Ok(result); // its states around the region lead nowhere: the next edit inverts it
         }
         self.adopt(
@@ -476,7 +476,7 @@ impl OccPipeline {
         report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
         GenResult {
             key: job.key(),
-            frame: job.scene.current,
+            frame: job.frame(),
             occupancy,
             report: std::mem::take(report),
         }

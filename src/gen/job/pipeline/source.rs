@@ -186,7 +186,7 @@ impl OccPipeline {
         Ok((sampler, source))
     }
 
-    /// What a region is drawn anew from: its source under fresh noise, from the step on that the strength asks for.
+    /// What a region is inpainted from: its source under fresh noise, from the step on that the strength asks for.
     pub(super) fn noised(
         &mut self,
         scene: &Scene,

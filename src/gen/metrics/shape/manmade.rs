@@ -1,7 +1,7 @@
 //! What is built, seen from above: how much edge it has, in how many parts, how even its roofs are.
 
 use super::{ShapeFigures, share};
-use crate::stats::median;
+use numeric::quantile::median;
 use scene::{Class, GridSpec, VoxelGrid};
 
 /// Sides that face a column without manmade, per manmade column: 0 inside, 4 for a post.

@@ -297,13 +297,13 @@ mod tests {
                 *v *= [1e18, 1e-18, 1.0, 1e-40][i % 4];
             }
             let bias = wave(n, 0.11);
-            let panels = PackedMatrix::new(View::rows(&b, n), k, n);
-            assert!((0..k * n).all(|i| panels.at(i / n, i % n) == b[i]));
+            let packed = PackedMatrix::new(View::rows(&b, n), k, n);
+            assert!((0..k * n).all(|i| packed.at(i / n, i % n) == b[i]));
             let mut out = vec![f32::NAN; m * n];
-            panels.multiply(&a, k, [m, 0, k], Start::Bias(&bias), &mut out, n);
+            packed.multiply(&a, k, [m, 0, k], Start::Bias(&bias), &mut out, n);
             let mut twice = out.clone();
-            panels.multiply(&a, k, [m, 0, k], Start::Add, &mut twice, n);
-            let plain = by(Kernel::Plain, &panels, &a, m, &bias);
+            packed.multiply(&a, k, [m, 0, k], Start::Add, &mut twice, n);
+            let plain = by(Kernel::Plain, &packed, &a, m, &bias);
             for (at, found) in out.iter().enumerate() {
                 let terms = (0..k).map(|i| f64::from(a[at / n * k + i]) * f64::from(b[i * n + at % n]));
                 let (sum, size) = terms.fold((0.0, 0.0), |(s, z), t| (s + t, z + t.abs()));
@@ -322,22 +322,22 @@ mod tests {
             }
             // A row alone is bit for bit the row among others; a product in two parts of k the whole.
             let mut alone = vec![f32::NAN; n];
-            panels.multiply(&a[(m - 1) * k..], k, [1, 0, k], Start::Bias(&bias), &mut alone, n);
+            packed.multiply(&a[(m - 1) * k..], k, [1, 0, k], Start::Bias(&bias), &mut alone, n);
             assert_eq!(alone, out[(m - 1) * n..]);
             if k > 1 {
                 let mut parts = vec![f32::NAN; m * n];
-                panels.multiply(&a, k, [m, 0, k / 2], Start::Bias(&bias), &mut parts, n);
-                panels.multiply(&a[k / 2..], k, [m, k / 2, k - k / 2], Start::Add, &mut parts, n);
+                packed.multiply(&a, k, [m, 0, k / 2], Start::Bias(&bias), &mut parts, n);
+                packed.multiply(&a[k / 2..], k, [m, k / 2, k - k / 2], Start::Add, &mut parts, n);
                 assert_eq!(parts, out);
             }
             assert_eq!(
-                by(Kernel::Plain, &panels, &a[(m - 1) * k..], 1, &bias),
+                by(Kernel::Plain, &packed, &a[(m - 1) * k..], 1, &bias),
                 plain[(m - 1) * n..]
             );
             #[cfg(target_arch = "x86_64")]
             if Kernel::has_avx2() {
                 assert_eq!(
-                    by(Kernel::Avx2, &panels, &a, m, &bias),
+                    by(Kernel::Avx2, &packed, &a, m, &bias),
                     out,
                     "the bits of AVX-512"
                 );
@@ -350,15 +350,15 @@ mod tests {
     fn row_17_pairs() {
         let (rows, k, n) = (23, 40, 70);
         let (a, b, before) = (wave(rows * k, 0.37), wave(k * n, 0.73), wave(rows * n, 0.21));
-        let panels = PackedMatrix::new(View::rows(&b, n), k, n);
+        let packed = PackedMatrix::new(View::rows(&b, n), k, n);
         let pairs: Vec<[u32; 2]> = (0..rows as u32 - 2)
             .map(|i| [i, (i * 7 + 3) % rows as u32])
             .collect();
         let mut found = before.clone();
-        panels.add_pairs(&a, k, &pairs, [0, k], &mut found, n);
+        packed.add_pairs(&a, k, &pairs, [0, k], &mut found, n);
         let mut expected = before.clone();
         for [to, from] in pairs.iter().map(|p| p.map(|v| v as usize)) {
-            panels.multiply(
+            packed.multiply(
                 &a[from * k..],
                 k,
                 [1, 0, k],
@@ -385,7 +385,7 @@ mod tests {
                     &[[0, 3]],
                     &sizes,
                     a.as_ptr(),
-                    panels.values().as_ptr(),
+                    packed.values().as_ptr(),
                     out.as_mut_ptr(),
                 )
             };
@@ -407,13 +407,13 @@ mod tests {
         all
     }
 
-    /// bias + a times the panels, by one kernel.
-    fn by(kernel: Kernel, panels: &PackedMatrix, a: &[f32], m: usize, bias: &[f32]) -> Vec<f32> {
-        let (k, n) = (panels.inputs(), panels.outputs());
+    /// bias + a times the packed matrix, by one kernel.
+    fn by(kernel: Kernel, packed: &PackedMatrix, a: &[f32], m: usize, bias: &[f32]) -> Vec<f32> {
+        let (k, n) = (packed.inputs(), packed.outputs());
         let mut out = vec![f32::NAN; m * n];
         assert!(a.len() >= m * k && bias.len() >= n);
         for first in (0..n).step_by(PANEL) {
-            let (b, start) = (&panels.values()[first * k..], Start::Bias(&bias[first..]));
+            let (b, start) = (&packed.values()[first * k..], Start::Bias(&bias[first..]));
             let sizes = Sizes {
                 a_stride: k,
                 b_stride: width(n, first),

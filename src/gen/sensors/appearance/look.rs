@@ -9,7 +9,7 @@ use super::sky::Air;
 use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
-use scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M};
+use scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M, FAR_M};
 use scene::{Frame, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
@@ -304,6 +304,14 @@ impl Look {
             dark
         });
         dark
+    }
+
+    /// The outward normal of the first surface along a ray of the ego frame, a unit vector of that frame. `None` for the
+    /// sky, for a zero direction and for what is not finite.
+    pub fn surface_normal(&self, origin_in_ego: Vec3, direction: Vec3) -> Option<Vec3> {
+        let d = direction.try_normalize()?;
+        let hit = self.trace(origin_in_ego, d, FAR_M, false)?;
+        Some(self.normal(&hit)).filter(|n| n.is_finite())
     }
 
     /// The normal at a hit.

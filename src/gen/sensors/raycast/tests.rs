@@ -1,6 +1,7 @@
 //! Rows 45 and 46 of the extremes table, and the upkeep of the masks.
 
 use super::*;
+use numeric::splitmix::scatter;
 
 const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 
@@ -49,14 +50,6 @@ fn plain_walk(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Opti
         t_next[axis] = t_plane(axis, cell[axis]);
     }
     (visited, None)
-}
-
-/// A repeatable scatter of numbers in 0..1.
-fn scatter(i: u64) -> f64 {
-    let mut v = i.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    v = (v ^ (v >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    v = (v ^ (v >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((v ^ (v >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 fn scattered_voxels(count: u64) -> ColumnMasks {

@@ -11,7 +11,7 @@ use super::wishes::forms;
 use super::{Amount, Said, Verb, What};
 use scene::Form;
 use scene::background::STOREY_M;
-use scene::{Background, BevLayout, BoxId, Class, Pose, SceneBox, ThingId};
+use scene::{Background, BevLayout, BoxId, Class, Edit, Pose, SceneBox, ThingId};
 use world::scenery::Setting;
 
 /// Change of a height if none is said: a building by storeys, other things by this share of theirs.
@@ -19,36 +19,6 @@ const USUAL_STOREYS: f64 = 2.0;
 const USUAL_SHARE: f64 = 0.4;
 /// Buildings and other things are not made lower than this, m.
 const LEAST_M: [f64; 2] = [2.5, 0.4];
-
-/// One change of the background; world frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ThingEdit {
-    /// New things.
-    Add {
-        /// What and where.
-        forms: Vec<Form>,
-    },
-    /// Things go.
-    Remove {
-        /// Which.
-        ids: Vec<ThingId>,
-    },
-    /// Things become higher, or lower.
-    Raise {
-        /// Which.
-        ids: Vec<ThingId>,
-        /// By how much, m.
-        by_m: f64,
-    },
-    /// Things move.
-    Move {
-        /// Which.
-        ids: Vec<ThingId>,
-        /// How far, m.
-        by_m: DVec2,
-    },
-}
 
 /// A thing that a question names.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -84,8 +54,8 @@ pub struct ThingQuestion {
 /// What came of the clauses about the background.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ThingOutcome {
-    /// Changes, in order.
-    pub edits: Vec<ThingEdit>,
+    /// Changes, in order; world frame.
+    pub edits: Vec<Edit>,
     /// What must be answered first.
     pub questions: Vec<ThingQuestion>,
     /// What was done, one line each.
@@ -166,12 +136,12 @@ enum Stopped {
 }
 
 /// Edits of one clause in the ego frame, in the order that they are applied, and how many things they are of.
-fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<ThingEdit>, usize), Stopped> {
+fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<Edit>, usize), Stopped> {
     let called = format!("{}{}", s.things(), s.place());
     if matches!(s.verb, Verb::Add | Verb::Have) {
         let forms = forms(s, ground, seed).map_err(Stopped::Cannot)?;
         let n = forms.len();
-        return Ok((vec![ThingEdit::Add { forms }], n));
+        return Ok((vec![Edit::AddThings { forms }], n));
     }
     if matches!(s.what, What::Place(p) if p != Setting::Forest) {
         return Err(Stopped::Cannot(format!(
@@ -210,7 +180,14 @@ fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<Thi
                 return Err(Stopped::Cannot("say how far and which way".into()));
             };
             let by_m = DVec2::new(ahead, left) * metres(by);
-            Ok((vec![ThingEdit::Move { ids, by_m }], n))
+            Ok((
+                vec![Edit::MoveThings {
+                    ids,
+                    by_m,
+                    turn_deg: 0.0,
+                }],
+                n,
+            ))
         }
         Verb::Raise | Verb::Lower => {
             let sign = if s.verb == Verb::Raise { 1.0 } else { -1.0 };
@@ -233,11 +210,11 @@ fn one(s: &Said, now: &Background, ground: Ground, seed: u64) -> Result<(Vec<Thi
                         id.0, -by_m
                     )));
                 }
-                edits.push(ThingEdit::Raise { ids: vec![id], by_m });
+                edits.push(Edit::RaiseThings { ids: vec![id], by_m });
             }
             Ok((edits, n))
         }
-        _ => Ok((vec![ThingEdit::Remove { ids }], n)),
+        _ => Ok((vec![Edit::RemoveThings { ids }], n)),
     }
 }
 
@@ -249,13 +226,13 @@ fn metres(amount: Amount) -> f64 {
 }
 
 /// What later clauses find.
-fn apply(now: &mut Background, edits: &[ThingEdit], all: &Background) {
+fn apply(now: &mut Background, edits: &[Edit], all: &Background) {
     for edit in edits {
         match edit {
-            ThingEdit::Remove { ids } => ids.iter().for_each(|id| {
+            Edit::RemoveThings { ids } => ids.iter().for_each(|id| {
                 now.remove(*id);
             }),
-            ThingEdit::Add { forms } => {
+            Edit::AddThings { forms } => {
                 for form in forms {
                     // The id that the editor will give it.
                     let id = ThingId(now.next_id().0.max(all.next_id().0));
@@ -266,8 +243,10 @@ fn apply(now: &mut Background, edits: &[ThingEdit], all: &Background) {
                     });
                 }
             }
-            ThingEdit::Move { ids, by_m } => change(now, ids, |form| form.map_points(|p| p + *by_m, 0.0)),
-            ThingEdit::Raise { .. } => {}
+            Edit::MoveThings { ids, by_m, .. } => {
+                change(now, ids, |form| form.map_points(|p| p + *by_m, 0.0))
+            }
+            _ => {} // a height changes no place
         }
     }
 }
@@ -281,17 +260,18 @@ fn change(now: &mut Background, ids: &[ThingId], mut change: impl FnMut(&mut For
     }
 }
 
-fn in_world(edits: Vec<ThingEdit>, world_from_ego: &Pose) -> Vec<ThingEdit> {
+fn in_world(edits: Vec<Edit>, world_from_ego: &Pose) -> Vec<Edit> {
     let turned = |by: DVec2| {
         (world_from_ego.apply(by.extend(0.0)) - world_from_ego.apply(glam::DVec3::ZERO)).truncate()
     };
     let one = |edit| match edit {
-        ThingEdit::Add { forms } => ThingEdit::Add {
+        Edit::AddThings { forms } => Edit::AddThings {
             forms: forms.iter().map(|f| f.in_frame(world_from_ego)).collect(),
         },
-        ThingEdit::Move { ids, by_m } => ThingEdit::Move {
+        Edit::MoveThings { ids, by_m, turn_deg } => Edit::MoveThings {
             ids,
             by_m: turned(by_m),
+            turn_deg,
         },
         same => same,
     };

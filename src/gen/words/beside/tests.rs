@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use super::edits::{OpenBackground, ThingEdit, ThingOutcome, carry_out};
+use super::edits::{OpenBackground, ThingOutcome, carry_out};
 use super::*;
 use scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
-use scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind, Pose, ThingId};
+use scene::{Background, BevLayer, BevLayout, Edit, Form, GridSpec, Polyline, PolylineKind, Pose, ThingId};
 use world::scenery::Setting;
 
 fn one(text: &str, edits: bool) -> Said {
@@ -308,7 +308,7 @@ fn edit(text: &str) -> ThingOutcome {
 fn removed(text: &str) -> Vec<u32> {
     let reading = edit(text);
     let ids = reading.edits.iter().flat_map(|e| match e {
-        ThingEdit::Remove { ids } => ids.iter().map(|id| id.0).collect(),
+        Edit::RemoveThings { ids } => ids.iter().map(|id| id.0).collect(),
         _ => Vec::new(),
     });
     let mut ids: Vec<u32> = ids.collect();
@@ -330,7 +330,7 @@ fn targets_are_what_the_words_name() {
     let raised = |text: &str| edit(text).edits;
     let house = vec![ThingId(7)];
     let by = |by_m| {
-        vec![ThingEdit::Raise {
+        vec![Edit::RaiseThings {
             ids: house.clone(),
             by_m,
         }]
@@ -359,7 +359,7 @@ fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
         assert_eq!(candidate.answer(), format!("the building #{id}"));
         let ids = vec![ThingId(id)];
         let edits = carried_out(std::slice::from_ref(&candidate.said), Pose::IDENTITY).edits;
-        assert_eq!(edits, [ThingEdit::Raise { ids, by_m }]);
+        assert_eq!(edits, [Edit::RaiseThings { ids, by_m }]);
     }
     for text in [
         "remove the wall",
@@ -384,7 +384,7 @@ fn new_things_stand_where_they_were_wanted() {
     for pose in [Pose::IDENTITY, other] {
         let forms = |text: &str| -> Vec<Form> {
             let all = edit_in(text, pose).edits.into_iter().flat_map(|e| match e {
-                ThingEdit::Add { forms } => forms,
+                Edit::AddThings { forms } => forms,
                 _ => Vec::new(),
             });
             all.map(|f| f.in_frame(&pose.inverse())).collect()

@@ -8,7 +8,6 @@ use super::super::reading::{Quantity, Relation, Thing};
 use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
-use crate::text_edit::TextEdit;
 use place::description::{Anchor, Count, Description, ObjectSpec, Stated};
 use place::holds::{Target, holds, role_of};
 use place::rules::{Placement, place_from};
@@ -123,7 +122,7 @@ impl Stage<'_> {
                 ..*b
             };
             last.push(object.id);
-            self.push(TextEdit::Add { object });
+            self.add_box(object);
         }
         if let Some(why) = found.left_out.first() {
             self.remark(Remark::LeftOut {
@@ -326,7 +325,7 @@ impl Stage<'_> {
             };
             let object = self.clear_of_others(new).unwrap_or(new);
             last.push(id);
-            self.push(TextEdit::Add { object });
+            self.add_box(object);
         }
         let n = last.len();
         self.last = last;

@@ -7,7 +7,6 @@ use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
 use super::adds::in_place_of;
-use crate::text_edit::TextEdit;
 use place::holds::overlap_m;
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 use scene::{BoxId, BoxLabel, SceneBox};
@@ -56,7 +55,7 @@ impl Stage<'_> {
             }
             if last {
                 for id in left.drain(..) {
-                    self.push(TextEdit::Remove { id });
+                    self.take_box(id);
                 }
             }
         }
@@ -80,7 +79,7 @@ impl Stage<'_> {
             let (id, other) = (id.0, Some(o.id.0));
             self.remark(Remark::Overlaps { id, other });
         }
-        self.push(TextEdit::Replace { id, object });
+        self.replace_box(object);
         if !t.places.is_empty() {
             self.moved_to(id, &t.places);
         } else if t.state == Some(ObjectState::Parked)
@@ -139,10 +138,7 @@ impl Stage<'_> {
             return;
         };
         if paint.is_some() && b.label.paint != paint {
-            self.push(TextEdit::Label {
-                id,
-                label: BoxLabel { paint, ..b.label },
-            });
+            self.label_box(id, BoxLabel { paint, ..b.label });
         }
         if let Some(size) = look.size {
             let factor = if size == SizeHint::Large { 1.18 } else { 0.85 };
@@ -150,13 +146,10 @@ impl Stage<'_> {
             let base_m = b.center_m.z - b.size_m.z / 2.0;
             let size_m = b.size_m * factor;
             let center_m = b.center_m.truncate().extend(base_m + size_m.z / 2.0);
-            self.push(TextEdit::Replace {
-                id,
-                object: SceneBox {
-                    size_m,
-                    center_m,
-                    ..b
-                },
+            self.replace_box(SceneBox {
+                size_m,
+                center_m,
+                ..b
             });
         }
         let Some(state) = look.state else { return };
@@ -181,12 +174,9 @@ impl Stage<'_> {
         } else {
             0.0
         };
-        self.push(TextEdit::Replace {
-            id,
-            object: SceneBox {
-                velocity_mps: b.heading() * speed,
-                ..b
-            },
+        self.replace_box(SceneBox {
+            velocity_mps: b.heading() * speed,
+            ..b
         });
     }
 
@@ -226,11 +216,8 @@ impl Stage<'_> {
         self.boxes.insert(a, first);
         let second = at(&two, &one);
         let second = self.clear_of_others(second).unwrap_or(second);
-        self.push(TextEdit::Replace { id: a, object: first });
-        self.push(TextEdit::Replace {
-            id: b,
-            object: second,
-        });
+        self.replace_box(first);
+        self.replace_box(second);
         self.last = vec![a, b];
     }
 
@@ -264,11 +251,7 @@ impl Stage<'_> {
                     continue;
                 }
             };
-            self.push(TextEdit::Move {
-                id,
-                center_m: b.center_m,
-                yaw_rad,
-            });
+            self.move_box(id, b.center_m, yaw_rad);
         }
     }
 }

@@ -5,7 +5,6 @@ use glam::DVec2;
 use super::super::reading::{Anchor, Destination, Feature, Place, Reading, Relation, Thing, Turn, What};
 use super::super::remark::Remark;
 use super::super::stage::Stage;
-use crate::text_edit::TextEdit;
 use place::holds::overlap_m;
 use place::lanes::LaneMap;
 use scene::raster::draw_polyline;
@@ -128,7 +127,7 @@ impl Stage<'_> {
             });
         }
         for outline_m in crossings {
-            self.push(TextEdit::EraseCrossing { outline_m });
+            self.clear_crossing(outline_m);
         }
     }
 }

@@ -14,7 +14,6 @@ use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
 use super::remark::Remark;
 use super::resolve::{Spare, words_of};
 use super::stage::{OpenScene, Outcome, Stage};
-use crate::text_edit::TextEdit;
 use place::description::{TimeOfDay, Weather};
 use scene::{BoxId, SceneBox};
 
@@ -42,9 +41,7 @@ pub fn carry_out(reading: &Reading, scene: &OpenScene<'_>, seed: u64) -> Outcome
         let (before, asked) = (stage.out.edits.len(), stage.out.questions.len());
         let remarks = stage.out.remarks.len();
         if let Some(w) = with.as_ref().filter(|w| w.act == i) {
-            stage.push(TextEdit::Crossing {
-                outline_m: w.outline_m.clone(),
-            });
+            stage.paint_crossing(w.outline_m.clone());
         }
         stage.act(&act.what, reading);
         let silent = stage.out.edits.len() == before
@@ -130,7 +127,7 @@ impl Stage<'_> {
             self.gone.clear();
         }
         for id in ids {
-            self.push(TextEdit::Remove { id: *id });
+            self.take_box(*id);
         }
     }
 
@@ -249,7 +246,7 @@ impl Stage<'_> {
         }
         let prompt = words.join(", ");
         if prompt != self.prompt {
-            self.push(TextEdit::Style { prompt });
+            self.restyle(prompt);
         }
     }
 }

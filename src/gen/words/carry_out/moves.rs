@@ -10,7 +10,6 @@ use super::super::remark::Remark;
 use super::super::resolve::Spare;
 use super::super::stage::Stage;
 use super::destinations::{CLOSE_M, Found, is_aside};
-use crate::text_edit::TextEdit;
 use place::description::{Anchor, Stated};
 use place::holds::{ego, overlap_m};
 use place::rules::stands;
@@ -164,11 +163,7 @@ impl Stage<'_> {
                 other: None,
             });
         }
-        self.push(TextEdit::Move {
-            id,
-            center_m,
-            yaw_rad: b.yaw_rad,
-        });
+        self.move_box(id, center_m, b.yaw_rad);
     }
 
     fn change_lane(&mut self, b: &SceneBox, lanes: i32) {
@@ -198,11 +193,7 @@ impl Stage<'_> {
             ..*b
         };
         let new = self.clear_of_others(new).unwrap_or(new);
-        self.push(TextEdit::Move {
-            id: b.id,
-            center_m: new.center_m,
-            yaw_rad,
-        });
+        self.move_box(b.id, new.center_m, yaw_rad);
     }
 
     /// To the edge of the road.
@@ -318,21 +309,14 @@ impl Stage<'_> {
         if still && moves || goes {
             let speed = if goes { Self::pace(b.class) } else { 0.0 };
             let velocity_mps = DVec2::from_angle(yaw_rad) * speed;
-            self.push(TextEdit::Replace {
-                id,
-                object: SceneBox {
-                    center_m,
-                    yaw_rad,
-                    velocity_mps,
-                    ..b
-                },
-            });
-        } else {
-            self.push(TextEdit::Move {
-                id,
+            self.replace_box(SceneBox {
                 center_m,
                 yaw_rad,
+                velocity_mps,
+                ..b
             });
+        } else {
+            self.move_box(id, center_m, yaw_rad);
         }
         true
     }
@@ -348,11 +332,7 @@ impl Stage<'_> {
             ..*b
         };
         let new = self.clear_of_others(new).unwrap_or(new);
-        self.push(TextEdit::Move {
-            id: b.id,
-            center_m: new.center_m,
-            yaw_rad: new.yaw_rad,
-        });
+        self.move_box(b.id, new.center_m, new.yaw_rad);
         true
     }
 
@@ -409,11 +389,7 @@ impl Stage<'_> {
         if way.length() < 1e-6 {
             return Some(false);
         }
-        self.push(TextEdit::Move {
-            id: b.id,
-            center_m: b.center_m,
-            yaw_rad: way.to_angle(),
-        });
+        self.move_box(b.id, b.center_m, way.to_angle());
         Some(true)
     }
 }

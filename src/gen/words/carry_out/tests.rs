@@ -8,12 +8,11 @@ use super::super::describe::described;
 use super::super::notation::parse;
 use super::super::remark::Remark;
 use super::super::stage::{OpenScene, Outcome};
-use super::super::text_edit::TextEdit;
 use super::carry_out;
 use place::road;
 use place::rules::place_with;
 use place::to_graph::to_graph;
-use scene::{BevLayout, BoxId, Class, Paint, SceneBox};
+use scene::{BevLayout, BoxId, Class, Edit, Paint, SceneBox};
 
 struct Base {
     layout: BevLayout,
@@ -58,7 +57,7 @@ fn the_others_are_those_of_the_group() {
         .edit("add 4 parked car ( on right_roadside ) ; set the nth 1 one black ; set all other one white");
     let mut paints: Vec<(BoxId, Option<Paint>)> = Vec::new();
     for e in &outcome.edits {
-        if let TextEdit::Label { id, label } = e {
+        if let Edit::LabelBox { id, label } = e {
             paints.push((*id, label.paint));
         }
     }
@@ -77,7 +76,7 @@ fn each_has_its_own() {
     let base = Base::new("add 3 parked car ( on right_roadside ) and 1 bus ( ahead ego 20m )");
     let cars = base.of(Class::Car).len();
     let outcome = base.edit("add 2 cone ( next_to each parked car )");
-    let added = outcome.edits.iter().filter(|e| matches!(e, TextEdit::Add { .. }));
+    let added = outcome.edits.iter().filter(|e| matches!(e, Edit::AddBox { .. }));
     assert!(cars == 3 && added.count() == 6, "{outcome:?}");
     let d = described("add 2 bus and 1 worker ( behind each bus )").expect("a reading");
     assert_eq!(d.foreground[1].count.n, 2);
@@ -90,7 +89,7 @@ fn each_has_its_own() {
 fn edits_hit_what_they_name() {
     let base = Base::new("add 1 bus ( ahead ego 15m ) and 3 parked car and 2 person ( on sidewalk )");
     let bus = base.of(Class::Bus)[0];
-    assert_eq!(base.edit("remove the bus").edits, [TextEdit::Remove { id: bus }]);
+    assert_eq!(base.edit("remove the bus").edits, [Edit::RemoveBox { id: bus }]);
     assert_eq!(base.edit("remove all parked car").edits.len(), 3);
     assert_eq!(base.edit("count car to 1").edits.len(), 2);
     assert_eq!(base.edit("no person").edits.len(), 2);
@@ -107,27 +106,39 @@ fn edits_hit_what_they_name() {
     assert_eq!(asked.questions[0].candidates.len(), 3);
     let old = base.boxes[&bus];
     match base.edit("move the bus by left 3m").edits.as_slice() {
-        [TextEdit::Move { id, center_m, .. }] => {
+        [
+            Edit::MoveBox {
+                id,
+                center_m: Some(center_m),
+                ..
+            },
+        ] => {
             assert_eq!(*id, bus);
             assert!((center_m.y - old.center_m.y - 3.0).abs() < 1e-9);
         }
         other => panic!("{other:?}"),
     }
     match base.edit("turn the bus left 90deg").edits.as_slice() {
-        [TextEdit::Move { yaw_rad, .. }] => {
-            assert!((yaw_rad - old.yaw_rad - 90f64.to_radians()).abs() < 1e-9)
+        [
+            Edit::MoveBox {
+                yaw_deg: Some(deg), ..
+            },
+        ] => {
+            assert!((deg - old.yaw_rad.to_degrees() - 90.0).abs() < 1e-9)
         }
         other => panic!("{other:?}"),
     }
     match base.edit("replace the bus with 1 truck").edits.as_slice() {
-        [TextEdit::Replace { object, .. }] => assert_eq!(object.class, Class::Truck),
+        [Edit::RemoveBox { id }, Edit::AddBox { class, id: same, .. }] => {
+            assert_eq!((*same, *class), (Some(*id), Class::Truck));
+        }
         other => panic!("{other:?}"),
     }
     let prompt = "night, rain".to_owned();
     let style = base.edit("time night ; weather rain").edits;
-    assert_eq!(style.last(), Some(&TextEdit::Style { prompt }));
+    assert_eq!(style.last(), Some(&Edit::SetPrompt { prompt }));
     match base.edit("set the bus red").edits.as_slice() {
-        [TextEdit::Label { id, label }] => assert_eq!((*id, label.paint), (bus, Some(Paint::Red))),
+        [Edit::LabelBox { id, label }] => assert_eq!((*id, label.paint), (bus, Some(Paint::Red))),
         other => panic!("{other:?}"),
     }
 }
@@ -138,14 +149,14 @@ fn the_second_act_sees_what_the_first_left() {
     let done = base.edit("remove the bus ; add 1 truck ( there )");
     let stood = base.boxes[&base.of(Class::Bus)[0]].center_m;
     match done.edits.as_slice() {
-        [TextEdit::Remove { .. }, TextEdit::Add { object }] => {
-            assert!(object.center_m.truncate().distance(stood.truncate()) < 3.0);
+        [Edit::RemoveBox { .. }, Edit::AddBox { center_m, .. }] => {
+            assert!(center_m.truncate().distance(stood.truncate()) < 3.0);
         }
         other => panic!("{other:?}"),
     }
     let done = base.edit("add 1 red car ( ahead ego 30m ) ; set it blue");
     assert!(
-        matches!(done.edits.as_slice(), [TextEdit::Add { .. }, TextEdit::Label { label, .. }] if label.paint == Some(Paint::Blue))
+        matches!(done.edits.as_slice(), [Edit::AddBox { .. }, Edit::LabelBox { label, .. }] if label.paint == Some(Paint::Blue))
     );
 }
 
@@ -183,8 +194,8 @@ fn what_cannot_be_done_is_remarked_and_changes_nothing() {
         let done = base.edit(line);
         let sound = |b: &SceneBox| b.problem().is_none();
         for e in &done.edits {
-            if let TextEdit::Add { object } | TextEdit::Replace { object, .. } = e {
-                assert!(sound(object), "{line}: {object:?}");
+            if let Some(b) = e.added_box() {
+                assert!(sound(&b), "{line}: {b:?}");
             }
         }
     }
@@ -197,26 +208,29 @@ fn what_is_said_to_stay_stays() {
     let bus = base.of(Class::Bus)[0];
     let done = base.edit("no all thing ; leave the bus");
     assert_eq!(done.edits.len(), 3, "{done:?}");
-    assert!(!done.edits.contains(&TextEdit::Remove { id: bus }));
+    assert!(!done.edits.contains(&Edit::RemoveBox { id: bus }));
     assert!(done.remarks.is_empty(), "{done:?}");
     let done = base.edit("keep the car ; leave the bus");
     assert_eq!(done.edits.len(), 2, "{done:?}");
-    assert!(!done.edits.contains(&TextEdit::Remove { id: bus }));
+    assert!(!done.edits.contains(&Edit::RemoveBox { id: bus }));
     // (where what is said contradicts itself, that it did not stay is said)
     let done = base.edit("remove the bus ; leave the bus");
     let spared = Remark::Spared { what: "bus".into() };
     assert!(done.remarks.iter().any(|r| r.1 == spared), "{done:?}");
 }
 
-fn moved(edits: &[TextEdit], who: BoxId) -> (DVec3, f64) {
+fn moved(edits: &[Edit], who: BoxId) -> (DVec3, f64) {
     let found = edits.iter().rev().find_map(|e| match e {
-        TextEdit::Move {
+        Edit::MoveBox {
             id,
-            center_m,
-            yaw_rad,
-        } if *id == who => Some((*center_m, *yaw_rad)),
-        TextEdit::Replace { id, object } if *id == who => Some((object.center_m, object.yaw_rad)),
-        _ => None,
+            center_m: Some(center_m),
+            yaw_deg: Some(deg),
+            ..
+        } if *id == who => Some((*center_m, deg.to_radians())),
+        edit => edit
+            .added_box()
+            .filter(|b| b.id == who)
+            .map(|b| (b.center_m, b.yaw_rad)),
     });
     found.unwrap_or_else(|| panic!("box {} is not moved: {edits:?}", who.0))
 }
@@ -280,7 +294,7 @@ fn a_group_is_placed_by_each_other() {
         .iter()
         .map(|id| {
             let now = done.edits.iter().rev().find_map(|e| match e {
-                TextEdit::Move { id: i, center_m, .. } if i == id => Some(*center_m),
+                Edit::MoveBox { id: i, center_m, .. } if i == id => *center_m,
                 _ => None,
             });
             now.unwrap_or(base.boxes[id].center_m)
@@ -298,7 +312,7 @@ fn a_crossing_lies_as_far_away_as_was_said() {
     let base = Base::new("road straight ; lacks crossing ; add 1 bus ( ahead ego 30m )");
     let done = base.edit("has crossing ( ahead ego 14m )");
     let outline = done.edits.iter().find_map(|e| match e {
-        TextEdit::Crossing { outline_m } => Some(outline_m.clone()),
+        Edit::AddPolylines { lines } => Some(lines[0].points_m.clone()),
         _ => None,
     });
     let outline = outline.unwrap_or_else(|| panic!("no crossing: {done:?}"));

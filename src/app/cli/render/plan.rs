@@ -1,0 +1,101 @@
+//! What one `render` will do, checked before anything is written.
+
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+
+use super::Render;
+use super::write::sheet_bytes;
+use crate::picture::View3d;
+use nets::lidar::LidarNet;
+use scene::{LidarSweep, Scene};
+use sensors::cameras::{self, CameraSource, View, bounds};
+use sensors::learned::{self, Drops};
+use sensors::lidar;
+
+/// Pictures of one source.
+pub struct Cameras {
+    /// Where they come from.
+    pub source: &'static dyn CameraSource,
+    /// What is written of each.
+    pub views: Vec<View>,
+}
+
+/// How the LiDAR sweep is made.
+pub enum LidarModel {
+    /// Every ray to the first voxel.
+    Exact,
+    /// By the network.
+    Learned(Arc<LidarNet>),
+}
+
+/// Everything asked for, ready to be made.
+pub struct Plan {
+    /// Camera pictures, in the order of the table.
+    pub cameras: Vec<Cameras>,
+    /// The sweep.
+    pub lidar: Option<LidarModel>,
+    /// Pictures from above.
+    pub bev: bool,
+    /// The 3D view, on its device.
+    pub view: Option<View3d>,
+}
+
+impl Plan {
+    /// Of what the arguments ask for. Errors in one line if the rig lacks a sensor for it, pictures are too large, the
+    /// network or a graphics adapter is missing.
+    pub fn new(render: &Render, scene: &Scene) -> anyhow::Result<Self> {
+        let wants = |kind: &str| render.what.iter().any(|w| w == kind);
+        let mut cameras: Vec<Cameras> = Vec::new();
+        for view in cameras::views().into_iter().filter(|v| wants(v.id.name())) {
+            let source = cameras::source_of(view.id, render.source);
+            match cameras.iter_mut().find(|c| c.source.id() == source.id()) {
+                Some(of) => of.views.push(view),
+                None => cameras.push(Cameras {
+                    source,
+                    views: vec![view],
+                }),
+            }
+        }
+        let count = scene.rig.cameras.len();
+        if !cameras.is_empty() && count == 0 {
+            bail!("the rig {:?} has no camera", scene.rig.name);
+        }
+        for of in &cameras {
+            let sheet = sheet_bytes(render.size, count);
+            bounds::check(render.size, of.source.bytes_per_pixel(), sheet).context("--size")?;
+        }
+        let lidar = wants("lidar")
+            .then(|| LidarModel::of(render, scene))
+            .transpose()?;
+        Ok(Self {
+            cameras,
+            lidar,
+            bev: wants("bev"),
+            view: wants("view").then(View3d::new).transpose()?,
+        })
+    }
+}
+
+impl LidarModel {
+    fn of(render: &Render, scene: &Scene) -> anyhow::Result<Self> {
+        if scene.rig.lidars.is_empty() {
+            bail!("the rig {:?} has no lidar", scene.rig.name);
+        }
+        match render.lidar.as_str() {
+            "exact" => Ok(Self::Exact),
+            _ => Ok(Self::Learned(LidarNet::bundled().context("the LiDAR network")?)),
+        }
+    }
+
+    /// The sweep of a scene.
+    pub fn sweep(&self, scene: &Scene) -> anyhow::Result<LidarSweep> {
+        let occupancy = &scene.frame().occupancy;
+        match self {
+            Self::Exact => Ok(lidar::rig_sweep(occupancy, &scene.rig).unwrap_or_default()),
+            Self::Learned(net) => {
+                learned::rig_sweep(net, occupancy, &scene.rig, Drops::Likely).context("the LiDAR network")
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! A panic on a thread that the window starts is told in one line, and the next piece of work is done.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::Context;
+use tempfile::tempdir;
+
+use crate::export::{ExportOptions, Format};
+use crate::scenery::{Drawer, SceneryWish};
+use crate::trade::calibrate::{Background, News, Task};
+use crate::{AppConfig, SceneloomApp, open};
+use editor::Edit;
+use job::guard::panic_next;
+use job::{GenError, GenParams};
+
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn app() -> SceneloomApp {
+    let config = AppConfig {
+        scene: open::from_template("straight", 3).expect("a template"),
+        path: None,
+        build_pipeline: Box::new(|| Err(GenError::failed("no pipeline here"))),
+        params: GenParams::default(),
+        full_params: GenParams::default(),
+        warm_up: false,
+        open: Arc::new(open::scene),
+        save: Arc::new(|_, _| Ok(())),
+        new_scene: Arc::new(|| anyhow::bail!("no new scene here")),
+        native_dialogs: false,
+        settings_file: None,
+    };
+    SceneloomApp::new(config, None, &Context::default()).expect("threads")
+}
+
+/// Updates the window until the newest message holds a text.
+fn wait_for(app: &mut SceneloomApp, text: &str) {
+    let start = Instant::now();
+    while !app.toasts.last().is_some_and(|t| t.contains(text)) {
+        let last = app.toasts.last();
+        assert!(start.elapsed() < PATIENCE, "{last:?}, expected {text:?}");
+        app.update(&Context::default());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn opening() {
+    let mut app = app();
+    let ctx = Context::default();
+    let make = || Ok(open::from_template("straight", 4).expect("a template"));
+    panic_next("open");
+    app.load("Opening a file".into(), None, false, &ctx, make);
+    wait_for(&mut app, "Opening a file: open panicked: asked for by a test");
+    assert!(app.opening.is_none());
+    app.load("Opening a file".into(), None, false, &ctx, make);
+    while app.opening.is_some() {
+        app.update(&ctx);
+    }
+    assert_eq!(
+        app.document.scene().frame().boxes,
+        make().expect("a scene").frame().boxes
+    );
+}
+
+#[test]
+fn exports() {
+    let mut app = app();
+    let folder = tempdir().expect("a folder");
+    let path = folder.path().join("labels.npz");
+    panic_next("export");
+    for expected in ["Not exported: export panicked: asked for by a test", "Exported"] {
+        let formats = vec![Format::Occ3d];
+        app.start_export(
+            formats,
+            ExportOptions::default(),
+            path.clone(),
+            &Context::default(),
+        );
+        wait_for(&mut app, expected);
+    }
+    assert!(path.is_file());
+}
+
+#[test]
+fn scenery() {
+    let mut app = app();
+    let wish = SceneryWish {
+        by: Drawer::Network,
+        ..SceneryWish::of_seed(5)
+    };
+    let before = app.document.settled_scene().rev;
+    panic_next("scenery");
+    app.put_scenery(wish.clone(), false);
+    wait_for(
+        &mut app,
+        "No scenery was drawn: scenery panicked: asked for by a test",
+    );
+    assert_eq!(app.document.settled_scene().rev, before);
+    app.put_scenery(wish, false);
+    let start = Instant::now();
+    while app.document.settled_scene().rev == before {
+        assert!(start.elapsed() < PATIENCE, "{:?}", app.toasts.last());
+        app.update(&Context::default());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn checks_and_sensors() {
+    let mut app = app();
+    let wanted = crate::camera_views::Wanted::of(&app.state);
+    panic_next("checks");
+    wait_for(
+        &mut app,
+        "The scene was not checked: checks panicked: asked for by a test",
+    );
+    assert!(app.checking.findings().is_none());
+    panic_next("sensing");
+    app.sensing.ask(app.document.scene(), wanted, true);
+    wait_for(
+        &mut app,
+        "The sensors show an older scene: sensing panicked: asked for by a test",
+    );
+    let prompt = "another state".to_owned();
+    app.apply("Prompt", &[Edit::SetPrompt { prompt }]);
+    let rev = app.document.settled_scene().rev;
+    app.sensing.ask(app.document.scene(), wanted, true);
+    let start = Instant::now();
+    while app.checking.is_stale(rev) || app.sensing.lidar_stale(rev) {
+        assert!(start.elapsed() < PATIENCE, "no findings");
+        app.update(&Context::default());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn measuring() {
+    let next = |background: &Background| {
+        let start = Instant::now();
+        loop {
+            if let Some(news) = background.next() {
+                return news;
+            }
+            assert!(start.elapsed() < PATIENCE, "no news");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    };
+    let start = || Background::start(Task::Calibrate(trade::Stops::bundled()), || {}).expect("a thread");
+    panic_next("measure");
+    let News::Failed(line) = next(&start()) else {
+        panic!("it goes on");
+    };
+    assert_eq!(line, "measure panicked: asked for by a test");
+    assert!(matches!(next(&start()), News::Progress(..)));
+}

@@ -1,0 +1,103 @@
+//! The bird's-eye view, with the state before on it or beside it.
+
+use egui::{Rect, Ui};
+
+use super::areas::{clipped, halves, in_rect, left_part, sides};
+use super::compare::{CompareMode, legend, wipe_line};
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
+use crate::canvas::CanvasInput;
+use crate::command::Command;
+use crate::state::Underlay;
+use crate::widgets::icons::{self, Icon};
+
+/// The bird's-eye view.
+pub struct Bev;
+
+impl Pane for Bev {
+    fn id(&self) -> PaneId {
+        PaneId::BEV
+    }
+
+    fn title(&self) -> String {
+        "Bird's-eye view".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Map
+    }
+
+    fn shows_before(&self) -> bool {
+        true
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let choices = [
+            (Underlay::Layout, "Layout", "map layers"),
+            (Underlay::Occupancy, "Occupancy", "voxels from above"),
+            (Underlay::Both, "Both", "layers over voxels"),
+        ];
+        icons::choice(ui, &mut cx.state.underlay, &choices, "Bird's-eye view shows");
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let area = ui.available_rect_before_wrap();
+        let scene = cx.scene;
+
+        let mode = cx.compare.mode(cx.state);
+        let (left, right) = halves(area);
+        let rect = if mode == CompareMode::Side { right } else { area };
+        let input = CanvasInput {
+            scene,
+            settled: cx.document.settled_scene(),
+            lidar: cx.sensing.lidar().map(|l| &**l),
+            unsettled: cx.unsettled.clone(),
+            generating: cx.generating,
+        };
+        if cx.compare.shows_before(cx.state, scene)
+            && let Some(map) = cx.canvas.map
+        {
+            clipped(ui, area, |ui| {
+                cx.compare.canvas.still(ui, area, &map, scene, cx.state);
+            });
+            return;
+        }
+        let (canvas, state) = (&mut *cx.canvas, &mut *cx.state);
+        in_rect(ui, rect, |ui| {
+            canvas.show(ui, &input, state, commands);
+        });
+        if let (true, Some(last), Some(map)) = (cx.tuning.show_modelled, &cx.tuning.last, &cx.canvas.map) {
+            super::modelled::draw(ui, rect, map, last, cx.sensing.sampled());
+        }
+        let (Some(before), Some(map)) = (cx.compare.before.clone(), cx.canvas.map) else {
+            return;
+        };
+        match mode {
+            CompareMode::Off => {}
+            CompareMode::Side => {
+                clipped(ui, left, |ui| {
+                    cx.compare.canvas.still(ui, left, &map, &before, cx.state);
+                });
+                sides(ui, left, right);
+            }
+            CompareMode::Wipe => {
+                let part = left_part(area, cx.state.wipe_at);
+                clipped(ui, part, |ui| {
+                    cx.compare.canvas.still(ui, area, &map, &before, cx.state);
+                });
+                wipe_line(ui, area, &mut cx.state.wipe_at);
+            }
+            CompareMode::Difference => {
+                if let Some((difference, texture)) = cx.compare.difference(ui, scene) {
+                    let entries = difference.legend();
+                    let far = glam::DVec2::splat(scene::GridSpec::MAX_M[0]);
+                    let grid = Rect::from_two_pos(map.to_screen(-far), map.to_screen(far));
+                    let unit = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                    let painter = ui.painter_at(area);
+                    painter.image(texture, grid, unit, egui::Color32::WHITE);
+                    legend(ui, area.left_top() + egui::vec2(8.0, 8.0), &entries);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,398 @@
+//! The strip of camera pictures, and one of them enlarged.
+
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{
+    Align2, Color32, Rect, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
+    vec2,
+};
+use glam::DVec3;
+
+use super::camera_header::header;
+use super::lit;
+use crate::camera_views::{CameraView, march};
+use crate::command::{Command, ViewCommand};
+use crate::sensing::Sensing;
+use crate::state::UiState;
+use crate::theme;
+use scene::{Camera, Class, Scene, SceneRev};
+use sensors::cameras::ViewId;
+use sensors::march::{MarchHit, MarchScene};
+
+/// Textures of the pictures.
+#[derive(Default)]
+pub struct CameraStrip {
+    /// One for each camera that was ever shown.
+    textures: Vec<Option<TextureHandle>>,
+    made_from: Option<(Arc<Vec<CameraView>>, ViewId, f64)>,
+    probe: Option<(SceneRev, MarchScene)>,
+    stale_since_s: Option<f64>,
+    /// Pictures of another state, shown up to this part of the width of each.
+    before: Option<(Vec<Option<TextureHandle>>, f32)>,
+    looks_stale: bool,
+}
+
+/// What the strip shows.
+pub struct CamerasInput<'a> {
+    /// The scene shown.
+    pub scene: &'a Scene,
+    /// The newest pictures, in the rig's order.
+    pub views: Option<&'a Arc<Vec<CameraView>>>,
+    /// The pictures belong to an earlier state.
+    pub stale: bool,
+    /// Text that decides time and weather.
+    pub prompt: &'a str,
+    /// Returns of the newest sweep.
+    pub lidar_points: Option<usize>,
+}
+
+impl<'a> CamerasInput<'a> {
+    /// Of a scene and what its sensors returned; `rev` is the state that they should show.
+    pub(crate) fn of(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> Self {
+        Self {
+            scene,
+            views: sensing.cameras(),
+            prompt: &scene.prompt,
+            stale: sensing.cameras_stale(rev),
+            lidar_points: sensing.lidar().map(|l| l.points.len()),
+        }
+    }
+}
+
+impl CameraStrip {
+    /// Draws the pictures in a row.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        input: &CamerasInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        self.refresh(ui, input.views, state);
+        self.note_stale(ui, input.stale);
+        let cameras = &input.scene.rig.cameras;
+        let shown: Vec<usize> = (0..cameras.len()).filter(|i| !state.camera_hidden(*i)).collect();
+        let count = shown.len().max(1) as f32;
+        let gap = 6.0;
+        let room = ui.available_size();
+        let width = ((room.x - gap * (count - 1.0)) / count)
+            .min(room.y * 16.0 / 9.0)
+            .max(40.0);
+        let used = width * count + gap * (count - 1.0);
+        let left = ui.max_rect().left() + ((room.x - used) / 2.0).max(0.0);
+        let top = ui.cursor().top();
+        for (place, &i) in shown.iter().enumerate() {
+            let at = pos2(left + place as f32 * (width + gap), top);
+            let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
+            let hovered = self.picture(ui, rect, i, input.scene, state, commands);
+            if let Some(part) = hovered {
+                state.readout = self.pixel_text(input.scene, &cameras[i], part);
+            }
+        }
+        if shown.is_empty() {
+            let text = "No camera is shown. Sensors… adds and shows them.";
+            ui.label(egui::RichText::new(text).color(theme::text_weak()));
+        }
+    }
+
+    /// The pictures as textures, brought up to date.
+    pub fn textures(
+        &mut self,
+        ui: &Ui,
+        input: &CamerasInput<'_>,
+        state: &UiState,
+    ) -> Vec<Option<TextureHandle>> {
+        self.refresh(ui, input.views, state);
+        self.textures.clone()
+    }
+
+    /// Shows these pictures of another state on the left of each, up to a part of its width; none: not at all.
+    pub fn wipe(&mut self, before: Option<(Vec<Option<TextureHandle>>, f32)>) {
+        self.before = before;
+    }
+
+    /// What the header of the strip offers.
+    pub fn controls(
+        &self,
+        ui: &mut Ui,
+        input: &CamerasInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        header(ui, input, self.looks_stale, state, commands);
+    }
+
+    /// Draws one camera into all the space there is.
+    pub fn single(
+        &mut self,
+        ui: &mut Ui,
+        index: usize,
+        input: &CamerasInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        self.refresh(ui, input.views, state);
+        self.note_stale(ui, input.stale);
+        let area = ui.available_rect_before_wrap();
+        let Some(camera) = input.scene.rig.cameras.get(index) else {
+            let text = "The vehicle has no such camera. Sensors… adds one.";
+            ui.label(egui::RichText::new(text).color(theme::text_weak()));
+            return;
+        };
+        let aspect = camera.width as f32 / camera.height.max(1) as f32;
+        let width = area.width().min(area.height() * aspect).max(40.0);
+        let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
+        if let Some(part) = self.picture(ui, rect, index, input.scene, state, commands) {
+            state.readout = self.pixel_text(input.scene, camera, part);
+        }
+    }
+
+    /// Pictures that are renewed at once should not flicker: only what stays stale looks so.
+    fn note_stale(&mut self, ui: &Ui, stale: bool) {
+        const AFTER_S: f64 = 0.35;
+        let now_s = ui.input(|i| i.time);
+        if !stale {
+            (self.stale_since_s, self.looks_stale) = (None, false);
+            return;
+        }
+        let since_s = *self.stale_since_s.get_or_insert(now_s);
+        self.looks_stale = now_s - since_s >= AFTER_S;
+        if !self.looks_stale {
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_secs_f64(AFTER_S));
+        }
+    }
+
+    fn refresh(&mut self, ui: &Ui, views: Option<&Arc<Vec<CameraView>>>, state: &UiState) {
+        let Some(views) = views else { return };
+        let (view, plane_m) = (state.camera_view, state.plane_m);
+        if self
+            .made_from
+            .as_ref()
+            .is_some_and(|(of, shown, at_m)| Arc::ptr_eq(of, views) && *shown == view && *at_m == plane_m)
+        {
+            return;
+        }
+        let count = views.iter().map(|v| v.camera + 1).max().unwrap_or(0);
+        self.textures.resize(count, None);
+        for of_camera in views.iter() {
+            let image = of_camera.colors(view, plane_m);
+            match &mut self.textures[of_camera.camera] {
+                Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                empty => *empty = Some(ui.ctx().load_texture("camera", image, TextureOptions::LINEAR)),
+            }
+        }
+        self.made_from = Some((views.clone(), view, plane_m));
+    }
+
+    fn hit(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> Option<MarchHit> {
+        if self.probe.as_ref().is_none_or(|(rev, _)| *rev != scene.rev) {
+            self.probe = Some((scene.rev, march(scene, true)));
+        }
+        let (_, march) = self.probe.as_ref()?;
+        march.cast(camera.ego_from_camera().translation_m, ray_of(camera, part))
+    }
+
+    /// What lies behind a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
+    /// across the picture.
+    fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
+        let label = camera_label(&camera.name);
+        let Some(hit) = self.hit(scene, camera, part) else {
+            return format!("{label}  ·  sky");
+        };
+        let pose = camera.ego_from_camera();
+        let ray = ray_of(camera, part);
+        let name = match hit.id {
+            17 => "crossing".to_owned(),
+            18 => "road divider".to_owned(),
+            19 => "lane divider".to_owned(),
+            id => Class::from_id(id).map_or_else(|| "unknown".into(), Class::label),
+        };
+        let name = hit.box_id.map_or(name.clone(), |id| format!("{name} #{}", id.0));
+        let p = pose.translation_m + ray * hit.t;
+        let (x, y, z) = (p.x + 0.0, p.y + 0.0, p.z + 0.0);
+        format!(
+            "{label}  ·  {name}  ·  {:.1} m away  ·  {x:.1}, {y:.1}, {z:.1} m",
+            hit.t
+        )
+    }
+
+    fn picture(
+        &self,
+        ui: &Ui,
+        rect: Rect,
+        index: usize,
+        scene: &Scene,
+        state: &UiState,
+        commands: &mut Vec<Command>,
+    ) -> Option<egui::Vec2> {
+        let camera = scene.rig.cameras.get(index)?;
+        let label = camera_label(&camera.name);
+        let response = ui.interact(rect, ui.scope_id().with(("camera", index)), Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Camera {label}")));
+        let painter = ui.painter_at(rect.expand(1.0));
+        match self.texture(index) {
+            Some(texture) => {
+                let tint = if self.looks_stale {
+                    Color32::from_gray(170)
+                } else {
+                    Color32::WHITE
+                };
+                painter.image(texture.id(), rect, unit(), tint);
+            }
+            None => {
+                painter.rect_filled(rect, 3.0, theme::well());
+                let font = egui::TextStyle::Small.resolve(ui.style());
+                painter.text(
+                    rect.center(),
+                    Align2::CENTER_CENTER,
+                    "rendering…",
+                    font,
+                    theme::text_weak(),
+                );
+            }
+        }
+        if let Some((before, part)) = &self.before
+            && let Some(texture) = before.get(index).and_then(Option::as_ref)
+        {
+            let left = Rect::from_min_size(rect.min, vec2(rect.width() * part, rect.height()));
+            let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(*part, 1.0));
+            painter.image(texture.id(), left, uv, Color32::WHITE);
+            painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
+        }
+        lit::draw(&painter, rect, camera, scene, state);
+        let chosen = state.inspected == Some(index);
+        let edge = match (chosen, response.hovered()) {
+            (true, _) => Stroke::new(2.0, theme::accent()),
+            (_, true) => Stroke::new(1.0, theme::text_weak()),
+            _ => Stroke::new(1.0, Color32::from_black_alpha(120)),
+        };
+        painter.rect_stroke(rect, 2.0, edge, StrokeKind::Inside);
+        badge(
+            ui,
+            &painter,
+            rect.left_bottom() + vec2(6.0, -6.0),
+            &label,
+            theme::ON_CANVAS,
+        );
+        let part = response.hover_pos().map(|p| (p - rect.min) / rect.size());
+        if response.double_clicked() {
+            commands.push(Command::View(ViewCommand::Inspect(None)));
+            commands.push(Command::View(ViewCommand::LookThrough(index)));
+        } else if response.clicked() {
+            commands.push(Command::View(ViewCommand::Inspect((!chosen).then_some(index))));
+        }
+        part
+    }
+
+    fn texture(&self, camera: usize) -> Option<&TextureHandle> {
+        self.textures.get(camera).and_then(Option::as_ref)
+    }
+
+    /// One camera large, over the views; its pixels can be read.
+    pub fn enlarged(
+        &mut self,
+        ui: &Ui,
+        over: Rect,
+        input: &CamerasInput<'_>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(index) = state.inspected else { return };
+        let (Some(texture), Some(camera)) =
+            (self.texture(index).cloned(), input.scene.rig.cameras.get(index))
+        else {
+            return;
+        };
+        let aspect = camera.width as f32 / camera.height.max(1) as f32;
+        let width = (over.width() * 0.72).min((over.height() * 0.8) * aspect);
+        let window = egui::Window::new(format!("Camera: {}", camera_label(&camera.name)))
+            .id(egui::Id::unique("enlarged camera"))
+            .collapsible(false)
+            .resizable(false)
+            .default_pos(over.center() - vec2(width, width / aspect + 60.0) / 2.0);
+        let mut open = true;
+        window.open(&mut open).show(ui.ctx(), |ui| {
+            let size = vec2(width, width / aspect);
+            let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+            response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Enlarged camera"));
+            ui.painter().image(texture.id(), rect, unit(), Color32::WHITE);
+            lit::draw(ui.painter(), rect, camera, input.scene, state);
+            if let (true, Some(p)) = (response.clicked(), response.interact_pointer_pos()) {
+                let part = (p - rect.min) / rect.size();
+                let hit = self.hit(input.scene, camera, part).and_then(|hit| hit.box_id);
+                commands.push(Command::Select(hit));
+            }
+            ui.horizontal(|ui| {
+                let text = response
+                    .hover_pos()
+                    .map(|p| self.pixel_text(input.scene, camera, (p - rect.min) / rect.size()));
+                ui.label(text.unwrap_or_else(|| {
+                    "Move over the picture to read a pixel; a click chooses the box there".into()
+                }));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if ui.button("Look through in 3D").clicked() {
+                        commands.push(Command::View(ViewCommand::LookThrough(index)));
+                        commands.push(Command::View(ViewCommand::Inspect(None)));
+                    }
+                });
+            });
+        });
+        if !open {
+            state.inspected = None;
+        }
+    }
+}
+
+/// The way a place of a picture looks, ego frame; `part` runs from 0 to 1 across it.
+fn ray_of(camera: &Camera, part: egui::Vec2) -> DVec3 {
+    let size = [camera.width, camera.height].map(f64::from);
+    let at = |i: usize, part: f32| (f64::from(part) * size[i] - camera.center_px[i]) / camera.focal_px[i];
+    let ray = DVec3::new(at(0, part.x), at(1, part.y), 1.0);
+    (camera.ego_from_camera().rotation * ray).normalize_or(DVec3::X)
+}
+
+fn unit() -> Rect {
+    Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0))
+}
+
+fn badge(ui: &Ui, painter: &egui::Painter, left_bottom: egui::Pos2, text: &str, color: Color32) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let galley = painter.layout_no_wrap(text.to_owned(), font, color);
+    let size = galley.size() + vec2(10.0, 4.0);
+    let rect = Rect::from_min_size(left_bottom - vec2(0.0, size.y), size);
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(150));
+    painter.galley(rect.min + vec2(5.0, 2.0), galley, color);
+}
+
+/// `CAM_FRONT_LEFT` as a person says it.
+pub fn camera_label(name: &str) -> String {
+    theme::sentence(&name.trim_start_matches("CAM_").replace('_', " ").to_lowercase())
+}
+
+/// 34567 as `34,567`.
+pub fn thousands(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_numbers_for_people() {
+        assert_eq!(camera_label("CAM_FRONT_LEFT"), "Front left");
+        assert_eq!(thousands(999), "999");
+        assert_eq!(thousands(34_720), "34,720");
+        assert_eq!(thousands(1_234_567), "1,234,567");
+    }
+}

@@ -1,0 +1,291 @@
+//! Before and after: two states of the scene in every view at once, by holding a key, by a line that is dragged, side by
+//! side, or as what differs.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2};
+
+use scene::{GridSpec, Scene, SceneRev, VoxelGrid};
+
+use super::camera_strip::CameraStrip;
+use super::lidar::SweepPicture;
+use crate::bev_image::{SIZE, column_of};
+use crate::camera_views::Wanted;
+use crate::canvas::Canvas;
+use crate::sensing::Sensing;
+pub use crate::state::CompareMode;
+use crate::state::UiState;
+use crate::theme;
+use crate::view3d::View3d;
+use viewport::BrushCells;
+
+/// What differs between two grids.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// Voxels that are there and were not, `[x, y, z]`.
+    pub added: Vec<[usize; 3]>,
+    /// Voxels that were there and are not.
+    pub removed: Vec<[usize; 3]>,
+    /// Voxels of another class.
+    pub changed: Vec<[usize; 3]>,
+}
+
+/// Colours of voxels that came, went, and are of another class.
+pub(crate) const DIFFERENCE_COLORS: [[u8; 3]; 3] = [[70, 205, 110], [235, 70, 60], [240, 180, 60]];
+
+impl Difference {
+    /// Between two grids; columns that share their memory are passed over.
+    pub fn between(before: &VoxelGrid, after: &VoxelGrid) -> Self {
+        let mut out = Self::default();
+        for x in 0..GridSpec::NX {
+            for y in 0..GridSpec::NY {
+                let (a, b) = (before.column(x, y), after.column(x, y));
+                if a == b {
+                    continue;
+                }
+                for z in (0..GridSpec::NZ).filter(|z| a[*z] != b[*z]) {
+                    let free = scene::Class::FREE;
+                    let of_kind = match (a[z] == free, b[z] == free) {
+                        (true, _) => &mut out.added,
+                        (_, true) => &mut out.removed,
+                        _ => &mut out.changed,
+                    };
+                    of_kind.push([x, y, z]);
+                }
+            }
+        }
+        out
+    }
+
+    /// What each colour means, and how many there are of it; nothing that is not there.
+    pub(crate) fn legend(&self) -> Vec<(Color32, String)> {
+        let names = ["added", "removed", "of another class"];
+        let lists = [&self.added, &self.removed, &self.changed];
+        let parts = DIFFERENCE_COLORS.iter().zip(lists).zip(names);
+        parts
+            .filter(|((_, list), _)| !list.is_empty())
+            .map(|(([r, g, b], list), name)| {
+                (Color32::from_rgb(*r, *g, *b), format!("{} {name}", list.len()))
+            })
+            .collect()
+    }
+
+    /// The same for a picture of the voxels in space.
+    pub(crate) fn marked(&self) -> [BrushCells<'_>; 3] {
+        let lists = [&self.added, &self.removed, &self.changed];
+        std::array::from_fn(|i| BrushCells {
+            cells: lists[i],
+            color: DIFFERENCE_COLORS[i],
+        })
+    }
+
+    /// From above: green where something came, red where something went, amber where only classes changed.
+    fn image(before: &VoxelGrid, after: &VoxelGrid) -> ColorImage {
+        let free = scene::Class::FREE;
+        let pixel = |i: usize| {
+            let (x, y) = column_of(i);
+            let (a, b) = (before.column(x, y), after.column(x, y));
+            let any = |f: &dyn Fn(u8, u8) -> bool| a.iter().zip(b).any(|(a, b)| a != b && f(*a, *b));
+            let kind = if any(&|a, b| a != free && b == free) {
+                1
+            } else if any(&|a, _| a == free) {
+                0
+            } else if any(&|_, _| true) {
+                2
+            } else {
+                return Color32::TRANSPARENT;
+            };
+            let [r, g, b] = DIFFERENCE_COLORS[kind];
+            Color32::from_rgba_unmultiplied(r, g, b, 200)
+        };
+        ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+    }
+}
+
+/// The other state, and its own copies of what draws it.
+#[derive(Default)]
+pub struct Compare {
+    /// What the user chose to compare with; none: the version before the present one.
+    pub chosen: Option<Arc<Scene>>,
+    /// The state compared with, while there is a comparison.
+    pub(crate) before: Option<Arc<Scene>>,
+    pub(crate) canvas: Canvas,
+    pub(crate) view3d: Option<View3d>,
+    pub(crate) strip: CameraStrip,
+    pub(crate) sweep: SweepPicture,
+    pub(crate) sensing: Option<Sensing>,
+    difference: Option<(SceneRev, SceneRev, Difference, egui::TextureHandle)>,
+}
+
+impl Compare {
+    /// Notes what to compare with and asks its sensors, or lets go of it.
+    pub(crate) fn prepare(
+        &mut self,
+        before: Option<Arc<Scene>>,
+        wanted: Wanted,
+        senses: bool,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) {
+        self.before = before;
+        let Some(scene) = &self.before else { return };
+        if !senses {
+            return;
+        }
+        if self.sensing.is_none() {
+            // Without a thread the cameras of the other state stay empty; the views do not need it.
+            self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();
+        }
+        if let Some(sensing) = &mut self.sensing {
+            sensing.ask(scene, wanted, false);
+            sensing.drain();
+        }
+    }
+
+    /// What differs from `after`, with a picture of it; none without a comparison.
+    pub(crate) fn difference(&mut self, ui: &Ui, after: &Scene) -> Option<(&Difference, egui::TextureId)> {
+        let before = self.before.as_ref()?;
+        let known = |(a, b, ..): &(SceneRev, SceneRev, _, _)| *a == before.rev && *b == after.rev;
+        if !self.difference.as_ref().is_some_and(known) {
+            let (a, b) = (&before.frame().occupancy, &after.frame().occupancy);
+            let image = Difference::image(a, b);
+            let texture = ui
+                .ctx()
+                .load_texture("difference", image, egui::TextureOptions::NEAREST);
+            let found = Difference::between(a, b);
+            self.difference = Some((before.rev, after.rev, found, texture));
+        }
+        self.difference
+            .as_ref()
+            .map(|(_, _, found, texture)| (found, texture.id()))
+    }
+
+    /// The way to compare, if there is something to compare with and no key is held that shows it alone.
+    pub(crate) fn mode(&self, state: &UiState) -> CompareMode {
+        match &self.before {
+            Some(_) if !state.holding_before => state.compare,
+            _ => CompareMode::Off,
+        }
+    }
+
+    /// The state before is shown alone: its key is held.
+    pub(crate) fn shows_before(&self, state: &UiState, scene: &Arc<Scene>) -> bool {
+        state.holding_before && self.before.as_ref().is_some_and(|b| Arc::ptr_eq(b, scene))
+    }
+}
+
+/// The line of the wipe over a view, which can be dragged; `at` runs from 0 to 1 across it.
+pub(crate) fn wipe_line(ui: &Ui, rect: Rect, at: &mut f32) {
+    let x = rect.left() + rect.width() * *at;
+    let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
+    let id = ui.scope_id().with("wipe");
+    let response = ui.interact(grip, id, Sense::drag());
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    if let (true, Some(p)) = (response.dragged(), response.interact_pointer_pos()) {
+        *at = ((p.x - rect.left()) / rect.width().max(1.0)).clamp(0.02, 0.98);
+    }
+    let painter = ui.painter_at(rect);
+    painter.vline(
+        x,
+        rect.y_range(),
+        Stroke::new(3.0, Color32::from_black_alpha(120)),
+    );
+    painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
+    painter.circle(
+        pos2(x, rect.center().y),
+        6.0,
+        theme::accent(),
+        Stroke::new(1.5, Color32::WHITE),
+    );
+    tag(ui, rect.left_top() + vec2(8.0, 8.0), "before", false);
+    tag(ui, rect.right_top() + vec2(-8.0, 8.0), "after", true);
+}
+
+/// What the colours of a view mean, in its upper left corner.
+pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
+    const SWATCH: f32 = 10.0;
+    if entries.is_empty() {
+        return tag(ui, at, "no voxel differs", false);
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter();
+    let galleys: Vec<_> = entries
+        .iter()
+        .map(|(_, text)| painter.layout_no_wrap(text.clone(), font.clone(), theme::ON_CANVAS))
+        .collect();
+    let width: f32 = galleys.iter().map(|g| g.size().x + SWATCH + 16.0).sum();
+    let height = galleys.iter().map(|g| g.size().y).fold(SWATCH, f32::max) + 6.0;
+    let rect = Rect::from_min_size(at, vec2(width + 4.0, height));
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
+    let mut x = rect.left() + 8.0;
+    for (galley, (color, text)) in galleys.into_iter().zip(entries) {
+        let swatch = Rect::from_center_size(pos2(x + SWATCH / 2.0, rect.center().y), vec2(SWATCH, SWATCH));
+        painter.rect_filled(swatch, 2.0, *color);
+        let size = galley.size();
+        let left = pos2(swatch.right() + 5.0, rect.center().y - size.y / 2.0);
+        painter.galley(left, galley, theme::ON_CANVAS);
+        let entry = Rect::from_min_max(pos2(x, rect.top()), pos2(left.x + size.x, rect.bottom()));
+        let response = ui.interact(entry, ui.scope_id().with(text), Sense::hover());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, text));
+        x = left.x + size.x + 12.0;
+    }
+}
+
+/// A word in a corner of a view.
+pub(crate) fn tag(ui: &Ui, at: egui::Pos2, text: &str, from_right: bool) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout_no_wrap(text.to_owned(), font, theme::ON_CANVAS);
+    let size = galley.size() + vec2(10.0, 4.0);
+    let min = if from_right { at - vec2(size.x, 0.0) } else { at };
+    let rect = Rect::from_min_size(min, size);
+    ui.painter()
+        .rect_filled(rect, 3.0, Color32::from_black_alpha(170));
+    ui.painter()
+        .galley(rect.min + vec2(5.0, 2.0), galley, theme::ON_CANVAS);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::Class;
+
+    #[test]
+    fn differences_are_counted_by_kind() {
+        let mut before = VoxelGrid::new();
+        before.set(1, 2, 3, Class::Car.id());
+        before.set(4, 5, 6, Class::Car.id());
+        let mut after = before.clone();
+        assert_eq!(Difference::between(&before, &after), Difference::default());
+        after.set(1, 2, 3, Class::FREE);
+        after.set(4, 5, 6, Class::Bus.id());
+        after.set(7, 8, 9, Class::Bus.id());
+        let found = Difference::between(&before, &after);
+        assert_eq!(
+            (&found.added[..], &found.removed[..]),
+            (&[[7, 8, 9]][..], &[[1, 2, 3]][..])
+        );
+        assert_eq!(found.changed, [[4, 5, 6]]);
+        let legend: Vec<String> = found.legend().into_iter().map(|(_, text)| text).collect();
+        assert_eq!(legend, ["1 added", "1 removed", "1 of another class"]);
+        // A column's colour is that of its voxels in space.
+        let image = Difference::image(&before, &after);
+        let drawn = |color: [u8; 3]| {
+            let [r, g, b] = color;
+            let color = Color32::from_rgba_unmultiplied(r, g, b, 200);
+            image.pixels.iter().filter(|p| **p == color).count()
+        };
+        assert_eq!(DIFFERENCE_COLORS.map(drawn), [1, 1, 1]);
+    }
+
+    #[test]
+    fn modes_go_round() {
+        let mut mode = CompareMode::Off;
+        for _ in CompareMode::ALL {
+            mode = mode.next();
+        }
+        assert_eq!(mode, CompareMode::Off);
+    }
+}

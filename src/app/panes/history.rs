@@ -1,0 +1,111 @@
+//! The steps that can be undone and done again: every one is a click away.
+
+use egui::Ui;
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
+use crate::command::Command;
+use crate::theme;
+use crate::widgets::icons::Icon;
+use editor::Document;
+
+/// Height of a line, with the gap.
+const HISTORY_ROW: f32 = theme::ROW - 3.0;
+
+/// The steps that can be undone.
+pub struct History;
+
+impl Pane for History {
+    fn id(&self) -> PaneId {
+        PaneId::HISTORY
+    }
+
+    fn title(&self) -> String {
+        "History".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Undo
+    }
+
+    fn place(&self) -> Place {
+        Place::ColumnAtOnce
+    }
+
+    fn column_points(&self) -> f32 {
+        266.0
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let text = history_title(cx.document);
+        ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| history_ui(ui, cx.document, commands));
+    }
+}
+
+/// What the history takes of the memory that it may, for the header of its pane.
+pub fn history_title(document: &Document) -> String {
+    let mb = |bytes: usize| bytes as f64 / f64::from(1 << 20);
+    let (used, limit) = (mb(document.history_bytes()), mb(document.history_limit()));
+    format!("{used:.1} of {limit:.0} MB")
+}
+
+/// Draws every step; a click goes there.
+pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>) {
+    let (labels, at): (Vec<&str>, usize) = (document.history().collect(), document.position());
+    ui.spacing_mut().item_spacing.y = HISTORY_ROW - (theme::ROW - 4.0);
+    let mut area = egui::ScrollArea::vertical()
+        .id_salt("history")
+        .auto_shrink([false, false])
+        .stick_to_bottom(at + 1 == labels.len());
+    // Another state is shown: its line comes into sight.
+    let shown = ui.scope_id().with("history position");
+    if ui.data_mut(|d| d.get_temp::<usize>(shown)) != Some(at) {
+        ui.data_mut(|d| d.insert_temp(shown, at));
+        // In the middle; no further than the list goes, or it would jump back in the next frame.
+        let room = ui.available_height();
+        let above = at as f32 * HISTORY_ROW - room / 2.0;
+        let most = labels.len() as f32 * HISTORY_ROW - room;
+        area = area.vertical_scroll_offset(above.min(most).max(0.0));
+    }
+    area.show_rows(ui, theme::ROW - 4.0, labels.len(), |ui, range| {
+        for i in range {
+            let color = match i.cmp(&at) {
+                std::cmp::Ordering::Less => theme::text(),
+                std::cmp::Ordering::Equal => theme::text_strong(),
+                std::cmp::Ordering::Greater => theme::text_weak().gamma_multiply(0.7),
+            };
+            let size = egui::vec2(ui.available_width(), theme::ROW - 4.0);
+            // Known by its number, wherever the list is scrolled to.
+            let row = |ui: &mut Ui| ui.allocate_exact_size(size, egui::Sense::click());
+            let (rect, response) = ui.push_id(i, row).inner;
+            let name = format!("History {i} {}", labels[i]);
+            response.widget_info(|| {
+                egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, i == at, &name)
+            });
+            let fill = match (i == at, response.hovered()) {
+                (true, _) => theme::field(),
+                (_, true) => theme::field().gamma_multiply(0.6),
+                _ => egui::Color32::TRANSPARENT,
+            };
+            ui.painter().rect_filled(rect, theme::RADIUS, fill);
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let mut line = egui::text::LayoutJob::simple_singleline(labels[i].to_owned(), font, color);
+            line.wrap = egui::text::TextWrapping::truncate_at_width(rect.width() - 16.0);
+            let galley = ui.fonts_mut(|fonts| fonts.layout_job(line));
+            let at = rect.left_center() + egui::vec2(8.0, -galley.size().y / 2.0);
+            let cut = galley.elided;
+            ui.painter().galley(at, galley, color);
+            let response = match cut {
+                true => response.on_hover_text(labels[i]),
+                false => response,
+            };
+            if response.clicked() {
+                commands.push(Command::JumpTo(i));
+            }
+        }
+    });
+}

@@ -1,0 +1,110 @@
+//! Name and paint of the chosen boxes.
+
+use egui::{Color32, Ui};
+
+use crate::command::Command;
+use crate::theme;
+use crate::widgets::fields::caption;
+use crate::widgets::icons;
+use editor::Edit;
+use scene::{BoxLabel, BoxName, Paint, SceneBox};
+
+/// A field for the name and a list of paints; what is set holds for all of the boxes.
+pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
+    let Some(first) = boxes.first() else {
+        return;
+    };
+    let same = |of: &dyn Fn(&SceneBox) -> BoxLabel| boxes.iter().all(|b| of(b) == of(first));
+    let one_name = same(&|b| BoxLabel {
+        paint: None,
+        ..b.label
+    });
+    let one_paint = same(&|b| BoxLabel {
+        name: BoxName::default(),
+        ..b.label
+    });
+    let apply = |step, new: &dyn Fn(BoxLabel) -> BoxLabel| {
+        let edits = boxes.iter().filter(|b| new(b.label) != b.label);
+        let edits: Vec<Edit> = edits
+            .map(|b| Edit::LabelBox {
+                id: b.id,
+                label: new(b.label),
+            })
+            .collect();
+        (!edits.is_empty()).then_some(Command::Apply(step, edits))
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        caption(ui, "Name");
+        let room = ui.available_width();
+        let name = if one_name { first.label.name.as_str() } else { "" };
+        if let Some(name) = name_field(ui, first, name, (room * 0.56).clamp(60.0, 150.0)) {
+            commands.extend(apply("Name box", &|label| BoxLabel { name, ..label }));
+        }
+        let mut paint = first.label.paint;
+        let shown = match (one_paint, paint) {
+            (false, _) => "Several".to_owned(),
+            (true, None) => "Any paint".to_owned(),
+            (true, Some(paint)) => theme::sentence(paint.name()),
+        };
+        if one_paint && let Some(paint) = paint {
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, theme::ROW), egui::Sense::hover());
+            icons::swatch(ui, rect.center(), 12.0, color(paint));
+        }
+        let before = paint;
+        let combo = egui::ComboBox::from_id_salt("paint")
+            .width(ui.available_width().clamp(48.0, 110.0))
+            .height(400.0)
+            .selected_text(shown);
+        let mut picked = false;
+        combo
+            .show_ui(ui, |ui| {
+                picked |= ui.selectable_value(&mut paint, None, "Any paint").clicked();
+                for other in Paint::ALL {
+                    ui.horizontal(|ui| {
+                        let (rect, _) =
+                            ui.allocate_exact_size(egui::vec2(14.0, theme::ROW), egui::Sense::hover());
+                        icons::swatch(ui, rect.center(), 12.0, color(other));
+                        let name = theme::sentence(other.name());
+                        picked |= ui.selectable_value(&mut paint, Some(other), name).clicked();
+                    });
+                }
+            })
+            .response
+            .on_hover_text("Colour in camera pictures; words find the box by it")
+            .accessible_name("Paint");
+        if paint != before || picked && !one_paint {
+            commands.extend(apply("Paint box", &|label| BoxLabel { paint, ..label }));
+        }
+    });
+}
+
+/// The name as typed; given when it is done: by Enter or by going elsewhere.
+fn name_field(ui: &mut Ui, b: &SceneBox, name: &str, width: f32) -> Option<BoxName> {
+    let memory = egui::Id::unique(("name of a box", b.id));
+    let typed: Option<String> = ui.data(|d| d.get_temp(memory));
+    let mut text = typed.clone().unwrap_or_else(|| name.to_owned());
+    let field = egui::TextEdit::singleline(&mut text)
+        .hint_text(b.class.label())
+        .char_limit(BoxName::MOST_BYTES)
+        .desired_width(width);
+    let field = ui
+        .add_sized([width, theme::ROW], field)
+        .on_hover_text("What words call it: “taxi”, “the crashed van”")
+        .accessible_name("Name");
+    if field.changed() {
+        ui.data_mut(|d| d.insert_temp(memory, text));
+        return None;
+    }
+    let left = field.lost_focus() && typed.is_some();
+    if left {
+        ui.data_mut(|d| d.remove_temp::<String>(memory));
+    }
+    let dropped = left && ui.input(|i| i.key_pressed(egui::Key::Escape));
+    (left && !dropped).then(|| BoxName::new(&text))
+}
+
+fn color(paint: Paint) -> Color32 {
+    let [r, g, b] = paint.srgb();
+    Color32::from_rgb(r, g, b)
+}

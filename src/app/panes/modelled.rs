@@ -1,0 +1,77 @@
+//! Draws over the bird's-eye view what was computed for the last edit: tokens of the network, columns that were redrawn,
+//! bricks that changed, pieces of LiDAR rays that were sampled. All else was left as it was, and cost nothing.
+
+use egui::{Color32, Painter, Rect, Stroke, StrokeKind, pos2};
+use glam::dvec2;
+
+use super::compare::tag;
+use crate::canvas::ScreenMap;
+use crate::shell::tuning::LastEdit;
+use scene::GridSpec;
+use scene::grid::{BRICK, BRICKS};
+use sensors::learned_caster::Sampled;
+
+/// Tokens along a side of the map.
+const TOKENS: usize = 25;
+
+/// Draws it, and a line that says how much it was.
+pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled: Option<&Sampled>) {
+    let painter: Painter = ui.painter_at(area);
+    let squares = |x: usize, y: usize, columns: usize| {
+        let corner = |x: usize, y: usize| {
+            let at = |i: usize| GridSpec::MIN_M[0] + i as f64 * GridSpec::VOXEL_M;
+            map.to_screen(dvec2(at(x), at(y)))
+        };
+        Rect::from_two_pos(
+            corner(x * columns, y * columns),
+            corner((x + 1) * columns, (y + 1) * columns),
+        )
+    };
+    let blue = Color32::from_rgb(70, 150, 255);
+    let side = GridSpec::NX / TOKENS;
+    for token in &last.tokens {
+        let rect = squares(token / TOKENS, token % TOKENS, side);
+        painter.rect(
+            rect,
+            0.0,
+            blue.gamma_multiply(0.16),
+            Stroke::new(1.0, blue.gamma_multiply(0.6)),
+            StrokeKind::Inside,
+        );
+    }
+    let yellow = Color32::from_rgb(255, 200, 40).gamma_multiply(0.35);
+    for (i, _) in last.region.columns.iter().enumerate().filter(|(_, c)| **c) {
+        painter.rect_filled(squares(i / GridSpec::NY, i % GridSpec::NY, 1), 0.0, yellow);
+    }
+    let green = Stroke::new(1.5, Color32::from_rgb(60, 220, 120));
+    for brick in &last.bricks {
+        painter.rect_stroke(
+            squares(brick / BRICKS, brick % BRICKS, BRICK),
+            0.0,
+            green,
+            StrokeKind::Inside,
+        );
+    }
+    let orange = Stroke::new(1.0, Color32::from_rgb(255, 130, 40).gamma_multiply(0.7));
+    for segment in sampled.iter().flat_map(|s| &s.segments) {
+        painter.line_segment(segment.map(|p| map.to_screen(p.truncate())), orange);
+    }
+    let text = format!(
+        "{} of {} tokens (blue)  ·  {} columns (yellow)  ·  {} of {} bricks (green)",
+        last.tokens.len(),
+        TOKENS * TOKENS,
+        last.report.region_columns,
+        last.bricks.len(),
+        BRICKS * BRICKS,
+    );
+    if let Some(s) = sampled {
+        let text = format!(
+            "{} of {} LiDAR rays shot, sampled on {:.0} % of their way (orange)",
+            s.rays,
+            s.of,
+            100.0 * s.share
+        );
+        tag(ui, pos2(area.left() + 8.0, area.top() + 32.0), &text, false);
+    }
+    tag(ui, pos2(area.left() + 8.0, area.top() + 8.0), &text, false);
+}

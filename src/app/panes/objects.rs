@@ -1,0 +1,450 @@
+//! The right panel: the chosen box in numbers, the list of boxes.
+
+use egui::{DragValue, Ui};
+use glam::DVec3;
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
+use super::{thing_list, things};
+use crate::command::{Command, ViewCommand};
+use crate::panes::label::label_ui;
+use crate::state::UiState;
+use crate::theme;
+use crate::tools::{Choose, ToolCommand};
+use crate::widgets::fields::{caption, field, fields, number, numbers};
+use crate::widgets::icons::Icon;
+use crate::widgets::icons::{self, section};
+use editor::transform::Orientation;
+use editor::{Document, Edit, arrange};
+use scene::{BoxId, Class, Frame, SceneBox, Thing};
+
+/// The chosen box in numbers, all boxes.
+pub struct Objects;
+
+impl Pane for Objects {
+    fn id(&self) -> PaneId {
+        PaneId::OBJECTS
+    }
+
+    fn title(&self) -> String {
+        "Objects".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::List
+    }
+
+    fn place(&self) -> Place {
+        Place::ColumnAtOnce
+    }
+
+    fn column_points(&self) -> f32 {
+        266.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| objects_ui(ui, cx.document, cx.state, commands));
+    }
+}
+
+/// Draws the panel.
+pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
+    let scene = document.scene();
+    let frame = scene.frame();
+    let room = ui.available_height();
+    let wanted: Option<f32> = ui.data(|d| d.get_temp(list_height_id()));
+    let most = (room - LEAST_INSPECTOR).max(LEAST_LIST);
+    let below = wanted.unwrap_or(LEAST_LIST).clamp(LEAST_LIST, most);
+    let gap = theme::GAP / 2.0 + ui.spacing().item_spacing.y;
+    egui::ScrollArea::vertical()
+        .id_salt("inspector")
+        .max_height((room - below - gap).max(LEAST_INSPECTOR))
+        .auto_shrink([false, wanted.is_none()])
+        .show(ui, |ui| {
+            inferred(ui, frame, state, commands);
+            section(ui, "Inspector");
+            let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
+            match state.selected.and_then(|id| frame.boxes.get(&id)) {
+                Some(_) if state.chosen().len() > 1 => several(ui, frame, state, commands),
+                Some(b) => inspector(ui, b, state, commands),
+                None if things.is_empty() => {
+                    ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
+                }
+                None => {}
+            }
+            things::inspector(ui, &things, &document.settled_scene().background, commands);
+        });
+    let rows = thing_list::rows(&scene.background, state);
+    let boxes = match frame.boxes.len() {
+        1 => "1 box".to_owned(),
+        n => format!("{n} boxes"),
+    };
+    let title = match scene.background.len() {
+        0 => boxes,
+        1 => format!("{boxes}, 1 thing"),
+        n => format!("{boxes}, {n} things"),
+    };
+    divide(ui, &title, below, most);
+    let list_height = ui.available_height().max(80.0);
+    let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
+    boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
+    let list = egui::ScrollArea::vertical()
+        .id_salt("boxes")
+        .max_height(list_height)
+        .auto_shrink([false, false]);
+    ui.spacing_mut().item_spacing.y = 1.0;
+    let list = reveal(ui, list, &boxes, state.selected, list_height);
+    list.show_rows(ui, theme::ROW, boxes.len() + rows.len(), |ui, range| {
+        for i in range {
+            match boxes.get(i) {
+                Some(b) => {
+                    let guess = frame.inferred.boxes.contains(&b.id);
+                    box_row(ui, b, guess, state.is_chosen(b.id), commands);
+                }
+                None => thing_list::row_ui(ui, &rows[i - boxes.len()], frame, state, commands),
+            }
+        }
+    });
+}
+
+/// What the list of boxes keeps, its title included, however tall the inspector is; and the inspector, points.
+const LEAST_LIST: f32 = 118.0;
+const LEAST_INSPECTOR: f32 = 60.0;
+
+/// How high the user wants the list to be; none: what the inspector leaves.
+fn list_height_id() -> egui::Id {
+    egui::Id::unique("height of the list of boxes")
+}
+
+/// The title of the list; dragged, it parts the room between inspector and list, and a double click lets go of that.
+fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
+    ui.add_space(theme::GAP / 2.0);
+    let top = ui.cursor().top();
+    ui.add_space(2.0);
+    section(ui, title);
+    let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=ui.cursor().top());
+    let response = ui.interact(line, ui.scope_id().with("divide"), egui::Sense::click_and_drag());
+    let name = "Height of the list of boxes";
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Splitter, true, name));
+    let color = match response.dragged() || response.hovered() {
+        true => theme::accent(),
+        false => theme::field_hover(),
+    };
+    if response.hovered() || response.dragged() {
+        ui.set_cursor_icon(egui::CursorIcon::ResizeVertical);
+    }
+    ui.painter()
+        .hline(line.x_range(), line.top(), egui::Stroke::new(1.0, color));
+    if response.dragged() {
+        // At first from what is shown, which may be more than was wanted.
+        let from = match response.drag_started() {
+            true => ui.max_rect().bottom() - line.top(),
+            false => height,
+        };
+        let wanted = from - response.drag_delta().y;
+        ui.data_mut(|d| d.insert_temp(list_height_id(), wanted.clamp(LEAST_LIST, most)));
+    }
+    if response.double_clicked() {
+        ui.data_mut(|d| d.remove_temp::<f32>(list_height_id()));
+    }
+}
+
+/// Scrolls to the chosen box, once, when another one was chosen elsewhere.
+fn reveal(
+    ui: &Ui,
+    list: egui::ScrollArea,
+    boxes: &[&SceneBox],
+    selected: Option<BoxId>,
+    height: f32,
+) -> egui::ScrollArea {
+    let memory = egui::Id::unique("box revealed");
+    let before: Option<BoxId> = ui.data(|d| d.get_temp(memory)).flatten();
+    if before == selected {
+        return list;
+    }
+    ui.data_mut(|d| d.insert_temp(memory, selected));
+    match boxes.iter().position(|b| Some(b.id) == selected) {
+        Some(row) => {
+            let at = row as f32 * (theme::ROW + 1.0) - height / 2.0;
+            list.vertical_scroll_offset(at.max(0.0))
+        }
+        None => list,
+    }
+}
+
+/// What an imported frame did not carry and was guessed: how to correct and to confirm it.
+fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+    if !frame.inferred.any() {
+        return;
+    }
+    section(ui, "Inferred from labels");
+    let boxes = match frame.inferred.boxes.len() {
+        0 => "",
+        1 => "1 box",
+        n => &format!("{n} boxes"),
+    };
+    if frame.inferred.background {
+        let what = "What stands beside the road is a guess.";
+        ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
+    }
+    let what = match (frame.inferred.layout, boxes) {
+        (false, "") => String::new(),
+        (true, "") => "The map layers are guesses.".to_owned(),
+        (true, boxes) => format!("The map layers and {boxes} are guesses."),
+        (false, boxes) => format!("{boxes}: guesses."),
+    };
+    if !what.is_empty() {
+        ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
+    }
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut state.correcting, "Correct them").on_hover_text(
+            "While ticked, edits of boxes and map layers change no voxel and generate nothing.",
+        );
+        let confirm = ui
+            .button("Confirm all")
+            .on_hover_text("They are right as they are.");
+        if confirm.clicked() {
+            commands.push(Command::ConfirmInferred);
+        }
+    });
+    ui.add_space(theme::GAP);
+}
+
+fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut Vec<Command>) {
+    let name = theme::sentence(&b.called());
+    let mark = if guess { "guess   " } else { "" };
+    let right = format!("{mark}#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
+    let label = format!("Box {} {}", b.id.0, b.called());
+    let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
+    let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
+    if row.clicked() && adds {
+        commands.push(Command::Tools(ToolCommand::Choose(vec![b.id], Choose::Toggle)));
+    } else if row.clicked() {
+        commands.push(Command::Select(Some(b.id)));
+    }
+    if row.double_clicked() {
+        commands.push(Command::View(ViewCommand::FrameSelection));
+    }
+}
+
+fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let mut class = b.class;
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, theme::ROW), egui::Sense::hover());
+        icons::swatch(ui, rect.center(), 14.0, theme::class_color(class));
+        let combo = egui::ComboBox::from_id_salt("class")
+            .width((ui.available_width() - 100.0).clamp(48.0, 118.0))
+            .selected_text(theme::sentence(&class.label()));
+        combo.show_ui(ui, |ui| {
+            for other in Class::OBJECTS {
+                ui.selectable_value(&mut class, other, theme::sentence(&other.label()));
+            }
+        });
+        if class != b.class {
+            commands.push(Command::Apply(
+                "Change class",
+                vec![Edit::SetBoxClass { id: b.id, class }],
+            ));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            if icons::button(ui, Icon::Trash, "Delete box", "Del", false, true).clicked() {
+                commands.push(Command::Tools(ToolCommand::Delete));
+            }
+            if icons::button(ui, Icon::Copy, "Duplicate box", "Ctrl+D", false, true).clicked() {
+                commands.push(Command::Tools(ToolCommand::Duplicate));
+            }
+            if icons::button(ui, Icon::Focus, "Frame box", "F", false, true).clicked() {
+                commands.push(Command::View(ViewCommand::FrameSelection));
+            }
+        });
+    });
+    ui.add_space(2.0);
+    label_ui(ui, &[*b], commands);
+    let local = state.tools.orientation == Orientation::Local;
+    let [mut center, mut size] = [b.center_m, b.size_m];
+    let limit = SceneBox::LIMIT_M;
+    // In the box's own axes there is no place but where it is: the fields shift it.
+    let position = match local {
+        false => numbers(ui, "Position", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05),
+        true => {
+            let start = shift_start(ui, b);
+            let mut shift = start.to_local(b.center_m);
+            let names = ["Ahead", "Left", "Up"];
+            let fields = numbers(ui, "Shift", names, &mut shift, -limit..=limit, 0.05);
+            center = start.to_ego(shift);
+            fields
+        }
+    };
+    let dimensions = numbers(
+        ui,
+        "Size",
+        ["Length", "Width", "Height"],
+        &mut size,
+        0.1..=60.0,
+        0.05,
+    );
+    let mut yaw_deg = heading_deg(b.yaw_rad);
+    let turned = ui
+        .horizontal(|ui| {
+            caption(ui, "Heading");
+            let drag = DragValue::new(&mut yaw_deg)
+                .speed(0.5)
+                .fixed_decimals(1)
+                .suffix("°");
+            let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading");
+            speed(ui, b);
+            drag
+        })
+        .inner;
+    let id = b.id;
+    let edit = |center_m, yaw_deg, size_m| Edit::MoveBox {
+        id,
+        center_m,
+        yaw_deg,
+        size_m,
+    };
+    field(&position, "Move box", edit(Some(center), None, None), commands);
+    field(&dimensions, "Resize box", edit(None, None, Some(size)), commands);
+    field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
+}
+
+/// A heading in degrees from -180 to 180. One beyond the range of a field would be brought into it as if it were typed,
+/// and turn every box that is chosen.
+fn heading_deg(yaw_rad: f64) -> f64 {
+    (yaw_rad.to_degrees() + 180.0).rem_euclid(360.0) - 180.0
+}
+
+/// What cannot be set: how fast it is, and its number.
+fn speed(ui: &mut Ui, b: &SceneBox) {
+    let kmh = b.velocity_mps.length() * 3.6;
+    let text = if kmh < 0.5 {
+        "standing".to_owned()
+    } else {
+        format!("{kmh:.0} km/h")
+    };
+    ui.label(text).on_hover_text("Speed over ground");
+    ui.label(egui::RichText::new(format!("#{}", b.id.0)).color(theme::text_weak()));
+}
+
+/// The box as it was when it was chosen: what shifts along its own axes are counted from.
+fn shift_start(ui: &Ui, b: &SceneBox) -> SceneBox {
+    let memory = egui::Id::unique("box when chosen");
+    let kept: Option<SceneBox> = ui.data(|d| d.get_temp(memory)).flatten();
+    match kept.filter(|k| k.id == b.id && k.yaw_rad == b.yaw_rad) {
+        Some(kept) => kept,
+        None => {
+            ui.data_mut(|d| d.insert_temp(memory, Some(*b)));
+            *b
+        }
+    }
+}
+
+/// Several boxes in numbers: the middle between them shifts all, sizes and headings are set for all.
+fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Command>) {
+    let ids = state.chosen();
+    let boxes = arrange::boxes_of(frame, &ids);
+    let (Some(first), Some(middle_m)) = (boxes.first(), arrange::middle_m(&boxes)) else {
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.label(egui::RichText::new(format!("{} boxes chosen", boxes.len())).color(theme::text_strong()));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            if icons::button(ui, Icon::Trash, "Delete boxes", "Del", false, true).clicked() {
+                commands.push(Command::Tools(ToolCommand::Delete));
+            }
+            if icons::button(ui, Icon::Copy, "Duplicate boxes", "Ctrl+D", false, true).clicked() {
+                commands.push(Command::Tools(ToolCommand::Duplicate));
+            }
+        });
+    });
+    let one_class = boxes.iter().all(|b| b.class == first.class);
+    let mut class = one_class.then_some(first.class);
+    let name = class.map_or("Several classes".to_owned(), |c| theme::sentence(&c.label()));
+    let combo = egui::ComboBox::from_id_salt("class of several")
+        .width(150.0)
+        .selected_text(name);
+    combo.show_ui(ui, |ui| {
+        for other in Class::OBJECTS {
+            ui.selectable_value(&mut class, Some(other), theme::sentence(&other.label()));
+        }
+    });
+    if let Some(class) = class.filter(|_| !one_class || class != Some(first.class)) {
+        let edits = ids.iter().map(|id| Edit::SetBoxClass { id: *id, class });
+        commands.push(Command::Apply("Change class", edits.collect()));
+    }
+    label_ui(ui, &boxes, commands);
+    let limit = SceneBox::LIMIT_M;
+    let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, heading_deg(first.yaw_rad));
+    let position = numbers(ui, "Middle", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
+    let names = ["Length", "Width", "Height"];
+    let dimensions = numbers(ui, "Size", names, &mut size, 0.1..=60.0, 0.05);
+    let turned = number(ui, "Heading", "Heading", &mut yaw_deg, -360.0..=360.0, "°", 1);
+    let of_each = |edit: &dyn Fn(&SceneBox) -> [Option<DVec3>; 2], yaw_deg: Option<f64>| {
+        let one = |b: &SceneBox| {
+            let [center_m, size_m] = edit(b);
+            Edit::MoveBox {
+                id: b.id,
+                center_m,
+                yaw_deg,
+                size_m,
+            }
+        };
+        boxes.iter().map(one).collect::<Vec<_>>()
+    };
+    let moved = of_each(&|b| [Some(b.center_m + (center - middle_m)), None], None);
+    fields(&position, "Move boxes", moved, commands);
+    fields(
+        &dimensions,
+        "Resize boxes",
+        of_each(&|_| [None, Some(size)], None),
+        commands,
+    );
+    fields(
+        &turned,
+        "Turn boxes",
+        of_each(&|_| [None, None], Some(yaw_deg)),
+        commands,
+    );
+}
+
+/// The box after (1) or before (-1) the chosen one, by id, round about.
+pub fn neighbour(ids: &[BoxId], chosen: Option<BoxId>, step: i32) -> Option<BoxId> {
+    let count = ids.len() as i64;
+    if count == 0 {
+        return None;
+    }
+    let at = chosen.and_then(|id| ids.iter().position(|i| *i == id));
+    let next = match at {
+        Some(at) => (at as i64 + i64::from(step)).rem_euclid(count),
+        None if step > 0 => 0,
+        None => count - 1,
+    };
+    ids.get(next as usize).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pedestrian placed at 371 degrees turned all chosen boxes as soon as the inspector showed them.
+    #[test]
+    fn headings_beyond_a_turn_lie_within_their_field() {
+        for deg in [371.0, -200.0, 540.0, 180.0, -0.5, 1e4] {
+            let shown = heading_deg(f64::to_radians(deg));
+            assert!((-180.0..=180.0).contains(&shown), "{deg}: {shown}");
+            let off = (shown - deg).to_radians();
+            assert!(off.cos() > 0.999_999, "{deg}: {shown}");
+        }
+    }
+
+    #[test]
+    fn stepping_through_boxes_goes_round() {
+        let ids = [BoxId(2), BoxId(5), BoxId(9)];
+        assert_eq!(neighbour(&ids, None, 1), Some(BoxId(2)));
+        assert_eq!(neighbour(&ids, Some(BoxId(9)), 1), Some(BoxId(2)));
+        assert_eq!(neighbour(&ids, Some(BoxId(2)), -1), Some(BoxId(9)));
+        assert_eq!(neighbour(&[], Some(BoxId(2)), 1), None);
+    }
+}

@@ -1,0 +1,47 @@
+//! The pane of the prompt: its field, what was read from the words, the plan of a new scene.
+
+mod completion;
+pub mod field;
+mod graph;
+mod heard;
+pub mod plan;
+pub mod recalled;
+mod said;
+
+use egui::Ui;
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
+use crate::command::Command;
+use crate::theme;
+use crate::widgets::icons::Icon;
+
+/// Words that become a scene, or change it.
+pub struct Prompt;
+
+impl Pane for Prompt {
+    fn id(&self) -> PaneId {
+        PaneId::PROMPT
+    }
+
+    fn title(&self) -> String {
+        "Prompt".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Words
+    }
+
+    fn place(&self) -> Place {
+        Place::ColumnAtOnce
+    }
+
+    fn column_points(&self) -> f32 {
+        266.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let scene = cx.document.settled_scene();
+        theme::panel_frame().show(ui, |ui| cx.prompt.show(ui, scene, commands));
+    }
+}

@@ -1,0 +1,403 @@
+//! The prompt: words that become a scene or change the one at hand; each part that was read is a chip.
+
+use egui::accesskit::Role;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
+use egui::{Key, Modifiers, Ui, WidgetInfo};
+
+use super::completion::Completion;
+use super::heard::Both;
+use super::plan::{Plan, Told};
+use crate::command::{Command, FileCommand};
+use crate::text::doubts;
+use crate::theme;
+use crate::widgets::icons::section;
+use scene::Scene;
+
+/// Prompts kept.
+const HISTORY: usize = 50;
+
+const EXAMPLES: [&str; 5] = [
+    "busy intersection at night in the rain, five cones block my lane, a bus waits at the crossing",
+    "suburban street, three parked cars on the right, a cyclist 12 m ahead",
+    "highway, two trucks in front of me, no pedestrians, foggy",
+    "remove the nearest car",
+    "add a pedestrian 8 m ahead on the crossing",
+];
+
+/// What is typed, and what came of it.
+#[derive(Default)]
+pub struct PromptField {
+    pub(super) prompt: String,
+    pub(super) seed: u64,
+    pub(super) history: Vec<String>,
+    pub(super) back: usize, // steps back in the history; 0 is what is typed
+    pub(super) draft: String,
+    pub(super) read: Option<Both>,
+    /// What came of the words that were carried out last, and what must be answered first.
+    pub(super) done: Option<String>,
+    pub(super) asks: bool,
+    /// Enter was pressed on words that describe a scene: which of the two is meant?
+    pub(super) offers: bool,
+    pub(super) notes: Vec<String>,
+    pub(super) wants_focus: bool,
+    pub(super) offered: Option<Completion>,
+    pub(super) is_sent: bool, // and not changed since
+    pub(super) plan: Plan,
+}
+
+fn field_id() -> egui::Id {
+    egui::Id::unique("prompt field")
+}
+
+impl PromptField {
+    /// The next frame gives the field the focus.
+    pub fn focus(&mut self) {
+        self.wants_focus = true;
+    }
+
+    /// Where the thread that makes a scene tells how it came about.
+    pub fn told(&self) -> Told {
+        self.plan.told()
+    }
+
+    /// Draws the pane.
+    pub fn show(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        egui::ScrollArea::vertical()
+            .id_salt("prompt")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                self.field(ui, scene, commands);
+                self.answers(ui, scene, commands);
+                self.chips(ui, scene, commands);
+                self.beyond_words(ui, scene, commands);
+                if self.prompt.is_empty() {
+                    self.recent(ui);
+                    self.examples(ui);
+                }
+            });
+    }
+
+    pub(super) fn field(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let has_focus = ui.memory(|m| m.has_focus(field_id()));
+        if let (true, Some(first)) = (has_focus, self.offered.as_ref().map(|o| o.ends[0]))
+            && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab))
+        {
+            self.complete(ui.ctx(), first);
+        }
+        if has_focus && self.is_sent {
+            // The field has nothing to take back that its user means.
+            let undone = [
+                (Modifiers::CTRL, Command::Undo),
+                (Modifiers::CTRL | Modifiers::SHIFT, Command::Redo),
+            ];
+            for (modifiers, command) in undone.into_iter().rev() {
+                if ui.input_mut(|i| i.consume_key(modifiers, Key::Z)) {
+                    commands.push(command);
+                }
+            }
+        }
+        let field = egui::TextEdit::multiline(&mut self.prompt)
+            .id(field_id())
+            .lock_focus(self.offered.is_some())
+            .hint_text("Describe a scene, or say what should change in this one")
+            .desired_rows(2)
+            .desired_width(f32::INFINITY)
+            .return_key(None);
+        let output = field.show(ui);
+        let field = output.response.response;
+        // A click on what is offered takes the focus first.
+        if field.has_focus() {
+            let caret = output.cursor_range.map(|range| range.primary.index);
+            // Words that were taken want no other end.
+            let caret = caret.filter(|_| !self.is_sent);
+            self.offered = caret.and_then(|caret| Completion::at(&self.prompt, caret.0));
+        }
+        field.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Prompt"));
+        if std::mem::take(&mut self.wants_focus) {
+            field.request_focus();
+        }
+        if field.changed() {
+            self.back = 0;
+            self.touched();
+        }
+        let (mut make, mut change) = (false, false);
+        if field.has_focus() {
+            let (up, down) = ui.input_mut(|i| {
+                (
+                    i.consume_key(Modifiers::ALT, Key::ArrowUp),
+                    i.consume_key(Modifiers::ALT, Key::ArrowDown),
+                )
+            });
+            if up || down {
+                self.recall(if up { 1 } else { -1 });
+            }
+            (make, change) = ui.input_mut(|i| {
+                (
+                    i.consume_key(Modifiers::CTRL, Key::Enter),
+                    i.consume_key(Modifiers::NONE, Key::Enter),
+                )
+            });
+        }
+        self.completions(ui);
+        self.listen(scene);
+        if change && !self.offers && self.read.as_ref().is_some_and(Both::is_described) {
+            // (a whole scene was described: which is meant is asked once, with what each would do)
+            (self.offers, change) = (true, false);
+        }
+        let (changes, makes) = self.choices(ui);
+        change |= changes;
+        make |= makes;
+        // In one flow: what they take is missed by the history and the examples below.
+        ui.horizontal_wrapped(|ui| {
+            let some = !self.prompt.trim().is_empty();
+            let dice = ui
+                .button("Re-roll")
+                .on_hover_text("Another scene of the same words");
+            if some && dice.clicked() {
+                self.seed = self.seed.wrapping_add(1) % 100_000;
+                make = true;
+            }
+            let seed = egui::DragValue::new(&mut self.seed)
+                .range(0..=99_999)
+                .prefix("seed ");
+            ui.add(seed)
+                .on_hover_text("The same words and seed give the same scene");
+            self.plan.switches(ui);
+        });
+        if change || make {
+            self.offers = false;
+            self.sent(ui.ctx());
+        }
+        if change {
+            self.change(scene, commands);
+        } else if make {
+            self.remember();
+            self.make(self.seed, scene, commands);
+        }
+    }
+
+    /// The words are others now: nothing that came of those before holds.
+    pub(super) fn touched(&mut self) {
+        (self.done, self.asks, self.offers, self.is_sent) = (None, false, false, false);
+        self.notes.clear();
+    }
+
+    /// The two things that words can do; where they describe a scene, with what each would do. Which was clicked.
+    pub(super) fn choices(&self, ui: &mut Ui) -> (bool, bool) {
+        let some = !self.prompt.trim().is_empty();
+        let button = |ui: &mut Ui, name: &str, hint: &str, first: bool| {
+            let mut button = egui::Button::new(name);
+            if first {
+                button = button.fill(theme::accent_fill());
+            }
+            ui.add_enabled(some, button).on_hover_text(hint).clicked()
+        };
+        let hints = [
+            "Enter: “remove the parked car”, “add two cones ahead”, “make it night”",
+            "Ctrl+Enter: road, objects and style are made from the words",
+        ];
+        if !self.offers {
+            let row = ui.horizontal(|ui| {
+                let change = button(ui, "Change this scene", hints[0], true);
+                (change, button(ui, "New scene", hints[1], false))
+            });
+            return row.inner;
+        }
+        let read = self.read.as_ref();
+        let says = |ui: &mut Ui, text: Option<String>| {
+            if let Some(text) = text {
+                ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+            }
+        };
+        ui.label("A scene is described. Enter again changes this one, Ctrl+Enter makes a new one.");
+        let change = button(ui, "Change this scene", hints[0], true);
+        says(ui, read.and_then(|r| r.edited.as_ref().ok()).map(|e| e.answer()));
+        let make = button(ui, "New scene", hints[1], false);
+        says(
+            ui,
+            read.and_then(|r| r.prompted.as_ref().ok()).map(|p| p.answer()),
+        );
+        (change, make)
+    }
+
+    /// Reads what is typed, if it is not read yet.
+    pub(super) fn listen(&mut self, scene: &Scene) {
+        if self.prompt.trim().is_empty() {
+            self.read = None;
+            return;
+        }
+        match &mut self.read {
+            Some(read) if read.text == self.prompt => {
+                // (what was carried out is not carried out again for a preview)
+                if !self.is_sent {
+                    read.follow(scene, self.seed);
+                }
+            }
+            _ => self.read = Some(Both::of(&self.prompt, scene, self.seed)),
+        }
+    }
+
+    pub(super) fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
+        match self.read.as_ref().map(|r| &r.prompted) {
+            Some(Ok(prompted)) => {
+                let ask = self
+                    .plan
+                    .ask(&self.prompt, &prompted.described.description, seed, scene);
+                self.done = Some(prompted.answer());
+                (self.asks, self.notes) = (false, doubts(&prompted.heard));
+                self.plan.makes(&self.prompt, seed);
+                commands.push(Command::File(FileCommand::NewFromPrompt(Box::new(ask))));
+            }
+            Some(Err(error)) => self.notes = vec![error.clone()],
+            None => {}
+        }
+    }
+
+    /// Variants, how the last scene came about, and the scene graph.
+    pub(super) fn beyond_words(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let Some(Ok(prompted)) = self.read.as_ref().map(|r| &r.prompted) else {
+            return;
+        };
+        let read = prompted.described.description.clone();
+        let ask = self.plan.ask(&self.prompt, &read, self.seed, scene);
+        self.plan.recalled(ui, &ask);
+        let chosen = self.plan.variants(ui, &ask);
+        self.plan.origin(ui);
+        let place = self.plan.graph(ui, &ask.description, self.seed, scene, commands);
+        if let Some(seed) = chosen {
+            self.seed = seed;
+        }
+        if chosen.is_some() || place {
+            self.remember();
+            self.make(self.seed, scene, commands);
+        }
+    }
+
+    /// Offers ends of the word at the caret; Tab takes the first.
+    pub(super) fn completions(&mut self, ui: &mut Ui) {
+        let Some(offered) = &self.offered else { return };
+        let mut taken = None;
+        ui.horizontal_wrapped(|ui| {
+            for (i, end) in offered.ends.iter().enumerate() {
+                let color = if i == 0 { theme::text() } else { theme::text_weak() };
+                let shown = if i == 0 {
+                    format!("{end}  Tab")
+                } else {
+                    (*end).to_owned()
+                };
+                let text = egui::RichText::new(shown).small().color(color);
+                let button = ui.add(egui::Button::new(text).fill(theme::field()));
+                let label = format!("Complete with {end}");
+                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+                if button.clicked() {
+                    taken = Some(*end);
+                }
+            }
+        });
+        if let Some(end) = taken {
+            self.complete(ui.ctx(), end);
+            self.wants_focus = true;
+        }
+    }
+
+    /// The words were taken: the next ones replace them as they are typed.
+    pub(super) fn sent(&mut self, ctx: &egui::Context) {
+        (self.offered, self.is_sent) = (None, true);
+        let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
+        let all = CCursorRange::two(
+            CCursor::default(),
+            CCursor::new(egui::text::CharIndex(self.prompt.chars().count())),
+        );
+        state.cursor.set_char_range(Some(all));
+        state.store(ctx, field_id());
+    }
+
+    pub(super) fn complete(&mut self, ctx: &egui::Context, end: &str) {
+        let Some(offered) = self.offered.take() else {
+            return;
+        };
+        let caret = offered.take(&mut self.prompt, end);
+        self.touched();
+        let mut state = TextEditState::load(ctx, field_id()).unwrap_or_default();
+        let at = CCursor::new(egui::text::CharIndex(caret));
+        state.cursor.set_char_range(Some(CCursorRange::one(at)));
+        state.store(ctx, field_id());
+    }
+
+    pub(super) fn recent(&mut self, ui: &mut Ui) {
+        if self.history.is_empty() {
+            return;
+        }
+        section(ui, "Typed before");
+        for past in self.history.clone().iter().rev().take(5) {
+            let text = egui::RichText::new(past).small().color(theme::text());
+            let button = egui::Button::new(text).wrap().fill(theme::field());
+            if ui.add(button).on_hover_text("Alt+Up and Alt+Down too").clicked() {
+                self.prompt.clone_from(past);
+                self.wants_focus = true;
+            }
+        }
+    }
+
+    /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
+    pub(super) fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
+        self.remember();
+        self.listen(scene);
+        if let Some(read) = &mut self.read {
+            read.follow(scene, self.seed);
+        }
+        let edited = match self.read.as_ref().map(|r| &r.edited) {
+            Some(Ok(edited)) => edited,
+            Some(Err(error)) => {
+                self.notes = vec![error.clone()];
+                return;
+            }
+            None => return,
+        };
+        let edits = edited.edits();
+        (self.done, self.asks) = (Some(edited.answer()), edited.asks());
+        self.notes = doubts(&edited.heard);
+        if !edits.is_empty() && !self.asks {
+            commands.push(Command::ApplyWords(self.prompt.clone(), edits));
+            // (carried out again, the words are read again)
+            self.read = None;
+        }
+    }
+
+    pub(super) fn remember(&mut self) {
+        self.history.retain(|p| *p != self.prompt);
+        self.history.push(self.prompt.clone());
+        if self.history.len() > HISTORY {
+            self.history.remove(0);
+        }
+        self.back = 0;
+    }
+
+    pub(super) fn recall(&mut self, step: i32) {
+        let back = (self.back as i64 + i64::from(step)).clamp(0, self.history.len() as i64) as usize;
+        if back != self.back {
+            if self.back == 0 {
+                self.draft.clone_from(&self.prompt);
+            }
+            self.back = back;
+            self.prompt = match back {
+                0 => self.draft.clone(),
+                n => self.history[self.history.len() - n].clone(),
+            };
+            self.touched();
+        }
+    }
+
+    pub(super) fn examples(&mut self, ui: &mut Ui) {
+        section(ui, "Examples");
+        for example in EXAMPLES {
+            let text = egui::RichText::new(example).small().color(theme::text());
+            let button = egui::Button::new(text).wrap().fill(theme::field());
+            if ui.add(button).clicked() {
+                self.prompt = example.to_owned();
+                self.wants_focus = true;
+            }
+        }
+    }
+}

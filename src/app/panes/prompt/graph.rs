@@ -1,0 +1,289 @@
+//! The scene graph of a prompt: shown as who stands how to what, and edited by hand.
+
+use egui::accesskit::Role;
+use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use crate::theme;
+use crate::widgets::icons::section;
+use place::to_graph::Graphed;
+use scene::Class;
+use scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
+
+/// Height of a line of the picture, points.
+const LINE: f32 = 19.0;
+
+fn name_of(graph: &SceneGraph, id: u32) -> String {
+    match graph.node(id).map(|n| &n.kind) {
+        Some(NodeKind::Ego) => "ego".into(),
+        Some(NodeKind::Object(o)) => format!("{} {id}", o.class.label()),
+        Some(NodeKind::Lane { role, .. }) => role_name(*role),
+        Some(NodeKind::Crossing { .. }) => "crossing".into(),
+        Some(NodeKind::Junction) => "junction".into(),
+        None => "nothing".into(),
+    }
+}
+
+fn role_name(role: LaneRole) -> String {
+    let word = format!("{role:?}");
+    let mut out = String::new();
+    for c in word.chars() {
+        if c.is_uppercase() && !out.is_empty() {
+            out.push(' ');
+        }
+        out.extend(c.to_lowercase());
+    }
+    match role {
+        LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming => format!("{out} lane"),
+        _ => out,
+    }
+}
+
+fn relation_name(r: RelationKind) -> String {
+    r.name().replace('_', " ")
+}
+
+/// One line of the picture: what stands in a relation to a node.
+#[derive(Debug, PartialEq)]
+struct Row {
+    to: String,
+    relation: String,
+    /// Class, and how many of it.
+    objects: Vec<(Class, usize)>,
+}
+
+/// Relations gathered by what they are to, in the order in which they come; last the objects that have none.
+fn rows(graph: &SceneGraph) -> Vec<Row> {
+    let mut keys: Vec<(u32, RelationKind, Option<u32>)> = Vec::new();
+    let mut found: Vec<Vec<(Class, usize)>> = Vec::new();
+    let count = |objects: &mut Vec<(Class, usize)>, class| match objects.iter_mut().find(|o| o.0 == class) {
+        Some(object) => object.1 += 1,
+        None => objects.push((class, 1)),
+    };
+    let class_of = |id: u32| match graph.node(id).map(|n| &n.kind) {
+        Some(NodeKind::Object(o)) => Some(o.class),
+        _ => None,
+    };
+    for edge in &graph.edges {
+        let key = (edge.to, edge.relation, edge.and);
+        let at = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
+            keys.push(key);
+            found.push(Vec::new());
+            keys.len() - 1
+        });
+        if let Some(class) = class_of(edge.from) {
+            count(&mut found[at], class);
+        }
+    }
+    let mut rows: Vec<Row> = keys
+        .into_iter()
+        .zip(found)
+        .filter(|(_, objects)| !objects.is_empty())
+        .map(|((to, relation, and), objects)| {
+            let and = and.map_or(String::new(), |id| format!(" and {}", name_of(graph, id)));
+            let (to, relation) = (name_of(graph, to) + &and, relation_name(relation));
+            Row {
+                to,
+                relation,
+                objects,
+            }
+        })
+        .collect();
+    let mut free = Vec::new();
+    for (id, object) in graph.objects() {
+        if !graph.edges.iter().any(|e| e.from == id) {
+            count(&mut free, object.class);
+        }
+    }
+    if !free.is_empty() {
+        rows.push(Row {
+            to: "anywhere".into(),
+            relation: String::new(),
+            objects: free,
+        });
+    }
+    rows
+}
+
+/// Who stands how to what: a line for each relation, objects of a class together.
+pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
+    let rows = rows(graph);
+    let width = ui.available_width().max(120.0);
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(width, rows.len() as f32 * LINE + 8.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Scene graph"));
+    let painter = ui.painter().with_clip_rect(rect);
+    painter.rect_filled(rect, theme::RADIUS, theme::well());
+    let font = FontId::proportional(11.5);
+    let text = |at: Pos2, align, text: &str, color| painter.text(at, align, text, font.clone(), color);
+    // Targets to the left, aligned at their ends; objects to the right.
+    let (left, right) = (rect.left() + width * 0.32, rect.left() + width * 0.6);
+    for (k, row) in rows.iter().enumerate() {
+        let y = rect.top() + 4.0 + (k as f32 + 0.5) * LINE;
+        text(pos2(left - 4.0, y), Align2::RIGHT_CENTER, &row.to, theme::text());
+        let line = |from: f32, to: f32| {
+            painter.line_segment([pos2(from, y), pos2(to, y)], Stroke::new(1.0, theme::text_weak()));
+        };
+        if row.relation.is_empty() {
+            line(left, right - 4.0);
+        } else {
+            let middle = pos2((left + right) / 2.0 - 2.0, y);
+            let name = text(middle, Align2::CENTER_CENTER, &row.relation, theme::text_weak());
+            line(left, name.left() - 3.0);
+            line(name.right() + 3.0, right - 4.0);
+        }
+        let mut x = right;
+        for (class, n) in &row.objects {
+            painter.circle_filled(pos2(x + 4.0, y), 4.0, theme::class_color(*class));
+            let name = match n {
+                1 => class.label().to_owned(),
+                n => format!("{n} × {}", class.label()),
+            };
+            x = text(
+                pos2(x + 11.0, y),
+                Align2::LEFT_CENTER,
+                &name,
+                theme::text_strong(),
+            )
+            .right()
+                + 9.0;
+        }
+    }
+}
+
+/// Objects with their class; which of them is to be placed anew.
+pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
+    let mut rolled = None;
+    let mut gone = None;
+    section(ui, "Objects");
+    let ids: Vec<u32> = graphed.graph.objects().map(|o| o.0).take(60).collect();
+    for id in ids {
+        ui.horizontal(|ui| {
+            let Some(node) = graphed.graph.nodes.iter_mut().find(|n| n.id == id) else {
+                return;
+            };
+            if let NodeKind::Object(o) = &mut node.kind {
+                let combo = egui::ComboBox::from_id_salt(("class of node", id))
+                    .selected_text(format!("{} {id}", o.class.label()))
+                    .show_ui(ui, |ui| {
+                        for class in Class::OBJECTS {
+                            ui.selectable_value(&mut o.class, class, class.label());
+                        }
+                    });
+                combo
+                    .response
+                    .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Class of node {id}")));
+            }
+            let again = ui.add_enabled(made, egui::Button::new("Re-roll").small());
+            again.widget_info(|| WidgetInfo::labeled(Role::Button, made, format!("Re-roll node {id}")));
+            if again.clicked() {
+                rolled = Some(id);
+            }
+            let out = ui.add(egui::Button::new("×").small());
+            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Take out node {id}")));
+            if out.clicked() {
+                gone = Some(id);
+            }
+        });
+    }
+    if let Some(id) = gone {
+        graphed.graph.nodes.retain(|n| n.id != id);
+        graphed
+            .graph
+            .edges
+            .retain(|e| e.from != id && e.to != id && e.and != Some(id));
+        graphed
+            .nodes
+            .iter_mut()
+            .for_each(|list| list.retain(|n| *n != id));
+    }
+    if ui.button("Add object").clicked() {
+        let node = place::to_graph::node_of(Class::Car);
+        graphed.graph.add(node);
+    }
+    rolled
+}
+
+/// Relations, each with its kind and what it is to.
+pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
+    section(ui, "Relations");
+    let all: Vec<(u32, String)> = graph.nodes.iter().map(|n| (n.id, name_of(graph, n.id))).collect();
+    let mut gone = None;
+    for (k, e) in graph.edges.iter_mut().enumerate().take(80) {
+        ui.horizontal_wrapped(|ui| {
+            ends(ui, ("from", k), &mut e.from, &all, "From");
+            let combo = egui::ComboBox::from_id_salt(("relation", k))
+                .selected_text(relation_name(e.relation))
+                .show_ui(ui, |ui| {
+                    for r in RelationKind::ALL {
+                        if r != RelationKind::Between || e.and.is_some() {
+                            ui.selectable_value(&mut e.relation, r, relation_name(r));
+                        }
+                    }
+                });
+            combo
+                .response
+                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Relation {}", k + 1)));
+            ends(ui, ("to", k), &mut e.to, &all, "To");
+            let out = ui.add(egui::Button::new("×").small());
+            out.widget_info(|| {
+                WidgetInfo::labeled(Role::Button, true, format!("Take out relation {}", k + 1))
+            });
+            if out.clicked() {
+                gone = Some(k);
+            }
+        });
+    }
+    if let Some(k) = gone {
+        graph.edges.remove(k);
+    }
+    let first = graph.objects().map(|o| o.0).next();
+    let add = ui.add_enabled(first.is_some(), egui::Button::new("Add relation"));
+    if add.clicked()
+        && let Some(from) = first
+    {
+        graph
+            .edges
+            .push(Edge::new(from, RelationKind::InFrontOf, SceneGraph::EGO));
+    }
+}
+
+fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], what: &str) {
+    let shown = all
+        .iter()
+        .find(|n| n.0 == *id)
+        .map_or("nothing", |n| n.1.as_str());
+    let combo = egui::ComboBox::from_id_salt(salt)
+        .selected_text(shown)
+        .show_ui(ui, |ui| {
+            for (other, name) in all {
+                ui.selectable_value(id, *other, name);
+            }
+        });
+    let label = format!("{what} of relation {}", salt.1 + 1);
+    combo
+        .response
+        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &label));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use place::to_graph::to_graph;
+    use words::describe::described;
+
+    #[test]
+    fn objects_of_one_relation_share_a_line() {
+        let read =
+            described("add 5 cone ( blocking ego_lane ) and 1 bus ( waiting crossing ) and 2 parked car")
+                .expect("valid");
+        let rows = rows(&to_graph(&read, 1).graph);
+        let cones = rows.iter().filter(|r| r.objects == [(Class::TrafficCone, 5)]);
+        assert_eq!(cones.map(|r| r.to.as_str()).collect::<Vec<_>>(), ["ego lane"]);
+        assert!(
+            rows.iter()
+                .any(|r| r.to == "crossing" && r.objects == [(Class::Bus, 1)]),
+            "{rows:?}"
+        );
+        assert!(rows.len() < 6, "{rows:?}");
+    }
+}

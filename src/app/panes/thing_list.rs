@@ -1,0 +1,134 @@
+//! Rows of the list of objects that show things beside the road: kinds with their counts, unfolded one by one.
+
+use std::collections::BTreeMap;
+
+use egui::Ui;
+
+use crate::command::{Command, ViewCommand};
+use crate::state::UiState;
+use crate::theme;
+use crate::tools::things::{ThingCommand, words};
+use crate::tools::{Choose, ToolCommand};
+use crate::widgets::icons;
+use editor::tools::Act;
+use scene::{Background, Frame, Thing, ThingId};
+
+/// A row.
+pub enum ThingRow<'a> {
+    /// A kind, and its things.
+    Kind(&'static str, Vec<&'a Thing>),
+    /// A thing of an unfolded kind.
+    Thing(&'a Thing),
+}
+
+/// Rows for all things: kinds in the order of their names, each unfolded or not.
+pub fn rows<'a>(background: &'a Background, state: &UiState) -> Vec<ThingRow<'a>> {
+    let mut kinds: BTreeMap<&'static str, Vec<&Thing>> = BTreeMap::new();
+    for thing in background.iter() {
+        kinds.entry(thing.form.name()).or_default().push(thing);
+    }
+    let mut out = Vec::new();
+    for (name, things) in kinds {
+        let unfolded = state.tools.things.unfolded.contains(name);
+        let listed: Vec<&Thing> = if unfolded { things.clone() } else { Vec::new() };
+        out.push(ThingRow::Kind(name, things));
+        out.extend(listed.into_iter().map(ThingRow::Thing));
+    }
+    out
+}
+
+/// Draws a row.
+pub fn row_ui(
+    ui: &mut Ui,
+    row: &ThingRow<'_>,
+    frame: &Frame,
+    state: &mut UiState,
+    commands: &mut Vec<Command>,
+) {
+    let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
+    let how = match (row, adds) {
+        (_, false) => Choose::Only,
+        (ThingRow::Kind(..), true) => Choose::Add,
+        (ThingRow::Thing(_), true) => Choose::Toggle,
+    };
+    let (clicked, framed, ids): (bool, bool, Vec<ThingId>) = match row {
+        ThingRow::Kind(name, things) => {
+            let chosen = &state.tools.things.chosen;
+            let all = things.iter().all(|t| chosen.contains(&t.id));
+            let unfolded = state.tools.things.unfolded.contains(name);
+            let response = ui
+                .horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 0.0;
+                    if fold(ui, unfolded, name).clicked() {
+                        let kinds = &mut state.tools.things.unfolded;
+                        if !kinds.remove(name) {
+                            kinds.insert(name);
+                        }
+                    }
+                    let title = theme::sentence(&words::plural(name));
+                    let count = things.len().to_string();
+                    let label = format!("All {}", words::plural(name));
+                    let color = theme::class_color(things[0].form.class());
+                    icons::row(ui, color, &title, &count, all, &label)
+                })
+                .inner
+                .on_hover_text("Click chooses all of them");
+            let ids = things.iter().map(|t| t.id).collect();
+            (response.clicked(), response.double_clicked(), ids)
+        }
+        ThingRow::Thing(thing) => {
+            let at_m = thing.form.in_frame(&frame.world_from_ego.inverse()).middle_m();
+            let chosen = state.tools.things.chosen.contains(&thing.id);
+            let name = format!("{} #{}", theme::sentence(thing.form.name()), thing.id.0);
+            let right = format!("{:.1} m high   {:.0} m", thing.form.height_m(), at_m.length());
+            let label = format!("Thing {} {}", thing.id.0, thing.form.name());
+            let response = ui
+                .horizontal(|ui| {
+                    ui.add_space(theme::ROW);
+                    let color = theme::class_color(thing.form.class());
+                    icons::row(ui, color, &name, &right, chosen, &label)
+                })
+                .inner;
+            (response.clicked(), response.double_clicked(), vec![thing.id])
+        }
+    };
+    if clicked && !state.tools.things.is_open() {
+        let why = "Background things are locked or hidden: see the list of layers".to_owned();
+        commands.push(Command::Tools(ToolCommand::Act(Act::Note(why))));
+    } else if clicked {
+        let choose = ThingCommand::Choose(ids, how);
+        commands.push(Command::Tools(ToolCommand::Thing(choose)));
+    }
+    if framed {
+        commands.push(Command::View(ViewCommand::FrameSelection));
+    }
+}
+
+/// A triangle that points right, or down where a kind is unfolded.
+fn fold(ui: &mut Ui, unfolded: bool, name: &str) -> egui::Response {
+    let size = egui::vec2(theme::ROW * 0.8, theme::ROW);
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
+    let label = format!("List {}", words::plural(name));
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::accesskit::Role::CheckBox, true, unfolded, label.as_str())
+    });
+    let color = match response.hovered() {
+        true => theme::text_strong(),
+        false => theme::text_weak(),
+    };
+    let along = if unfolded {
+        egui::Vec2::DOWN
+    } else {
+        egui::Vec2::RIGHT
+    } * 4.0;
+    let (middle, side) = (rect.center(), along.rot90());
+    let points = vec![
+        middle + along,
+        middle - along * 0.6 + side,
+        middle - along * 0.6 - side,
+    ];
+    ui.painter()
+        .add(egui::Shape::convex_polygon(points, color, egui::Stroke::NONE));
+    icons::focus_ring(ui, &response, rect);
+    response
+}

@@ -1,0 +1,289 @@
+//! The left panel: options of the tool in hand, and the layers of the bird's-eye view.
+
+use egui::accesskit::Role;
+use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
+use crate::bev_image::DRAW_ORDER;
+use crate::command::{Command, GenerationCommand};
+use crate::pointer::carry_out;
+use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::state::{UiState, Underlay};
+use crate::theme;
+use crate::tools::things::ThingCommand;
+use crate::tools::{ToolCommand, panel};
+use crate::widgets::hint::caption;
+use crate::widgets::icons::Icon;
+use crate::widgets::icons::{self, section};
+use editor::tools::brush;
+use scene::{BevLayer, BevLayout, Frame, GridSpec};
+
+/// Area of a cell that is drawn anew, m².
+const REGION_CELL_M2: f64 = 2.56;
+
+/// Options of the tool in hand, map layers.
+pub struct Tools;
+
+impl Pane for Tools {
+    fn id(&self) -> PaneId {
+        PaneId::TOOLS
+    }
+
+    fn title(&self) -> String {
+        "Tools".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Brush
+    }
+
+    fn column_points(&self) -> f32 {
+        230.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let frame = cx.document.scene().frame();
+        theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, cx.state, commands));
+    }
+}
+
+/// Draws the panel.
+pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        options(ui, frame, state, commands);
+        ui.add_space(theme::GAP);
+        section(ui, "Map layers");
+        for layer in BevLayer::MAP {
+            layer_row(ui, &frame.layout, layer, state, commands);
+        }
+        opacity_rows(ui, state);
+        ui.add_space(theme::GAP);
+        section(ui, "Overlays");
+        toggle_row(ui, "Boxes", &mut state.show_boxes);
+        things_row(ui, state, commands);
+        toggle_row(ui, "Lanes and dividers", &mut state.show_lines);
+        toggle_row(ui, "LiDAR points in BEV", &mut state.show_lidar_bev);
+        toggle_row(ui, "Grid, 10 m", &mut state.show_grid);
+        if frame.inferred.unobserved.is_some() {
+            toggle_row(ui, "Unobserved", &mut state.show_unobserved);
+        }
+        ui.add_space(theme::GAP);
+        section(ui, "Scenery");
+        let named = &mut state.named;
+        density_row(ui, "Vegetation", &mut named.vegetation, TYPICAL_VEGETATION as f32);
+        density_row(ui, "Buildings", &mut named.building, TYPICAL_BUILDING as f32);
+        density_row(ui, "Clutter", &mut named.clutter, 0.25);
+        density_row(ui, "Completeness", &mut named.completeness, 1.0);
+        caption(ui, "What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there.");
+        scenery_row(ui, state, commands);
+    });
+}
+
+/// What kind of place, and the button that draws it.
+fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let chosen = &mut state.tools.drawer;
+        egui::ComboBox::from_id_salt("setting")
+            .width(92.0)
+            .selected_text(chosen.label())
+            .show_ui(ui, |ui| {
+                for drawer in Drawer::all() {
+                    ui.selectable_value(chosen, drawer, drawer.label());
+                }
+            })
+            .response
+            .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Kind of place"));
+        let hint =
+            "What stands beside the roads, anew, as things: by rules for a kind of place, or by a network; voxels of scenery without a thing go";
+        let draw = ui.button("Draw").on_hover_text(hint);
+        draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Draw scenery"));
+        if draw.clicked() {
+            commands.push(Command::Generation(GenerationCommand::DrawScenery));
+        }
+    });
+    let place = match state.tools.region.is_empty() {
+        true => "Everywhere; in a region if one is marked (N).",
+        false => "In the marked region.",
+    };
+    caption(ui, place);
+}
+
+/// A number that generation is asked for, if it is ticked; `typical` is where it begins.
+fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
+    ui.horizontal(|ui| {
+        let mut on = value.is_some();
+        // A column of its own width: what a row asks for beyond the panel's would make the panel grow.
+        let (rect, _) = ui.allocate_exact_size(vec2(104.0, theme::ROW), Sense::hover());
+        let left = egui::Layout::left_to_right(egui::Align::Center);
+        let mut column = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(left));
+        let tick = column.checkbox(&mut on, name);
+        if tick.changed() {
+            *value = on.then_some(typical);
+        }
+        let mut shown = value.unwrap_or(typical);
+        ui.spacing_mut().slider_width = 38.0;
+        let slider = egui::Slider::new(&mut shown, 0.0..=1.0).fixed_decimals(2);
+        let slider = ui
+            .add_enabled(on, slider)
+            .accessible_name(format!("{name} density"));
+        if slider.changed() {
+            *value = Some(shown);
+        }
+    });
+}
+
+/// Options of the tool in hand.
+fn options(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+    state.region_m2 = state.tools.region.count() as f64 * REGION_CELL_M2;
+    let id = state.tool;
+    let settings = state.toolbox.tool(id).options(state);
+    for (setting, value) in panel::show(ui, &settings) {
+        let UiState { toolbox, tools, .. } = state;
+        let acts = toolbox.tool_mut(id).set(&mut tools.hand, frame, setting, value);
+        carry_out(acts, commands);
+    }
+}
+
+fn layer_row(
+    ui: &mut Ui,
+    layout: &BevLayout,
+    layer: BevLayer,
+    state: &mut UiState,
+    commands: &mut Vec<Command>,
+) {
+    let label = layer.label();
+    let shown = state.shows(layer);
+    let chosen = state.tool == brush::ID && state.layer == layer;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let shows = eye(ui, shown, &format!("Show {label}")).on_hover_text("Alt+click shows it alone");
+        if shows.clicked() && ui.input(|i| i.modifiers.alt) {
+            solo(state, layer);
+        } else if shows.clicked() {
+            state.layers_shown ^= layer.bit();
+            state.tools.before_solo = None;
+        }
+        let locked = state.tools.is_locked(layer);
+        if lock(ui, locked, &format!("Lock {label}")).clicked() {
+            state.tools.layers_locked ^= layer.bit();
+        }
+        let share = layout.count(layer) as f64 * 100.0 / GridSpec::COLUMNS as f64;
+        let right = match share {
+            0.0 => String::new(),
+            s if s < 1.0 => "<1 %".to_owned(),
+            s => format!("{s:.0} %"),
+        };
+        let color = theme::rgb(layer.color()).gamma_multiply(if shown { 1.0 } else { 0.4 });
+        let name = theme::sentence(&label);
+        let row = icons::row(ui, color, &name, &right, chosen, &format!("Paint {label}"));
+        if row.on_hover_text("Choose for the brush").clicked() {
+            state.layer = layer;
+            commands.push(Command::Tool(brush::ID));
+        }
+    });
+}
+
+/// Shows one layer alone, or if it is, what was shown before.
+fn solo(state: &mut UiState, layer: BevLayer) {
+    match state.tools.before_solo {
+        Some(before) if state.layers_shown == layer.bit() => {
+            state.layers_shown = before;
+            state.tools.before_solo = None;
+        }
+        before => {
+            state.tools.before_solo = before.or(Some(state.layers_shown));
+            state.layers_shown = layer.bit();
+        }
+    }
+}
+
+/// How much the chosen layer hides of those below it, and all of them of the voxels.
+fn opacity_rows(ui: &mut Ui, state: &mut UiState) {
+    let slider = |ui: &mut Ui, caption: &str, value: &mut f32, name: &str| {
+        ui.horizontal(|ui| {
+            ui.label(egui::RichText::new(caption).color(theme::text_weak()));
+            ui.spacing_mut().slider_width = 74.0;
+            let slider = egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2);
+            ui.add(slider).on_hover_text(name).accessible_name(name);
+        });
+    };
+    if let Some(k) = DRAW_ORDER.iter().position(|layer| *layer == state.layer) {
+        let name = format!("Opacity of {}", state.layer.label());
+        slider(ui, "Opacity", &mut state.tools.layer_opacity[k], &name);
+    }
+    if state.underlay == Underlay::Both {
+        slider(
+            ui,
+            "All, on voxels",
+            &mut state.tools.layers_opacity,
+            "Opacity of the layers over voxels",
+        );
+    }
+}
+
+fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(16.0, theme::ROW), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, locked, name));
+    let color = match (locked, response.hovered()) {
+        (true, _) => theme::warn(),
+        (false, true) => theme::text_weak(),
+        // Seen only where it is needed: a lock beside every layer would be noise.
+        (false, false) => theme::field_hover(),
+    };
+    Icon::Lock.paint(ui, rect.shrink2(vec2(2.0, 6.0)), color);
+    icons::focus_ring(ui, &response, rect);
+    response
+}
+
+fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if eye(ui, *on, &format!("Show {}", name.to_lowercase())).clicked() {
+            *on = !*on;
+        }
+        let color = if *on { theme::text() } else { theme::text_weak() };
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), theme::ROW), Sense::click());
+        let body = egui::TextStyle::Body.resolve(ui.style());
+        let at = pos2(rect.left() + 8.0, rect.center().y);
+        ui.painter()
+            .text(at, egui::Align2::LEFT_CENTER, name, body, color);
+        if response.clicked() {
+            *on = !*on;
+        }
+    });
+}
+
+/// Outlines of things beside the road: shown or not, locked or not.
+fn things_row(ui: &mut Ui, state: &UiState, commands: &mut Vec<Command>) {
+    let mut send = |command| commands.push(Command::Tools(ToolCommand::Thing(command)));
+    let things = &state.tools.things;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        if eye(ui, things.shown, "Show background things").clicked() {
+            send(ThingCommand::ToggleShown);
+        }
+        if lock(ui, things.locked, "Lock background things").clicked() {
+            send(ThingCommand::ToggleLocked);
+        }
+        let color = match things.is_open() {
+            true => theme::text(),
+            false => theme::text_weak(),
+        };
+        ui.label(egui::RichText::new("Background things").color(color));
+    });
+}
+
+fn eye(ui: &mut Ui, shown: bool, name: &str) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(vec2(theme::ROW, theme::ROW), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, shown, name));
+    let color = match (response.hovered(), shown) {
+        (true, _) => theme::text_strong(),
+        (false, true) => theme::text_weak(),
+        (false, false) => Color32::from_rgb(90, 96, 106),
+    };
+    let icon = if shown { Icon::Eye } else { Icon::EyeOff };
+    icon.paint(ui, rect.shrink(5.0), color);
+    icons::focus_ring(ui, &response, rect);
+    response
+}

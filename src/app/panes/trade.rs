@@ -1,0 +1,343 @@
+//! Speed and accuracy: the slider of measured stops, the plot they lie on, the receipt of the last edit, what was
+//! computed for it, and what stability there was.
+
+use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
+use crate::command::{Command, GenerationCommand};
+use crate::shell::tuning::{LastEdit, Measuring, Tuning, foretold};
+use crate::theme;
+use crate::trade_plot::front_plot;
+use crate::widgets::icons::Icon;
+use job::GenParams;
+use judge::machine::{Load, machine};
+use judge::stops::figures::{percent, seconds};
+use judge::stops::plan::Mark;
+use trade::Stop;
+
+/// The quality slider, its measurements, the receipt of the last edit.
+pub struct Trade;
+
+impl Pane for Trade {
+    fn id(&self) -> PaneId {
+        PaneId::TRADE
+    }
+
+    fn title(&self) -> String {
+        "Speed and accuracy".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Live
+    }
+
+    fn column_points(&self) -> f32 {
+        400.0
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| trade_ui(ui, cx.tuning, cx.params, commands));
+    }
+}
+
+/// Draws the panel. `params` are those of the next edit.
+pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {
+    egui::ScrollArea::vertical()
+        .id_salt("trade")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 6.0;
+            slider(ui, tuning, params, commands);
+            calibration(ui, tuning, commands);
+            let current = tuning.current(params).map(|i| tuning.stops.stops[i].name.clone());
+            let last = tuning
+                .last
+                .as_ref()
+                .map(|l| (l.report.total_s(), l.measured_error));
+            let size = vec2(ui.available_width().max(120.0), 230.0);
+            front_plot(ui, &marks(tuning), current.as_deref(), last, size);
+            let from = format!(
+                "Errors: {} held-out edits against {}. X-Scene's time is the paper's.",
+                edits(tuning),
+                tuning.stops.reference
+            );
+            ui.label(RichText::new(from).small().color(theme::text_weak()));
+            ui.separator();
+            receipt(ui, tuning, commands);
+            ui.separator();
+            stability(ui, tuning);
+        });
+}
+
+fn edits(tuning: &Tuning) -> usize {
+    tuning.stops.stops.first().map_or(0, |s| s.error.n)
+}
+
+fn marks(tuning: &Tuning) -> Vec<Mark> {
+    let tokens = tuning.tokens_of_next();
+    let mark = |s: &Stop| Mark {
+        name: s.name.clone(),
+        wall_s: [tuning.foretold_s(s, tokens); 3],
+        error: [s.error.median, s.error.low, s.error.high],
+        on_front: true,
+        stop: Some(s.name.clone()),
+    };
+    tuning.stops.stops.iter().map(mark).collect()
+}
+
+fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<Command>) {
+    let stops = &tuning.stops.stops;
+    if stops.is_empty() {
+        ui.label("Nothing was measured for these weights: run `sceneloom trade`.");
+        return;
+    }
+    let current = tuning.current(params);
+    let mut at = current.unwrap_or(0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Fast").color(theme::text_weak()));
+        ui.spacing_mut().slider_width = (ui.available_width() - 70.0).max(60.0);
+        let slider = Slider::new(&mut at, 0..=stops.len() - 1).show_value(false);
+        let response = ui
+            .add(slider)
+            .on_hover_text("Each stop is a setting on the measured front");
+        let name = stops[at].name.clone();
+        response.widget_info(|| {
+            let mut info = egui::WidgetInfo::slider(true, at as f64, format!("Quality: {name}"));
+            info.label = Some(format!("Quality: {name}"));
+            info
+        });
+        if response.changed() && Some(at) != current {
+            commands.push(Command::Generation(GenerationCommand::Quality(at)));
+        }
+        ui.label(RichText::new("Exact").color(theme::text_weak()));
+    });
+    let tokens = tuning.tokens_of_next();
+    match current {
+        Some(i) => {
+            ui.label(RichText::new(theme::sentence(&stops[i].name)).strong());
+            let of = if tuning.last.is_some() {
+                "An edit as large as the last one: "
+            } else {
+                "An edit of a few vehicles' size: "
+            };
+            let foretold = foretold(&stops[i], tuning.foretold_s(&stops[i], tokens));
+            ui.label(RichText::new(of.to_owned() + &foretold).small());
+            let factor = tuning.window_factor();
+            if factor > 1.25 {
+                let text =
+                    format!("{factor:.1} times as long as in quiet: this window is drawn by the same cores");
+                ui.label(RichText::new(text).small().color(theme::text_weak()));
+            }
+        }
+        None => {
+            ui.label(RichText::new("Own settings, not measured").strong());
+        }
+    }
+}
+
+fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| match tuning.measuring() {
+        Some((Measuring::Stops, done, all)) => {
+            ui.add(egui::Spinner::new().size(13.0));
+            ui.label(format!("Calibrating, {done} of {all} stops timed, 30 s at most"));
+            if ui.button("Stop").clicked() {
+                commands.push(Command::Generation(GenerationCommand::StopMeasuring));
+            }
+        }
+        _ => {
+            let text = "Times every stop on this computer: 30 s at most. Best while nothing else runs.";
+            if ui.button("Calibrate").on_hover_text(text).clicked() {
+                commands.push(Command::Generation(GenerationCommand::Calibrate));
+            }
+            let load = Load::now();
+            let (line, color) = match (tuning.calibrated, load.is_busy()) {
+                (_, true) => (
+                    format!("busy: {}; times would be too long", load.describe()),
+                    theme::warn(),
+                ),
+                (true, _) => (
+                    format!("times of this machine ({})", tuning.stops.machine),
+                    theme::text_weak(),
+                ),
+                // (weights and program may be older than this one)
+                (false, _) if tuning.stops.machine == machine() => (
+                    format!("times of a machine like this one ({})", tuning.stops.machine),
+                    theme::text_weak(),
+                ),
+                (false, _) => (
+                    format!("times of another machine ({})", tuning.stops.machine),
+                    theme::warn(),
+                ),
+            };
+            ui.label(RichText::new(line).small().color(color));
+        }
+    });
+    if let Some(message) = &tuning.message {
+        ui.label(RichText::new(message).small().color(theme::text_weak()));
+    }
+}
+
+/// A name and what is said of it, on as many lines as that takes.
+fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let width = 86.0;
+        ui.allocate_ui_with_layout(vec2(width, 16.0), Layout::top_down(Align::Min), |ui| {
+            ui.set_width(width);
+            ui.add(Label::new(RichText::new(name).color(theme::text_weak())).truncate());
+        });
+        ui.add(Label::new(value.into()).wrap());
+    });
+}
+
+fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
+    ui.label(RichText::new("Receipt of the last edit").strong());
+    let measuring = tuning.measuring();
+    let Some(last) = &tuning.last else {
+        ui.label(RichText::new("Edit something: what it cost is written here.").color(theme::text_weak()));
+        return;
+    };
+    let r = &last.report;
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        row(
+            ui,
+            "Region",
+            format!("{} columns ({})", r.region_columns, percent(r.region_share)),
+        );
+        row(
+            ui,
+            "Computed",
+            format!("{} of 625 tokens, {} network calls", r.tokens, r.network_calls),
+        );
+        let foretold = last
+            .predicted_s
+            .map_or(String::new(), |s| format!(", foretold {}", seconds(s)));
+        row(
+            ui,
+            "Time",
+            format!(
+                "{}{foretold}; on screen after {}",
+                seconds(r.total_s()),
+                seconds(last.settled_s)
+            ),
+        );
+        row(ui, "Stages", stages(last));
+        let error = match (last.measured_error, last.predicted_error) {
+            (Some(e), Some([_, low, high])) => {
+                let where_ = match e {
+                    e if e < low => "better than foretold",
+                    e if e <= high => "as foretold",
+                    _ => "more than foretold",
+                };
+                format!(
+                    "{} measured, {where_} ({} to {})",
+                    percent(e),
+                    percent(low),
+                    percent(high)
+                )
+            }
+            (Some(e), None) => format!("{} measured", percent(e)),
+            (None, Some([e, low, high])) => {
+                format!("{} foretold ({} to {})", percent(e), percent(low), percent(high))
+            }
+            (None, None) => "unknown for own settings".into(),
+        };
+        row(ui, "Differs", error);
+        let untouched = if r.untouched_voxels_changed == 0 {
+            format!("identical, {:016x}", r.untouched_hash)
+        } else {
+            format!("{} CHANGED", r.untouched_voxels_changed)
+        };
+        row(ui, "Untouched", untouched);
+    });
+    ui.horizontal_wrapped(|ui| {
+        match measuring {
+            Some((Measuring::Error, done, all)) => {
+                ui.add(egui::Spinner::new().size(13.0));
+                ui.label(format!("Measuring against the reference, step {done} of {all}"));
+                if ui.button("Stop").clicked() {
+                    commands.push(Command::Generation(GenerationCommand::StopMeasuring));
+                }
+            }
+            _ => {
+                let about = tuning
+                    .stops
+                    .named("reference")
+                    .map(|s| s.invert_s + s.cost.fixed_s);
+                let about = about.map_or(String::new(), |s| format!(" About {}.", seconds(s)));
+                let text = format!(
+                    "Runs the reference on the same edit in the background and says how much differs.{about}"
+                );
+                if ui.button("Refine").on_hover_text(text).clicked() {
+                    commands.push(Command::Generation(GenerationCommand::Refine));
+                }
+            }
+        }
+        ui.checkbox(&mut tuning.show_modelled, "Show what was computed")
+            .on_hover_text("Tokens, columns and bricks of the last edit, in the bird's-eye view");
+    });
+}
+
+/// Stages that took a millisecond or more.
+fn stages(last: &LastEdit) -> String {
+    let parts = last.report.wall_s.iter().filter(|(_, s)| **s >= 1e-3);
+    parts
+        .map(|(name, s)| format!("{name} {}", seconds(*s)))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn stability(ui: &mut Ui, tuning: &Tuning) {
+    ui.label(RichText::new("Stability").strong());
+    let s = &tuning.stability;
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        if let Some(r) = tuning.last.as_ref().map(|l| &l.report)
+            && let (Some(std), Some(max)) = (r.noise_std, r.noise_max_abs)
+        {
+            let sound = (0.9..=1.1).contains(&std) && max < 6.0;
+            let verdict = if sound {
+                "as a draw would be"
+            } else {
+                "unlike a draw (std 0.9 to 1.1, max 6)"
+            };
+            row(
+                ui,
+                "Inverted noise",
+                format!("std {std:.2}, max {max:.1}: {verdict}"),
+            );
+        }
+        row(
+            ui,
+            "Generations",
+            format!("{}, {} with a fallback or warning", s.runs, s.fallbacks),
+        );
+        row(
+            ui,
+            "Failed",
+            format!("{}, {} by a number that was not finite", s.failures, s.not_finite),
+        );
+        let color = if s.untouched_changed == 0 {
+            theme::text()
+        } else {
+            theme::bad()
+        };
+        row(
+            ui,
+            "Untouched",
+            RichText::new(format!("{} voxels changed", s.untouched_changed)).color(color),
+        );
+    });
+    if let Some(notes) = tuning
+        .last
+        .as_ref()
+        .map(|l| &l.report.notes)
+        .filter(|n| !n.is_empty())
+    {
+        for note in notes {
+            ui.label(RichText::new(note).small().color(theme::warn()));
+        }
+    }
+}

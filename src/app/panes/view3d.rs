@@ -1,0 +1,190 @@
+//! The 3D view, with the state before on it or beside it.
+
+use egui::Ui;
+
+use super::areas::{clipped, halves, in_rect, left_part, sides};
+use super::compare::{CompareMode, legend, wipe_line};
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
+use crate::command::{Command, FileCommand, ViewCommand};
+use crate::state::{LidarModel, UiState};
+use crate::theme;
+use crate::view3d::{View3d, View3dInput};
+use crate::widgets::icons::{self, Icon};
+use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
+
+/// The 3D view.
+pub struct View3dPane;
+
+impl Pane for View3dPane {
+    fn id(&self) -> PaneId {
+        PaneId::VIEW3D
+    }
+
+    fn title(&self) -> String {
+        "3D view".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Voxel
+    }
+
+    fn shows_before(&self) -> bool {
+        true
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let (options, state) = (&mut cx.view3d.options, &mut *cx.state);
+
+        if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
+            commands.push(Command::File(FileCommand::QuickShot));
+        }
+        let show = egui::containers::menu::MenuButton::new("Show").config(
+            egui::containers::menu::MenuConfig::new()
+                .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),
+        );
+        show.ui(ui, |ui| show_menu(ui, options, state));
+        ui.menu_button("View", |ui| {
+            for preset in ViewPreset::ALL {
+                if ui.button(theme::sentence(preset.name())).clicked() {
+                    commands.push(Command::View(ViewCommand::Preset(preset)));
+                    ui.close();
+                }
+            }
+        });
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let area = ui.available_rect_before_wrap();
+        let scene = cx.scene;
+
+        let mode = cx.compare.mode(cx.state);
+        let (left, right) = halves(area);
+        let rect = if mode == CompareMode::Side { right } else { area };
+        let shows_before = cx.compare.shows_before(cx.state, scene);
+        let difference = match mode {
+            CompareMode::Difference => cx.compare.difference(ui, scene).map(|(d, _)| d),
+            _ => None,
+        };
+        let entries = difference.map(|d| d.legend());
+        let marked = difference.map(|d| d.marked());
+        let input = View3dInput {
+            scene,
+            settled: cx.document.settled_scene(),
+            lidar: cx.sensing.lidar(),
+            dragging: cx.document.is_dragging(),
+            marked: marked.as_ref().map_or(&[], |m| &m[..]),
+        };
+        let (view, state) = (&mut *cx.view3d, &mut *cx.state);
+        if shows_before {
+            let (camera, options) = (view.camera, view.options.clone());
+            clipped(ui, area, |ui| {
+                view.still(ui, area, (&camera, &options), &input, state)
+            });
+            return;
+        }
+        in_rect(ui, rect, |ui| {
+            view.show(ui, &input, state, commands);
+        });
+        if let Some(entries) = entries {
+            legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
+        }
+        let Some(before) = cx.compare.before.clone() else {
+            return;
+        };
+        if !matches!(mode, CompareMode::Side | CompareMode::Wipe) {
+            return;
+        }
+        let other = cx
+            .compare
+            .view3d
+            .get_or_insert_with(|| View3d::new(cx.render_state.cloned()));
+        let lidar = cx.compare.sensing.as_ref().and_then(|s| s.lidar());
+        let input = View3dInput {
+            scene: &before,
+            settled: &before,
+            lidar,
+            dragging: false,
+            marked: &[],
+        };
+        let looks = (&cx.view3d.camera, &cx.view3d.options);
+        if mode == CompareMode::Side {
+            clipped(ui, left, |ui| other.still(ui, left, looks, &input, cx.state));
+            sides(ui, left, right);
+        } else {
+            let part = left_part(area, cx.state.wipe_at);
+            clipped(ui, part, |ui| other.still(ui, area, looks, &input, cx.state));
+            wipe_line(ui, area, &mut cx.state.wipe_at);
+        }
+    }
+}
+
+fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
+    ui.set_min_width(200.0);
+    ui.checkbox(&mut options.voxels, "Voxels");
+    ui.checkbox(&mut options.voxel_edges, "Voxel edges");
+    ui.checkbox(&mut options.shadows, "Shadows");
+    ui.checkbox(&mut options.markings, "Road markings");
+    ui.checkbox(&mut state.show_boxes, "Boxes");
+    ui.checkbox(&mut options.lidar, "LiDAR points");
+    ui.checkbox(&mut options.ego, "Ego vehicle");
+    ui.checkbox(&mut options.frusta, "Camera frusta");
+    ui.checkbox(&mut state.show_grid, "Grid");
+    let mut plane = options.layout_plane == LayoutPlane::Always;
+    if ui.checkbox(&mut plane, "Layout on the ground").changed() {
+        options.layout_plane = if plane {
+            LayoutPlane::Always
+        } else {
+            LayoutPlane::WhereEmpty
+        };
+    }
+    let mut clipped = options.clip_above_m.is_some();
+    if ui.checkbox(&mut clipped, "Cut above").changed() {
+        options.clip_above_m = clipped.then_some(2.0);
+    }
+    if let Some(height_m) = &mut options.clip_above_m {
+        ui.add(
+            egui::Slider::new(height_m, -1.0..=5.4)
+                .suffix(" m")
+                .fixed_decimals(1),
+        );
+    }
+    ui.separator();
+    ui.label(egui::RichText::new("LiDAR").small().color(theme::text_weak()));
+    icons::segments(
+        ui,
+        &mut state.lidar_model,
+        &[
+            (LidarModel::Exact, "Exact", "every ray to the first voxel"),
+            (
+                LidarModel::Learned,
+                "Learned",
+                "ranges within voxels, echo strength, lost echoes",
+            ),
+        ],
+    );
+    ui.label(
+        egui::RichText::new("LiDAR colour")
+            .small()
+            .color(theme::text_weak()),
+    );
+    icons::segments(
+        ui,
+        &mut state.lidar_colors,
+        &[
+            (LidarColorMode::Range, "Range", "near warm, far cool"),
+            (LidarColorMode::Class, "Class", "of the voxel hit"),
+            (LidarColorMode::Ring, "Ring", "beam"),
+            (
+                LidarColorMode::Intensity,
+                "Echo",
+                "strength, from the learned LiDAR",
+            ),
+            (
+                LidarColorMode::Drop,
+                "Loss",
+                "how likely an echo is lost, from the learned LiDAR",
+            ),
+        ],
+    );
+}

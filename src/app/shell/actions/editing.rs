@@ -1,0 +1,131 @@
+//! Actions that many tools share, and those of the selection.
+
+use super::Group::{Selection, Tools};
+use super::{ActionDef, action};
+use crate::command::Command;
+use crate::tools::ToolCommand;
+use crate::tools::things::ThingCommand;
+
+const fn raise(steps: i32) -> Command {
+    Command::Tools(ToolCommand::Thing(ThingCommand::Raise(steps)))
+}
+
+/// What belongs to no one tool: tools, then the selection.
+pub(super) const ACTIONS: &[ActionDef] = &[
+    action(Tools, "brush_smaller", "Smaller brush", "[ {", |_| {
+        Some(Command::BrushSize(-1))
+    })
+    .repeats(),
+    action(Tools, "brush_larger", "Larger brush", "] }", |_| {
+        Some(Command::BrushSize(1))
+    })
+    .repeats(),
+    action(
+        Tools,
+        "escape",
+        "Cancel the drag, drop the selection",
+        "Esc",
+        |_| Some(Command::Escape),
+    ),
+    action(Selection, "delete", "Delete", "Del Backspace", |_| {
+        Some(Command::Tools(ToolCommand::Delete))
+    }),
+    action(Selection, "duplicate", "Duplicate", "Ctrl+D", |_| {
+        Some(Command::Tools(ToolCommand::Duplicate))
+    }),
+    action(Selection, "turn_left", "Turn left 1°", "Z", |_| {
+        Some(Command::Tools(ToolCommand::Turn(1.0)))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_right", "Turn right 1°", "X", |_| {
+        Some(Command::Tools(ToolCommand::Turn(-1.0)))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_left_far", "Turn left 15°", "Shift+Z", |_| {
+        Some(Command::Tools(ToolCommand::Turn(15.0)))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_right_far", "Turn right 15°", "Shift+X", |_| {
+        Some(Command::Tools(ToolCommand::Turn(-15.0)))
+    })
+    .chosen()
+    .repeats(),
+    action(Selection, "turn_90", "Turn 90°", "C", |_| {
+        Some(Command::Tools(ToolCommand::Turn(90.0)))
+    })
+    .chosen(),
+    action(Selection, "turn_180", "Turn 180°", "Q", |_| {
+        Some(Command::Tools(ToolCommand::Turn(180.0)))
+    })
+    .chosen(),
+    action(Selection, "select_all", "Select all boxes", "Ctrl+A", |_| {
+        Some(Command::Tools(ToolCommand::ChooseAll))
+    }),
+    action(Selection, "select_none", "Select no box", "Ctrl+Shift+A", |_| {
+        Some(Command::Tools(ToolCommand::ChooseNone))
+    }),
+    action(
+        Selection,
+        "select_others",
+        "Invert the selection",
+        "Ctrl+I",
+        |_| Some(Command::Tools(ToolCommand::ChooseOthers)),
+    ),
+    action(Selection, "copy", "Copy", "Ctrl+C", |_| {
+        Some(Command::Tools(ToolCommand::Copy))
+    }),
+    action(Selection, "cut", "Cut", "Ctrl+X", |_| {
+        Some(Command::Tools(ToolCommand::Cut))
+    }),
+    action(Selection, "paste", "Paste at the pointer", "Ctrl+V", |_| {
+        Some(Command::Tools(ToolCommand::Paste))
+    }),
+    action(Selection, "row", "Row of copies", "Ctrl+Shift+D", |_| {
+        Some(Command::Tools(ToolCommand::AskRow))
+    }),
+    action(Selection, "mirror", "Mirror about the ego axis", "Ctrl+M", |_| {
+        Some(Command::Tools(ToolCommand::Mirror(false)))
+    }),
+    action(Selection, "mirror_copies", "Mirrored copies", "", |_| {
+        Some(Command::Tools(ToolCommand::Mirror(true)))
+    }),
+    action(
+        Selection,
+        "to_lane",
+        "Boxes to the lane and the ground, things to the kerb",
+        "D",
+        |_| Some(Command::Tools(ToolCommand::ToLane)),
+    )
+    .chosen(),
+    action(Selection, "to_ground", "To the ground", "Shift+D", |_| {
+        Some(Command::Tools(ToolCommand::DropToGround))
+    })
+    .chosen(),
+    action(
+        Selection,
+        "raise",
+        "Raise things: a storey, or 0.5 m",
+        "] }",
+        |_| Some(raise(1)),
+    )
+    .things()
+    .repeats(),
+    action(
+        Selection,
+        "lower",
+        "Lower things: a storey, or 0.5 m",
+        "[ {",
+        |_| Some(raise(-1)),
+    )
+    .things()
+    .repeats(),
+    action(Selection, "next_box", "Next box", "J", |_| {
+        Some(Command::SelectNext(1))
+    }),
+    action(Selection, "previous_box", "Previous box", "Shift+J", |_| {
+        Some(Command::SelectNext(-1))
+    }),
+];

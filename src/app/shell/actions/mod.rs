@@ -1,0 +1,176 @@
+//! Everything that a key can call for: the one list behind keys, the sheet of keys and the command palette.
+
+mod editing;
+mod window;
+
+use std::sync::LazyLock;
+
+use glam::DVec3;
+
+use crate::command::Command;
+use crate::state::UiState;
+use crate::tools::ToolCommand;
+use editor::tools::{self, Shortcut};
+
+/// Where a chord counts; what stands later wins over what stands before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum When {
+    /// Everywhere.
+    Always,
+    /// With the pointer over the 3D view.
+    Over3d,
+    /// While a box or a thing is chosen and the tool in hand is one for them.
+    Chosen,
+    /// While a thing beside the road is chosen and no brush is in hand.
+    Things,
+}
+
+impl When {
+    /// True if a chord cannot mean two things in these two places: only `Always` gives way to the others.
+    pub fn meets(self, other: Self) -> bool {
+        self == other
+    }
+}
+
+/// Sections of the sheet of keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Tools.
+    Tools,
+    /// The chosen box.
+    Selection,
+    /// Views and panes.
+    Views,
+    /// Generation and versions.
+    Generation,
+    /// Files and history.
+    File,
+}
+
+impl Group {
+    /// Every group with its title.
+    pub const ALL: [(Group, &'static str); 5] = [
+        (Group::Tools, "Tools"),
+        (Group::Selection, "Selection"),
+        (Group::Views, "Views"),
+        (Group::Generation, "Generation"),
+        (Group::File, "File and edit"),
+    ];
+}
+
+/// One action.
+#[derive(Clone, Copy)]
+pub struct ActionDef {
+    /// Its name in key files.
+    pub id: &'static str,
+    /// Section of the sheet.
+    pub group: Group,
+    /// What it does, for a person.
+    pub title: &'static str,
+    /// Where its chords count.
+    pub when: When,
+    /// Default chords, separated by blanks.
+    pub keys: &'static str,
+    /// Goes on while the key is held.
+    pub repeats: bool,
+    does: Does,
+}
+
+/// What an action does.
+#[derive(Clone, Copy)]
+enum Does {
+    /// Asks for something; nothing if only the window's state changes.
+    Command(fn(&mut UiState) -> Option<Command>),
+    /// The shortcut of a tool of that name.
+    Shortcut,
+}
+
+const fn action(
+    group: Group,
+    id: &'static str,
+    title: &'static str,
+    keys: &'static str,
+    command: fn(&mut UiState) -> Option<Command>,
+) -> ActionDef {
+    ActionDef {
+        id,
+        group,
+        title,
+        when: When::Always,
+        keys,
+        repeats: false,
+        does: Does::Command(command),
+    }
+}
+
+impl ActionDef {
+    /// What the action asks for now.
+    pub fn run(&self, state: &mut UiState) -> Option<Command> {
+        match self.does {
+            Does::Command(command) => command(state),
+            Does::Shortcut => Some(Command::Tools(ToolCommand::Shortcut(self.id))),
+        }
+    }
+
+    const fn over_3d(mut self) -> Self {
+        self.when = When::Over3d;
+        self
+    }
+
+    const fn chosen(mut self) -> Self {
+        self.when = When::Chosen;
+        self
+    }
+
+    const fn things(mut self) -> Self {
+        self.when = When::Things;
+        self
+    }
+
+    const fn repeats(mut self) -> Self {
+        self.repeats = true;
+        self
+    }
+}
+
+/// Every action: those of the tools, and all others.
+pub static ACTIONS: LazyLock<Vec<ActionDef>> = LazyLock::new(|| {
+    let of_tools = tools::all().iter().flat_map(|tool| tool.shortcuts).map(of_tool);
+    let others = editing::ACTIONS.iter().chain(window::ACTIONS);
+    of_tools.chain(others.copied()).collect()
+});
+
+/// The action that a tool has.
+fn of_tool(shortcut: &'static Shortcut) -> ActionDef {
+    ActionDef {
+        id: shortcut.id,
+        group: match shortcut.when {
+            tools::When::Chosen => Group::Selection,
+            _ => Group::Tools,
+        },
+        title: shortcut.title,
+        when: match shortcut.when {
+            tools::When::Always => When::Always,
+            tools::When::OverSpace => When::Over3d,
+            tools::When::Chosen => When::Chosen,
+        },
+        keys: shortcut.keys,
+        repeats: false,
+        does: Does::Shortcut,
+    }
+}
+
+/// Nudges of the chosen box by the arrows, which no preset changes: direction in the ego frame, as the bird's-eye view
+/// shows it (forward is up).
+pub fn nudge_direction(key: egui::Key) -> Option<DVec3> {
+    use egui::Key;
+    Some(match key {
+        Key::ArrowUp => DVec3::X,
+        Key::ArrowDown => -DVec3::X,
+        Key::ArrowLeft => DVec3::Y,
+        Key::ArrowRight => -DVec3::Y,
+        Key::PageUp => DVec3::Z,
+        Key::PageDown => -DVec3::Z,
+        _ => return None,
+    })
+}

@@ -1,0 +1,344 @@
+//! The application: owns document, worker, sensing and views; draws them, then carries out what the
+//! user asked for.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::Ui;
+
+use editor::Document;
+use job::worker::GenWorker;
+use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline};
+use scene::Scene;
+
+use super::checking::Checking;
+use super::dock::Dock;
+use super::files::Disk;
+use super::files::Files;
+pub use super::files::{NewScene, OpenScene, SaveScene};
+use super::generation::Generation;
+use super::live::Live;
+use super::perf::Perf;
+use super::preferences::Preferences;
+use super::settings::Settings;
+use super::toasts::{Level, Toasts};
+use super::tuning::Tuning;
+use super::versions::Versions;
+use super::views::Views;
+use crate::sensing::Sensing;
+use crate::state::UiState;
+use crate::theme;
+use crate::view3d::View3d;
+use crate::windows::palette::Palette;
+use crate::windows::shortcuts::Shortcuts;
+
+/// Makes the pipeline, on the worker's thread.
+pub type BuildPipeline = Box<dyn FnMut() -> Result<Box<dyn Pipeline>, GenError> + Send>;
+
+/// What the application starts with.
+pub struct AppConfig {
+    /// The scene to show.
+    pub scene: Scene,
+    /// Its file, if it has one.
+    pub path: Option<PathBuf>,
+    /// Makes the pipeline.
+    pub build_pipeline: BuildPipeline,
+    /// How to generate what was edited.
+    pub params: GenParams,
+    /// How to generate everything.
+    pub full_params: GenParams,
+    /// Send a job that edits nothing when a scene was opened, so that the pipeline can get ready.
+    pub warm_up: bool,
+    /// Opens files.
+    pub open: OpenScene,
+    /// Saves files.
+    pub save: SaveScene,
+    /// Makes new scenes.
+    pub new_scene: NewScene,
+    /// Ask the system for file dialogs; false: only the path field.
+    pub native_dialogs: bool,
+    /// Where settings are kept; none: standard ones, kept nowhere.
+    pub settings_file: Option<PathBuf>,
+}
+
+/// [`GenWorker`] wants a type; this is one for whatever the configuration makes.
+struct AnyPipeline(Box<dyn Pipeline>);
+
+impl Pipeline for AnyPipeline {
+    fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        self.0.run(job, ctx)
+    }
+}
+
+/// Threads that follow the scene.
+pub struct Background {
+    pub(crate) sensing: Sensing,
+    /// Findings of the quality checks.
+    pub checking: Checking,
+}
+
+/// Windows that lie over the panes and keep something while they are open.
+#[derive(Default)]
+pub(crate) struct Overlays {
+    pub palette: Palette,
+    pub shortcuts: Shortcuts,
+}
+
+/// What frames need: the clock, how fast they are, the window's title.
+pub struct Frames {
+    /// How fast the window is.
+    pub perf: Perf,
+    pub(crate) clock: Instant,
+    pub(crate) title: String,
+    pub(crate) passes: u32,
+}
+
+/// The window's contents. Works without eframe and without a graphics device, for tests.
+pub struct SceneloomApp {
+    /// What is edited.
+    pub document: Document,
+    /// What the window shows and holds in hand.
+    pub state: UiState,
+    /// Messages.
+    pub toasts: Toasts,
+    /// The scene's file, and what is read and written.
+    pub files: Files,
+    /// The worker and its results.
+    pub generation: Generation,
+    /// Views and panes.
+    pub views: Views,
+    /// Sensors and checks.
+    pub background: Background,
+    pub(crate) overlays: Overlays,
+    /// Settings and keys.
+    pub preferences: Preferences,
+    /// The window's frames.
+    pub frames: Frames,
+    ctx: egui::Context,
+}
+
+impl SceneloomApp {
+    /// Starts worker and sensing. Errors if the system gives no thread.
+    pub fn new(
+        config: AppConfig,
+        render_state: Option<egui_wgpu::RenderState>,
+        ctx: &egui::Context,
+    ) -> std::io::Result<Self> {
+        let (settings, complaint) = match config.settings_file.as_deref().map(Settings::load) {
+            Some(Ok(settings)) => (settings, None),
+            Some(Err(error)) => (Settings::default(), Some(one_line(&error))),
+            None => (Settings::default(), None),
+        };
+        theme::apply(ctx, settings.look);
+        settings.classes.make_current();
+        if settings.ui_scale != 1.0 {
+            ctx.set_zoom_factor(settings.ui_scale);
+        }
+        let mut toasts = Toasts::default();
+        if let Some(text) = complaint {
+            toasts.push(Level::Error, format!("Standard settings are used: {text}"), 0.0);
+        }
+        let state = UiState {
+            start_open: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
+            ..UiState::default()
+        };
+        // On a software rasteriser a frame costs the time of a step of generation: fewer of them then.
+        let view3d = View3d::new(render_state.clone());
+        let mut versions = Versions::default();
+        versions.push("As opened".into(), String::new(), Arc::new(config.scene.clone()));
+        let (between_frames_s, sensing_grace) = match view3d.is_software() {
+            true => (0.15, Duration::from_millis(25)),
+            false => (0.015, Duration::ZERO),
+        };
+        let wake = waker(ctx, between_frames_s);
+        let mut build = config.build_pipeline;
+        let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
+        let tuning = Tuning::new(config.settings_file.as_deref());
+        // Whoever starts the window without settings names its parameters.
+        let quality = tuning
+            .stops
+            .named(&settings.quality)
+            .filter(|_| config.settings_file.is_some());
+        let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
+        let dock = settings.dock.clone().and_then(Dock::from_kept);
+        let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
+        let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));
+        let live = Live::new(params, config.full_params, config.warm_up);
+        let disk = Disk {
+            open: config.open,
+            save: config.save,
+            new_scene: config.new_scene,
+        };
+        Ok(Self {
+            document: Document::new(config.scene),
+            state,
+            toasts,
+            files: Files::new(config.path, disk, config.native_dialogs),
+            generation: Generation::new(worker, live, tuning, versions),
+            views: Views::new(view3d, dock, render_state),
+            background: Background {
+                checking: Checking::spawn(wake.clone())?,
+                sensing: Sensing::spawn(sensing_grace, wake)?,
+            },
+            overlays: Overlays::default(),
+            preferences: Preferences::new(config.settings_file, settings),
+            frames: Frames {
+                perf: Perf::default(),
+                clock: Instant::now(),
+                title: String::new(),
+                passes: 0,
+            },
+            ctx: ctx.clone(),
+        })
+    }
+
+    /// Seconds since the start.
+    pub fn now_s(&self) -> f64 {
+        self.frames.clock.elapsed().as_secs_f64()
+    }
+
+    /// File of the scene, if it has one.
+    pub fn path(&self) -> Option<&Path> {
+        self.files.path.as_deref()
+    }
+
+    /// What the sensors returned last.
+    pub fn sensing(&self) -> &Sensing {
+        &self.background.sensing
+    }
+
+    /// True if LiDAR and cameras show the state on screen.
+    pub fn sensors_are_current(&self) -> bool {
+        let rev = self.document.scene().rev;
+        !self.background.sensing.cameras_stale(rev) && !self.background.sensing.lidar_stale(rev)
+    }
+
+    /// The document's scene, or a preview of its generation.
+    pub(crate) fn shown_scene(&self) -> Arc<Scene> {
+        if let (true, Some(before)) = (self.state.holding_before, &self.views.compare.before) {
+            return before.clone();
+        }
+        match &self.generation.preview {
+            Some((rev, scene)) if *rev == self.document.scene().rev => scene.clone(),
+            _ => self.document.scene().clone(),
+        }
+    }
+
+    /// Everything that happens without drawing: news of the worker, of sensing, of files.
+    pub fn update(&mut self, ctx: &egui::Context) {
+        self.background.sensing.drain();
+        if let Some(problem) = self.background.sensing.take_problem() {
+            self.fail(format!("The sensors show an older scene: {problem}"));
+        }
+        self.generation.tuning.update();
+        if self.document.history_limit() != self.preferences.settings.history_bytes() {
+            self.document
+                .set_history_limit(self.preferences.settings.history_bytes());
+        }
+        for event in self.generation.news() {
+            self.take_event(event);
+        }
+        if !self.document.is_dragging()
+            && let Some((result, own_step)) = self.generation.finished.take()
+        {
+            self.adopt(&result, own_step);
+        }
+        self.take_opened(ctx);
+        self.update_drawing(ctx);
+        if let Some((purpose, path)) = self.files.dialogs.poll() {
+            self.file_chosen(purpose, path, ctx);
+        }
+        // The first picture comes first.
+        if self.frames.passes > 1 {
+            self.schedule(ctx);
+        }
+        self.update_checks(ctx);
+        self.update_recovery(ctx);
+        self.update_export();
+        self.set_title(ctx);
+        self.keep_settings(ctx);
+    }
+
+    /// Puts changed settings to use, and writes them two seconds later at most.
+    fn keep_settings(&mut self, ctx: &egui::Context) {
+        if self.preferences.looks_changed() {
+            theme::apply(ctx, self.preferences.settings.look);
+            self.preferences.settings.classes.make_current();
+            self.views.forget_pictures();
+        }
+        if self.preferences.is_due(self.now_s()) {
+            self.write_settings(ctx);
+        }
+    }
+
+    fn write_settings(&mut self, ctx: &egui::Context) {
+        let now_s = self.now_s();
+        let complaint = self.preferences.write(ctx.zoom_factor(), &self.views.dock, now_s);
+        if let Some(text) = complaint {
+            self.toasts.push(Level::Error, text, now_s);
+        }
+    }
+
+    fn set_title(&mut self, ctx: &egui::Context) {
+        let mark = if self.document.is_dirty() { "● " } else { "" };
+        let title = format!("{mark}{} – Sceneloom", self.document.scene().name);
+        if title != self.frames.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.frames.title = title;
+        }
+    }
+}
+
+/// Asks for a frame when called, at once but at most one per `every_s`.
+fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync + 'static {
+    let ctx = ctx.clone();
+    let last: Arc<std::sync::Mutex<Option<Instant>>> = Arc::default();
+    move || {
+        let mut last = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let now = Instant::now();
+        let every = Duration::from_secs_f64(every_s);
+        match last.map(|at| now.saturating_duration_since(at)) {
+            Some(since) if since < every => ctx.request_repaint_after(every - since),
+            _ => {
+                *last = Some(now);
+                ctx.request_repaint();
+            }
+        }
+    }
+}
+
+pub(crate) use crate::cli::output::one_line;
+
+impl eframe::App for SceneloomApp {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        // A frame that is laid out twice comes here twice; it is one frame.
+        let first = ctx.current_pass_index() == 0;
+        if first {
+            self.frame_begins(frame.info().cpu_usage);
+        }
+        self.update(ctx);
+        if first {
+            self.frames.perf.logic_done(self.now_s());
+        }
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.draw(ui);
+    }
+
+    fn on_exit(&mut self) {
+        self.preferences.write_soon();
+        let ctx = self.ctx.clone();
+        self.write_settings(&ctx);
+        self.frames.perf.finish(None);
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::panel().to_normalized_gamma_f32()
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+}

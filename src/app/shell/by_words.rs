@@ -1,0 +1,81 @@
+//! What the prompt asks of the document: edits by a sentence, and scenes made of words.
+
+use egui::Context;
+
+use super::app::SceneloomApp;
+use super::toasts::Level;
+use crate::prompting::Ask;
+use crate::tools::Choose;
+use editor::Edit;
+use scene::{BoxId, Frame};
+use sensors::appearance::Conditions;
+use sensors::cameras::pictures;
+
+/// Most boxes that are chosen after an edit; of more one sees no more than of none.
+const MOST_CHOSEN: usize = 12;
+
+impl SceneloomApp {
+    /// Applies what a sentence asked for as one undo step of its name. Chooses the boxes that came or changed, and lets the
+    /// cameras show pictures where time or weather changed: classes and depths do not know them.
+    pub(crate) fn apply_words(&mut self, words: &str, edits: &[Edit]) {
+        let before = self.document.settled_scene().clone();
+        let mut edits = edits.to_vec();
+        edits.push(Edit::KeepWords {
+            words: words.to_owned(),
+        });
+        self.apply(step_name(words), &edits);
+        let after = self.document.settled_scene();
+        self.generation.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
+        let changed = changed_boxes(before.frame(), after.frame());
+        let conditions = |prompt: &str| Conditions::from_prompt(prompt);
+        let other_light = conditions(&before.prompt) != conditions(&after.prompt);
+        if !changed.is_empty() && changed.len() <= MOST_CHOSEN {
+            self.state.choose(&changed, Choose::Only);
+        }
+        if other_light && self.state.camera_view != pictures::VIEW.id {
+            self.state.camera_view = pictures::VIEW.id;
+            let now_s = self.now_s();
+            let text = "Time and weather changed: the cameras show pictures now".to_owned();
+            self.toasts.push(Level::Info, text, now_s);
+        }
+    }
+
+    /// Makes a scene of words on a thread of its own; it becomes a step that can be undone.
+    pub(crate) fn scene_from_words(&mut self, ask: Ask, ctx: &Context) {
+        let told = self.views.prompt.told();
+        let make = move || {
+            let mut made = crate::text::made(ask.lay_out(), ask.seed);
+            told.tell(&made.laid);
+            made.scene.words = std::sync::Arc::new(vec![ask.prompt.clone()]);
+            let summary = &ask.description.summary;
+            made.scene.name = summary.chars().take(48).collect::<String>().into();
+            Ok(made.scene)
+        };
+        self.load(SCENE_FROM_WORDS.into(), None, false, ctx, make);
+        if let Some(opening) = &mut self.files.opening {
+            opening.step = Some(SCENE_FROM_WORDS);
+        }
+    }
+}
+
+const SCENE_FROM_WORDS: &str = "Scene from words";
+
+/// Boxes of a frame that another lacks or holds otherwise.
+fn changed_boxes(before: &Frame, after: &Frame) -> Vec<BoxId> {
+    let changed = after
+        .boxes
+        .iter()
+        .filter(|(id, b)| before.boxes.get(id) != Some(b));
+    changed.map(|(id, _)| *id).collect()
+}
+
+/// What the history calls an edit by words: the words.
+fn step_name(words: &str) -> String {
+    const LONGEST: usize = 60;
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut name: String = words.chars().take(LONGEST).collect();
+    if name.len() < words.len() {
+        name.push('…');
+    }
+    format!("“{name}”")
+}

@@ -1,0 +1,262 @@
+//! Draws the dock: each pane with a header that names it, moves it, divides it and puts another in its place.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use egui::{Sense, Ui, WidgetText, vec2};
+use egui_tiles::{Behavior, TileId, Tiles, UiResponse};
+
+use scene::Scene;
+
+use super::app::SceneloomApp;
+use super::dock::Split;
+use crate::command::Command;
+use crate::panes;
+use crate::panes::compare::tag;
+use crate::panes::id::PaneId;
+use crate::panes::pane::{Pane, PaneContext};
+use crate::theme;
+use crate::widgets::icons::{self, Icon};
+
+/// Height of a pane's header, points.
+pub const HEADER: f32 = 30.0;
+
+/// Width that controls get beside tabs, points.
+const BESIDE_TABS: f32 = 104.0;
+
+/// What the user asked of the dock; done after it was drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum DockAction {
+    Put(TileId, PaneId),
+    Split(TileId, Split),
+    Maximize(TileId),
+    Close(TileId),
+}
+
+/// Draws panes for the tree.
+struct Drawer<'a> {
+    panes: &'a mut [Box<dyn Pane>],
+    cx: PaneContext<'a>,
+    commands: &'a mut Vec<Command>,
+    actions: Vec<DockAction>,
+    maximized: bool,
+    tabbed: HashSet<TileId>,
+}
+
+impl Behavior<PaneId> for Drawer<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, tile: TileId, pane: &mut PaneId) -> UiResponse {
+        let rect = ui.max_rect();
+        ui.set_clip_rect(ui.clip_rect().intersect(rect));
+        ui.spacing_mut().item_spacing.y = 0.0;
+        // The tab names it already, and its bar holds what the header would.
+        let on_a_tab = !self.maximized && self.tabbed.contains(&tile);
+        let dragged = !on_a_tab && self.header(ui, tile, *pane);
+        ui.spacing_mut().item_spacing.y = 4.0;
+        self.pane(ui, *pane);
+        if dragged {
+            UiResponse::DragStarted
+        } else {
+            UiResponse::None
+        }
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &PaneId) -> WidgetText {
+        self.title(*pane).into()
+    }
+
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<PaneId>,
+        ui: &mut Ui,
+        _tile: TileId,
+        tabs: &egui_tiles::Tabs,
+        _scroll: &mut f32,
+    ) {
+        let active = tabs.active.and_then(|tile| Some((tile, *tiles.get_pane(&tile)?)));
+        if let Some((tile, pane)) = active {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            ui.add_space(4.0);
+            self.menu(ui, tile, pane, "");
+            ui.scope(|ui| {
+                // The tabs need the room: choices fold into a list.
+                ui.set_max_width(BESIDE_TABS);
+                self.controls(ui, pane);
+            });
+        }
+    }
+
+    fn tab_title_spacing(&self, _visuals: &egui::Visuals) -> f32 {
+        10.0
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        HEADER
+    }
+
+    fn gap_width(&self, _style: &egui::Style) -> f32 {
+        3.0
+    }
+
+    fn min_size(&self) -> f32 {
+        72.0
+    }
+
+    fn tab_bar_color(&self, _visuals: &egui::Visuals) -> egui::Color32 {
+        theme::background()
+    }
+}
+
+impl Drawer<'_> {
+    /// Title of a pane; cameras carry the names that the rig gives them.
+    fn title(&self, id: PaneId) -> String {
+        let pane = self.panes.iter().find(|p| p.id() == id);
+        pane.map_or_else(|| id.name().to_owned(), |p| p.title_in(self.cx.scene))
+    }
+
+    fn controls(&mut self, ui: &mut Ui, id: PaneId) {
+        if let Some(pane) = self.panes.iter_mut().find(|p| p.id() == id) {
+            pane.controls(ui, &mut self.cx, self.commands);
+        }
+    }
+
+    /// Draws a pane below its header.
+    fn pane(&mut self, ui: &mut Ui, id: PaneId) {
+        let Some(pane) = self.panes.iter_mut().find(|p| p.id() == id) else {
+            return;
+        };
+        let area = ui.available_rect_before_wrap();
+        pane.ui(ui, &mut self.cx, self.commands);
+        if self.cx.state.holding_before && pane.shows_before() {
+            tag(ui, area.left_top() + vec2(8.0, 8.0), "before", false);
+        }
+        if ui.rect_contains_pointer(area) {
+            self.cx.state.hovered_pane = Some(id);
+        }
+    }
+
+    /// Title with its menu on the left, what the pane offers on the right. True if the user begins to drag it away.
+    fn header(&mut self, ui: &mut Ui, tile: TileId, pane: PaneId) -> bool {
+        let size = vec2(ui.available_width(), HEADER);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        ui.scope_builder(
+            egui::UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 2.0))),
+            |ui| {
+                ui.set_clip_rect(ui.clip_rect().intersect(rect));
+                ui.horizontal_centered(|ui| {
+                    ui.spacing_mut().item_spacing.x = 4.0;
+                    let title = self.title(pane);
+                    self.menu(ui, tile, pane, &title);
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        self.controls(ui, pane);
+                    });
+                });
+            },
+        );
+        if response.double_clicked() {
+            self.actions.push(DockAction::Maximize(tile));
+        }
+        response.drag_started() && !self.maximized
+    }
+
+    fn menu(&mut self, ui: &mut Ui, tile: TileId, pane: PaneId, name: &str) {
+        let text = egui::RichText::new(format!("{name}     ")).color(theme::text());
+        let button = egui::Button::new(text).fill(egui::Color32::TRANSPARENT);
+        let cameras = self.cx.scene.rig.cameras.len();
+        let is_there = |p: &PaneId| p.camera().is_none_or(|i| i < cameras);
+        let others: Vec<(PaneId, String)> = panes::infos()
+            .iter()
+            .map(|info| info.id)
+            .filter(|id| *id != pane && is_there(id))
+            .map(|id| (id, self.title(id)))
+            .collect();
+        let (opened, _) = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
+            ui.set_min_width(190.0);
+            let mut act = |ui: &mut Ui, name: &str, action: DockAction| {
+                if ui.button(name).clicked() {
+                    self.actions.push(action);
+                    ui.close();
+                }
+            };
+            let large = if self.maximized {
+                "Show all panes"
+            } else {
+                "Maximize"
+            };
+            act(ui, large, DockAction::Maximize(tile));
+            act(ui, "Split to the right", DockAction::Split(tile, Split::Right));
+            act(ui, "Split downward", DockAction::Split(tile, Split::Down));
+            act(ui, "Close", DockAction::Close(tile));
+            ui.separator();
+            ui.label(egui::RichText::new("Show here").small().color(theme::text_weak()));
+            for (choice, title) in others {
+                act(ui, &title, DockAction::Put(tile, choice));
+            }
+        });
+        if name.is_empty() {
+            let label = format!("Menu of {}", self.title(pane));
+            opened.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));
+        }
+        // The fonts have no small triangle.
+        let tip = opened.rect.right_center() + vec2(-13.0, 2.5);
+        let points = vec![tip, tip + vec2(-4.0, -5.0), tip + vec2(4.0, -5.0)];
+        let shape = egui::Shape::convex_polygon(points, theme::text_weak(), egui::Stroke::NONE);
+        ui.painter().add(shape);
+        if self.maximized && icons::button(ui, Icon::Close, "Show all panes", "", false, true).clicked() {
+            self.actions.push(DockAction::Maximize(tile));
+        }
+    }
+}
+
+impl SceneloomApp {
+    /// Draws all panes and does what was asked of the dock.
+    pub(crate) fn dock_ui(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
+        let views = &mut self.views;
+        let dock = &mut views.dock;
+        dock.fit(ui.available_width());
+        let maximized = dock.maximized;
+        let generation = &mut self.generation;
+        let mut drawer = Drawer {
+            panes: &mut views.panes,
+            cx: PaneContext {
+                scene,
+                document: &self.document,
+                state: &mut self.state,
+                canvas: &mut views.canvas,
+                view3d: &mut views.view3d,
+                strip: &mut views.strip,
+                prompt: &mut views.prompt,
+                compare: &mut views.compare,
+                versions: &mut generation.versions,
+                tuning: &mut generation.tuning,
+                sensing: &self.background.sensing,
+                checking: &self.background.checking,
+                params: &generation.live.params,
+                unsettled: &generation.unsettled,
+                generating: generation.live.running.is_some(),
+                render_state: views.render_state.as_ref(),
+            },
+            commands,
+            actions: Vec::new(),
+            maximized: maximized.is_some(),
+            tabbed: dock.tabbed(),
+        };
+        match maximized.and_then(|tile| Some((tile, *dock.tree.tiles.get_pane(&tile)?))) {
+            Some((tile, mut pane)) => drop(drawer.pane_ui(ui, tile, &mut pane)),
+            None => dock.tree.ui(&mut drawer, ui),
+        }
+        let actions = drawer.actions;
+        for action in actions {
+            match action {
+                DockAction::Put(tile, pane) => dock.put(tile, pane),
+                DockAction::Split(tile, split) => {
+                    if let Some(pane) = dock.first_absent() {
+                        dock.split(tile, split, pane);
+                    }
+                }
+                DockAction::Maximize(tile) => dock.toggle_maximized(tile),
+                DockAction::Close(tile) => dock.close(tile),
+            }
+            ui.ctx().request_repaint();
+        }
+    }
+}

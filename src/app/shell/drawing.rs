@@ -1,0 +1,105 @@
+//! Scenery that the network draws: on a thread of its own, since it takes a second and the window goes on meanwhile.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+
+use super::app::SceneloomApp;
+use super::staged::Again;
+use super::toasts::Level;
+use crate::scenery::{Drawer, SceneryWish};
+use editor::Edit;
+use job::GenError;
+use scene::Scene;
+
+/// How soon the window looks again whether it is done.
+const LOOK_AGAIN: Duration = Duration::from_millis(40);
+
+/// Scenery on the way.
+pub(crate) struct Drawing {
+    wish: SceneryWish,
+    before: Arc<Scene>,
+    /// The result waits for the user's decision.
+    staged: bool,
+    edits: Receiver<Result<Vec<Edit>, GenError>>,
+}
+
+impl SceneloomApp {
+    /// Draws scenery on the scene as it is; `staged`: the result waits beside the old until the user decides.
+    pub(crate) fn put_scenery(&mut self, wish: SceneryWish, staged: bool) {
+        let before = self.document.settled_scene().clone();
+        if wish.by != Drawer::Network {
+            let edits = wish.edits(&before);
+            return self.take_scenery(wish, &before, edits, staged);
+        }
+        let (send, edits) = bounded(1);
+        let (wanted, scene) = (wish.clone(), before.clone());
+        let draw = move || wanted.edits(&scene);
+        let thread = job::guard::spawn("scenery", draw, move |edits| {
+            // Nobody listens if other scenery was asked for meanwhile.
+            let _ = send.send(edits.unwrap_or_else(|panic| Err(GenError::failed(panic))));
+        });
+        match thread {
+            Ok(_) => {
+                let now_s = self.now_s();
+                self.toasts.push(Level::Info, "The network draws scenery", now_s);
+                self.generation.drawing = Some(Drawing {
+                    wish,
+                    before,
+                    staged,
+                    edits,
+                });
+            }
+            Err(error) => self.fail(format!("No scenery was drawn: {error}")),
+        }
+    }
+
+    /// Takes scenery that is done, unless the scene has become another.
+    pub(crate) fn update_drawing(&mut self, ctx: &egui::Context) {
+        let Some(drawing) = &self.generation.drawing else {
+            return;
+        };
+        let edits = match drawing.edits.try_recv() {
+            Err(TryRecvError::Empty) => return ctx.request_repaint_after(LOOK_AGAIN),
+            Ok(edits) => edits,
+            Err(TryRecvError::Disconnected) => Err(GenError::failed("drawing it ended unexpectedly")),
+        };
+        let Some(Drawing {
+            wish, before, staged, ..
+        }) = self.generation.drawing.take()
+        else {
+            return;
+        };
+        if self.document.is_dragging() || self.document.settled_scene().rev != before.rev {
+            let now_s = self.now_s();
+            let text = "The scene changed meanwhile: no scenery was drawn";
+            return self.toasts.push(Level::Info, text, now_s);
+        }
+        self.take_scenery(wish, &before, edits, staged);
+    }
+
+    fn take_scenery(
+        &mut self,
+        wish: SceneryWish,
+        before: &Arc<Scene>,
+        edits: Result<Vec<Edit>, GenError>,
+        staged: bool,
+    ) {
+        let edits = match edits {
+            Ok(edits) => edits,
+            Err(error) => return self.fail(format!("No scenery was drawn: {error}")),
+        };
+        self.apply("Draw scenery", &edits);
+        let after = self.document.settled_scene().clone();
+        if after.rev != before.rev {
+            let note = format!("Seed {}", wish.seed);
+            self.generation
+                .versions
+                .push("Draw scenery".to_owned(), note, after);
+            if staged {
+                self.stage(before.clone(), Some(Again::Scenery(Box::new(wish))));
+            }
+        }
+    }
+}

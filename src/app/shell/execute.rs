@@ -1,0 +1,128 @@
+//! Carries out commands, after the frame was drawn.
+
+use egui::Context;
+
+use editor::Edit;
+use editor::document::Label;
+use editor::tools::{add_box, select};
+use scene::SceneBox;
+
+use super::app::SceneloomApp;
+use super::toasts::Level;
+use crate::command::Command;
+use crate::panes::objects::neighbour;
+use crate::state::UiState;
+use crate::tools::Choose;
+
+impl SceneloomApp {
+    /// Carries out one command.
+    pub fn execute(&mut self, command: Command, ctx: &Context) {
+        let before = self.document.settled_scene().rev;
+        let travels = matches!(command, Command::Undo | Command::Redo | Command::JumpTo(_));
+        self.state.remember_selection(before);
+        match command {
+            Command::Apply(label, edits) => self.apply(label, &edits),
+            Command::ApplyWords(words, edits) => self.apply_words(&words, &edits),
+            Command::Preview(edits) => {
+                let edits = self.state.as_meant(edits);
+                if let Err(error) = self.document.preview_all(&edits) {
+                    self.fail(error.to_string());
+                }
+            }
+            Command::Commit(label) => {
+                self.document.commit_drag(label);
+                self.note_correction();
+            }
+            Command::CancelDrag => self.document.cancel_drag(),
+            Command::Undo => {
+                self.document.undo();
+            }
+            Command::Redo => {
+                self.document.redo();
+            }
+            Command::JumpTo(index) => drop(self.document.jump_to(index)),
+            Command::Tools(command) => self.tool_command(command, ctx),
+            Command::Select(id) => self.state.choose(id.as_slice(), Choose::Only),
+            Command::SelectNext(step) => {
+                let ids: Vec<_> = self.document.scene().frame().boxes.keys().copied().collect();
+                let next = neighbour(&ids, self.state.selected, step);
+                self.state.choose(next.as_slice(), Choose::Only);
+            }
+            Command::Escape => self.escape(),
+            Command::Tool(tool) => {
+                let UiState { toolbox, tools, .. } = &mut self.state;
+                toolbox.take(&mut tools.hand, tool);
+            }
+            Command::BrushSize(step) => self.state.step_brush(step),
+            Command::ConfirmInferred => {
+                self.state.correcting = false;
+                self.apply("Confirm what was inferred", &[Edit::ConfirmInferred {}]);
+            }
+            Command::ClearPaint => self.apply("Unlock painted voxels", &[Edit::ClearPaint {}]),
+            Command::FixAll => self.fix_all(ctx),
+            Command::PlaceClass(class) => {
+                self.state.tool = add_box::ID;
+                self.state.box_class = class;
+            }
+            Command::File(command) => self.file_command(command, ctx),
+            Command::View(command) => self.view_command(command),
+            Command::Generation(command) => self.generation_command(command, ctx),
+            Command::Toggle(window) => self.toggle(window),
+        }
+        // Without a guess there is nothing to correct, and no switch to see it by.
+        self.state.correcting &= self.document.scene().frame().inferred.any();
+        // What an edit or undo took away is not selected any more.
+        self.state.tidy_selection(self.document.scene());
+        let after = self.document.settled_scene().rev;
+        if travels && after != before {
+            self.state.recall_selection(after, self.document.scene());
+        }
+    }
+
+    pub(crate) fn fail(&mut self, text: String) {
+        let now_s = self.now_s();
+        self.toasts.push(Level::Error, text, now_s);
+    }
+
+    pub(crate) fn apply(&mut self, label: impl Into<Label>, edits: &[Edit]) {
+        if let Some(layer) = self.state.locked_layer(edits) {
+            return self.fail(format!("Layer {:?} is locked", layer.label()));
+        }
+        if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
+            return self.fail("Background things are locked".to_owned());
+        }
+        let edits = self.state.as_meant(edits.to_vec());
+        if let Err(error) = self.document.apply_all(label, &edits) {
+            self.fail(error.to_string());
+        }
+        self.note_correction();
+    }
+
+    /// A correction changes what the source was inverted under.
+    pub(crate) fn note_correction(&mut self) {
+        if self.state.correcting {
+            self.generation.live.source_changed();
+        }
+    }
+
+    pub(crate) fn selected_box(&self) -> Option<SceneBox> {
+        let id = self.state.selected?;
+        self.document.scene().frame().boxes.get(&id).copied()
+    }
+
+    fn escape(&mut self) {
+        if self.document.is_dragging() {
+            self.document.cancel_drag();
+        } else if self.state.inspected.is_some() {
+            self.state.inspected = None;
+        } else if !self.state.tools.voxels.is_empty() {
+            self.state.tools.voxels.clear();
+        } else if self.state.tool != select::ID {
+            self.state.tool = select::ID;
+        } else if self.state.any_chosen() {
+            self.state.choose(&[], Choose::Only);
+        } else {
+            self.state.correcting = false;
+        }
+    }
+}

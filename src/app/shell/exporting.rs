@@ -1,0 +1,150 @@
+//! The export that the window has under way: on a thread of its own, one at a time.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+
+use super::app::{SceneloomApp, one_line};
+use super::file_dialogs::Purpose;
+use super::toasts::Level;
+use crate::export::{ExportOptions, ExportProgress, Format, export_all};
+use crate::windows::export::{Asked, ExportInput, ExportPanel, export_window};
+use editor::checks::{Severity, waive};
+
+type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
+
+/// The dialog, and what it has started.
+#[derive(Default)]
+pub struct Exporting {
+    /// What the dialog shows; `None` while it is closed.
+    pub panel: Option<ExportPanel>,
+    running: Option<Running>,
+}
+
+struct Running {
+    name: &'static str,
+    progress: Arc<ExportProgress>,
+    written: Receiver<Written>,
+}
+
+impl SceneloomApp {
+    /// Opens the dialog, or closes it.
+    pub(crate) fn toggle_export(&mut self) {
+        self.files.exporting.panel = match self.files.exporting.panel.take() {
+            Some(_) => None,
+            None => Some(ExportPanel::new(&self.suggested("loom"))),
+        };
+    }
+
+    /// Draws the dialog and starts what it asks for.
+    pub(crate) fn export_dialog(&mut self, ui: &egui::Ui) {
+        let Some(mut panel) = self.files.exporting.panel.take() else {
+            return;
+        };
+        let findings = self.background.checking.findings();
+        let input = ExportInput {
+            browse: self.files.dialogs.is_native(),
+            busy: self.files.exporting.running.as_ref().map(|r| &*r.progress),
+            errors: findings.map_or(0, |f| {
+                let open = waive::open(self.document.settled_scene().frame(), f);
+                open.filter(|f| f.severity == Severity::Error).count()
+            }),
+        };
+        let mut open = true;
+        let wanted = export_window(ui, &input, &mut panel, &mut open);
+        let path = PathBuf::from(panel.path.trim());
+        match wanted {
+            Some(Asked::Write(formats)) => {
+                let mut options = panel.options.clone();
+                options.shot.camera = self.views.view3d.camera;
+                panel.written.clone_from(&panel.path);
+                self.start_export(formats, options, path, ui.ctx());
+            }
+            Some(Asked::Browse) => {
+                let purpose = match panel.fills_a_folder() {
+                    true => Purpose::ExportFolder,
+                    false => Purpose::ExportFile,
+                };
+                self.files.dialogs.ask(purpose, &path, ui.ctx());
+            }
+            Some(Asked::Checks) => self.views.dock.open(crate::panes::id::PaneId::CHECKS),
+            None => {}
+        }
+        self.files.exporting.panel = open.then_some(panel);
+    }
+
+    pub(super) fn start_export(
+        &mut self,
+        formats: Vec<Format>,
+        options: ExportOptions,
+        path: PathBuf,
+        ctx: &egui::Context,
+    ) {
+        let (send, written) = bounded(1);
+        let name = match formats.as_slice() {
+            [format] => format.id,
+            _ => "everything",
+        };
+        let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());
+        let progress = Arc::<ExportProgress>::default();
+        let told = progress.clone();
+        let write = move || export_all(&scene, &formats, &options, &path, &told);
+        let thread = job::guard::spawn("export", write, move |written| {
+            // Nobody listens if the window has closed.
+            let _ = send.send(written.unwrap_or_else(|panic| Err(panic.into())));
+            wake.request_repaint();
+        });
+        match thread {
+            Ok(_) => {
+                self.files.exporting.running = Some(Running {
+                    name,
+                    progress,
+                    written,
+                });
+            }
+            Err(error) => {
+                let now_s = self.now_s();
+                self.toasts
+                    .push(Level::Error, format!("Not exported: {error}"), now_s);
+            }
+        }
+    }
+
+    /// Tells how an export ended.
+    pub(crate) fn update_export(&mut self) {
+        let Some(running) = &self.files.exporting.running else {
+            return;
+        };
+        let answer = match running.written.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Ok(answer) => answer,
+            Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("writing it ended unexpectedly")),
+        };
+        let (name, now_s) = (running.name, self.now_s());
+        let cancelled = running.progress.is_cancelled();
+        self.files.exporting.running = None;
+        match answer {
+            Ok(files) => {
+                let bytes: u64 = files.iter().map(|(_, bytes)| bytes).sum();
+                let first = files
+                    .first()
+                    .map_or(String::new(), |(path, _)| path.display().to_string());
+                let what = match files.len() {
+                    1 => first,
+                    n => format!("{n} files, {first} and others"),
+                };
+                let text = format!("Exported {name}: {what} ({:.1} MB)", bytes as f64 / 1e6);
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(_) if cancelled => {
+                let text = "Export cancelled: nothing was written".to_owned();
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(error) => {
+                let text = format!("Not exported: {}", one_line(&error));
+                self.toasts.push(Level::Error, text, now_s);
+            }
+        }
+    }
+}

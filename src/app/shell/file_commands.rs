@@ -1,0 +1,244 @@
+//! Carries out commands about files: opening, saving, screenshots, sensors.
+
+use std::path::{Path, PathBuf};
+
+use crossbeam_channel::bounded;
+use egui::Context;
+
+use super::app::{SceneloomApp, one_line};
+use super::file_dialogs::Purpose;
+use super::files::{Next, Opening};
+use super::toasts::Level;
+use crate::command::FileCommand;
+use crate::open;
+use editor::Edit;
+
+impl SceneloomApp {
+    /// Carries out one of them.
+    pub(crate) fn file_command(&mut self, command: FileCommand, ctx: &Context) {
+        match command {
+            FileCommand::New => self.guarded(Next::New, ctx),
+            FileCommand::Open => self.guarded(Next::AskOpen, ctx),
+            FileCommand::OpenPath(path) => self.guarded(Next::Open(path), ctx),
+            FileCommand::Save => match self.files.path.clone() {
+                Some(path) => self.save_to(path, ctx),
+                None => self
+                    .files
+                    .dialogs
+                    .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+            },
+            FileCommand::SaveAs => self
+                .files
+                .dialogs
+                .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+            FileCommand::ExportScreenshot => {
+                self.files
+                    .dialogs
+                    .ask(Purpose::Screenshot, &self.suggested("png"), ctx);
+            }
+            FileCommand::QuickShot => {
+                let path = free_name(&self.suggested("png"));
+                self.screenshot(&path);
+            }
+            FileCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            FileCommand::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
+            FileCommand::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
+            FileCommand::ImportRig => {
+                let suggestion = self.suggested("json");
+                self.files.dialogs.ask(Purpose::ImportRig, &suggestion, ctx);
+            }
+            FileCommand::ExportRig => {
+                let suggestion = self.suggested("json");
+                self.files.dialogs.ask(Purpose::ExportRig, &suggestion, ctx);
+            }
+        }
+    }
+
+    /// Goes on at once if nothing is unsaved, else asks first.
+    pub(crate) fn guarded(&mut self, next: Next, ctx: &Context) {
+        if self.document.is_dirty() {
+            self.files.unsaved = Some(next);
+        } else {
+            self.go_on(next, ctx);
+        }
+    }
+
+    pub(crate) fn go_on(&mut self, next: Next, ctx: &Context) {
+        match next {
+            Next::Quit => {
+                self.files.may_close = true;
+                if let Some(recovery) = &mut self.files.recovery {
+                    recovery.forget();
+                }
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            Next::AskOpen => {
+                let folder = self.suggested("loom");
+                let folder = folder.parent().unwrap_or(Path::new("")).join("");
+                self.files.dialogs.ask(Purpose::Open, &folder, ctx);
+            }
+            Next::New => {
+                let make = self.files.disk.new_scene.clone();
+                self.load("New scene".into(), None, false, ctx, move || make());
+            }
+            Next::NewFrom(name) => {
+                let seed = std::time::SystemTime::now()
+                    .duration_since(std::time::UNIX_EPOCH)
+                    .map_or(1, |d| u64::from(d.subsec_nanos()) % 100_000);
+                let make = move || {
+                    open::from_template(name, seed)
+                        .ok_or_else(|| anyhow::anyhow!("there is no template {name:?}"))
+                };
+                self.load("New scene".into(), None, false, ctx, make);
+            }
+            Next::Open(path) => {
+                let (open, file) = (self.files.disk.open.clone(), path.clone());
+                let what = format!("Opening {}", path.display());
+                let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
+                let is_import = own_file.is_none();
+                self.load(what, own_file, is_import, ctx, move || open(&file));
+            }
+        }
+    }
+
+    /// Makes a scene on a thread of its own; the window goes on meanwhile.
+    pub(crate) fn load(
+        &mut self,
+        what: String,
+        path: Option<PathBuf>,
+        is_import: bool,
+        ctx: &Context,
+        make: impl FnOnce() -> anyhow::Result<scene::Scene> + Send + 'static,
+    ) {
+        let (send, scene) = bounded(1);
+        let wake = ctx.clone();
+        let thread = std::thread::Builder::new().name("open".into()).spawn(move || {
+            // Nobody listens if something else was opened meanwhile.
+            let _ = send.send(make());
+            wake.request_repaint();
+        });
+        match thread {
+            Ok(_) => {
+                self.files.opening = Some(Opening {
+                    path,
+                    what,
+                    is_import,
+                    step: None,
+                    scene,
+                })
+            }
+            Err(error) => self.fail(format!("{what}: {error}")),
+        }
+    }
+
+    pub(crate) fn file_chosen(&mut self, purpose: Purpose, path: PathBuf, ctx: &Context) {
+        match purpose {
+            Purpose::Open => self.go_on(Next::Open(path), ctx),
+            Purpose::SaveAs => self.save_to(path, ctx),
+            Purpose::Screenshot => self.screenshot(&path),
+            Purpose::ImportRig => self.import_rig(&path),
+            Purpose::ExportRig => self.export_rig(&path),
+            Purpose::ExportFile | Purpose::ExportFolder => {
+                if let Some(panel) = &mut self.files.exporting.panel {
+                    panel.path = path.display().to_string();
+                }
+            }
+        }
+    }
+
+    pub(crate) fn import_rig(&mut self, path: &Path) {
+        match open::rig(path) {
+            Ok(rig) => {
+                let rig = Box::new(rig);
+                self.apply("Import sensors", &[Edit::SetRig { rig }]);
+            }
+            Err(error) => self.fail(format!("Not imported: {}", one_line(&error))),
+        }
+    }
+
+    pub(crate) fn export_rig(&mut self, path: &Path) {
+        let saved = open::save_rig(&self.document.scene().rig, path);
+        let now_s = self.now_s();
+        match saved {
+            Ok(()) => self
+                .toasts
+                .push(Level::Info, format!("Saved {}", path.display()), now_s),
+            Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
+        }
+    }
+
+    pub(crate) fn save_to(&mut self, path: PathBuf, ctx: &Context) {
+        self.document.cancel_drag();
+        let scene = self.document.settled_scene().clone();
+        let next = self.files.after_save.take();
+        match (self.files.disk.save)(&scene, &path) {
+            Ok(()) => {
+                self.document.mark_saved();
+                let now_s = self.now_s();
+                self.toasts
+                    .push(Level::Info, format!("Saved {}", path.display()), now_s);
+                self.preferences.settings.remember(&path);
+                self.files.path = Some(path);
+                if let Some(next) = next {
+                    self.go_on(next, ctx);
+                }
+            }
+            Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
+        }
+    }
+
+    /// A path beside the scene's file, or in the working folder, named after the scene.
+    pub(crate) fn suggested(&self, extension: &str) -> PathBuf {
+        self.files.suggested(&self.document.scene().name, extension)
+    }
+
+    pub(crate) fn screenshot(&mut self, path: &Path) {
+        let scene = self.document.scene().clone();
+        let shot = self.views.view3d.screenshot(&scene, &self.state, None);
+        let saved = shot.and_then(|([width, height], rgba)| {
+            image::save_buffer(path, &rgba, width, height, image::ColorType::Rgba8)?;
+            Ok([width, height])
+        });
+        match saved {
+            Ok([width, height]) => {
+                let now_s = self.now_s();
+                let text = format!("Saved {} ({width} × {height})", path.display());
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(error) => self.fail(format!("No screenshot: {}", one_line(&error))),
+        }
+    }
+}
+
+/// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.
+fn free_name(path: &Path) -> PathBuf {
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let extension = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let numbered = |i: u32| path.with_file_name(format!("{stem}_{i}.{extension}"));
+    std::iter::once(path.to_path_buf())
+        .chain((1..10_000).map(numbered))
+        .find(|p| !p.exists())
+        .unwrap_or_else(|| path.to_path_buf())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_are_taken_get_a_number() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let first = folder.path().join("a.png");
+        assert_eq!(free_name(&first), first);
+        std::fs::write(&first, "").expect("a file");
+        assert_eq!(free_name(&first), folder.path().join("a_1.png"));
+    }
+}

@@ -1,0 +1,336 @@
+//! Asking for a file: the system's dialog, and where none answers a path field of our own.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, TryRecvError, bounded};
+use egui::accesskit::Role;
+use egui::{Ui, WidgetInfo};
+
+use crate::theme;
+
+/// What a file is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A scene or a road to open.
+    Open,
+    /// Where to save the scene.
+    SaveAs,
+    /// Where to save a picture.
+    Screenshot,
+    /// Sensors to take.
+    ImportRig,
+    /// Where to save the sensors.
+    ExportRig,
+    /// The file that an export is to write.
+    ExportFile,
+    /// The folder that an export is to fill.
+    ExportFolder,
+}
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Purpose::Open => "Open scene or road",
+            Purpose::SaveAs => "Save scene as",
+            Purpose::Screenshot => "Export screenshot",
+            Purpose::ImportRig => "Import sensors",
+            Purpose::ExportRig => "Export sensors",
+            Purpose::ExportFile => "Export to file",
+            Purpose::ExportFolder => "Export into folder",
+        }
+    }
+
+    fn button(self) -> &'static str {
+        match self {
+            Purpose::Open => "Open file",
+            Purpose::SaveAs => "Save file",
+            Purpose::Screenshot => "Export picture",
+            Purpose::ImportRig => "Import file",
+            Purpose::ExportRig => "Export file",
+            Purpose::ExportFile | Purpose::ExportFolder => "Use path",
+        }
+    }
+
+    fn is_save(self) -> bool {
+        !matches!(self, Purpose::Open | Purpose::ImportRig)
+    }
+}
+
+/// Nobody dismisses a dialog this fast: then there was none.
+const NO_DIALOG_AFTER: Duration = Duration::from_millis(350);
+
+struct Waiting {
+    purpose: Purpose,
+    answer: Receiver<Option<PathBuf>>,
+    since: Instant,
+    suggestion: PathBuf,
+}
+
+struct Field {
+    purpose: Purpose,
+    text: String,
+    focus: bool,
+    error: Option<String>,
+    confirmed: bool, // the user has agreed to replace the file
+}
+
+/// The file that is being asked for, if any.
+pub struct FileDialogs {
+    native: bool,
+    waiting: Option<Waiting>,
+    field: Option<Field>,
+}
+
+impl FileDialogs {
+    /// True if a dialog of the system is asked before a path field.
+    pub fn is_native(&self) -> bool {
+        self.native
+    }
+
+    /// With `native` false only the path field is used.
+    pub fn new(native: bool) -> Self {
+        Self {
+            native: native && a_dialog_may_answer(),
+            waiting: None,
+            field: None,
+        }
+    }
+
+    /// True while an answer is awaited.
+    pub fn is_open(&self) -> bool {
+        self.waiting.is_some() || self.field.is_some()
+    }
+
+    /// Asks. `suggestion` is the file or folder to begin with.
+    pub fn ask(&mut self, purpose: Purpose, suggestion: &Path, ctx: &egui::Context) {
+        if self.is_open() {
+            return;
+        }
+        if !self.native {
+            self.open_field(purpose, suggestion);
+            return;
+        }
+        let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
+        dialog = match purpose {
+            Purpose::Open => dialog
+                .add_filter("Scenes and what becomes one", &formats::import::extensions())
+                .add_filter("All files", &["*"]),
+            Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
+            Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),
+            Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter("Sensor rig", &["json"]),
+            Purpose::ExportFile | Purpose::ExportFolder => dialog,
+        };
+        if let Some(folder) = suggestion.parent().filter(|p| p.is_dir()) {
+            dialog = dialog.set_directory(folder);
+        }
+        if let (true, Some(name)) = (purpose.is_save(), suggestion.file_name()) {
+            dialog = dialog.set_file_name(name.to_string_lossy());
+        }
+        let (send, answer) = bounded(1);
+        let wake = ctx.clone();
+        // The dialog is made here, on the main thread, as macOS wants it; waiting is done elsewhere.
+        type Chosen = Option<rfd::FileHandle>;
+        let chosen: std::pin::Pin<Box<dyn Future<Output = Chosen> + Send>> =
+            if purpose == Purpose::ExportFolder {
+                Box::pin(dialog.pick_folder())
+            } else if purpose.is_save() {
+                Box::pin(dialog.save_file())
+            } else {
+                Box::pin(dialog.pick_file())
+            };
+        let wait = move || pollster::block_on(chosen).map(|file| file.path().to_path_buf());
+        let thread = job::guard::spawn("file-dialog", wait, move |path| {
+            // Nobody listens if the window has closed. After a panic there is no answer, as if it had been dismissed.
+            let _ = send.send(path.unwrap_or_default());
+            wake.request_repaint();
+        });
+        if thread.is_err() {
+            self.open_field(purpose, suggestion);
+            return;
+        }
+        self.waiting = Some(Waiting {
+            purpose,
+            answer,
+            since: Instant::now(),
+            suggestion: suggestion.to_path_buf(),
+        });
+    }
+
+    fn open_field(&mut self, purpose: Purpose, suggestion: &Path) {
+        self.field = Some(Field {
+            purpose,
+            text: suggestion.display().to_string(),
+            focus: true,
+            error: None,
+            confirmed: false,
+        });
+    }
+
+    /// The system dialog's answer, once there is one.
+    pub fn poll(&mut self) -> Option<(Purpose, PathBuf)> {
+        let waiting = self.waiting.as_ref()?;
+        let answer = match waiting.answer.try_recv() {
+            Err(TryRecvError::Empty) => return None,
+            Ok(path) => path,
+            Err(TryRecvError::Disconnected) => None,
+        };
+        let waiting = self.waiting.take()?;
+        if answer.is_none() && waiting.since.elapsed() < NO_DIALOG_AFTER {
+            self.native = false;
+            self.open_field(waiting.purpose, &waiting.suggestion);
+        }
+        answer.map(|path| (waiting.purpose, with_extension(path, waiting.purpose)))
+    }
+
+    /// Draws the path field, if it is open; the path once the user is done.
+    pub fn show(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
+        let field = self.field.as_mut()?;
+        let modal = egui::Modal::new(egui::Id::unique("path field")).frame(theme::dialog_frame(ui.style()));
+        let answer = modal.show(ui.ctx(), |ui| field_ui(ui, field));
+        if answer.inner == Choice::Cancel || answer.should_close() {
+            self.field = None;
+            return None;
+        }
+        if answer.inner == Choice::Nothing {
+            return None;
+        }
+        let path = with_extension(PathBuf::from(field.text.trim()), field.purpose);
+        match problem(&path, field) {
+            Some(text) => {
+                field.error = Some(text);
+                None
+            }
+            None => self.field.take().map(|field| (field.purpose, path)),
+        }
+    }
+}
+
+#[derive(PartialEq)]
+enum Choice {
+    Nothing,
+    Cancel,
+    Done,
+}
+
+fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
+    ui.set_width(520.0);
+    ui.heading(field.purpose.title());
+    ui.add_space(theme::GAP);
+    let edit = egui::TextEdit::singleline(&mut field.text)
+        .desired_width(f32::INFINITY)
+        .margin(egui::Margin::symmetric(8, 6))
+        .hint_text("/path/to/scene.loom");
+    let response = ui.add(edit).accessible_name("File path");
+    if std::mem::take(&mut field.focus) {
+        response.request_focus();
+    }
+    if response.changed() {
+        (field.error, field.confirmed) = (None, false);
+    }
+    let enter = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    if let Some(error) = &field.error {
+        ui.colored_label(theme::warn(), error);
+    }
+    ui.add_space(theme::GAP);
+    let mut choice = if enter { Choice::Done } else { Choice::Nothing };
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let name = if field.confirmed {
+            "Replace file"
+        } else {
+            field.purpose.button()
+        };
+        let primary = egui::Button::new(name).fill(theme::accent_fill());
+        let enabled = !field.text.trim().is_empty();
+        if ui.add_enabled(enabled, primary).clicked() {
+            choice = Choice::Done;
+        }
+        let cancel = ui.button("Cancel");
+        cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel file"));
+        if cancel.clicked() {
+            choice = Choice::Cancel;
+        }
+    });
+    choice
+}
+
+fn problem(path: &Path, field: &mut Field) -> Option<String> {
+    if !field.purpose.is_save() {
+        return (!path.is_file()).then(|| format!("There is no file {}", path.display()));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|p| !p.is_dir()) {
+        return Some(format!("There is no folder {}", folder.display()));
+    }
+    if path.exists() && !std::mem::replace(&mut field.confirmed, true) {
+        return Some("The file exists. Press again to replace it.".into());
+    }
+    None
+}
+
+/// A name without an extension gets the one that fits.
+fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
+    let extension = match purpose {
+        Purpose::Open | Purpose::ImportRig | Purpose::ExportFile | Purpose::ExportFolder => return path,
+        Purpose::ExportRig => "json",
+        Purpose::SaveAs => "loom",
+        Purpose::Screenshot => "png",
+    };
+    if path.extension().is_some() {
+        path
+    } else {
+        path.with_extension(extension)
+    }
+}
+
+/// On Linux a dialog needs a session bus with a portal, or zenity; without either asking would only
+/// cost time.
+fn a_dialog_may_answer() -> bool {
+    if !cfg!(target_os = "linux") {
+        return true;
+    }
+    let bus_of_session =
+        std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).join("bus").exists());
+    let on_path = |name: &str| {
+        std::env::var_os("PATH")
+            .is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(name).is_file()))
+    };
+    std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some() || bus_of_session || on_path("zenity")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_get_their_extension() {
+        let named = |name: &str, purpose| with_extension(name.into(), purpose);
+        assert_eq!(named("a", Purpose::SaveAs), PathBuf::from("a.loom"));
+        assert_eq!(named("a.loom", Purpose::SaveAs), PathBuf::from("a.loom"));
+        assert_eq!(named("b", Purpose::Screenshot), PathBuf::from("b.png"));
+        assert_eq!(named("road", Purpose::Open), PathBuf::from("road"));
+    }
+
+    #[test]
+    fn bad_paths_are_named_and_replacing_is_asked_for() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.loom");
+        let mut field = Field {
+            purpose: Purpose::Open,
+            text: String::new(),
+            focus: false,
+            error: None,
+            confirmed: false,
+        };
+        assert!(problem(&file, &mut field).is_some_and(|p| p.contains("no file")));
+        field.purpose = Purpose::SaveAs;
+        assert_eq!(problem(&file, &mut field), None);
+        assert!(
+            problem(&folder.path().join("x/a.loom"), &mut field).is_some_and(|p| p.contains("no folder"))
+        );
+        std::fs::write(&file, "x").expect("a file");
+        field.confirmed = false;
+        assert!(problem(&file, &mut field).is_some_and(|p| p.contains("replace")));
+        assert_eq!(problem(&file, &mut field), None);
+    }
+}

@@ -1,0 +1,99 @@
+//! The scene's file, and everything on its way to or from a disk.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crossbeam_channel::Receiver;
+
+use scene::Scene;
+
+use super::exporting::Exporting;
+use super::file_dialogs::FileDialogs;
+use super::recovery::Recovery;
+
+/// Reads a scene from a file of any kind that can be opened.
+pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<Scene> + Send + Sync>;
+/// Writes a scene to a `.loom` file.
+pub type SaveScene = Arc<dyn Fn(&Scene, &Path) -> anyhow::Result<()> + Send + Sync>;
+/// Makes a new scene.
+pub type NewScene = Arc<dyn Fn() -> anyhow::Result<Scene> + Send + Sync>;
+
+/// How scenes are read, written and made.
+pub struct Disk {
+    /// Opens files.
+    pub open: OpenScene,
+    /// Saves files.
+    pub save: SaveScene,
+    /// Makes new scenes.
+    pub new_scene: NewScene,
+}
+
+/// What to do once unsaved changes are dealt with.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Next {
+    New,
+    NewFrom(&'static str),
+    AskOpen,
+    Open(PathBuf),
+    Quit,
+}
+
+/// A scene on its way from a file.
+pub(crate) struct Opening {
+    pub path: Option<PathBuf>,
+    pub what: String,
+    /// From a file that is no scene: its occupancy is a draft.
+    pub is_import: bool,
+    /// It becomes an undo step of this name, not a document of its own.
+    pub step: Option<&'static str>,
+    pub scene: Receiver<anyhow::Result<Scene>>,
+}
+
+/// Owner of the scene's file and of what is read and written.
+pub struct Files {
+    /// The scene's file, if it has one.
+    pub(crate) path: Option<PathBuf>,
+    pub(crate) disk: Disk,
+    pub(crate) dialogs: FileDialogs,
+    pub(crate) opening: Option<Opening>,
+    /// Waits for an answer about unsaved changes.
+    pub(crate) unsaved: Option<Next>,
+    /// Goes on after the scene was saved.
+    pub(crate) after_save: Option<Next>,
+    pub(crate) may_close: bool,
+    /// Copies of unsaved work; none in tests.
+    pub recovery: Option<Recovery>,
+    pub(crate) exporting: Exporting,
+}
+
+impl Files {
+    /// With nothing on its way; `native_dialogs`: the system is asked for file dialogs.
+    pub fn new(path: Option<PathBuf>, disk: Disk, native_dialogs: bool) -> Self {
+        Self {
+            path,
+            disk,
+            dialogs: FileDialogs::new(native_dialogs),
+            opening: None,
+            unsaved: None,
+            after_save: None,
+            may_close: false,
+            recovery: None,
+            exporting: Exporting::default(),
+        }
+    }
+
+    /// A path beside the scene's file, or in the working folder, named after the scene.
+    pub(crate) fn suggested(&self, scene_name: &str, extension: &str) -> PathBuf {
+        match &self.path {
+            Some(path) => path.with_extension(extension),
+            None => {
+                let tidy: String = scene_name
+                    .chars()
+                    .map(|c| if c.is_alphanumeric() || c == '-' { c } else { '_' })
+                    .collect();
+                let folder = std::env::current_dir().unwrap_or_default();
+                folder.join(format!("{tidy}.{extension}"))
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The worker, when it is asked, and what came of it.
+
+use std::sync::Arc;
+
+use job::worker::GenWorker;
+use job::{GenParams, GenResult, Job, JobEvent, UpdateGate};
+use scene::{Scene, SceneRev};
+
+use super::drawing::Drawing;
+use super::live::{Bounds, Live, Purpose, Running};
+use super::staged::Staged;
+use super::status::Receipt;
+use super::tuning::Tuning;
+use super::versions::Versions;
+
+/// Owner of the worker and of its results.
+pub struct Generation {
+    pub(crate) worker: GenWorker,
+    gate: UpdateGate,
+    /// The scheduler.
+    pub live: Live,
+    /// The quality slider.
+    pub tuning: Tuning,
+    /// Of the last generation.
+    pub receipt: Option<Receipt>,
+    /// What was generated so far.
+    pub versions: Versions,
+    /// What came during a drag, and the label if it is a step.
+    pub(crate) finished: Option<(Arc<GenResult>, Option<&'static str>)>,
+    /// What a running generation shows, and of which state.
+    pub(crate) preview: Option<(SceneRev, Arc<Scene>)>,
+    /// The state that a sentence made, and the one before.
+    pub(crate) words: Option<(SceneRev, Arc<Scene>)>,
+    /// Scenery that waits for its generation, and the state before.
+    pub(crate) drawn_first: Option<(SceneRev, Arc<Scene>)>,
+    pub(crate) drawing: Option<Drawing>,
+    /// A result that waits for the user's decision.
+    pub(crate) staged: Option<Staged>,
+    /// Columns that are to be generated.
+    pub(crate) unsettled: Arc<[Bounds]>,
+}
+
+impl Generation {
+    /// With nothing asked yet.
+    pub fn new(worker: GenWorker, live: Live, tuning: Tuning, versions: Versions) -> Self {
+        Self {
+            worker,
+            gate: UpdateGate::default(),
+            live,
+            tuning,
+            receipt: None,
+            versions,
+            finished: None,
+            preview: None,
+            words: None,
+            drawn_first: None,
+            drawing: None,
+            staged: None,
+            unsettled: Arc::default(),
+        }
+    }
+
+    /// News of the worker, in order; those of jobs that another has replaced are left out.
+    pub(crate) fn news(&mut self) -> Vec<JobEvent> {
+        let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
+        events
+            .into_iter()
+            .filter(|event| self.gate.admit(event))
+            .collect()
+    }
+
+    /// Sends a job to the worker.
+    pub(crate) fn submit(&mut self, scene: Arc<Scene>, params: GenParams, now_s: f64) {
+        let job = Job { scene, params };
+        let key = job.key();
+        let id = self.worker.submit(job);
+        self.live.submitted(id, key, now_s);
+    }
+
+    /// Ends the running job; false if none runs.
+    pub(crate) fn cancel(&mut self) -> bool {
+        let Some(running) = &mut self.live.running else {
+            return false;
+        };
+        running.cancelled = true;
+        self.worker.cancel();
+        true
+    }
+
+    /// Lets go of everything that belongs to the scene that was open.
+    pub(crate) fn forget_scene(&mut self) {
+        self.worker.cancel();
+        self.live.reset();
+        (self.receipt, self.finished, self.preview) = (None, None, None);
+        self.tuning.reset();
+    }
+
+    /// True while a whole generation of that state shows what comes, so that it can be stopped with that.
+    pub(crate) fn shows_what_comes(&self, rev: SceneRev) -> bool {
+        let whole = |r: &Running| r.purpose == Purpose::Full && r.key.rev == rev && !r.cancelled;
+        self.live.running.as_ref().is_some_and(whole)
+            && self.preview.as_ref().is_some_and(|(of, _)| *of == rev)
+    }
+}

@@ -1,0 +1,100 @@
+//! Carries out commands about generation and its results.
+
+use egui::Context;
+
+use super::app::SceneloomApp;
+use super::live::Running;
+use super::toasts::Level;
+use crate::command::GenerationCommand;
+
+impl SceneloomApp {
+    /// Carries out one of them.
+    pub(crate) fn generation_command(&mut self, command: GenerationCommand, ctx: &Context) {
+        match command {
+            GenerationCommand::Generate { full } => self.generate(full),
+            GenerationCommand::DrawScenery => self.draw_scenery(),
+            GenerationCommand::Decide(verdict) => self.decide(verdict),
+            GenerationCommand::StopHere => self.stop_here(),
+            GenerationCommand::Cancel { running, waiting } => {
+                if waiting {
+                    self.generation.live.drop_waiting(self.document.settled_scene());
+                }
+                if running && self.generation.cancel() {
+                    let now_s = self.now_s();
+                    self.toasts.push(Level::Info, "Generation cancelled", now_s);
+                }
+            }
+            GenerationCommand::RestoreVersion(rev) => {
+                if let Some(i) = self.generation.versions.of(rev) {
+                    let scene = self.generation.versions.list()[i].scene.clone();
+                    self.restore(&scene);
+                }
+            }
+            GenerationCommand::StepVersion(step) => {
+                let rev = self.document.settled_scene().rev;
+                if let Some(scene) = self.generation.versions.neighbour(rev, step).cloned() {
+                    self.restore(&scene);
+                }
+            }
+            GenerationCommand::ToggleLive => {
+                self.generation.live.on = !self.generation.live.on;
+                self.generation.live.forget_asked();
+            }
+            GenerationCommand::Quality(stop) => self.set_quality(stop),
+            GenerationCommand::Calibrate => {
+                let ctx = ctx.clone();
+                self.generation.tuning.calibrate(move || ctx.request_repaint());
+            }
+            GenerationCommand::Refine => {
+                let ctx = ctx.clone();
+                self.generation.tuning.refine(move || ctx.request_repaint());
+            }
+            GenerationCommand::StopMeasuring => self.generation.tuning.stop(),
+        }
+    }
+
+    /// A version becomes the present state; its result is there already.
+    pub(crate) fn restore(&mut self, scene: &scene::Scene) {
+        self.generation.worker.cancel();
+        self.document.restore("Go to version", scene);
+        self.generation.live.source_changed();
+        self.views.compare.chosen = None;
+    }
+
+    pub(crate) fn generate(&mut self, full: bool) {
+        if self.document.is_dragging() {
+            return;
+        }
+        let scene = self.document.settled_scene().clone();
+        let now_s = self.now_s();
+        let anew = !full && !self.state.tools.region.is_empty();
+        if !full && !anew && self.generation.live.look(&scene, now_s).is_empty {
+            self.toasts
+                .push(Level::Info, "Nothing was edited since the last generation", now_s);
+            return;
+        }
+        let mut params = self.generation.live.params_for(&scene, full);
+        if anew {
+            self.state.tools.draw_anew(&mut params);
+        }
+        if full && self.draws_scenery_first() {
+            return self.generate_on_scenery(params);
+        }
+        let same = |r: &Running| r.key.rev == scene.rev && r.key.params == params;
+        if !self.generation.live.running.as_ref().is_some_and(same) {
+            self.generation.live.look(&scene, now_s);
+            self.submit(scene, params);
+        }
+    }
+
+    /// Puts a stop's settings to use, from the next edit on.
+    pub(crate) fn set_quality(&mut self, stop: usize) {
+        let Some(stop) = self.generation.tuning.stops.stops.get(stop) else {
+            return;
+        };
+        self.generation.live.params = stop.knobs.on(self.generation.live.params);
+        self.preferences.settings.quality.clone_from(&stop.name);
+        // The source's trajectory belongs to its settings.
+        self.generation.live.source_changed();
+    }
+}

@@ -1,0 +1,56 @@
+//! What the pointer does with the tool in hand, for the status bar.
+
+use editor::tools::{ViewKind, hint_of};
+
+use crate::panes::id::PaneId;
+use crate::state::UiState;
+
+/// One line: buttons and held keys, as they count in the view under the pointer.
+pub fn hint(state: &UiState) -> String {
+    if state.holding_before {
+        return "The state before; nothing can be changed while the key is held".into();
+    }
+    let view = match state.hovered_pane {
+        Some(PaneId::VIEW3D) => Some(ViewKind::Space),
+        Some(PaneId::BEV) => Some(ViewKind::Bev),
+        _ => None,
+    };
+    let mut parts = state.toolbox.tool(state.tool).hint(state, view);
+    parts.extend(hint_of(match view {
+        Some(ViewKind::Space) => &["Middle orbits", "Right flies", "Wheel zooms"],
+        Some(ViewKind::Bev) => &["Middle pans", "Wheel zooms"],
+        None => &[],
+    }));
+    parts.join("  ·  ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use editor::tools::{PaintShape, VoxelMode, all, brush, voxel};
+
+    #[test]
+    fn every_tool_says_what_the_buttons_do() {
+        let mut state = UiState::default();
+        let mut seen = std::collections::BTreeSet::new();
+        for pane in [PaneId::BEV, PaneId::VIEW3D] {
+            state.hovered_pane = Some(pane);
+            for tool in all() {
+                state.tool = tool.id;
+                let text = hint(&state);
+                assert!((20..140).contains(&text.chars().count()), "{text}");
+                assert!(seen.insert(text), "two tools say the same");
+            }
+        }
+        state.tool = brush::ID;
+        for (shape, ..) in PaintShape::ALL {
+            state.tools.shape = shape;
+            assert!(seen.insert(hint(&state)) || shape == PaintShape::Stroke);
+        }
+        state.tool = voxel::ID;
+        for (mode, ..) in VoxelMode::ALL {
+            state.tools.voxel_mode = mode;
+            assert!(seen.insert(hint(&state)) || mode == VoxelMode::Brush);
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! The keyboard: chords to commands. Nothing while a text field has the focus; bare letters belong
+//! to the tools, and to the flight while the right button is held in the 3D view.
+
+use egui::{Context, Key, Modifiers};
+
+use super::actions::{When, nudge_direction};
+use super::keymap::{Chord, Keymap};
+use crate::command::Command;
+use crate::panes::id::PaneId;
+use crate::state::UiState;
+use crate::tools::ToolCommand;
+
+/// Actions that do not wait for the end of a drag.
+const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
+
+/// What the pointer is doing: some keys wait for its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hands {
+    /// Flies in the 3D view, where letters steer.
+    pub flying: bool,
+    /// Drags something with the button down: only the keys of [`DURING_A_DRAG`] count.
+    pub dragging: bool,
+}
+
+/// Commands of the keys pressed in this frame.
+pub fn commands(
+    ctx: &Context,
+    keymap: &Keymap,
+    state: &mut UiState,
+    hands: Hands,
+    commands: &mut Vec<Command>,
+) {
+    if ctx.text_edit_focused() {
+        return;
+    }
+    for Pressed {
+        key,
+        physical,
+        modifiers,
+        repeat,
+    } in pressed(ctx)
+    {
+        let chord = Chord::pressed(key, modifiers);
+        if hands.flying && is_flight(key) && !chord.ctrl {
+            continue;
+        }
+        if let Some(nudge) = nudge(chord, state).filter(|_| !hands.dragging) {
+            commands.push(nudge);
+            continue;
+        }
+        let over_3d = state.hovered_pane == Some(PaneId::VIEW3D);
+        // With a brush in hand its own letters count.
+        let brush = state.tool.def().is_brush;
+        let chosen = state.any_chosen() && !state.tool.def().paints;
+        let things = !state.tools.things.chosen.is_empty() && !brush;
+        let applies = |when| match when {
+            When::Always => true,
+            When::Over3d => over_3d,
+            When::Chosen => chosen,
+            When::Things => things,
+        };
+        // Shift makes another key of some: `|` of a backslash. What is written on the key counts then.
+        let on_key = || keymap.action(Chord::pressed(physical?, modifiers), applies);
+        let Some(action) = keymap.action(chord, applies).or_else(on_key) else {
+            continue;
+        };
+        if hands.dragging && !DURING_A_DRAG.contains(&action.id) {
+            continue;
+        }
+        if key == Key::Tab {
+            drop_focus(ctx);
+        }
+        if !repeat || action.repeats {
+            commands.extend(action.run(state));
+        }
+    }
+}
+
+/// Tab belongs to the views here, so what egui has given the focus for it loses it again.
+fn drop_focus(ctx: &Context) {
+    ctx.memory_mut(|m| {
+        if let Some(id) = m.focused() {
+            m.surrender_focus(id);
+        }
+    });
+}
+
+/// Longest time between two events of a key that is held, s; X waits 0.66 s before the first.
+const HELD_S: f64 = 0.8;
+
+/// A key that went down.
+struct Pressed {
+    key: Key,
+    /// Where it lies, named as on a US keyboard.
+    physical: Option<Key>,
+    modifiers: Modifiers,
+    repeat: bool,
+}
+
+fn pressed(ctx: &Context) -> Vec<Pressed> {
+    let ctrl = |key| Pressed {
+        key,
+        physical: None,
+        modifiers: Modifiers::CTRL,
+        repeat: false,
+    };
+    let event = |e: &egui::Event| match e {
+        egui::Event::Key {
+            key,
+            physical_key,
+            pressed: true,
+            repeat,
+            modifiers,
+        } => Some(Pressed {
+            key: *key,
+            physical: *physical_key,
+            modifiers: *modifiers,
+            repeat: *repeat,
+        }),
+        // Window systems turn these chords into events of their own.
+        egui::Event::Copy => Some(ctrl(Key::C)),
+        egui::Event::Cut => Some(ctrl(Key::X)),
+        egui::Event::Paste(_) => Some(ctrl(Key::V)),
+        _ => None,
+    };
+    let (mut keys, now_s): (Vec<Pressed>, f64) =
+        ctx.input(|i| (i.events.iter().filter_map(event).collect(), i.time));
+    // Shift released before its key: the key comes up under another name, and its next press looks like a repetition.
+    let id = egui::Id::unique("last presses");
+    ctx.data_mut(|data| {
+        let last: &mut std::collections::HashMap<Key, f64> = data.get_temp_mut_or_default(id);
+        for pressed in &mut keys {
+            let before_s = last.insert(pressed.key, now_s);
+            pressed.repeat &= before_s.is_some_and(|s| now_s - s < HELD_S);
+        }
+    });
+    keys
+}
+
+fn is_flight(key: Key) -> bool {
+    matches!(key, Key::W | Key::A | Key::S | Key::D | Key::Q | Key::E)
+}
+
+/// Arrows move what is chosen by 0.1 m, with Shift by 1 m, with Ctrl by 0.01 m.
+fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
+    if !state.any_chosen() {
+        return None;
+    }
+    let step_m = match (chord.ctrl, chord.shift, chord.alt) {
+        (true, _, false) => 0.01,
+        (false, true, false) => 1.0,
+        (false, false, false) => 0.1,
+        _ => return None,
+    };
+    nudge_direction(chord.key).map(|d| Command::Tools(ToolCommand::Nudge(d * step_m)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{FileCommand, GenerationCommand, ViewCommand};
+    use crate::tools::ToolCommand;
+    use glam::DVec3;
+    use scene::BoxId;
+
+    fn of(key: Key, modifiers: Modifiers, state: &mut UiState, flying: bool) -> Vec<Command> {
+        let hands = Hands {
+            flying,
+            ..Hands::default()
+        };
+        with(key, modifiers, state, hands)
+    }
+
+    fn with(key: Key, modifiers: Modifiers, state: &mut UiState, hands: Hands) -> Vec<Command> {
+        let ctx = Context::default();
+        let event = egui::Event::Key {
+            key,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers,
+        };
+        let input = egui::RawInput {
+            events: vec![event],
+            ..Default::default()
+        };
+        let (mut out, keymap) = (Vec::new(), Keymap::default());
+        let _ = ctx.run_ui(input, |ui| commands(ui.ctx(), &keymap, state, hands, &mut out));
+        out
+    }
+
+    #[test]
+    fn letters_belong_to_tools_and_to_flight() {
+        let mut state = UiState::default();
+        assert_eq!(
+            of(Key::A, Modifiers::NONE, &mut state, false),
+            [Command::Tools(ToolCommand::Shortcut("add_box_tool"))]
+        );
+        assert!(of(Key::A, Modifiers::NONE, &mut state, true).is_empty());
+        assert_eq!(
+            of(Key::B, Modifiers::NONE, &mut state, false),
+            [Command::Tools(ToolCommand::Shortcut("brush_tool"))]
+        );
+        state.hovered_pane = Some(PaneId::VIEW3D);
+        assert_eq!(
+            of(Key::B, Modifiers::NONE, &mut state, false),
+            [Command::Tools(ToolCommand::Shortcut("voxel_brush"))]
+        );
+        assert_eq!(
+            of(Key::E, Modifiers::NONE, &mut state, false),
+            [Command::Tools(ToolCommand::Shortcut("toggle_erase"))]
+        );
+    }
+
+    #[test]
+    fn keys_wait_for_the_end_of_a_drag() {
+        let mut state = UiState::default();
+        state.selected = Some(BoxId(3));
+        let hands = Hands {
+            dragging: true,
+            ..Hands::default()
+        };
+        let pressed = |key, state: &mut UiState| with(key, Modifiers::NONE, state, hands);
+        for key in [Key::X, Key::Z, Key::ArrowUp, Key::Delete] {
+            assert_eq!(pressed(key, &mut state), [], "{key:?}");
+        }
+        assert_eq!(pressed(Key::OpenBracket, &mut state), [Command::BrushSize(-1)]);
+        assert_eq!(pressed(Key::Escape, &mut state).len(), 1);
+    }
+
+    #[test]
+    fn arrows_nudge_what_is_chosen() {
+        let mut state = UiState::default();
+        assert!(of(Key::ArrowUp, Modifiers::NONE, &mut state, false).is_empty());
+        state.selected = Some(BoxId(3));
+        let up = of(Key::ArrowUp, Modifiers::NONE, &mut state, false);
+        assert_eq!(up, [Command::Tools(ToolCommand::Nudge(DVec3::X * 0.1))]);
+        let fine = of(Key::ArrowLeft, Modifiers::CTRL, &mut state, false);
+        assert_eq!(fine, [Command::Tools(ToolCommand::Nudge(DVec3::Y * 0.01))]);
+        assert_eq!(
+            of(Key::Z, Modifiers::SHIFT, &mut state, false),
+            [Command::Tools(ToolCommand::Turn(15.0))]
+        );
+    }
+
+    /// On a US keyboard Shift+backslash arrives as `|`.
+    #[test]
+    fn what_shift_makes_another_key_of_still_counts() {
+        let ctx = Context::default();
+        let (mut out, keymap, mut state) = (Vec::new(), Keymap::default(), UiState::default());
+        let input = egui::RawInput {
+            events: vec![egui::Event::Key {
+                key: Key::Pipe,
+                physical_key: Some(Key::Backslash),
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::SHIFT,
+            }],
+            ..Default::default()
+        };
+        let _ = ctx.run_ui(input, |ui| {
+            commands(ui.ctx(), &keymap, &mut state, Hands::default(), &mut out)
+        });
+        assert_eq!(out, [Command::View(ViewCommand::CycleCompare)]);
+    }
+
+    #[test]
+    fn chords_with_ctrl_are_global() {
+        let mut state = UiState::default();
+        for (key, modifiers, command) in [
+            (Key::Z, Modifiers::CTRL, Command::Undo),
+            (Key::Z, Modifiers::CTRL | Modifiers::SHIFT, Command::Redo),
+            (Key::Y, Modifiers::CTRL, Command::Redo),
+            (
+                Key::Enter,
+                Modifiers::CTRL,
+                Command::Generation(GenerationCommand::Generate { full: true }),
+            ),
+            (
+                Key::Space,
+                Modifiers::CTRL,
+                Command::Generation(GenerationCommand::ToggleLive),
+            ),
+            (
+                Key::S,
+                Modifiers::CTRL | Modifiers::SHIFT,
+                Command::File(FileCommand::SaveAs),
+            ),
+            (
+                Key::Num2,
+                Modifiers::CTRL | Modifiers::ALT,
+                Command::View(ViewCommand::LookThrough(1)),
+            ),
+        ] {
+            assert_eq!(of(key, modifiers, &mut state, true), [command]);
+        }
+    }
+}

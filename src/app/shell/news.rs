@@ -1,0 +1,300 @@
+//! News: what is asked of the worker, and what comes from it and from files.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam_channel::TryRecvError;
+
+use super::app::{SceneloomApp, one_line};
+use crate::camera_views::Wanted;
+use crate::shell::live::{Advice, Purpose, Running};
+use crate::shell::staged::Again;
+use crate::shell::status::Receipt;
+use crate::shell::toasts::Level;
+use editor::Document;
+use job::redraw::RedrawMask;
+use job::{GenParams, GenResult, JobEvent, JobUpdate, Named};
+use scene::Scene;
+
+impl SceneloomApp {
+    pub(crate) fn schedule(&mut self, ctx: &egui::Context) {
+        let now_s = self.now_s();
+        let scene = self.document.settled_scene().clone();
+        self.generation.live.foretold_s = self
+            .generation
+            .tuning
+            .foretold_now_s(&self.generation.live.params);
+        match self
+            .generation
+            .live
+            .advise(&scene, self.document.is_dragging(), now_s)
+        {
+            Advice::Rest => {}
+            Advice::Wait(seconds) => {
+                ctx.request_repaint_after(Duration::from_secs_f64(seconds));
+            }
+            Advice::Cancel => self.generation.worker.cancel(),
+            Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
+        }
+        // Small pictures while they will not last; the large ones cost as much as the generation itself.
+        let for_a_moment = self.document.is_dragging() || self.generation.live.running.is_some();
+        let wanted = Wanted::of(&self.state);
+        self.background
+            .sensing
+            .ask(self.document.scene(), wanted, for_a_moment);
+    }
+
+    pub(crate) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
+        let now_s = self.now_s();
+        self.generation.submit(scene, params, now_s);
+        self.frames.perf.job_begins();
+    }
+
+    pub(crate) fn take_event(&mut self, event: JobEvent) {
+        match event.update {
+            JobUpdate::Progress { stage, step, steps } => {
+                if let Some(running) = self.generation.live.running.as_mut().filter(|r| r.id == event.id) {
+                    running.progress = Some((stage, step, steps));
+                    self.frames
+                        .perf
+                        .stage(stage, self.frames.clock.elapsed().as_secs_f64());
+                }
+            }
+            JobUpdate::Preview(result) => {
+                let mut scene = Scene::clone(self.document.scene());
+                if scene.rev == result.rev() {
+                    let rev = scene.rev;
+                    scene.frame_mut().occupancy = result.occupancy.clone();
+                    self.generation.preview = Some((rev, Arc::new(scene)));
+                }
+            }
+            JobUpdate::Finished(result) => {
+                let now_s = self.now_s();
+                let mut own_step = None;
+                if let Some(running) = self.generation.live.ended(event.id) {
+                    own_step = running.own_step();
+                    let settled_s = (running.purpose == Purpose::Edit).then_some(now_s - running.edited_s);
+                    self.frames.perf.job_ended(now_s, settled_s, "finished");
+                    let full = running.purpose == Purpose::Full;
+                    if running.purpose == Purpose::WarmUp {
+                        let calls = result.report.network_calls;
+                        let took_s = now_s - running.submitted_s;
+                        self.toasts.log(
+                            format!("Ready to edit after {took_s:.1} s, {calls} network calls"),
+                            now_s,
+                        );
+                        return;
+                    }
+                    // What is drawn anew says nothing about the time of an edit.
+                    if !full && running.key.params.strength == 0.0 {
+                        self.generation
+                            .live
+                            .took(running.share, now_s - running.submitted_s);
+                    }
+                    if !full && running.key.rev == self.document.settled_scene().rev {
+                        let edited = self.document.settled_scene().clone();
+                        self.generation
+                            .tuning
+                            .note(edited, result.clone(), now_s - running.edited_s);
+                    }
+                    if running.key.rev == self.document.settled_scene().rev {
+                        self.generation.receipt =
+                            Some(Receipt::new(&result.report, now_s - running.edited_s, full));
+                    }
+                }
+                if self.document.is_dragging() {
+                    self.generation.finished = Some((result, own_step));
+                } else {
+                    self.adopt(&result, own_step);
+                }
+            }
+            JobUpdate::Failed(error) => {
+                if self
+                    .generation
+                    .live
+                    .ended(event.id)
+                    .is_some_and(|r| r.purpose == Purpose::Full)
+                {
+                    self.take_scenery_back();
+                }
+                self.generation.preview = None;
+                self.generation.tuning.note_failure(&error.to_string());
+                let now_s = self.now_s();
+                self.frames.perf.job_ended(now_s, None, "failed");
+                let paused = if std::mem::replace(&mut self.generation.live.on, false) {
+                    " Live is off now."
+                } else {
+                    ""
+                };
+                self.toasts.push(
+                    Level::Error,
+                    format!("Generation failed: {error}.{paused}"),
+                    now_s,
+                );
+            }
+            JobUpdate::Superseded => {
+                if let Some(running) = self.generation.live.ended(event.id) {
+                    if running.purpose == Purpose::Full {
+                        self.take_scenery_back();
+                    }
+                    self.frames.perf.job_ended(self.now_s(), None, "cancelled");
+                }
+                self.generation.preview = None;
+            }
+        }
+    }
+
+    /// Takes a result into the document, if it still shows the state it was made for.
+    pub(crate) fn adopt(&mut self, result: &GenResult, own_step: Option<&'static str>) {
+        self.generation.preview = None;
+        let before = self.document.settled_scene().clone();
+        let drawn = self
+            .generation
+            .drawn_first
+            .take()
+            .filter(|(rev, _)| *rev == result.rev());
+        let own_step_label = own_step.filter(|_| drawn.is_none());
+        // What the user asked to be drawn anew is a step of its own; what follows an edit belongs to that edit.
+        let adopted = match own_step_label {
+            Some(label) => self
+                .document
+                .adopt_as_step(label, result.rev(), result.occupancy.clone())
+                .is_ok(),
+            None => self
+                .document
+                .adopt(result.rev(), result.occupancy.clone())
+                .is_ok(),
+        };
+        if adopted {
+            let now_s = self.now_s();
+            let note = self
+                .generation
+                .receipt
+                .as_ref()
+                .map_or_else(String::new, Receipt::text);
+            let label = self.document.undo_label().unwrap_or("Generated");
+            let scene = self.document.settled_scene().clone();
+            self.generation
+                .versions
+                .push(label.to_owned(), note.clone(), scene);
+            self.views.compare.chosen = None;
+            if self.generation.receipt.is_some() {
+                self.toasts.log(note, now_s);
+            }
+            for note in &result.report.notes {
+                self.toasts.log(note.clone(), now_s);
+            }
+            let words = self
+                .generation
+                .words
+                .take()
+                .filter(|(rev, _)| *rev == result.rev());
+            match (own_step, words) {
+                (Some(_), _) => self.stage(
+                    drawn.map_or(before, |(_, before)| before),
+                    Some(Again::Generate(Box::new(result.key.params))),
+                ),
+                (None, Some((_, before))) => self.stage(before, None),
+                (None, None) => {}
+            }
+        }
+    }
+
+    /// Takes what a whole generation shows now as its result.
+    pub(crate) fn stop_here(&mut self) {
+        let before = self.document.settled_scene().clone();
+        let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.rev;
+        let Some(running) = self.generation.live.running.as_mut().filter(whole) else {
+            return;
+        };
+        let Some((_, shown)) = self.generation.preview.take_if(|(rev, _)| *rev == before.rev) else {
+            return;
+        };
+        running.cancelled = true;
+        let params = running.key.params;
+        let (step, steps) = running.progress.map_or((0, 0), |(_, step, steps)| (step, steps));
+        self.generation.worker.cancel();
+        let label = "Generate, stopped early";
+        let occupancy = shown.frame().occupancy.clone();
+        let drawn = self
+            .generation
+            .drawn_first
+            .take()
+            .filter(|(rev, _)| *rev == before.rev);
+        let adopted = match drawn {
+            Some(_) => self.document.adopt(before.rev, occupancy),
+            None => self.document.adopt_as_step(label, before.rev, occupancy),
+        };
+        if adopted.is_ok() {
+            let note = format!("After {step} of {steps} steps");
+            let scene = self.document.settled_scene().clone();
+            self.generation.versions.push(label.to_owned(), note, scene);
+            self.generation.receipt = None;
+            self.generation.live.source_changed();
+            self.stage(
+                drawn.map_or(before, |(_, before)| before),
+                Some(Again::Generate(Box::new(params))),
+            );
+        }
+    }
+
+    pub(crate) fn take_opened(&mut self, ctx: &egui::Context) {
+        let Some(opening) = &self.files.opening else {
+            return;
+        };
+        let answer = match opening.scene.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Ok(answer) => answer,
+            Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("reading it ended unexpectedly")),
+        };
+        let Some(opening) = self.files.opening.take() else {
+            return;
+        };
+        let now_s = self.now_s();
+        match answer {
+            Ok(scene) => {
+                self.generation.forget_scene();
+                if opening.is_import {
+                    let text = format!("Imported {} as a draft. Ctrl+Enter generates it.", scene.name);
+                    self.toasts.push(Level::Info, text, now_s);
+                } else {
+                    self.toasts.log(format!("Opened {}", scene.name), now_s);
+                }
+                let version = match opening.step {
+                    Some(label) => {
+                        self.document.restore(label, &scene);
+                        label
+                    }
+                    None => {
+                        self.document = Document::new(scene);
+                        self.generation.versions.clear();
+                        "As opened"
+                    }
+                };
+                let opened = self.document.settled_scene().clone();
+                self.generation
+                    .versions
+                    .push(version.into(), String::new(), opened);
+                self.views.compare.chosen = None;
+                if let Some(path) = &opening.path {
+                    self.preferences.settings.remember(path);
+                }
+                // What the camera looked at is not there any more.
+                self.views.view3d.camera.focus_all();
+                // Saving must not replace the file of another scene without asking.
+                self.files.path = opening.path;
+                self.state.choose(&[], crate::tools::Choose::Only);
+                self.state.correcting = false;
+                self.state.tools.region = RedrawMask::default();
+                self.state.named = Named::default();
+                self.note_opened(&opening.what, true);
+                ctx.request_repaint();
+            }
+            Err(error) => {
+                self.note_opened(&opening.what, false);
+                let text = format!("{}: {}", opening.what, one_line(&error));
+                self.toasts.push(Level::Error, text, now_s);
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Settings and keys, and when they are written.
+
+use std::path::PathBuf;
+
+use super::app::one_line;
+use super::dock::Dock;
+use super::keymap::Keymap;
+use super::settings::Settings;
+use crate::panes;
+
+/// How often changed settings are written, s.
+const EVERY_S: f64 = 2.0;
+
+/// Owner of what is kept between sessions.
+pub struct Preferences {
+    /// What is kept.
+    pub settings: Settings,
+    /// What each chord calls for.
+    pub keymap: Keymap,
+    file: Option<PathBuf>,
+    /// What the file holds.
+    kept: Settings,
+    /// When the two were compared, s.
+    compared_s: f64,
+}
+
+impl Preferences {
+    /// Settings that were read from a file, which may be none.
+    pub fn new(file: Option<PathBuf>, settings: Settings) -> Self {
+        Self {
+            keymap: Keymap::new(&settings.key_preset, settings.keys.clone()),
+            file,
+            kept: settings.clone(),
+            settings,
+            compared_s: 0.0,
+        }
+    }
+
+    /// True once after look or colours have changed; they are then written soon.
+    pub(crate) fn looks_changed(&mut self) -> bool {
+        let (now, kept) = (&self.settings, &mut self.kept);
+        if now.look == kept.look && now.classes == kept.classes {
+            return false;
+        }
+        (kept.look, kept.classes) = (now.look, now.classes);
+        self.write_soon();
+        true
+    }
+
+    /// The next chance to write is taken, whatever was written last.
+    pub(crate) fn write_soon(&mut self) {
+        self.compared_s = f64::NEG_INFINITY;
+    }
+
+    /// True if it is time to write.
+    pub(crate) fn is_due(&self, now_s: f64) -> bool {
+        now_s - self.compared_s >= EVERY_S
+    }
+
+    /// Writes what has changed. Why that was not possible, once.
+    pub(crate) fn write(&mut self, ui_scale: f32, dock: &Dock, now_s: f64) -> Option<String> {
+        let settings = &mut self.settings;
+        settings.ui_scale = ui_scale;
+        settings.dock = Some(dock.tree().clone());
+        settings.panes_known = panes::infos().iter().map(|p| p.id).collect();
+        settings.key_preset.clone_from(&self.keymap.preset);
+        settings.keys.clone_from(&self.keymap.own);
+        let forced = self.compared_s == f64::NEG_INFINITY;
+        self.compared_s = now_s;
+        let path = self.file.as_deref()?;
+        let mut complaint = None;
+        if (forced || self.kept != self.settings)
+            && let Err(error) = self.settings.save(path)
+        {
+            complaint = Some(format!("Settings are not kept: {}", one_line(&error)));
+            self.file = None; // said once
+        }
+        self.kept = self.settings.clone();
+        complaint
+    }
+}

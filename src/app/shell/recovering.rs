@@ -1,0 +1,89 @@
+//! What the window does about recovery: keeps copies while work is unsaved, and asks about those of sessions that died.
+
+use std::time::Duration;
+
+use super::app::SceneloomApp;
+use super::recovery::Recovery;
+use super::toasts::Level;
+use crate::windows::recovery::{Answer, recovery_ui};
+
+/// What a scene that is being recovered is called while it is read.
+const READING: &str = "Recovering";
+
+impl SceneloomApp {
+    /// Begins to keep copies of unsaved work; without a folder to write to it says so and goes on.
+    pub(crate) fn keep_copies(&mut self, ctx: &egui::Context) {
+        let wake = ctx.clone();
+        match Recovery::at_start(move || wake.request_repaint()) {
+            Ok(recovery) => self.files.recovery = Some(recovery),
+            Err(error) => {
+                let now_s = self.now_s();
+                let text = format!("No recovery copies of unsaved work: {error}");
+                self.toasts.push(Level::Error, text, now_s);
+            }
+        }
+    }
+
+    pub(crate) fn update_recovery(&mut self, ctx: &egui::Context) {
+        let now_s = self.now_s();
+        let Some(recovery) = &mut self.files.recovery else {
+            return;
+        };
+        let (wait_s, problem) = recovery.tick(&self.document, self.files.path.as_deref(), now_s);
+        if let Some(seconds) = wait_s {
+            ctx.request_repaint_after(Duration::from_secs_f64(seconds));
+        }
+        if let Some(problem) = problem {
+            let text = format!("No recovery copy can be written: {problem}");
+            self.toasts.push(Level::Error, text, now_s);
+        }
+    }
+
+    /// True while the user has not answered about what a dead session left.
+    pub(crate) fn asks_to_recover(&self) -> bool {
+        self.files.recovery.as_ref().is_some_and(|r| !r.offers.is_empty())
+    }
+
+    /// Asks about the newest offer, if there is one.
+    pub(crate) fn recovery_dialog(&mut self, ui: &egui::Ui) {
+        if self.files.opening.is_some() {
+            return;
+        }
+        let Some(recovery) = &mut self.files.recovery else {
+            return;
+        };
+        let Some(offer) = recovery.offers.first() else {
+            return;
+        };
+        let Some(answer) = recovery_ui(ui, offer, recovery.offers.len() - 1) else {
+            return;
+        };
+        match answer {
+            Answer::Later => recovery.offers.clear(),
+            Answer::Discard => recovery.offers.remove(0).discard(),
+            Answer::Recover => {
+                let offer = recovery.offers.remove(0);
+                let (file, original) = (offer.file(), offer.original.clone());
+                let what = format!("{READING} {}", offer.name);
+                recovery.opening = Some(offer);
+                self.state.start_open = false;
+                let open = self.files.disk.open.clone();
+                self.load(what, original, false, ui.ctx(), move || open(&file));
+            }
+        }
+    }
+
+    /// After a scene was read, or could not be: one that was recovered is unsaved, and its copy is kept until there is
+    /// another.
+    pub(crate) fn note_opened(&mut self, what: &str, is_open: bool) {
+        let Some(recovery) = &mut self.files.recovery else {
+            return;
+        };
+        if let Some(recovered) = recovery.opening.take_if(|_| what.starts_with(READING))
+            && is_open
+        {
+            self.document.mark_unsaved();
+            recovery.replaced.push(recovered);
+        }
+    }
+}

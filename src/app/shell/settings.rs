@@ -1,0 +1,171 @@
+//! What is kept between sessions: looks, keys, panes, recent files. Never part of a scene.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use egui_tiles::Tree;
+use serde::{Deserialize, Serialize};
+
+use super::bookmarks::Bookmark;
+use super::keymap::Chords;
+use super::workspace::Workspace;
+use crate::panes::id::PaneId;
+use crate::theme::Look;
+use editor::Document;
+use scene::classes::Palette;
+
+/// Files that are remembered.
+const RECENT: usize = 12;
+
+/// What is kept. Keys that a newer version wrote are passed over.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Dark or light.
+    pub look: Look,
+    /// Colours of the classes.
+    pub classes: Palette,
+    /// Size of everything, 1 = normal.
+    pub ui_scale: f32,
+    /// Show the start screen at the start.
+    pub start_screen: bool,
+    /// Name of the preset of keys.
+    pub key_preset: String,
+    /// Chords that the user changed.
+    pub keys: Chords,
+    /// The workspace chosen last.
+    pub workspace: Workspace,
+    /// Name of the stop of the quality slider.
+    pub quality: String,
+    /// Where the panes stand.
+    pub dock: Option<Tree<PaneId>>,
+    /// Panes that there were when it was kept; what is new since then is added.
+    pub panes_known: Vec<PaneId>,
+    /// Views that were kept, by number.
+    pub bookmarks: BTreeMap<u8, Bookmark>,
+    /// Memory that the history may take, MB.
+    pub history_mb: u32,
+    /// Files opened or saved, the newest first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            look: Look::default(),
+            classes: Palette::default(),
+            ui_scale: 1.0,
+            start_screen: true,
+            key_preset: "Default".into(),
+            keys: Chords::new(),
+            workspace: Workspace::default(),
+            quality: "careful".into(), // the fastest stop whose inverted noise is like a draw
+            dock: None,
+            panes_known: Vec::new(),
+            bookmarks: BTreeMap::new(),
+            history_mb: (Document::LIMIT_BYTES >> 20) as u32,
+            recent: Vec::new(),
+        }
+    }
+}
+
+impl Settings {
+    /// Where they are kept: `settings.json` in `SCENELOOM_CONFIG_DIR`, else in the user's folder for settings; none if
+    /// there is no such folder.
+    pub fn file() -> Option<PathBuf> {
+        Some(super::folders::settings()?.join("settings.json"))
+    }
+
+    /// Reads them; those of a new user if there is no file. Errors in one line if the file cannot be read: it is then
+    /// left as it is, and the standard settings are used.
+    pub fn load(path: &Path) -> anyhow::Result<Self> {
+        let text = match formats::input::read_text(path, formats::input::LARGEST_TEXT) {
+            Ok(text) => text,
+            Err(error) if error.is_not_found() => return Ok(Self::default()),
+            Err(error) => return Err(error).context("settings"),
+        };
+        let mut read: Self =
+            serde_json::from_str(&text).with_context(|| format!("settings {}", path.display()))?;
+        let scale = read.ui_scale;
+        read.ui_scale = if scale.is_finite() {
+            scale.clamp(0.5, 3.0)
+        } else {
+            1.0
+        };
+        read.history_mb = read
+            .history_mb
+            .clamp(*Self::HISTORY_MB.start(), *Self::HISTORY_MB.end());
+        Ok(read)
+    }
+
+    /// Writes them, whole or not at all. Errors name the file.
+    pub fn save(&self, path: &Path) -> anyhow::Result<()> {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let write = || -> anyhow::Result<()> {
+            std::fs::create_dir_all(folder)?;
+            let mut file = tempfile::NamedTempFile::new_in(folder)?;
+            serde_json::to_writer_pretty(&mut file, self)?;
+            file.flush()?;
+            file.persist(path)?;
+            Ok(())
+        };
+        write().with_context(|| format!("settings {}", path.display()))
+    }
+
+    /// Limits of [`Self::history_mb`].
+    pub const HISTORY_MB: std::ops::RangeInclusive<u32> = 16..=8192;
+
+    /// Memory that the history may take, bytes.
+    pub fn history_bytes(&self) -> usize {
+        (self.history_mb as usize) << 20
+    }
+
+    /// Puts a file in front of those remembered.
+    pub fn remember(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent.retain(|p| *p != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shell::dock::Dock;
+
+    #[test]
+    fn settings_come_back_and_bad_ones_are_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("below").join("settings.json");
+        assert!(Settings::load(&path).expect("a new user") == Settings::default());
+        let mut settings = Settings {
+            look: Look::Light,
+            dock: Some(Dock::workspace(Workspace::Sensors).tree().clone()),
+            ..Settings::default()
+        };
+        for i in 0..20 {
+            settings.remember(Path::new(&format!("/scenes/{i}.loom")));
+        }
+        settings.remember(Path::new("/scenes/15.loom"));
+        assert_eq!(settings.recent.len(), RECENT);
+        assert_eq!(
+            settings.recent[..2],
+            ["/scenes/15.loom", "/scenes/19.loom"].map(PathBuf::from)
+        );
+        settings.save(&path).expect("written");
+        assert!(Settings::load(&path).expect("read") == settings);
+        std::fs::write(
+            &path,
+            "{\"ui_scale\": 1e9, \"history_mb\": 1, \"of_a_newer_version\": 3}",
+        )
+        .expect("written");
+        let read = Settings::load(&path).expect("read");
+        assert_eq!((read.ui_scale, read.history_mb), (3.0, 16));
+        std::fs::write(&path, "{ \"ui_scale\": ").expect("written");
+        let error = format!("{:#}", Settings::load(&path).err().expect("cut off"));
+        assert!(error.contains("settings.json"), "{error}");
+    }
+}

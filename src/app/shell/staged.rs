@@ -1,0 +1,373 @@
+//! A result that the user asked for, beside what was there before: to be accepted, declined, or accepted in part.
+
+use std::sync::Arc;
+
+use egui::{Align2, Order, Rect, RichText, Ui};
+
+use super::app::SceneloomApp;
+use super::toasts::Level;
+use crate::command::{Command, GenerationCommand, Taken, Verdict};
+use crate::panes::camera_strip::thousands;
+use crate::panes::compare::CompareMode;
+use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::state::UiState;
+use crate::theme;
+use editor::Edit;
+use editor::part::{Part, changed_by_class};
+use job::redraw::RedrawMask;
+use job::region::COLUMNS_PER_CELL;
+use job::{GenParams, RegionMode};
+use scene::background::in_grid;
+use scene::raster::box_cells;
+use scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
+
+/// Classes that the menu of parts lists.
+const MOST_CLASSES: usize = 8;
+
+/// How a result was made.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Again {
+    /// By the networks.
+    Generate(Box<GenParams>),
+    /// As scenery.
+    Scenery(Box<SceneryWish>),
+}
+
+impl Again {
+    /// What fixed all draws.
+    pub fn seed(&self) -> u64 {
+        match self {
+            Self::Generate(params) => params.seed,
+            Self::Scenery(wish) => wish.seed,
+        }
+    }
+}
+
+/// A result that waits for a verdict. Whoever goes on without one has accepted it.
+pub struct Staged {
+    /// The state that shows it.
+    pub rev: SceneRev,
+    /// The state before, one undo step back.
+    pub before: Arc<Scene>,
+    /// How to make another one; none where another seed would make the same.
+    pub again: Option<Again>,
+    changed: Vec<(Class, usize)>,
+    compare: CompareMode, // before it was shown beside the old
+}
+
+impl SceneloomApp {
+    /// Shows the present state, one step after `before`, as a result that waits. If another one can be made in its place,
+    /// both states are shown side by side.
+    pub(crate) fn stage(&mut self, before: Arc<Scene>, again: Option<Again>) {
+        self.end_staging();
+        let after = self.document.settled_scene();
+        let occupancy = |scene: &Scene| scene.frame().occupancy.clone();
+        let changed = changed_by_class(&occupancy(&before), &occupancy(after));
+        if changed.is_empty() {
+            return;
+        }
+        let beside = again.is_some();
+        let staged = Staged {
+            rev: after.rev,
+            before: before.clone(),
+            again,
+            changed,
+            compare: self.state.compare,
+        };
+        if beside {
+            self.views.compare.chosen = Some(before);
+            if self.state.compare == CompareMode::Off {
+                self.state.compare = CompareMode::Wipe;
+            }
+        }
+        self.generation.staged = Some(staged);
+    }
+
+    /// The result that waits, if it is still what is shown.
+    pub fn staged(&self) -> Option<&Staged> {
+        let rev = self.document.settled_scene().rev;
+        self.generation.staged.as_ref().filter(|s| s.rev == rev)
+    }
+
+    /// Lets go of a result that another state has replaced.
+    pub(crate) fn tidy_staging(&mut self) {
+        if self.generation.staged.is_some() && self.staged().is_none() {
+            self.end_staging();
+        }
+    }
+
+    fn end_staging(&mut self) -> Option<Staged> {
+        let staged = self.generation.staged.take()?;
+        // A way to compare that the user chose meanwhile stays.
+        if staged.again.is_some() && self.state.compare == CompareMode::Wipe {
+            self.state.compare = staged.compare;
+        }
+        self.views.compare.chosen = None;
+        Some(staged)
+    }
+
+    /// Carries out what the user decided; nothing if no result waits.
+    pub(crate) fn decide(&mut self, verdict: Verdict) {
+        if self.staged().is_none() || self.document.is_dragging() {
+            return;
+        }
+        match verdict {
+            Verdict::Accept => drop(self.end_staging()),
+            Verdict::Decline => {
+                self.step_back();
+            }
+            Verdict::NextSeed => self.next_seed(),
+            Verdict::Take(taken) => self.take_part(taken),
+        }
+    }
+
+    fn next_seed(&mut self) {
+        let Some(again) = self.staged().and_then(|s| s.again.clone()) else {
+            return;
+        };
+        let Some(before) = self.step_back() else { return };
+        match again {
+            Again::Generate(mut params) => {
+                params.seed = params.seed.wrapping_add(1);
+                if self.draws_scenery_first() && params.region == RegionMode::Full {
+                    return self.generate_on_scenery(*params);
+                }
+                let now_s = self.now_s();
+                self.generation.live.look(&before, now_s);
+                self.submit(before, *params);
+            }
+            Again::Scenery(mut wish) => {
+                wish.seed = wish.seed.wrapping_add(1);
+                self.put_scenery(*wish, true);
+            }
+        }
+    }
+
+    /// True for a scene of which nothing is known beside the roads: what networks invent alone is ragged and follows the seed.
+    pub(crate) fn draws_scenery_first(&self) -> bool {
+        let scene = self.document.settled_scene();
+        scene.background.is_empty() && !scene.frame().inferred.background && !self.state.tools.things.locked
+    }
+
+    /// Draws scenery by the seed of `params` and generates on it, as one undo step.
+    pub(crate) fn generate_on_scenery(&mut self, params: GenParams) {
+        let before = self.document.settled_scene().clone();
+        let Some(edits) = self.scenery_edits(&SceneryWish::of_seed(params.seed), &before) else {
+            return;
+        };
+        self.apply("Generate", &edits);
+        let scene = self.document.settled_scene().clone();
+        self.generation.drawn_first = (scene.rev != before.rev).then(|| (scene.rev, before));
+        let now_s = self.now_s();
+        self.generation.live.look(&scene, now_s);
+        self.submit(scene, params);
+    }
+
+    /// Takes scenery back that was drawn for a generation that did not come to an end.
+    pub(crate) fn take_scenery_back(&mut self) {
+        if let Some((rev, _)) = self.generation.drawn_first.take()
+            && rev == self.document.settled_scene().rev
+        {
+            self.document.undo();
+        }
+    }
+
+    /// Draws what stands beside the roads anew, in the marked region or everywhere.
+    pub(crate) fn draw_scenery(&mut self) {
+        if self.document.is_dragging() {
+            return;
+        }
+        self.state.tools.scenery_draws += 1;
+        let mut seed = self.document.settled_scene().seed;
+        seed = seed.wrapping_add(self.state.tools.scenery_draws);
+        // Drawn again, it takes the place of what waits.
+        if let Some(Again::Scenery(waits)) = self.staged().and_then(|s| s.again.clone()) {
+            seed = waits.seed.wrapping_add(1);
+            self.step_back();
+        }
+        // The sliders' typical values are the usual numbers.
+        let times = |named: Option<f32>, typical: f64| named.map_or(1.0, |v| f64::from(v) / typical);
+        let wish = SceneryWish {
+            seed,
+            by: self.state.tools.drawer,
+            green: times(self.state.named.vegetation, TYPICAL_VEGETATION),
+            built: times(self.state.named.building, TYPICAL_BUILDING),
+            region: self.state.tools.region,
+        };
+        self.put_scenery(wish, true);
+    }
+
+    /// What draws scenery; none if that failed, which is said.
+    fn scenery_edits(&mut self, wish: &SceneryWish, scene: &Scene) -> Option<Vec<Edit>> {
+        let now_s = self.now_s();
+        let failed = |e| {
+            let text = format!("No scenery was drawn: {e}");
+            self.toasts.push(Level::Error, text, now_s);
+        };
+        wish.edits(scene).map_err(failed).ok()
+    }
+
+    /// The state before, which is shown again.
+    fn step_back(&mut self) -> Option<Arc<Scene>> {
+        let staged = self.end_staging()?;
+        self.generation.worker.cancel();
+        self.document.undo();
+        self.generation.live.source_changed();
+        Some(staged.before)
+    }
+
+    fn take_part(&mut self, taken: Taken) {
+        if let Some(Again::Scenery(wish)) = self.staged().and_then(|s| s.again.clone()) {
+            // Things are whole or not there.
+            let region = self.state.tools.region;
+            if self.step_back().is_some() {
+                self.put_scenery(SceneryWish { region, ..*wish }, false);
+            }
+            return;
+        }
+        let after = self.document.settled_scene().clone();
+        let part = match taken {
+            Taken::Class(class) => Part::Class(class),
+            Taken::Region => Part::Columns(columns_of_region(&self.state.tools.region)),
+            Taken::Chosen => Part::Columns(columns_chosen(&self.state, &after)),
+        };
+        let Some(staged) = self.staged() else { return };
+        let old = &staged.before.frame().occupancy;
+        let mixed = part.taken(old, &after.frame().occupancy);
+        if old.count_different(&mixed) == 0 {
+            let now_s = self.now_s();
+            let text = "Nothing of the new result lies there";
+            return self.toasts.push(Level::Info, text, now_s);
+        }
+        let things = part_of_things(&staged.before, &after, &part);
+        if let Some(before) = self.step_back()
+            && self
+                .document
+                .adopt_with_things("Accept a part", before.rev, mixed, things)
+                .is_ok()
+        {
+            let scene = self.document.settled_scene().clone();
+            self.generation
+                .versions
+                .push("Accept a part".to_owned(), String::new(), scene);
+            self.state.tools.region = RedrawMask::default();
+        }
+    }
+
+    /// Draws the bar of the result that waits, over the lower edge of `over`.
+    pub(crate) fn staged_ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
+        let Some(staged) = self.staged() else { return };
+        let area = egui::Area::new(egui::Id::unique("staged"))
+            .order(Order::Middle)
+            .pivot(Align2::CENTER_BOTTOM)
+            .fixed_pos(over.center_bottom() + egui::vec2(0.0, -12.0));
+        area.show(ui.ctx(), |ui| {
+            theme::dialog_frame(ui.style()).show(ui, |ui| bar(ui, staged, &self.state, commands));
+        });
+    }
+}
+
+fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command>) {
+    let n: usize = staged.changed.iter().map(|(_, n)| n).sum();
+    let seed = staged
+        .again
+        .as_ref()
+        .map_or_else(String::new, |a| format!("  ·  seed {}", a.seed()));
+    let of_things = matches!(staged.again, Some(Again::Scenery(_)));
+    let text = format!("New result: {} voxels differ{seed}", thousands(n));
+    ui.label(RichText::new(text).color(theme::text_strong()));
+    let mut decide = |clicked: bool, verdict| {
+        if clicked {
+            commands.push(Command::Generation(GenerationCommand::Decide(verdict)));
+        }
+    };
+    let mut mark = false;
+    ui.horizontal(|ui| {
+        let accept = egui::Button::new("Accept").fill(theme::accent_fill());
+        let accept = ui
+            .add(accept)
+            .on_hover_text("Keep it. Any further edit does so too");
+        decide(accept.clicked(), Verdict::Accept);
+        let decline = ui.button("Decline").on_hover_text("Back to what was there");
+        decide(decline.clicked(), Verdict::Decline);
+        if staged.again.is_some() {
+            let next = ui.button("Next seed").on_hover_text("Another one in its place");
+            decide(next.clicked(), Verdict::NextSeed);
+        }
+        ui.menu_button("Accept a part", |ui| {
+            let mut entry = |ui: &mut Ui, enabled, text: &str, taken| {
+                let clicked = ui.add_enabled(enabled, egui::Button::new(text)).clicked();
+                decide(clicked, Verdict::Take(taken));
+            };
+            let marked = !state.tools.region.is_empty();
+            entry(ui, marked, "In the marked region", Taken::Region);
+            mark = ui
+                .button("Mark a region…")
+                .on_hover_text("Rectangle, lasso or brush in the bird's-eye view")
+                .clicked();
+            if of_things {
+                return;
+            }
+            entry(
+                ui,
+                state.any_chosen(),
+                "Where chosen boxes and things stand",
+                Taken::Chosen,
+            );
+            ui.separator();
+            for (class, n) in staged.changed.iter().take(MOST_CLASSES) {
+                let text = format!("Only {}, {} voxels", class.label().to_lowercase(), thousands(*n));
+                entry(ui, true, &text, Taken::Class(*class));
+            }
+        })
+        .response
+        .on_hover_text("The rest stays as it was");
+    });
+    if mark {
+        commands.push(Command::Tool(editor::tools::region::ID));
+    }
+}
+
+/// The things of `before`, and those that came and lie whole in the part.
+fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
+    let taken = |thing: &&Thing| match part {
+        Part::Class(class) => thing.form.class() == *class,
+        Part::Columns(columns) => {
+            let to_ego = after.frame().world_from_ego.inverse();
+            let mut inside = true;
+            authoring::around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
+                inside &= columns[x * GridSpec::NY + y];
+            });
+            inside
+        }
+    };
+    let new = |thing: &&Thing| before.background.get(thing.id).is_none();
+    let came = after.background.iter().filter(new).filter(taken);
+    before.background.iter().chain(came).cloned().collect()
+}
+
+fn columns_of_region(region: &RedrawMask) -> Vec<bool> {
+    let cell = |c: usize| [c / GridSpec::NY, c % GridSpec::NY].map(|v| v / COLUMNS_PER_CELL);
+    (0..GridSpec::COLUMNS)
+        .map(|c| {
+            let [i, j] = cell(c);
+            region.has(i, j)
+        })
+        .collect()
+}
+
+/// Where chosen boxes and things stand, and a voxel around them.
+fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
+    let frame = scene.frame();
+    let mut columns = vec![false; GridSpec::COLUMNS];
+    let mut set = |x: usize, y: usize| columns[x * GridSpec::NY + y] = true;
+    for b in state.chosen().iter().filter_map(|id| frame.boxes.get(id)) {
+        box_cells(b, GridSpec::VOXEL_M, &mut set);
+    }
+    let things = state.tools.things.chosen.iter();
+    let things = things.filter_map(|id| scene.background.get(*id));
+    for thing in in_grid(things, &frame.world_from_ego) {
+        authoring::around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
+    }
+    columns
+}

@@ -1,0 +1,296 @@
+//! The bar at the top: menus, tools, history, generation.
+
+use std::path::PathBuf;
+
+use egui::accesskit::Role;
+use egui::{Sense, Ui, WidgetInfo, vec2};
+
+use super::menus::menus;
+use crate::command::{Command, GenerationCommand, ViewCommand};
+use crate::panes::id::PaneId;
+use crate::shell::workspace::Workspace;
+use crate::state::UiState;
+use crate::theme;
+use crate::tools::ToolId;
+use crate::widgets::icons::{self, Icon};
+use editor::tools::beside::building;
+use editor::tools::{Group, ToolDef, all};
+
+/// What the bar shows of the document and the worker.
+pub struct ToolbarInput<'a> {
+    /// Name of the scene.
+    pub name: &'a str,
+    /// There are changes that are in no file.
+    pub dirty: bool,
+    /// Files opened or saved lately, the last one first.
+    pub recent: &'a [PathBuf],
+    /// What undo would take back.
+    pub undo: Option<&'a str>,
+    /// What redo would bring back.
+    pub redo: Option<&'a str>,
+    /// Generation after each edit is on.
+    pub live: bool,
+    /// A job is on its way.
+    pub busy: bool,
+    /// An edit waits for its generation.
+    pub waiting: bool,
+    /// Numbers of views that are kept.
+    pub bookmarks: Vec<u8>,
+    /// Voxels that the user painted.
+    pub has_paint: bool,
+    /// Panes on screen.
+    pub shown: Vec<PaneId>,
+    /// Cameras of the rig.
+    pub cameras: usize,
+    /// The workspace chosen last.
+    pub workspace: Workspace,
+    /// Stops of the quality slider, and what they are foretold to cost.
+    pub stops: Vec<(String, String)>,
+    /// The one in use.
+    pub stop: Option<usize>,
+}
+
+/// Draws the bar.
+pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
+    ui.horizontal_centered(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.scope(|ui| {
+            let widgets = &mut ui.visuals_mut().widgets;
+            widgets.inactive.weak_bg_fill = egui::Color32::TRANSPARENT;
+            ui.spacing_mut().item_spacing.x = 0.0;
+            menus(ui, input, state, commands);
+        });
+        divider(ui);
+        let narrow = ui.max_rect().width() < ROOM_FOR_ALL;
+        for tool in all() {
+            let folded = narrow && tool.group == Group::Beside;
+            let chosen = state.tool == tool.id;
+            if !folded
+                && icons::button(ui, Icon::named(tool.icon), tool.title, tool.key, chosen, true).clicked()
+            {
+                commands.push(Command::Tool(tool.id));
+            }
+        }
+        if narrow {
+            thing_tools(ui, state.tool, commands);
+        }
+        divider(ui);
+        let hint = |label: Option<&str>, keys: &str| {
+            label.map_or_else(|| keys.to_owned(), |label| format!("{label}  ·  {keys}"))
+        };
+        let undo = icons::button(
+            ui,
+            Icon::Undo,
+            "Undo",
+            &hint(input.undo, "Ctrl+Z"),
+            false,
+            input.undo.is_some(),
+        );
+        if undo.clicked() {
+            commands.push(Command::Undo);
+        }
+        let keys = "Ctrl+Shift+Z";
+        let redo = icons::button(
+            ui,
+            Icon::Redo,
+            "Redo",
+            &hint(input.redo, keys),
+            false,
+            input.redo.is_some(),
+        );
+        if redo.clicked() {
+            commands.push(Command::Redo);
+        }
+        divider(ui);
+        let mut workspace = input.workspace;
+        let names = Workspace::ALL.map(|(workspace, name)| (workspace, name, "arranges the panes"));
+        if icons::segments(ui, &mut workspace, &names) {
+            commands.push(Command::View(ViewCommand::Workspace(workspace)));
+        }
+        let left = ui.min_rect().right();
+        let right = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            generation(ui, input, commands);
+            ui.min_rect().left()
+        });
+        title(ui, input, left, right.inner);
+    });
+}
+
+/// In a narrower window the tools for things share one button, so that the name of the scene keeps its place, points.
+const ROOM_FOR_ALL: f32 = 1360.0;
+
+/// One button for all tools for things; it opens their list.
+fn thing_tools(ui: &mut Ui, in_hand: ToolId, commands: &mut Vec<Command>) {
+    let selected = in_hand.def().group == Group::Beside;
+    let shown = if selected {
+        in_hand.def()
+    } else {
+        building::ID.def()
+    };
+    let hint = "buildings, trees, hedges, shrubs, posts";
+    let icon = Icon::named(shown.icon);
+    let button = icons::button(ui, icon, "Beside the road", hint, selected, true);
+    egui::Popup::menu(&button).show(|ui| {
+        for tool in beside() {
+            if item(ui, tool.title, short(tool.key), true) {
+                commands.push(Command::Tool(tool.id));
+            }
+        }
+    });
+}
+
+/// The tools for things.
+pub(super) fn beside() -> impl Iterator<Item = &'static ToolDef> {
+    all().iter().copied().filter(|t| t.group == Group::Beside)
+}
+
+/// The chord alone, without what else the hint says.
+pub(super) fn short(key: &str) -> &str {
+    key.split(';').next().unwrap_or_default()
+}
+
+/// A chord in the second column of a menu.
+pub(super) fn item(ui: &mut Ui, name: &str, keys: &str, enabled: bool) -> bool {
+    let keys = egui::RichText::new(keys).color(theme::text_weak());
+    let button = egui::Button::new(name).shortcut_text(keys);
+    let clicked = ui.add_enabled(enabled, button).clicked();
+    if clicked {
+        ui.close();
+    }
+    clicked
+}
+
+fn divider(ui: &mut Ui) {
+    ui.add_space(6.0);
+    let (rect, _) = ui.allocate_exact_size(vec2(1.0, 18.0), Sense::hover());
+    ui.painter().rect_filled(rect, 0.0, theme::field_hover());
+    ui.add_space(6.0);
+}
+
+/// From right to left: the button that generates, the live switch.
+fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = theme::GAP;
+    let (name, label, hint, fill, icon, command) = if input.busy {
+        (
+            "Cancel",
+            "Cancel job",
+            "Ctrl+Backspace",
+            theme::field(),
+            Icon::Stop,
+            Command::Generation(GenerationCommand::Cancel {
+                running: true,
+                waiting: false,
+            }),
+        )
+    } else {
+        let command = Command::Generation(GenerationCommand::Generate { full: true });
+        (
+            "Generate",
+            "Generate everything",
+            "all of it, Ctrl+Enter",
+            theme::accent_fill(),
+            Icon::Play,
+            command,
+        )
+    };
+    if wide_button(ui, icon, name, hint, fill, label).clicked() {
+        commands.push(command);
+    }
+    let fill = if input.live {
+        theme::field()
+    } else {
+        egui::Color32::TRANSPARENT
+    };
+    let hint = if input.live {
+        "on: generates after each edit, Ctrl+Space"
+    } else {
+        "off, Ctrl+Space"
+    };
+    let live = wide_button(ui, Icon::Live, "Live", hint, fill, "Live");
+    if input.live {
+        let dot = live.rect.right_top() + vec2(-6.0, 6.0);
+        ui.painter().circle_filled(dot, 3.0, theme::good());
+    }
+    live.widget_info(|| WidgetInfo::selected(Role::Button, true, input.live, "Live"));
+    if live.clicked() {
+        commands.push(Command::Generation(GenerationCommand::ToggleLive));
+    }
+    if !input.stops.is_empty() {
+        quality(ui, input, commands);
+    }
+}
+
+/// The stops of the quality slider as a menu.
+fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
+    let current = input.stop.and_then(|i| input.stops.get(i));
+    let name = current.map_or("own settings", |(name, _)| name);
+    let menu = ui.menu_button(theme::sentence(name), |ui| {
+        for (i, (name, foretold)) in input.stops.iter().enumerate() {
+            let text = egui::RichText::new(format!("{}   {foretold}", theme::sentence(name)));
+            if ui.selectable_label(input.stop == Some(i), text).clicked() {
+                commands.push(Command::Generation(GenerationCommand::Quality(i)));
+                ui.close();
+            }
+        }
+        ui.separator();
+        if ui.button("Speed and accuracy…").clicked() {
+            commands.push(Command::View(ViewCommand::Workspace(Workspace::Trade)));
+            ui.close();
+        }
+    });
+    let label = format!("Quality: {name} menu");
+    menu.response
+        .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+    let cost = current.map_or(String::new(), |(_, foretold)| format!("\n{foretold}"));
+    menu.response
+        .on_hover_text(format!("How exactly edits are generated{cost}"));
+}
+
+/// A button with an icon and a name, of one height with the others.
+fn wide_button(
+    ui: &mut Ui,
+    icon: Icon,
+    name: &str,
+    hint: &str,
+    fill: egui::Color32,
+    label: &str,
+) -> egui::Response {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout_no_wrap(name.to_owned(), font, theme::text_strong());
+    let size = vec2(galley.size().x + 42.0, theme::ROW + 4.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));
+    let fill = if response.hovered() {
+        fill.lerp_to_gamma(theme::text_strong(), 0.12)
+    } else {
+        fill
+    };
+    ui.painter().rect_filled(rect, theme::RADIUS, fill);
+    let icon_rect = egui::Rect::from_center_size(rect.left_center() + vec2(17.0, 0.0), vec2(14.0, 14.0));
+    icon.paint(ui, icon_rect, theme::text_strong());
+    let at = rect.left_center() + vec2(30.0, -galley.size().y / 2.0);
+    ui.painter().galley(at, galley, theme::text_strong());
+    icons::focus_ring(ui, &response, rect);
+    response.on_hover_ui(|ui| icons::tip(ui, name, hint))
+}
+
+/// Name of the scene in the middle of what is left free.
+fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
+    if right - left < 120.0 {
+        return;
+    }
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let middle = egui::pos2((left + right) / 2.0, ui.max_rect().center().y);
+    let painter = ui.painter();
+    let mut job = egui::text::LayoutJob::simple_singleline(input.name.to_owned(), font, theme::text());
+    // Room for the mark of unsaved changes on both sides.
+    job.wrap = egui::text::TextWrapping::truncate_at_width(right - left - 40.0);
+    let galley = painter.layout_job(job);
+    let drawn = egui::Rect::from_center_size(middle, galley.size());
+    painter.galley(drawn.min, galley, theme::text());
+    if input.dirty {
+        painter.circle_filled(drawn.right_center() + vec2(9.0, 1.0), 3.0, theme::warn());
+    }
+}

@@ -1,0 +1,338 @@
+//! The quality slider: its stops, what they are predicted to cost, what the last edit really cost, and the work beside
+//! the window that measures both.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use formats::input;
+use job::redraw;
+use job::region::Region;
+use job::{GenParams, GenReport, GenResult};
+use judge::machine::machine;
+use judge::stops::calibrate::{Background, News, Refine, Task, build};
+use judge::stops::figures::{percent, seconds};
+use nets::{OccModels, tokens_of};
+use numeric::quantile::median;
+use scene::Scene;
+use trade::{Stop, Stops};
+
+/// Edits that the window's own pace is taken from.
+const REMEMBERED: usize = 9;
+/// Tokens of an edit of one vehicle.
+const TYPICAL_TOKENS: f64 = 36.0;
+
+/// One line: what a stop is foretold to take, to miss and to invent.
+pub fn foretold(stop: &Stop, wall_s: f64) -> String {
+    let time = seconds(wall_s);
+    if stop.error.high == 0.0 {
+        return format!("{time}  ·  what the others are measured against");
+    }
+    let [low, high] = stop.error_of_one.map(percent);
+    let middle = percent(stop.error.median);
+    let invented = stop.invented.map_or(String::new(), |n| match n {
+        n if n < 0.05 => "  ·  invents nothing".into(),
+        n => format!("  ·  invents {n:.1} voxels"),
+    });
+    format!("{time}  ·  {middle} of its voxels differ ({low} to {high}){invented}")
+}
+
+/// What an edit did and cost, beside what was foretold.
+pub struct LastEdit {
+    /// How it was generated.
+    pub params: GenParams,
+    /// What the pipeline says.
+    pub report: GenReport,
+    /// From the edit to the settled scene, s.
+    pub settled_s: f64,
+    /// Tokens around it, whether or not the others were computed too: the size of the edit.
+    pub local_tokens: usize,
+    /// Predicted wall time of the generation, s.
+    pub predicted_s: Option<f64>,
+    /// Predicted share of voxels that differ from the reference: the middle, and what nine of ten edits lie between.
+    pub predicted_error: Option<[f64; 3]>,
+    /// The same, measured.
+    pub measured_error: Option<f64>,
+    /// Columns and latent cells that were redrawn.
+    pub region: Region,
+    /// Tokens that were computed (all: 625).
+    pub tokens: Vec<usize>,
+    /// Bricks that changed: the others were neither meshed nor cast again.
+    pub bricks: Vec<usize>,
+    edited: Arc<Scene>,
+    result: Arc<GenResult>,
+}
+
+/// What has gone wrong or nearly so since the start.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stability {
+    /// Generations.
+    pub runs: usize,
+    /// Of them, with a fallback or warning.
+    pub fallbacks: usize,
+    /// That ended without a result.
+    pub failures: usize,
+    /// Of those, because a number was not finite.
+    pub not_finite: usize,
+    /// Voxels outside a region that changed: must be 0.
+    pub untouched_changed: usize,
+}
+
+/// What runs beside the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measuring {
+    /// Times of the stops.
+    Stops,
+    /// Error of the last edit.
+    Error,
+}
+
+/// State of the slider and its panel.
+pub struct Tuning {
+    /// The stops, with this machine's times if they were measured.
+    pub stops: Stops,
+    /// The times are of this machine and build.
+    pub calibrated: bool,
+    /// The last edit.
+    pub last: Option<LastEdit>,
+    /// Since the start.
+    pub stability: Stability,
+    /// Draw in the bird's-eye view what was computed for the last edit.
+    pub show_modelled: bool,
+    /// What became of the last measurement, one line.
+    pub message: Option<String>,
+    /// How many times longer than in quiet the last edits took: the window draws on the same cores.
+    slower: VecDeque<f64>,
+    running: Option<(Measuring, Background, (usize, usize))>,
+    file: Option<PathBuf>,
+}
+
+impl Tuning {
+    /// With what was measured on this machine before, if its file (beside the settings) is of this build.
+    pub fn new(settings_file: Option<&Path>) -> Self {
+        let file = settings_file
+            .and_then(Path::parent)
+            .map(|f| f.join("calibration.json"));
+        let shipped = Stops::bundled();
+        let text = file
+            .as_ref()
+            .and_then(|f| input::read_text(f, input::LARGEST_TEXT).ok());
+        let kept = text.and_then(|t| Stops::parse(&t, shipped.weights).ok());
+        let ours = kept.filter(|s| s.machine == machine() && s.build == build());
+        Self {
+            calibrated: ours.is_some(),
+            stops: ours.unwrap_or(shipped),
+            last: None,
+            stability: Stability::default(),
+            show_modelled: false,
+            message: None,
+            slower: VecDeque::new(),
+            running: None,
+            file,
+        }
+    }
+
+    /// What is being measured, and how far it is.
+    pub fn measuring(&self) -> Option<(Measuring, usize, usize)> {
+        self.running
+            .as_ref()
+            .map(|(what, _, (done, all))| (*what, *done, *all))
+    }
+
+    /// Starts timing the stops.
+    pub fn calibrate(&mut self, wake: impl Fn() + Send + Sync + 'static) {
+        self.start(Measuring::Stops, Task::Calibrate(self.stops.clone()), wake);
+    }
+
+    /// Starts measuring how far the last edit lies from the reference.
+    pub fn refine(&mut self, wake: impl Fn() + Send + Sync + 'static) {
+        let (Some(last), Some(reference)) = (&self.last, self.stops.named("reference")) else {
+            return;
+        };
+        let task = Task::Refine(Box::new(Refine {
+            edited: last.edited.clone(),
+            params: last.params,
+            result: last.result.occupancy.clone(),
+            reference: reference.clone(),
+        }));
+        self.start(Measuring::Error, task, wake);
+    }
+
+    fn start(&mut self, what: Measuring, task: Task, wake: impl Fn() + Send + Sync + 'static) {
+        self.message = None;
+        match Background::start(task, wake) {
+            Ok(background) => self.running = Some((what, background, (0, 0))),
+            Err(error) => self.message = Some(format!("Nothing can be measured: {error}")),
+        }
+    }
+
+    /// Stops what is being measured.
+    pub fn stop(&mut self) {
+        self.running = None;
+    }
+
+    /// Takes in what came since the last call.
+    pub fn update(&mut self) {
+        while let Some(news) = self.running.as_ref().and_then(|(_, b, _)| b.next()) {
+            match news {
+                News::Progress(done, all) => {
+                    if let Some((_, _, progress)) = &mut self.running {
+                        *progress = (done, all);
+                    }
+                }
+                News::Calibrated(stops, same) => {
+                    self.running = None;
+                    (self.stops, self.calibrated) = (stops, true);
+                    let errors = if same {
+                        "results are bit for bit those whose errors are known"
+                    } else {
+                        "results differ in bits from those whose errors are known: `sceneloom trade` measures errors here"
+                    };
+                    self.message = Some(match self.keep() {
+                        Ok(()) => format!("Calibrated; {errors}"),
+                        Err(error) => format!("Calibrated until the window closes: {error}; {errors}"),
+                    });
+                }
+                News::Refined(error) => {
+                    self.running = None;
+                    if let Some(last) = &mut self.last {
+                        last.measured_error = Some(error);
+                    }
+                }
+                News::Failed(line) => {
+                    self.running = None;
+                    self.message = Some(line);
+                }
+            }
+        }
+    }
+
+    fn keep(&self) -> Result<(), String> {
+        let Some(file) = &self.file else { return Ok(()) };
+        let write = || -> anyhow::Result<()> {
+            std::fs::create_dir_all(file.parent().unwrap_or(Path::new(".")))?;
+            judge::stops::plan::write_stops(file, &self.stops)
+        };
+        write().map_err(|e| e.to_string())
+    }
+
+    /// What this window's edits take, in times of what they take while nothing else runs: the median of the last ones.
+    pub fn window_factor(&self) -> f64 {
+        let known: Vec<f64> = self.slower.iter().copied().collect();
+        if known.is_empty() {
+            return 1.0;
+        }
+        median(&known).clamp(0.25, 20.0)
+    }
+
+    /// Wall time that an edit of so many tokens is foretold to take in this window, s.
+    pub fn foretold_s(&self, stop: &Stop, tokens: f64) -> f64 {
+        stop.cost.wall_s(tokens) * self.window_factor()
+    }
+
+    /// Tokens of an edit like the last one, or of a typical one until there was one.
+    pub fn tokens_of_next(&self) -> f64 {
+        self.last
+            .as_ref()
+            .map_or(TYPICAL_TOKENS, |l| l.local_tokens as f64)
+    }
+
+    /// What an edit like the last one is foretold to take with these parameters, s; 0 if they are of no stop.
+    pub fn foretold_now_s(&self, params: &GenParams) -> f64 {
+        let stop = self.current(params).map(|i| &self.stops.stops[i]);
+        stop.map_or(0.0, |stop| self.foretold_s(stop, self.tokens_of_next()))
+    }
+
+    /// Name of each stop, and what it is foretold to cost.
+    pub fn foretold(&self) -> Vec<(String, String)> {
+        let tokens = self.tokens_of_next();
+        let of = |s: &Stop| (s.name.clone(), foretold(s, self.foretold_s(s, tokens)));
+        self.stops.stops.iter().map(of).collect()
+    }
+
+    /// The stop that the parameters stand at.
+    pub fn current(&self, params: &GenParams) -> Option<usize> {
+        self.stops.index_of(params)
+    }
+
+    /// Notes what became of an edit. `edited` is the scene with the edit, before its result came.
+    pub fn note(&mut self, edited: Arc<Scene>, result: Arc<GenResult>, settled_s: f64) {
+        let (params, report) = (result.key.params, result.report.clone());
+        self.stability.runs += 1;
+        self.stability.fallbacks += usize::from(!report.notes.is_empty());
+        self.stability.untouched_changed += report.untouched_voxels_changed;
+        // A measurement of the edit before says nothing about this one.
+        let beside = self.running.is_some();
+        if self
+            .measuring()
+            .is_some_and(|(what, ..)| what == Measuring::Error)
+        {
+            self.running = None;
+            self.message = Some("The measurement stopped: another edit came".into());
+        }
+        // The stops were measured on edits, not on what is drawn anew.
+        let stop = self.current(&params).filter(|_| params.strength == 0.0);
+        let stop = stop.map(|i| self.stops.stops[i].clone());
+        let stop = stop.as_ref();
+        let region = redraw::region_of(edited.frame(), &params);
+        let all = OccModels::TOKENS;
+        let local = tokens_of(&region.cells, params.halo_tokens as usize);
+        let local_tokens = local.len();
+        let tokens = match report.tokens >= all {
+            true => (0..all).collect(),
+            false => local,
+        };
+        let tokens_computed = report.tokens as f64;
+        let predicted_s = stop.map(|s| {
+            let inverted = if report.inversion_calls > 0 {
+                s.invert_s
+            } else {
+                0.0
+            };
+            self.foretold_s(s, tokens_computed) + inverted * self.window_factor()
+        });
+        if let Some(quiet_s) = stop.map(|s| s.cost.wall_s(tokens_computed))
+            && report.inversion_calls == 0
+            && !beside // a measurement takes the same cores
+            && quiet_s > 0.0
+            && report.network_calls > 0
+        {
+            self.slower.push_back(report.total_s() / quiet_s);
+            if self.slower.len() > REMEMBERED {
+                self.slower.pop_front();
+            }
+        }
+        self.last = Some(LastEdit {
+            local_tokens,
+            predicted_s,
+            predicted_error: stop.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
+            measured_error: None,
+            bricks: edited.frame().source.occupancy.changed_bricks(&result.occupancy),
+            params,
+            report,
+            settled_s,
+            region,
+            tokens,
+            edited,
+            result,
+        });
+    }
+
+    /// Notes that a generation failed.
+    pub fn note_failure(&mut self, line: &str) {
+        self.stability.runs += 1;
+        self.stability.failures += 1;
+        self.stability.not_finite += usize::from(line.contains("expected finite"));
+    }
+
+    /// Forgets the last edit: another scene was opened.
+    pub fn reset(&mut self) {
+        self.last = None;
+        if self
+            .measuring()
+            .is_some_and(|(what, ..)| what == Measuring::Error)
+        {
+            self.running = None;
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Carries out commands about what the views show, where the panes stand, and which windows are open.
+
+use super::app::SceneloomApp;
+use super::dock::Dock;
+use super::workspace::Workspace;
+use crate::command::{ViewCommand, Window};
+use crate::panes::id::PaneId;
+use crate::state::CompareMode;
+use crate::tools::ToolId;
+use editor::tools::{brush, region, select, voxel};
+
+impl SceneloomApp {
+    /// Carries out one of them.
+    pub(crate) fn view_command(&mut self, command: ViewCommand) {
+        match command {
+            ViewCommand::KeepBookmark(slot) => self.keep_bookmark(slot),
+            ViewCommand::GoToBookmark(slot) => self.go_to_bookmark(slot),
+            ViewCommand::CompareWith(rev) => {
+                let version = self
+                    .generation
+                    .versions
+                    .of(rev)
+                    .map(|i| &self.generation.versions.list()[i]);
+                self.views.compare.chosen = version.map(|v| v.scene.clone());
+                if self.state.compare == CompareMode::Off {
+                    self.state.compare = CompareMode::Wipe;
+                }
+            }
+            ViewCommand::CycleCompare => self.state.compare = self.state.compare.next(),
+            ViewCommand::FrameSelection => self.frame_selection(),
+            ViewCommand::FrameAll => match self.state.hovered_pane {
+                Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_all(),
+                Some(PaneId::BEV) => self.views.canvas.frame_all_again(),
+                _ => self.views.frame_all(),
+            },
+            ViewCommand::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
+            ViewCommand::Preset(preset) => self.views.view3d.preset(preset),
+            ViewCommand::LookThrough(index) => self.look_through(index),
+            ViewCommand::Inspect(camera) => self.state.inspected = camera,
+            ViewCommand::SwapPanes => self.views.dock.swap(PaneId::BEV, PaneId::VIEW3D),
+            ViewCommand::ShowPane(pane) => self.views.dock.open(pane),
+            ViewCommand::TogglePane(pane) => self.views.dock.toggle(pane),
+            ViewCommand::MaximizePane => {
+                if let Some(tile) = self
+                    .state
+                    .hovered_pane
+                    .and_then(|pane| self.views.dock.find(pane))
+                {
+                    self.views.dock.toggle_maximized(tile);
+                }
+            }
+            ViewCommand::Workspace(workspace) => {
+                self.preferences.settings.workspace = workspace;
+                self.views.dock = Dock::workspace(workspace);
+                // Its tool comes to hand, unless one of the kind is there already.
+                self.state.tool = match (workspace, self.state.tool) {
+                    (Workspace::Paint, tool) if paints_map(tool) => tool,
+                    (Workspace::Paint, _) => brush::ID,
+                    (Workspace::Voxels, _) => voxel::ID,
+                    (_, tool) if tool == brush::ID || tool == voxel::ID => select::ID,
+                    (_, tool) => tool,
+                };
+            }
+            ViewCommand::FocusPrompt => {
+                self.views.dock.open(PaneId::PROMPT);
+                self.views.prompt.focus();
+            }
+            ViewCommand::ToggleGrid => self.state.show_grid = !self.state.show_grid,
+        }
+    }
+
+    pub(crate) fn frame_selection(&mut self) {
+        let Some(b) = self.selected_box() else {
+            return self.frame_things();
+        };
+        if self.state.hovered_pane != Some(PaneId::VIEW3D) {
+            self.views.canvas.frame_box(&b);
+        }
+        if self.state.hovered_pane != Some(PaneId::BEV) {
+            self.views.view3d.frame_box(&b);
+        }
+    }
+
+    pub(crate) fn look_through(&mut self, index: usize) {
+        if let Some(camera) = self.document.scene().rig.cameras.get(index) {
+            self.views.view3d.camera = viewport::ViewCamera::through(camera);
+        }
+    }
+
+    /// Shows or hides a window.
+    pub(crate) fn toggle(&mut self, window: Window) {
+        match window {
+            Window::Export => self.toggle_export(),
+            Window::Palette => self.overlays.palette.toggle(),
+            Window::Settings => self.state.settings_open = !self.state.settings_open,
+            Window::Start => self.state.start_open = !self.state.start_open,
+            Window::Sensors => self.state.sensors_open = !self.state.sensors_open,
+            Window::Performance => self.frames.perf.open = !self.frames.perf.open,
+            Window::Log => self.state.log_open = !self.state.log_open,
+            Window::Keys => self.state.keys_open = !self.state.keys_open,
+        }
+    }
+}
+
+/// True for a tool of the workspace that paints the map.
+fn paints_map(tool: ToolId) -> bool {
+    tool == region::ID || tool.def().paints && tool != voxel::ID
+}

@@ -1,0 +1,65 @@
+//! The views, the panes around them, and where they stand.
+
+use egui::Rect;
+
+use super::dock::Dock;
+use crate::canvas::Canvas;
+use crate::panes;
+use crate::panes::camera_strip::CameraStrip;
+use crate::panes::compare::Compare;
+use crate::panes::pane::Pane;
+use crate::panes::prompt::field::PromptField;
+use crate::view3d::View3d;
+use scene::SceneBox;
+
+/// Owner of everything that draws the scene.
+pub struct Views {
+    /// The bird's-eye view.
+    pub canvas: Canvas,
+    /// The 3D view.
+    pub view3d: View3d,
+    pub(crate) strip: CameraStrip,
+    pub(crate) prompt: PromptField,
+    pub(crate) panes: Vec<Box<dyn Pane>>,
+    pub(crate) dock: Dock,
+    pub(crate) compare: Compare,
+    pub(crate) render_state: Option<egui_wgpu::RenderState>,
+    /// What the bars leave to the panes, in the last frame.
+    pub(crate) center: Rect,
+}
+
+impl Views {
+    /// With the panes where the dock puts them.
+    pub fn new(view3d: View3d, dock: Dock, render_state: Option<egui_wgpu::RenderState>) -> Self {
+        Self {
+            canvas: Canvas::default(),
+            view3d,
+            strip: CameraStrip::default(),
+            prompt: PromptField::default(),
+            panes: panes::all(),
+            dock,
+            compare: Compare::default(),
+            render_state,
+            center: Rect::NOTHING,
+        }
+    }
+
+    /// Colours have changed: what was drawn with the old ones is drawn anew.
+    pub(crate) fn forget_pictures(&mut self) {
+        self.canvas.forget_pictures();
+        self.strip = CameraStrip::default();
+        self.view3d.forget_pictures();
+    }
+
+    /// Brings a box into the middle of both large views.
+    pub(crate) fn frame_box(&mut self, b: &SceneBox) {
+        self.canvas.frame_box(b);
+        self.view3d.frame_box(b);
+    }
+
+    /// Brings everything into both large views.
+    pub(crate) fn frame_all(&mut self) {
+        self.view3d.camera.focus_all();
+        self.canvas.frame_all_again();
+    }
+}

@@ -1,0 +1,274 @@
+//! One frame of the window: its bars, panes and what lies over them.
+
+use std::sync::Arc;
+
+use egui::{Rect, Ui};
+
+use super::app::SceneloomApp;
+use super::files::Next;
+use crate::camera_views::Wanted;
+use crate::command::{Command, FileCommand};
+use crate::panes;
+use crate::panes::camera_strip::CamerasInput;
+use crate::panes::id::PaneId;
+use crate::shell::keys;
+use crate::shell::keys::Hands;
+use crate::shell::status::{StatusInput, status_ui};
+use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
+use crate::state::CompareMode;
+use crate::theme;
+use crate::windows::performance::performance_ui;
+use crate::windows::sensors::sensors_ui;
+use crate::windows::settings::settings_ui;
+use crate::windows::start::start_ui;
+use crate::windows::unsaved::{self, Unsaved};
+use editor::checks::{Severity, waive};
+use scene::Scene;
+
+impl SceneloomApp {
+    /// Draws the window and carries out what the user asked for.
+    pub fn draw(&mut self, ui: &mut Ui) {
+        self.frames.passes = self.frames.passes.saturating_add(1);
+        let mut commands = Vec::new();
+        self.take_window_events(ui.ctx(), &mut commands);
+        self.tidy_staging();
+        self.prepare_compare(ui);
+        let scene = self.shown_scene();
+        // What a dialog covers answers nothing, and keeps no tooltip open over it.
+        let mut below = ui.new_child(egui::UiBuilder::new().max_rect(ui.max_rect()));
+        if self.has_dialog() {
+            below.visuals_mut().disabled_alpha = 1.0;
+            below.disable();
+        }
+        self.bars(&mut below, &scene, &mut commands);
+        self.views(&mut below, &scene, &mut commands);
+        // Asked before: the key that closes a dialog is no shortcut.
+        let dialog = self.has_dialog();
+        self.overlays(ui, &scene, &mut commands);
+        // What is shown is not what a key would change.
+        if !dialog && !self.state.holding_before {
+            let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
+            let hands = Hands {
+                flying: secondary && self.state.hovered_pane == Some(PaneId::VIEW3D),
+                dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
+            };
+            keys::commands(
+                ui.ctx(),
+                &self.preferences.keymap,
+                &mut self.state,
+                hands,
+                &mut commands,
+            );
+        }
+        let any = !commands.is_empty();
+        let before = self.document.scene().rev;
+        for command in commands {
+            self.execute(command, ui.ctx());
+        }
+        let edited = self.document.scene().rev != before;
+        self.frame_drawn(ui.ctx(), edited);
+        let at_once = edited && self.show_at_once(ui.ctx());
+        if any && !at_once || self.frames.passes < 3 {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// True while a dialog lies over everything.
+    pub(crate) fn has_dialog(&self) -> bool {
+        self.files.unsaved.is_some()
+            || self.files.dialogs.is_open()
+            || self.state.keys_open
+            || self.state.start_open
+            || self.overlays.palette.open
+            || self.asks_to_recover()
+            || self.state.tools.row_open
+    }
+
+    pub(crate) fn take_window_events(&mut self, ctx: &egui::Context, commands: &mut Vec<Command>) {
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_path_buf()));
+        commands.extend(dropped.map(|path| Command::File(FileCommand::OpenPath(path))));
+        if ctx.input(|i| i.viewport().close_requested()) && !self.files.may_close && self.document.is_dirty()
+        {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            self.files.unsaved = Some(Next::Quit);
+        }
+    }
+
+    pub(crate) fn bars(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let input = ToolbarInput {
+            name: &scene.name,
+            dirty: self.document.is_dirty(),
+            recent: &self.preferences.settings.recent,
+            undo: self.document.undo_label(),
+            redo: self.document.redo_label(),
+            live: self.generation.live.on,
+            busy: self.generation.live.running.is_some(),
+            waiting: self
+                .generation
+                .live
+                .has_waiting(self.document.settled_scene().rev),
+            bookmarks: self.preferences.settings.bookmarks.keys().copied().collect(),
+            has_paint: scene.frame().painted.iter_set().next().is_some(),
+            workspace: self.preferences.settings.workspace,
+            shown: panes::infos()
+                .iter()
+                .map(|p| p.id)
+                .filter(|id| self.views.dock.is_shown(*id))
+                .collect(),
+            cameras: scene.rig.cameras.len(),
+            stops: self.generation.tuning.foretold(),
+            stop: self.generation.tuning.current(&self.generation.live.params),
+        };
+        egui::Panel::top("toolbar")
+            .exact_size(42.0)
+            .frame(theme::bar_frame())
+            .show_separator_line(false)
+            .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
+        let now_s = self.now_s();
+        let settled = self.document.settled_scene().clone();
+        let touched = self.generation.live.look(&settled, now_s);
+        self.generation.unsettled = self.generation.live.parts();
+        let unsettled = !touched.is_empty;
+        let findings = self.background.checking.findings().map(|all| {
+            let open = waive::open(settled.frame(), all);
+            let (errors, warnings): (Vec<_>, Vec<_>) = open.partition(|f| f.severity == Severity::Error);
+            (errors.len(), warnings.len())
+        });
+        let status = StatusInput {
+            findings,
+            running: self.generation.live.running.as_ref(),
+            shows_what_comes: self.generation.shows_what_comes(settled.rev),
+            now_s,
+            receipt: self.generation.receipt.as_ref(),
+            live: self.generation.live.on,
+            unsettled,
+            busy_with: self.files.opening.as_ref().map(|o| o.what.as_str()),
+            unread: self.toasts.unread(),
+            paused: self.generation.live.paused.as_ref(),
+            waiting: self.generation.live.has_waiting(settled.rev),
+            dragging: self.document.is_dragging(),
+            hint: &crate::shell::hints::hint(&self.state),
+        };
+        egui::Panel::bottom("status")
+            .exact_size(28.0)
+            .frame(theme::bar_frame())
+            .show_separator_line(false)
+            .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
+        // The status bar has shown what the last frame found under the pointer.
+        self.state.readout.clear();
+    }
+
+    pub(crate) fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
+        self.state.hovered_pane = None;
+        self.views.center = ui.available_rect_before_wrap();
+        self.dock_ui(ui, scene, commands);
+        // What nobody lists is not pointed at.
+        if !self.views.dock.is_shown(PaneId::CHECKS) {
+            self.state.meant = None;
+        }
+        self.generation.live.named = self.state.named;
+    }
+
+    /// Decides what the present state is compared with, in this frame.
+    pub(crate) fn prepare_compare(&mut self, ui: &Ui) {
+        // Not in the middle of a drag: the pointer answers to nothing while the state before is shown.
+        let held = !ui.ctx().text_edit_focused()
+            && ui.input(|i| {
+                let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
+                down && (self.state.holding_before || !i.pointer.any_down())
+            });
+        self.state.holding_before = held;
+        let rev = self.document.settled_scene().rev;
+        let active = held || self.state.compare != CompareMode::Off;
+        let chosen = self.views.compare.chosen.as_ref().filter(|s| s.rev != rev);
+        let before = chosen
+            .or_else(|| self.generation.versions.before(rev))
+            .filter(|_| active)
+            .cloned();
+        let senses = held || matches!(self.state.compare, CompareMode::Wipe | CompareMode::Side);
+        let ctx = ui.ctx().clone();
+        self.views
+            .compare
+            .prepare(before, Wanted::of(&self.state), senses, move || {
+                ctx.request_repaint()
+            });
+    }
+
+    pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let now_s = self.now_s();
+        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.background.sensing);
+        self.views
+            .strip
+            .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);
+        self.toasts
+            .log_window(ui, self.views.center, &mut self.state.log_open);
+        if self.state.sensors_open {
+            sensors_ui(ui, &scene.rig, &mut self.state, commands);
+        }
+        crate::windows::row::show(ui, scene.frame(), &mut self.state, commands);
+        let recent = &self.preferences.settings.recent;
+        self.overlays
+            .palette
+            .show(ui, &self.preferences.keymap, recent, &mut self.state, commands);
+        self.overlays
+            .shortcuts
+            .show(ui, &mut self.preferences.keymap, &mut self.state.keys_open);
+        settings_ui(ui, &mut self.preferences.settings, &mut self.state.settings_open);
+        start_ui(
+            ui,
+            &mut self.preferences.settings,
+            &mut self.state.start_open,
+            commands,
+        );
+        // Over the 3D view, where it hides no list.
+        let over = match self.views.view3d.rect.is_positive() {
+            true => self.views.view3d.rect,
+            false => self.views.center,
+        };
+        self.staged_ui(ui, over, commands);
+        performance_ui(ui, over, &mut self.frames.perf);
+        self.toasts.show(ui, self.views.center, now_s);
+        if ui.input(|i| !i.raw.hovered_files.is_empty()) {
+            drop_hint(ui, self.views.center);
+        }
+        self.export_dialog(ui);
+        self.recovery_dialog(ui);
+        if self.files.unsaved.is_some()
+            && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name)
+        {
+            self.answer_unsaved(answer, ui.ctx());
+        }
+        if let Some((purpose, path)) = self.files.dialogs.show(ui) {
+            let ctx = ui.ctx().clone();
+            self.file_chosen(purpose, path, &ctx);
+        }
+    }
+
+    pub(crate) fn answer_unsaved(&mut self, answer: Unsaved, ctx: &egui::Context) {
+        let Some(next) = self.files.unsaved.take() else {
+            return;
+        };
+        match answer {
+            Unsaved::Stay => {}
+            Unsaved::Discard => self.go_on(next, ctx),
+            Unsaved::Save => {
+                self.files.after_save = Some(next);
+                self.execute(Command::File(FileCommand::Save), ctx);
+            }
+        }
+    }
+}
+
+fn drop_hint(ui: &Ui, over: Rect) {
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let painter = ui.ctx().layer_painter(layer);
+    painter.rect_filled(over, 0.0, egui::Color32::from_black_alpha(170));
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    painter.text(
+        over.center(),
+        egui::Align2::CENTER_CENTER,
+        "Drop to open",
+        font,
+        theme::ON_CANVAS,
+    );
+}

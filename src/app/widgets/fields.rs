@@ -1,0 +1,90 @@
+//! Rows of number fields: a caption and what it names, in the same places on every panel.
+
+use egui::{DragValue, Ui};
+use glam::DVec3;
+
+use crate::command::Command;
+use crate::theme;
+use editor::Edit;
+
+/// What the fields to its right are.
+pub fn caption(ui: &mut Ui, text: &str) {
+    label(ui, text, 52.0);
+}
+
+/// What the widget to its right is, in so many points.
+pub fn label(ui: &mut Ui, text: &str, width_points: f32) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(width_points, theme::ROW), egui::Sense::hover());
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let at = rect.left_center();
+    ui.painter()
+        .text(at, egui::Align2::LEFT_CENTER, text, font, theme::text_weak());
+}
+
+/// Three numbers in a row; the response of all of them.
+pub fn numbers(
+    ui: &mut Ui,
+    title: &str,
+    names: [&str; 3],
+    value: &mut DVec3,
+    range: std::ops::RangeInclusive<f64>,
+    speed: f64,
+) -> egui::Response {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        caption(ui, title);
+        let width = ((ui.available_width() - 6.0) / 3.0).clamp(40.0, 90.0);
+        let mut fields = names.into_iter().enumerate().map(|(axis, name)| {
+            let drag = DragValue::new(&mut value[axis])
+                .speed(speed)
+                .range(range.clone())
+                .fixed_decimals(2);
+            ui.add_sized([width, theme::ROW], drag)
+                .on_hover_text(format!("{name}, m"))
+                .accessible_name(name)
+        });
+        let first = fields.next().expect("three names");
+        fields.fold(first, |all, one| all.union(one))
+    })
+    .inner
+}
+
+/// Dragging previews, letting go commits, typing applies.
+pub fn field(response: &egui::Response, label: &'static str, edit: Edit, commands: &mut Vec<Command>) {
+    fields(response, label, vec![edit], commands);
+}
+
+/// The same for several edits.
+pub fn fields(response: &egui::Response, label: &'static str, edits: Vec<Edit>, commands: &mut Vec<Command>) {
+    if response.dragged() {
+        if response.changed() {
+            commands.push(Command::Preview(edits));
+        }
+    } else if response.drag_stopped() {
+        commands.push(Command::Commit(label));
+    } else if response.changed() {
+        commands.push(Command::Apply(label, edits));
+    }
+}
+
+/// One number with its caption.
+pub fn number(
+    ui: &mut Ui,
+    title: &str,
+    name: &str,
+    value: &mut f64,
+    range: std::ops::RangeInclusive<f64>,
+    suffix: &str,
+    decimals: usize,
+) -> egui::Response {
+    ui.horizontal(|ui| {
+        caption(ui, title);
+        let drag = DragValue::new(value)
+            .speed(0.5 * 10f64.powi(-(decimals as i32)).max(0.02))
+            .range(range)
+            .fixed_decimals(decimals)
+            .suffix(suffix);
+        ui.add_sized([86.0, theme::ROW], drag).accessible_name(name)
+    })
+    .inner
+}

@@ -1,0 +1,247 @@
+//! The dialog in which a scene is exported: what, how, where to.
+
+use std::path::Path;
+
+use egui::{DragValue, Ui};
+
+use crate::export::{ExportOptions, ExportProgress, Format};
+use crate::state::LidarModel;
+use crate::theme;
+use formats::export::Product;
+use sensors::cameras::{self, ViewId};
+
+/// What the dialog shows of the application.
+pub struct ExportInput<'a> {
+    /// The export that is under way.
+    pub busy: Option<&'a ExportProgress>,
+    /// A dialog of the system can be asked for the path.
+    pub browse: bool,
+    /// Findings of severity error.
+    pub errors: usize,
+}
+
+/// What the user asked the dialog for.
+pub enum Asked {
+    /// Write these.
+    Write(Vec<Format>),
+    /// Choose the path by a dialog of the system.
+    Browse,
+    /// Show what the checks found.
+    Checks,
+}
+
+/// What the user has chosen so far.
+#[derive(Clone, Debug)]
+pub struct ExportPanel {
+    /// What is exported; none: everything, into one folder.
+    pub format: Option<Format>,
+    /// How.
+    pub options: ExportOptions,
+    /// Where to.
+    pub path: String,
+    /// Where the last export went: that it is there is no surprise.
+    pub written: String,
+    folder: std::path::PathBuf,
+    stem: String,
+}
+
+impl ExportPanel {
+    /// With paths beside the scene's file.
+    pub fn new(scene_file: &Path) -> Self {
+        let stem = scene_file
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        let mut panel = Self {
+            format: formats::export::all().first().copied(),
+            written: String::new(),
+            options: ExportOptions::default(),
+            path: String::new(),
+            folder: scene_file.parent().unwrap_or(Path::new("")).to_path_buf(),
+            stem,
+        };
+        panel.path = panel.suggested();
+        panel
+    }
+
+    /// A place for the chosen format: a file, or a folder for the formats that fill one.
+    fn suggested(&self) -> String {
+        let name = match self.format.map(|f| (f.file_name, f.id)) {
+            Some((Some(file), _)) => format!("{}_{file}", self.stem),
+            Some((None, name)) => format!("{}_{name}", self.stem),
+            None => format!("{}_export", self.stem),
+        };
+        self.folder.join(name).display().to_string()
+    }
+
+    /// True if the path names a folder, which is filled.
+    pub fn fills_a_folder(&self) -> bool {
+        self.format.is_none_or(|f| f.file_name.is_none())
+    }
+}
+
+/// Draws the dialog; what the user asks for.
+pub fn export_window(
+    ui: &Ui,
+    input: &ExportInput<'_>,
+    panel: &mut ExportPanel,
+    open: &mut bool,
+) -> Option<Asked> {
+    let mut asked = None;
+    egui::Window::new("Export")
+        .id(egui::Id::unique("export"))
+        .open(open)
+        .default_pos(egui::pos2(380.0, 120.0))
+        .default_width(500.0)
+        .resizable(false)
+        .show(ui.ctx(), |ui| {
+            ui.set_width(500.0);
+            kinds(ui, panel);
+            ui.separator();
+            options(ui, panel);
+            let folder = panel.fills_a_folder();
+            ui.horizontal(|ui| {
+                ui.label(if folder { "Folder" } else { "File" });
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if input.browse && ui.button("Browse…").clicked() {
+                        asked = Some(Asked::Browse);
+                    }
+                    let field = egui::TextEdit::singleline(&mut panel.path).desired_width(f32::INFINITY);
+                    ui.add(field).accessible_name("Export path");
+                });
+            });
+            let there = Path::new(panel.path.trim()).is_file() && panel.path != panel.written;
+            if !folder && there {
+                ui.colored_label(
+                    ui.visuals().warn_fg_color,
+                    "The file exists and will be replaced.",
+                );
+            }
+            if input.errors > 0 {
+                let text = match input.errors {
+                    1 => "The checks found an error in this scene.".to_owned(),
+                    n => format!("The checks found {n} errors in this scene."),
+                };
+                ui.horizontal(|ui| {
+                    ui.colored_label(ui.visuals().warn_fg_color, text);
+                    if ui.small_button("Show checks").clicked() {
+                        asked = Some(Asked::Checks);
+                    }
+                });
+            }
+            ui.add_space(theme::GAP);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let enabled = input.busy.is_none() && !panel.path.trim().is_empty();
+                let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
+                if ui.add_enabled(enabled, button).clicked() {
+                    let all = || formats::export::all().to_vec();
+                    asked = Some(Asked::Write(panel.format.map_or_else(all, |f| vec![f])));
+                }
+                if let Some(progress) = input.busy {
+                    busy(ui, progress);
+                }
+            });
+        });
+    asked
+}
+
+/// How far the export is, and the button that ends it.
+fn busy(ui: &mut Ui, progress: &ExportProgress) {
+    let stop = !progress.is_cancelled();
+    if ui
+        .add_enabled(stop, egui::Button::new("Cancel export"))
+        .on_hover_text("Stops before the next picture; nothing is written")
+        .clicked()
+    {
+        progress.cancel();
+    }
+    match (stop, progress.pictures()) {
+        (true, Some((done, of))) => {
+            let bar = egui::ProgressBar::new(done as f32 / of as f32).desired_width(150.0);
+            ui.add(bar.text(format!("Picture {} of {of}", (done + 1).min(of))))
+                .accessible_name("Export progress");
+            // Nobody else wakes the window while a picture is made.
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_millis(250));
+        }
+        (true, None) => {
+            ui.spinner();
+            ui.weak("Exporting…");
+        }
+        (false, _) => {
+            ui.weak("Stopping…");
+        }
+    }
+}
+
+fn kinds(ui: &mut Ui, panel: &mut ExportPanel) {
+    let before = panel.format;
+    for format in formats::export::all() {
+        ui.radio_value(&mut panel.format, Some(*format), format.title);
+    }
+    ui.radio_value(&mut panel.format, None, "Everything above, into one folder");
+    if panel.format != before {
+        panel.path = panel.suggested();
+    }
+}
+
+fn options(ui: &mut Ui, panel: &mut ExportPanel) {
+    let (format, options) = (panel.format, &mut panel.options);
+    let size = |ui: &mut Ui, size: &mut [u32; 2]| {
+        ui.horizontal(|ui| {
+            ui.label("Size");
+            for (value, name) in size.iter_mut().zip(["Width", "Height"]) {
+                ui.add(DragValue::new(value).range(1..=8192).suffix(" px"))
+                    .accessible_name(name);
+            }
+        });
+    };
+    let Some(format) = format else {
+        size(ui, &mut options.camera_size);
+        ui.weak("Cameras of this size; everything else as it is set for its kind.");
+        return;
+    };
+    for product in format.needs {
+        match product {
+            Product::CameraMaps => {
+                size(ui, &mut options.camera_size);
+                ui.horizontal(|ui| {
+                    ui.label("From");
+                    // The usual one first.
+                    for source in cameras::sources_of(ViewId::SEMANTIC).into_iter().rev() {
+                        ui.radio_value(&mut options.source, source.id(), source.id().name());
+                    }
+                });
+            }
+            Product::Pictures => {
+                size(ui, &mut options.camera_size);
+                ui.weak("Some twenty seconds for six pictures of 800 x 450.");
+            }
+            Product::Sweep => {
+                ui.horizontal(|ui| {
+                    ui.label("Sweep");
+                    ui.radio_value(&mut options.lidar, LidarModel::Exact, "exact");
+                    ui.radio_value(
+                        &mut options.lidar,
+                        LidarModel::Learned,
+                        "learned, with intensity and lost echoes",
+                    );
+                });
+            }
+            Product::View => {
+                size(ui, &mut options.shot.size);
+                ui.horizontal(|ui| {
+                    ui.label("Samples per axis");
+                    ui.add(DragValue::new(&mut options.shot.supersample).range(1..=8))
+                        .accessible_name("Samples per axis");
+                    ui.checkbox(&mut options.shot.transparent, "Transparent");
+                    ui.checkbox(&mut options.shot.boxes, "Boxes");
+                    ui.checkbox(&mut options.shot.lidar, "LiDAR");
+                });
+                ui.weak("Seen as the 3D view shows it now.");
+            }
+            Product::Seen => {}
+        }
+    }
+}

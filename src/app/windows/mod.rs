@@ -1,0 +1,12 @@
+//! Windows and dialogs that lie over the panes.
+
+pub mod export;
+pub mod palette;
+pub mod performance;
+pub mod recovery;
+pub mod row;
+pub mod sensors;
+pub mod settings;
+pub mod shortcuts;
+pub mod start;
+pub mod unsaved;

@@ -1,0 +1,61 @@
+//! Asks what should become of a scene that a session left behind when it died.
+
+use egui::{Id, Modal, Ui};
+
+use crate::shell::recovery::{Stale, ago};
+use crate::theme;
+
+/// What the user wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Open it.
+    Recover,
+    /// Remove it for good.
+    Discard,
+    /// Ask again at the next start.
+    Later,
+}
+
+/// Asks about one scene; `None` until there is an answer. `more` others wait.
+pub fn recovery_ui(ui: &Ui, offer: &Stale, more: usize) -> Option<Answer> {
+    let mut answer = None;
+    let modal = Modal::new(Id::unique("recovery"))
+        .frame(theme::dialog_frame(ui.style()))
+        .show(ui.ctx(), |ui| {
+            ui.set_width(440.0);
+            ui.heading(format!("Recover “{}”?", offer.name));
+            ui.add_space(theme::GAP);
+            let when = offer.saved.elapsed().map_or_else(|_| "just now".into(), ago);
+            ui.label(format!(
+                "Sceneloom ended unexpectedly. Unsaved work from {when} was kept."
+            ));
+            if let Some(original) = &offer.original {
+                ui.weak(format!(
+                    "It belongs to {}, which is as it was last saved.",
+                    original.display()
+                ));
+            }
+            if more > 0 {
+                ui.weak(format!("{more} more to ask about after this."));
+            }
+            ui.add_space(2.0 * theme::GAP);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui
+                    .add(egui::Button::new("Recover").fill(ui.visuals().selection.bg_fill))
+                    .clicked()
+                {
+                    answer = Some(Answer::Recover);
+                }
+                if ui.button("Later").clicked() {
+                    answer = Some(Answer::Later);
+                }
+                if ui.button("Discard").clicked() {
+                    answer = Some(Answer::Discard);
+                }
+            });
+        });
+    if answer.is_none() && modal.should_close() {
+        answer = Some(Answer::Later);
+    }
+    answer
+}

@@ -1,0 +1,376 @@
+//! The window in which the vehicle's sensors are placed, aimed, added and taken away.
+
+use egui::Ui;
+use glam::DVec3;
+
+use crate::command::{Command, FileCommand};
+use crate::panes::camera_strip::camera_label;
+use crate::state::{SensorChoice, UiState};
+use crate::theme;
+use crate::widgets::fields::{caption, field, number, numbers};
+use crate::widgets::icons::{self, Icon, section};
+use editor::Edit;
+use scene::rig::Aim;
+use scene::rig_presets::{LIDARS, RIGS};
+use scene::{Camera, LidarPattern, SensorRig};
+
+/// Sensors of a kind that a rig may have; a strip of more cameras could not be read.
+const MAX_CAMERAS: usize = 12;
+const MAX_LIDARS: usize = 8;
+
+/// Draws the window.
+pub fn sensors_ui(ui: &Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<Command>) {
+    let mut open = state.sensors_open;
+    egui::Window::new("Sensors")
+        .id(egui::Id::unique("sensors"))
+        .open(&mut open)
+        .default_pos(egui::pos2(330.0, 120.0))
+        .default_width(330.0)
+        .resizable(false)
+        .collapsible(true)
+        .show(ui.ctx(), |ui| {
+            ui.set_width(330.0);
+            presets(ui, commands);
+            ui.add_space(4.0);
+            lists(ui, rig, state, commands);
+            ui.add_space(theme::GAP);
+            match state.sensor {
+                SensorChoice::Camera(i) => {
+                    if let Some(camera) = rig.cameras.get(i) {
+                        camera_fields(ui, rig, i, camera, commands);
+                    }
+                }
+                SensorChoice::Lidar(i) => {
+                    if let Some(lidar) = rig.lidars.get(i) {
+                        lidar_fields(ui, rig, i, lidar, commands);
+                    }
+                }
+            }
+        });
+    state.sensors_open = open;
+}
+
+/// The rig after a change, as an edit.
+fn changed(rig: &SensorRig, change: impl FnOnce(&mut SensorRig)) -> Edit {
+    let mut rig = Box::new(rig.clone());
+    change(&mut rig);
+    Edit::SetRig { rig }
+}
+
+fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.menu_button("Presets", |ui| {
+            for preset in &RIGS {
+                if ui.button(preset.name).clicked() {
+                    let rig = Box::new((preset.build)());
+                    commands.push(Command::Apply("Replace sensors", vec![Edit::SetRig { rig }]));
+                    ui.close();
+                }
+            }
+        });
+        if ui.button("Import…").clicked() {
+            commands.push(Command::File(FileCommand::ImportRig));
+        }
+        if ui.button("Export…").clicked() {
+            commands.push(Command::File(FileCommand::ExportRig));
+        }
+    });
+}
+
+fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<Command>) {
+    section(ui, "Cameras");
+    for (i, camera) in rig.cameras.iter().enumerate() {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 2.0;
+            let shown = !state.camera_hidden(i);
+            let (icon, hint) = match shown {
+                true => (Icon::Eye, "in the strip and in the 3D view"),
+                false => (Icon::EyeOff, "not rendered"),
+            };
+            if icons::button(ui, icon, &format!("Show {}", camera.name), hint, false, true).clicked() {
+                state.cameras_hidden ^= 1 << i;
+            }
+            let right = format!("{:.0}°", camera.fov_deg());
+            let chosen = state.sensor == SensorChoice::Camera(i);
+            let label = format!("Camera {}", camera.name);
+            if icons::row(
+                ui,
+                theme::accent(),
+                &camera_label(&camera.name),
+                &right,
+                chosen,
+                &label,
+            )
+            .clicked()
+            {
+                state.sensor = SensorChoice::Camera(i);
+            }
+        });
+    }
+    section(ui, "LiDARs");
+    for (i, lidar) in rig.lidars.iter().enumerate() {
+        let right = format!("{} x {}", lidar.elevations_deg.len(), lidar.columns);
+        let chosen = state.sensor == SensorChoice::Lidar(i);
+        let name = if i == 0 {
+            format!("{} (shown)", lidar.name)
+        } else {
+            lidar.name.clone()
+        };
+        let label = format!("LiDAR {}", lidar.name);
+        if icons::row(ui, theme::text(), &name, &right, chosen, &label).clicked() {
+            state.sensor = SensorChoice::Lidar(i);
+        }
+    }
+    ui.horizontal(|ui| {
+        if ui
+            .add_enabled(rig.cameras.len() < MAX_CAMERAS, egui::Button::new("Add camera"))
+            .clicked()
+        {
+            let mut camera = Camera::new(&free_name("CAM", rig), 70.0);
+            camera.translation_m = [1.5, 0.0, 1.5];
+            state.sensor = SensorChoice::Camera(rig.cameras.len());
+            commands.push(Command::Apply(
+                "Add camera",
+                vec![changed(rig, |r| r.cameras.push(camera))],
+            ));
+        }
+        ui.add_enabled_ui(rig.lidars.len() < MAX_LIDARS, |ui| {
+            ui.menu_button("Add LiDAR", |ui| {
+                for preset in &LIDARS {
+                    if ui.button(preset.name).clicked() {
+                        let mut lidar = (preset.build)();
+                        lidar.name = free_name("LIDAR", rig);
+                        state.sensor = SensorChoice::Lidar(rig.lidars.len());
+                        commands.push(Command::Apply(
+                            "Add LiDAR",
+                            vec![changed(rig, |r| r.lidars.push(lidar))],
+                        ));
+                        ui.close();
+                    }
+                }
+            });
+        });
+        let what = state.sensor;
+        let exists = match what {
+            SensorChoice::Camera(i) => i < rig.cameras.len(),
+            SensorChoice::Lidar(i) => i < rig.lidars.len(),
+        };
+        if icons::button(ui, Icon::Copy, "Duplicate sensor", "", false, exists).clicked() {
+            let copy = changed(rig, |r| match what {
+                SensorChoice::Camera(i) => r.cameras.push(Camera {
+                    name: free_name("CAM", rig),
+                    ..rig.cameras[i].clone()
+                }),
+                SensorChoice::Lidar(i) => r.lidars.push(LidarPattern {
+                    name: free_name("LIDAR", rig),
+                    ..rig.lidars[i].clone()
+                }),
+            });
+            commands.push(Command::Apply("Duplicate sensor", vec![copy]));
+        }
+        if icons::button(ui, Icon::Trash, "Remove sensor", "", false, exists).clicked() {
+            let rest = changed(rig, |r| match what {
+                SensorChoice::Camera(i) => drop(r.cameras.remove(i)),
+                SensorChoice::Lidar(i) => drop(r.lidars.remove(i)),
+            });
+            if let SensorChoice::Camera(i) = what {
+                state.forget_camera(i);
+            }
+            commands.push(Command::Apply("Remove sensor", vec![rest]));
+        }
+    });
+}
+
+/// `CAM_1`, or the next number that is free.
+fn free_name(stem: &str, rig: &SensorRig) -> String {
+    let names = rig
+        .cameras
+        .iter()
+        .map(|c| &c.name)
+        .chain(rig.lidars.iter().map(|l| &l.name));
+    let taken: Vec<&String> = names.collect();
+    let mut numbered = (1..).map(|i| format!("{stem}_{i}"));
+    numbered
+        .find(|name| !taken.contains(&name))
+        .expect("numbers do not end")
+}
+
+fn camera_fields(ui: &mut Ui, rig: &SensorRig, index: usize, camera: &Camera, commands: &mut Vec<Command>) {
+    section(ui, &camera_label(&camera.name));
+    let mut new = camera.clone();
+    let set = |new: Camera| changed(rig, |r| r.cameras[index] = new);
+    let renamed = name_row(ui, &mut new.name);
+    if renamed {
+        commands.push(Command::Apply("Rename sensor", vec![set(new.clone())]));
+    }
+    let moved = mount(ui, &mut new.translation_m);
+    field(&moved, "Move sensor", set(new.clone()), commands);
+    let mut aim = new.aim();
+    let turned = aim_rows(ui, &mut aim);
+    if turned.changed() {
+        new.set_aim(aim);
+    }
+    field(&turned, "Aim sensor", set(new.clone()), commands);
+    let mut fov_deg = new.fov_deg();
+    let zoomed = number(ui, "View", "Field of view", &mut fov_deg, 5.0..=170.0, "°", 1);
+    if zoomed.changed() {
+        new.set_fov_deg(fov_deg);
+    }
+    field(&zoomed, "Change field of view", set(new.clone()), commands);
+    let text = format!(
+        "{} x {} px, f {:.0} px",
+        camera.width, camera.height, camera.focal_px[0]
+    );
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+}
+
+fn lidar_fields(
+    ui: &mut Ui,
+    rig: &SensorRig,
+    index: usize,
+    lidar: &LidarPattern,
+    commands: &mut Vec<Command>,
+) {
+    section(ui, &lidar.name);
+    let mut new = lidar.clone();
+    let set = |new: LidarPattern| changed(rig, |r| r.lidars[index] = new);
+    if name_row(ui, &mut new.name) {
+        commands.push(Command::Apply("Rename sensor", vec![set(new.clone())]));
+    }
+    ui.horizontal(|ui| {
+        caption(ui, "Pattern");
+        ui.menu_button(format!("{} beams", lidar.elevations_deg.len()), |ui| {
+            for preset in &LIDARS {
+                if ui.button(preset.name).clicked() {
+                    // The pattern changes, the mount stays.
+                    let pattern = LidarPattern {
+                        name: new.name.clone(),
+                        rotation_wxyz: new.rotation_wxyz,
+                        translation_m: new.translation_m,
+                        ..(preset.build)()
+                    };
+                    commands.push(Command::Apply("Change pattern", vec![set(pattern)]));
+                    ui.close();
+                }
+            }
+        });
+        if index > 0 && ui.button("Show this one").clicked() {
+            commands.push(Command::Apply(
+                "Choose LiDAR",
+                vec![changed(rig, |r| r.lidars.swap(0, index))],
+            ));
+        }
+    });
+    let moved = mount(ui, &mut new.translation_m);
+    field(&moved, "Move sensor", set(new.clone()), commands);
+    let mut aim = new.aim();
+    let turned = aim_rows(ui, &mut aim);
+    if turned.changed() {
+        new.set_aim(aim);
+    }
+    field(&turned, "Aim sensor", set(new.clone()), commands);
+    let mut columns = f64::from(new.columns);
+    let stepped = number(ui, "Columns", "Columns", &mut columns, 1.0..=8192.0, "", 0);
+    new.columns = columns as u32;
+    field(&stepped, "Change columns", set(new.clone()), commands);
+    let ranged = number(ui, "Range", "Range", &mut new.max_range_m, 1.0..=300.0, " m", 0);
+    field(&ranged, "Change range", set(new.clone()), commands);
+    let sector = number(ui, "Sector", "Sector", &mut new.sector_deg, 1.0..=360.0, "°", 0);
+    field(&sector, "Change sector", set(new.clone()), commands);
+    let spin = number(
+        ui,
+        "Spin",
+        "Revolutions per second",
+        &mut new.spin_hz,
+        0.0..=50.0,
+        " Hz",
+        0,
+    );
+    field(&spin, "Change spin", set(new.clone()), commands);
+    for (text, hover, name) in [
+        (
+            "Own vehicle",
+            "The own roof is in the way of a sensor above it and sends pulses back, as in real sweeps",
+            "Change own vehicle",
+        ),
+        (
+            "Beyond the grid",
+            "Pulses that leave the grid meet a continuation of the scene: roads, houses, trees",
+            "Change beyond the grid",
+        ),
+    ] {
+        let on = match name {
+            "Change own vehicle" => &mut new.own_body,
+            _ => &mut new.beyond_grid,
+        };
+        if ui.checkbox(on, text).on_hover_text(hover).changed() {
+            commands.push(Command::Apply(name, vec![set(new.clone())]));
+        }
+    }
+    let mut kmh = rig.ego_speed_mps * 3.6;
+    let speed = number(
+        ui,
+        "Speed",
+        "Speed of the vehicle",
+        &mut kmh,
+        0.0..=200.0,
+        " km/h",
+        0,
+    );
+    let edit = changed(rig, |r| r.ego_speed_mps = kmh / 3.6);
+    field(&speed, "Change speed", edit, commands);
+    let low = lidar.elevations_deg.first().copied().unwrap_or(0.0);
+    let high = lidar.elevations_deg.last().copied().unwrap_or(0.0);
+    let text = format!("{low:.1}° to {high:.1}°, {} rays a sweep", lidar.rays());
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+}
+
+/// A name that is taken when the field is left.
+fn name_row(ui: &mut Ui, name: &mut String) -> bool {
+    let memory = ui.scope_id().with("sensor name");
+    let mut text = ui.data(|d| d.get_temp::<(String, String)>(memory));
+    if text.as_ref().is_none_or(|(of, _)| of != name) {
+        text = Some((name.clone(), name.clone()));
+    }
+    let (of, mut typed) = text.expect("just set");
+    let response = ui
+        .horizontal(|ui| {
+            caption(ui, "Name");
+            ui.add(egui::TextEdit::singleline(&mut typed).desired_width(180.0))
+        })
+        .inner;
+    ui.data_mut(|d| d.insert_temp(memory, (of, typed.clone())));
+    let done = response.lost_focus() && !typed.trim().is_empty() && typed.trim() != name;
+    if done {
+        *name = typed.trim().to_owned();
+    }
+    done
+}
+
+fn mount(ui: &mut Ui, translation_m: &mut [f64; 3]) -> egui::Response {
+    let mut p = DVec3::from(*translation_m);
+    let response = numbers(ui, "Mount", ["Forward", "Left", "Up"], &mut p, -20.0..=20.0, 0.02);
+    *translation_m = p.to_array();
+    response
+}
+
+fn aim_rows(ui: &mut Ui, aim: &mut Aim) -> egui::Response {
+    let yaw = number(ui, "Yaw", "Yaw", &mut aim.yaw_deg, -180.0..=180.0, "°", 1);
+    let pitch = number(ui, "Pitch", "Pitch", &mut aim.pitch_deg, -89.0..=89.0, "°", 1);
+    let roll = number(ui, "Roll", "Roll", &mut aim.roll_deg, -180.0..=180.0, "°", 1);
+    yaw.union(pitch).union(roll)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_free() {
+        let mut rig = SensorRig::default();
+        assert_eq!(free_name("CAM", &rig), "CAM_1");
+        rig.cameras[2].name = "CAM_1".into();
+        rig.lidars[0].name = "CAM_2".into();
+        assert_eq!(free_name("CAM", &rig), "CAM_3");
+    }
+}

@@ -1,0 +1,66 @@
+//! The window of settings: looks, colours, size, and what happens at the start.
+
+use egui::{Ui, Window};
+
+use crate::shell::settings::Settings;
+use crate::theme::{self, Look};
+use scene::classes::Palette;
+
+/// Draws the window while it is open.
+pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {
+    if !*open {
+        return;
+    }
+    Window::new("Settings")
+        .open(open)
+        .resizable(false)
+        .collapsible(false)
+        .default_pos(ui.max_rect().center() - egui::vec2(190.0, 160.0))
+        .show(ui.ctx(), |ui| {
+            ui.set_width(380.0);
+            egui::Grid::new("settings")
+                .num_columns(2)
+                .spacing([theme::GAP * 2.0, theme::GAP])
+                .show(ui, |ui| {
+                    ui.label("Theme");
+                    ui.horizontal(|ui| {
+                        ui.selectable_value(&mut settings.look, Look::Dark, "Dark");
+                        ui.selectable_value(&mut settings.look, Look::Light, "Light");
+                    });
+                    ui.end_row();
+                    ui.label("Class colours");
+                    ui.horizontal(|ui| {
+                        ui.selectable_value(&mut settings.classes, Palette::Standard, "Standard");
+                        ui.selectable_value(
+                            &mut settings.classes,
+                            Palette::ColorBlindSafe,
+                            "Colour-blind safe",
+                        );
+                    });
+                    ui.end_row();
+                    ui.label("Size of everything");
+                    let mut percent = (ui.ctx().zoom_factor() * 100.0).round();
+                    let slider = egui::DragValue::new(&mut percent)
+                        .range(50.0..=300.0)
+                        .speed(5.0)
+                        .suffix(" %");
+                    if ui.add(slider).on_hover_text("Ctrl + and Ctrl −").changed() {
+                        settings.ui_scale = percent / 100.0;
+                        ui.ctx().set_zoom_factor(settings.ui_scale);
+                    }
+                    ui.end_row();
+                    ui.label("Memory for undo");
+                    let field = egui::DragValue::new(&mut settings.history_mb)
+                        .range(Settings::HISTORY_MB)
+                        .speed(4.0)
+                        .suffix(" MB");
+                    ui.add(field)
+                        .on_hover_text("Older steps go when the history takes more")
+                        .accessible_name("Memory for undo");
+                    ui.end_row();
+                    ui.label("At the start");
+                    ui.checkbox(&mut settings.start_screen, "Show the start screen");
+                    ui.end_row();
+                });
+        });
+}

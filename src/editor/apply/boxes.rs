@@ -1,0 +1,115 @@
+//! Edits of boxes, and their voxels at once.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use scene::{BoxId, BoxName, Edit, EditError, Frame, SceneBox};
+
+use crate::immediate;
+
+/// Applies an edit of one box; `false` if it is about something else.
+pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
+    match edit {
+        Edit::RemoveBox { id } => {
+            let old = take_box(frame, *id)?;
+            immediate::clear_box(frame, &old);
+        }
+        Edit::AddBox {
+            class,
+            center_m,
+            size_m,
+            yaw_deg,
+            velocity_mps,
+            id,
+            label,
+        } => {
+            let id = match *id {
+                Some(id) => id,
+                None => next_id(frame)?,
+            };
+            if frame.boxes.contains_key(&id) {
+                return Err(EditError::DuplicateBox { id });
+            }
+            let new = SceneBox {
+                id,
+                class: *class,
+                center_m: *center_m,
+                size_m: *size_m,
+                yaw_rad: yaw_deg.to_radians(),
+                velocity_mps: velocity_mps.unwrap_or_default(),
+                label: *label,
+            };
+            put_box(frame, new)?;
+        }
+        Edit::MoveBox {
+            id,
+            center_m,
+            yaw_deg,
+            size_m,
+        } => {
+            if center_m.is_none() && yaw_deg.is_none() && size_m.is_none() {
+                return Err(EditError::NothingToMove);
+            }
+            change_box(frame, *id, |b| {
+                b.center_m = center_m.unwrap_or(b.center_m);
+                b.size_m = size_m.unwrap_or(b.size_m);
+                b.yaw_rad = yaw_deg.map_or(b.yaw_rad, f64::to_radians);
+            })?;
+        }
+        Edit::LabelBox { id, label } => {
+            let b = frame.boxes.get_mut(id).ok_or(EditError::UnknownBox { id: *id })?;
+            b.label = *label;
+            // The source takes it over: a label is no change that waits for the networks.
+            if frame.source.boxes.get(id).is_some_and(|b| b.label != *label)
+                && let Some(b) = Arc::make_mut(&mut frame.source).boxes.get_mut(id)
+            {
+                b.label = *label;
+            }
+        }
+        Edit::SetBoxClass { id, class } => change_box(frame, *id, |b| {
+            if b.class != *class {
+                b.label.name = BoxName::default();
+            }
+            b.class = *class;
+        })?,
+        _ => return Ok(false),
+    }
+    Ok(true)
+}
+
+fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
+    let taken: &BTreeMap<_, _> = &frame.boxes;
+    if taken.contains_key(&BoxId(u32::MAX)) {
+        // `next_box_id` counts up from the highest; look for a gap instead.
+        let free = (1..u32::MAX).find(|id| !taken.contains_key(&BoxId(*id)));
+        return free.map(BoxId).ok_or(EditError::NoIdLeft);
+    }
+    Ok(frame.next_box_id())
+}
+
+fn take_box(frame: &mut Frame, id: BoxId) -> Result<SceneBox, EditError> {
+    frame.inferred.boxes.remove(&id);
+    frame.boxes.remove(&id).ok_or(EditError::UnknownBox { id })
+}
+
+fn put_box(frame: &mut Frame, new: SceneBox) -> Result<(), EditError> {
+    if let Some(problem) = new.problem() {
+        return Err(EditError::BadBox(problem));
+    }
+    frame.boxes.insert(new.id, new);
+    immediate::stamp_box(frame, &new);
+    Ok(())
+}
+
+fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) -> Result<(), EditError> {
+    let old = *frame.boxes.get(&id).ok_or(EditError::UnknownBox { id })?;
+    let mut new = old;
+    change(&mut new);
+    if new == old {
+        return Ok(());
+    }
+    // A box that is not sound leaves this copy of the frame half changed; the scene keeps the old one.
+    take_box(frame, id)?;
+    immediate::clear_box(frame, &old);
+    put_box(frame, new)
+}

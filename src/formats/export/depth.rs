@@ -1,0 +1,26 @@
+//! Depths that the cameras see, as 16-bit pictures.
+
+use scene::sensor_data::depth_mm;
+
+use super::{Exporter, OutFile, Product, with_text};
+use crate::{FormatError, Holds, png};
+
+/// `CAMERA_depth_mm.png` for each camera: millimetres along the optical axis, 0 where there is no depth.
+pub const EXPORTER: Exporter = Exporter {
+    id: "depth",
+    title: "Cameras: depth in millimetres, 16-bit PNG",
+    file_name: None,
+    holds: &[Holds::Pictures],
+    needs: &[Product::CameraMaps],
+    write: |scene, products| {
+        let mut files = Vec::new();
+        products.camera_maps(&mut |m| {
+            let mm = depth_mm(&m.depth_m);
+            let bytes = with_text(scene, |text| png::grey16(m.width, m.height, &mm, text));
+            let name = format!("{}_depth_mm.png", m.camera);
+            files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
+            Ok(())
+        })?;
+        Ok(files)
+    },
+};

@@ -1,0 +1,179 @@
+//! Formats that are written: one file each, and one line of the table. The window's dialog and the command line both ask
+//! this table.
+
+pub mod boxes;
+pub mod depth;
+pub mod loom;
+pub mod nuscenes_lidar;
+pub mod occ3d;
+pub mod pictures;
+pub mod ply;
+pub mod semantic;
+pub mod view;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use scene::{BoxId, CameraMaps, LidarSweep, Scene};
+
+use super::{FormatError, Holds, png};
+
+/// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
+const TABLE: [&Exporter; 8] = [
+    &occ3d::EXPORTER,
+    &boxes::EXPORTER,
+    &nuscenes_lidar::EXPORTER,
+    &ply::EXPORTER,
+    &semantic::EXPORTER,
+    &depth::EXPORTER,
+    &pictures::EXPORTER,
+    &view::EXPORTER,
+];
+
+/// A format that is written.
+pub struct Exporter {
+    /// Name on the command line.
+    pub id: &'static str,
+    /// What it holds, for a person.
+    pub title: &'static str,
+    /// Name of the file where only a folder is given; `None` for formats that fill a folder.
+    pub file_name: Option<&'static str>,
+    /// What a file holds.
+    pub holds: &'static [Holds],
+    /// What has to be made of the scene first: options for it are worth showing.
+    pub needs: &'static [Product],
+    /// The files of the scene's current frame. Errors in one line; nothing is written by then.
+    pub write: fn(&Scene, &mut dyn Products) -> Result<Vec<OutFile>, FormatError>,
+}
+
+impl PartialEq for Exporter {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl fmt::Debug for Exporter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Exporter({})", self.id)
+    }
+}
+
+/// Every format for other programs, in the order of lists.
+pub fn all() -> &'static [&'static Exporter] {
+    &TABLE
+}
+
+/// The format of that name.
+pub fn from_id(id: &str) -> Option<&'static Exporter> {
+    all().iter().find(|e| e.id == id).copied()
+}
+
+/// What sensors, networks or the graphics card make of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Product {
+    /// How often sensors see each box.
+    Seen,
+    /// A sweep of the first LiDAR.
+    Sweep,
+    /// Classes and depths of every camera.
+    CameraMaps,
+    /// A picture of every camera.
+    Pictures,
+    /// A picture of the 3D view.
+    View,
+}
+
+/// Makes the products of one scene when a format asks for them. Errors in one line: the rig lacks the sensor, a network or a
+/// device is missing, or the export was cancelled.
+pub trait Products {
+    /// How often sensors see each box.
+    fn seen(&mut self) -> Result<Seen, FormatError>;
+    /// A sweep of the rig's first LiDAR.
+    fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
+    /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.
+    fn camera_maps(
+        &mut self,
+        take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError>;
+    /// A picture of every camera, in the order of the rig; each is taken before the next is made.
+    fn pictures(
+        &mut self,
+        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError>;
+    /// A picture of the 3D view.
+    fn view(&mut self) -> Result<Picture, FormatError>;
+}
+
+/// How often sensors see each box; `None` where there is no sensor of that kind.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Seen {
+    /// Returns of all LiDARs.
+    pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
+    /// Pixels of all cameras.
+    pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
+}
+
+/// A picture to be written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Who took it: a camera of the rig; empty for the 3D view.
+    pub camera: String,
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// sRGB and alpha, four bytes per pixel, row-major, top row first.
+    pub rgba: Vec<u8>,
+}
+
+/// A file that is ready to be written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutFile {
+    /// Its name in a folder: letters, digits and `-_.` only.
+    pub name: String,
+    /// What goes into it.
+    pub bytes: Vec<u8>,
+}
+
+impl OutFile {
+    /// With a name made tidy: cameras are named by users.
+    fn new(name: &str, bytes: Vec<u8>) -> Self {
+        let tidy = |c: char| {
+            if c.is_alphanumeric() || "-_.".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
+        Self {
+            name: name.chars().map(tidy).collect(),
+            bytes,
+        }
+    }
+}
+
+/// What a picture shows goes into the picture as text.
+fn with_text<T>(scene: &Scene, encode: impl FnOnce(&png::Text<'_>) -> T) -> T {
+    let seed = scene.seed.to_string();
+    encode(&[
+        ("Prompt", &scene.prompt),
+        ("Seed", &seed),
+        ("Scene", &scene.name),
+        ("Software", concat!("sceneloom ", env!("CARGO_PKG_VERSION"))),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_tidy() {
+        assert_eq!(
+            OutFile::new("../CAM FRONT_ä.png", Vec::new()).name,
+            ".._CAM_FRONT_ä.png"
+        );
+        assert_eq!(from_id("ply").map(|e| e.file_name), Some(Some("lidar.ply")));
+        assert!(from_id("loom").is_none() && from_id("fbx").is_none());
+    }
+}

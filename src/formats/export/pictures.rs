@@ -1,0 +1,23 @@
+//! Pictures that the cameras take.
+
+use super::{Exporter, OutFile, Product, with_text};
+use crate::{FormatError, Holds, png};
+
+/// `CAMERA.png` for each camera.
+pub const EXPORTER: Exporter = Exporter {
+    id: "pictures",
+    title: "Cameras: pictures in the prompt's weather, PNG",
+    file_name: None,
+    holds: &[Holds::Pictures],
+    needs: &[Product::Pictures],
+    write: |scene, products| {
+        let mut files = Vec::new();
+        products.pictures(&mut |p| {
+            let bytes = with_text(scene, |text| png::rgba(p.width, p.height, &p.rgba, text));
+            let name = format!("{}.png", p.camera);
+            files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
+            Ok(())
+        })?;
+        Ok(files)
+    },
+};

@@ -1,0 +1,40 @@
+//! A list of boxes: a scene of them alone, on open ground, with the draft of their voxels.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use scene::{BevLayout, Frame, Scene, SensorRig, draft};
+
+use super::{Content, Importer, Loaded};
+use crate::{FormatError, Holds, box_list, input};
+
+/// See [`box_list`].
+pub const IMPORTER: Importer = Importer {
+    id: "boxes",
+    title: "lists of boxes",
+    extensions: &["json"],
+    holds: &[Holds::Boxes],
+    largest: input::LARGEST_TEXT,
+    recognises: |head| {
+        let text = String::from_utf8_lossy(head);
+        text.contains("\"sceneloom_boxes\"")
+    },
+    read: |source| {
+        let list = box_list::read(source.bytes).map_err(FormatError::new)?;
+        let found = list.len();
+        let boxes: BTreeMap<_, _> = list.into_iter().map(|b| (b.id, b)).collect();
+        if boxes.len() < found {
+            return Err(FormatError::new("two boxes have the same id"));
+        }
+        let layout = BevLayout::default();
+        let occupancy = draft::draft(&layout, boxes.values());
+        let frame = Frame::new(layout, boxes, occupancy);
+        Ok(Content::Scene(Box::new(Loaded {
+            scene: Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0),
+            inferred: &[],
+            skipped: BTreeMap::new(),
+        })))
+    },
+    #[cfg(test)]
+    sample: || box_list::to_bytes("s", crate::table_tests::scene().frame(), None, None).expect("finite"),
+};

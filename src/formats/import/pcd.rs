@@ -1,0 +1,337 @@
+//! Point clouds (PCL's PCD, ascii and binary): a cloud becomes the occupancy of a scene, with classes if it has labels.
+//!
+//! Read are `x`, `y`, `z` in metres, taken as the ego frame (x forward, y left, z up, ground near z = 0), and a field `label`,
+//! `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). A voxel gets the class that most of its points
+//! have; without labels all are "others". Other fields, a viewpoint, points that are not finite or lie beside the map are
+//! left out and counted. `DATA binary_compressed` is refused.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use scene::message::quoted;
+use scene::{BevLayout, Frame, Scene, SensorRig};
+
+use super::cloud::Cloud;
+use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
+use crate::{FormatError, Holds};
+
+/// Fields whose numbers are classes.
+const LABELS: [&str; 4] = ["label", "labels", "class", "semantic"];
+/// Longest header, bytes, and most fields in it.
+const LONGEST_HEADER: usize = 16_384;
+const MOST_FIELDS: usize = 64;
+/// Most values of one field.
+const MOST_VALUES: usize = 4096;
+
+/// See the module.
+pub const IMPORTER: Importer = Importer {
+    id: "pcd",
+    title: "point clouds",
+    extensions: &["pcd"],
+    holds: &[Holds::Points],
+    largest: 512 << 20,
+    recognises: |head| {
+        let text = String::from_utf8_lossy(head);
+        text.starts_with("# .PCD") || (text.contains("FIELDS ") && text.contains("SIZE "))
+    },
+    read: |source| read(source).map_err(FormatError::new),
+    #[cfg(test)]
+    sample: tests::sample,
+};
+
+/// Why a file is no point cloud that is read. One line each.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum PcdError {
+    /// A line of the header.
+    #[error("header, {key}: {found}, expected {expected}")]
+    Header {
+        /// What the line is about.
+        key: &'static str,
+        /// What it says.
+        found: String,
+        /// What would do.
+        expected: String,
+    },
+    /// The file holds less than its header says.
+    #[error("{found} points, expected {expected} as in the header")]
+    Short {
+        /// Points there.
+        found: usize,
+        /// Points promised.
+        expected: usize,
+    },
+    /// A value that is no number.
+    #[error("point {point}: field {field} is {found:?}, expected a number")]
+    Number {
+        /// Which point, from 0.
+        point: usize,
+        /// Which field.
+        field: String,
+        /// What is there.
+        found: String,
+    },
+    /// Nothing would be left.
+    #[error(
+        "none of {points} points lies on the map, expected x and y within 40 m of the ego and z from -1 to 5.4 m (ego frame)"
+    )]
+    Elsewhere {
+        /// Points in the file.
+        points: usize,
+    },
+}
+
+fn wrong(key: &'static str, found: impl Into<String>, expected: impl Into<String>) -> PcdError {
+    PcdError::Header {
+        key,
+        found: found.into(),
+        expected: expected.into(),
+    }
+}
+
+fn read(source: &Source<'_>) -> Result<Content, PcdError> {
+    let header = Header::read(source.bytes)?;
+    let body = &source.bytes[header.body..];
+    let axis = |name| {
+        header
+            .field(&[name])
+            .ok_or_else(|| wrong("FIELDS", "no such field", name))
+    };
+    let (axes, label) = ([axis("x")?, axis("y")?, axis("z")?], header.field(&LABELS));
+    let mut cloud = Cloud::default();
+    let wanted: Vec<usize> = axes.into_iter().chain(label).collect();
+    header.each_point(body, &wanted, |v| {
+        cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())
+    })?;
+    if cloud.is_empty() {
+        return Err(PcdError::Elsewhere {
+            points: header.points,
+        });
+    }
+    let mut skipped = cloud.skipped();
+    for (at, field) in header.fields.iter().enumerate() {
+        if !wanted.contains(&at) {
+            skipped.insert(format!("field {}", quoted(&field.name, 40)), 1);
+        }
+    }
+    if header.has_viewpoint {
+        skipped.insert("viewpoint".into(), 1);
+    }
+    let labels = cloud.grid();
+    let (scene, inferred): (Scene, &'static [&'static str]) = match label {
+        Some(_) => (labelled(source.name, labels, None), &GUESSED),
+        None => {
+            let frame = Frame::new(BevLayout::default(), BTreeMap::new(), labels);
+            (
+                Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0),
+                &[],
+            )
+        }
+    };
+    Ok(Content::Scene(Box::new(Loaded {
+        scene,
+        inferred,
+        skipped,
+    })))
+}
+
+/// One field of a point.
+struct Field {
+    name: String,
+    /// `F`, `I` or `U`, and bytes of one value.
+    kind: (u8, usize),
+    /// Values of the field; the first one is read.
+    count: usize,
+    /// Bytes before it in a binary point, and values before it in a line.
+    bytes_before: usize,
+    values_before: usize,
+}
+
+impl Field {
+    fn value(&self, point: &[u8]) -> f64 {
+        let at = &point[self.bytes_before..];
+        macro_rules! number {
+            ($type:ty) => {
+                at.first_chunk()
+                    .map_or(f64::NAN, |b| <$type>::from_le_bytes(*b) as f64)
+            };
+        }
+        match self.kind {
+            (b'F', 4) => number!(f32),
+            (b'F', _) => number!(f64),
+            (b'I', 1) => number!(i8),
+            (b'I', 2) => number!(i16),
+            (b'I', 4) => number!(i32),
+            (b'I', _) => number!(i64),
+            (_, 1) => number!(u8),
+            (_, 2) => number!(u16),
+            (_, 4) => number!(u32),
+            _ => number!(u64),
+        }
+    }
+}
+
+struct Header {
+    fields: Vec<Field>,
+    points: usize,
+    binary: bool,
+    has_viewpoint: bool,
+    /// Where the points begin.
+    body: usize,
+}
+
+impl Header {
+    fn read(bytes: &[u8]) -> Result<Self, PcdError> {
+        let mut lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut at = 0;
+        while !lines.contains_key("DATA") {
+            let rest = &bytes[at..bytes.len().min(LONGEST_HEADER)];
+            let Some(length) = rest.iter().position(|b| *b == b'\n') else {
+                return Err(wrong("DATA", "no such line", "ascii or binary"));
+            };
+            let line = String::from_utf8_lossy(&rest[..length]);
+            let mut words = line.split_whitespace().map(str::to_owned);
+            if let Some(key) = words.next().filter(|w| !w.starts_with('#')) {
+                lines.insert(key.to_uppercase(), words.collect());
+            }
+            at += length + 1;
+        }
+        let line = |key: &'static str| lines.get(key).map(Vec::as_slice);
+        let binary = match line("DATA").and_then(<[String]>::first).map(String::as_str) {
+            Some("ascii") => false,
+            Some("binary") => true,
+            other => {
+                let found = quoted(other.unwrap_or("nothing"), 40);
+                return Err(wrong(
+                    "DATA",
+                    found,
+                    "ascii or binary (binary_compressed is not read)",
+                ));
+            }
+        };
+        let fields = fields(&lines)?;
+        let size = |key| line(key).map(|l| whole(key, l.first(), usize::MAX)).transpose();
+        let points = match size("POINTS")? {
+            Some(points) => points,
+            None => size("WIDTH")?
+                .zip(size("HEIGHT")?)
+                .and_then(|(w, h)| w.checked_mul(h))
+                .ok_or_else(|| wrong("POINTS", "no such line", "the number of points"))?,
+        };
+        let origin = ["0", "0", "0", "1", "0", "0", "0"];
+        Ok(Self {
+            fields,
+            points,
+            binary,
+            has_viewpoint: line("VIEWPOINT").is_some_and(|v| {
+                let number = |s: &str| s.parse::<f64>().ok();
+                !v.iter().map(|s| number(s)).eq(origin.iter().map(|s| number(s)))
+            }),
+            body: at,
+        })
+    }
+
+    fn field(&self, names: &[&str]) -> Option<usize> {
+        let of = |f: &Field| names.contains(&f.name.to_lowercase().as_str());
+        self.fields.iter().position(of)
+    }
+
+    /// The first values of these fields, of each point in turn.
+    fn each_point(
+        &self,
+        body: &[u8],
+        wanted: &[usize],
+        mut take: impl FnMut(&[f64]),
+    ) -> Result<(), PcdError> {
+        let short = |found| PcdError::Short {
+            found,
+            expected: self.points,
+        };
+        let wanted: Vec<&Field> = wanted.iter().filter_map(|at| self.fields.get(*at)).collect();
+        let mut values = vec![0.0; wanted.len()];
+        if self.binary {
+            let stride: usize = self.fields.iter().map(|f| f.kind.1 * f.count).sum();
+            let found = body.len() / stride.max(1);
+            if found < self.points {
+                return Err(short(found));
+            }
+            for point in body.chunks_exact(stride).take(self.points) {
+                for (value, field) in values.iter_mut().zip(&wanted) {
+                    *value = field.value(point);
+                }
+                take(&values);
+            }
+            return Ok(());
+        }
+        let text = String::from_utf8_lossy(body);
+        let mut lines = text.lines().filter(|l| !l.trim().is_empty());
+        for point in 0..self.points {
+            let line = lines.next().ok_or_else(|| short(point))?;
+            let words: Vec<&str> = line.split_whitespace().collect();
+            for (value, field) in values.iter_mut().zip(&wanted) {
+                let word = words.get(field.values_before).copied().unwrap_or_default();
+                *value = word.parse().map_err(|_| PcdError::Number {
+                    point,
+                    field: quoted(&field.name, 40),
+                    found: quoted(word, 40),
+                })?;
+            }
+            take(&values);
+        }
+        Ok(())
+    }
+}
+
+fn whole(key: &'static str, word: Option<&String>, most: usize) -> Result<usize, PcdError> {
+    let found = word.map_or("nothing", String::as_str);
+    let value = found.parse().ok().filter(|n| *n <= most);
+    value.ok_or_else(|| wrong(key, quoted(found, 40), format!("a whole number up to {most}")))
+}
+
+/// From the lines FIELDS, SIZE, TYPE and COUNT.
+fn fields(lines: &BTreeMap<String, Vec<String>>) -> Result<Vec<Field>, PcdError> {
+    let of = |key: &'static str| {
+        lines
+            .get(key)
+            .ok_or_else(|| wrong(key, "no such line", "one word per field"))
+    };
+    let (names, sizes, kinds) = (of("FIELDS")?, of("SIZE")?, of("TYPE")?);
+    let counts = lines.get("COUNT");
+    if names.is_empty() || names.len() > MOST_FIELDS {
+        return Err(wrong(
+            "FIELDS",
+            format!("{} words", names.len()),
+            format!("1 to {MOST_FIELDS}"),
+        ));
+    }
+    let (mut fields, mut bytes_before, mut values_before) = (Vec::new(), 0, 0);
+    for (i, name) in names.iter().enumerate() {
+        let size = whole("SIZE", sizes.get(i), 8)?;
+        let letter = kinds.get(i).map_or("nothing", String::as_str);
+        let kind = match (letter, size) {
+            ("F", 4 | 8) | ("I" | "U", 1 | 2 | 4 | 8) => letter.as_bytes()[0],
+            _ => {
+                let found = format!("{} of {size} bytes", quoted(letter, 40));
+                return Err(wrong("TYPE", found, "F of 4 or 8, I or U of 1, 2, 4 or 8 bytes"));
+            }
+        };
+        let count = match counts {
+            Some(counts) => whole("COUNT", counts.get(i), MOST_VALUES)?.max(1),
+            None => 1,
+        };
+        fields.push(Field {
+            name: name.clone(),
+            kind: (kind, size),
+            count,
+            bytes_before,
+            values_before,
+        });
+        bytes_before += size * count;
+        values_before += count;
+    }
+    Ok(fields)
+}
+
+#[cfg(test)]
+#[path = "pcd_tests.rs"]
+mod tests;

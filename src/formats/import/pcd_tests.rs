@@ -1,0 +1,141 @@
+//! Tests of the reader of point clouds.
+
+use super::*;
+use scene::{Class, GridSpec};
+
+/// Three points in two voxels and one beside the map, with labels.
+pub(super) fn sample() -> Vec<u8> {
+    b"# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity label\nSIZE 4 4 4 4 1\n\
+      TYPE F F F F U\nCOUNT 1 1 1 1 1\nWIDTH 5\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 5\nDATA ascii\n\
+      10.1 -3.1 0.1 12 4\n10.2 -3.1 0.1 9 4\n10.15 -3.1 0.1 9 0\n10.1 -3.1 0.9 9 200\n500 0 0 1 4\n"
+        .to_vec()
+}
+
+fn binary(points: &[([f64; 3], u16)], promised: usize) -> Vec<u8> {
+    let mut out = format!(
+        "VERSION .7\nFIELDS label z pad x y\nSIZE 2 4 1 8 4\nTYPE U F I F F\nCOUNT 1 1 3 1 1\nWIDTH {promised}\nHEIGHT 1\n\
+         VIEWPOINT 0 0 1.8 1 0 0 0\nDATA binary\n"
+    )
+    .into_bytes();
+    for ([x, y, z], label) in points {
+        out.extend(label.to_le_bytes());
+        out.extend((*z as f32).to_le_bytes());
+        out.extend([7; 3]);
+        out.extend(x.to_le_bytes());
+        out.extend((*y as f32).to_le_bytes());
+    }
+    out
+}
+
+fn loaded(bytes: &[u8]) -> Result<Loaded, PcdError> {
+    match read(&Source { bytes, name: "cloud" })? {
+        Content::Scene(loaded) => Ok(*loaded),
+        Content::Roads(_) => panic!("a cloud is no road"),
+    }
+}
+
+#[test]
+fn a_cloud_becomes_voxels_with_the_class_of_most_points() {
+    let found = loaded(&sample()).expect("sound");
+    let grid = &found.scene.frame().occupancy;
+    let at = |x, y, z| {
+        let [x, y, z] = GridSpec::voxel_at(DVec3::new(x, y, z)).expect("on the map");
+        grid.get(x, y, z)
+    };
+    assert_eq!(
+        (at(10.1, -3.1, 0.1), at(10.1, -3.1, 0.9)),
+        (Class::Car.id(), Class::Others.id())
+    );
+    assert_eq!((grid.count_set(), &*found.scene.name), (2, "cloud"));
+    let skipped: Vec<(&str, usize)> = found.skipped.iter().map(|(k, n)| (k.as_str(), *n)).collect();
+    assert_eq!(
+        skipped,
+        [
+            ("field intensity", 1),
+            ("labels above 16, taken as others", 1),
+            ("points beside the map", 1)
+        ]
+    );
+    assert_eq!(found.inferred, GUESSED);
+}
+
+#[test]
+fn fields_come_in_any_order_and_type() {
+    let points = [
+        ([39.9, -39.9, 5.3], 16),
+        ([-0.1, 0.1, -0.9], 11),
+        ([f64::NAN, 0.0, 0.0], 3),
+    ];
+    let found = loaded(&binary(&points, 3)).expect("sound");
+    let grid = &found.scene.frame().occupancy;
+    assert_eq!(
+        (grid.get(199, 0, 15), grid.get(99, 100, 0), grid.count_set()),
+        (16, 11, 2)
+    );
+    for what in ["points that are not finite", "field pad", "viewpoint"] {
+        assert_eq!(found.skipped.get(what), Some(&1), "{what}");
+    }
+}
+
+#[test]
+fn without_labels_all_is_others_and_nothing_is_guessed() {
+    let text = String::from_utf8(sample())
+        .expect("text")
+        .replace(" label\n", " ring\n");
+    let found = loaded(text.as_bytes()).expect("sound");
+    let counts = found.scene.frame().occupancy.class_counts();
+    assert_eq!((counts[usize::from(Class::Others.id())], counts[4]), (2, 0));
+    assert!(found.inferred.is_empty() && found.scene.frame().inferred == Default::default());
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let text = String::from_utf8(sample()).expect("text");
+    let line = |bytes: &[u8]| loaded(bytes).expect_err("refused").to_string();
+    for (from, to, expected) in [
+        (
+            "DATA ascii",
+            "DATA binary_compressed",
+            "header, DATA: binary_compressed, expected ascii or binary",
+        ),
+        ("DATA ascii\n", "", "header, DATA: no such line"),
+        ("POINTS 5", "POINTS 9", "5 points, expected 9 as in the header"),
+        (
+            "POINTS 5",
+            "POINTS 99999999999999999999",
+            "header, POINTS: 99999999999999999999",
+        ),
+        (
+            "FIELDS x y z",
+            "FIELDS x q z",
+            "header, FIELDS: no such field, expected y",
+        ),
+        (
+            "SIZE 4 4",
+            "SIZE 4 3",
+            "header, TYPE: F of 3 bytes, expected F of 4 or 8",
+        ),
+        ("SIZE 4 4 4 4 1\n", "", "header, SIZE: no such line"),
+        (
+            "10.1 -3.1 0.1 12 4",
+            "10.1 -3.1 0,1 12 4",
+            "point 0: field z is \"0,1\", expected a number",
+        ),
+        (
+            "10.1 -3.1 0.1 12 4",
+            "10.1 -3.1",
+            "point 0: field z is \"\", expected a number",
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let changed = text.replacen(from, to, 1);
+        let found = line(changed.as_bytes());
+        assert!(found.starts_with(expected), "{found}");
+    }
+    assert_eq!(
+        line(&binary(&[([0.0; 3], 1)], 1 << 40)),
+        "1 points, expected 1099511627776 as in the header"
+    );
+    assert!(line(&binary(&[([100.0; 3], 1)], 1)).starts_with("none of 1 points lies on the map"));
+    assert!(line(b"").contains("DATA"));
+}

@@ -1,0 +1,86 @@
+//! What a project may not hold, whether it comes from a file or goes into one.
+
+use glam::DVec2;
+
+use scene::message::one_line;
+use scene::{Frame, Scene};
+
+use super::archive::within;
+use super::{MAX_FRAMES, ProjectError};
+
+/// Largest coordinate of a polyline's point, m.
+const LARGEST_M: f64 = 1e5;
+
+/// Errors on the first thing that is not sound; JSON could not even hold a NaN.
+pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
+    let unsound = |text: String| Err(ProjectError::Unsound(one_line(&format!("scene.json: {text}"))));
+    within(
+        "the number of frames",
+        scene.frames.len() as u64,
+        MAX_FRAMES as u64,
+    )?;
+    if scene.current >= scene.frames.len() {
+        let (found, frames) = (scene.current, scene.frames.len());
+        return unsound(format!(
+            "current is {found}, expected below the number of frames, {frames}"
+        ));
+    }
+    if let Some(problem) = scene.rig.problem() {
+        return unsound(format!("rig: {problem}"));
+    }
+    if let Some(problem) = scene.background.problem() {
+        return unsound(problem);
+    }
+    for (index, frame) in scene.frames.iter().enumerate() {
+        if let Some(problem) = frame_problem(frame) {
+            return unsound(format!("frame {index}: {problem}"));
+        }
+    }
+    Ok(())
+}
+
+fn frame_problem(frame: &Frame) -> Option<String> {
+    if !frame.time_s.is_finite() {
+        return Some(format!("time_s is {}, expected a finite number", frame.time_s));
+    }
+    let pose = &frame.world_from_ego;
+    if !pose.translation_m.is_finite() {
+        return Some(format!(
+            "world_from_ego is at {}, expected finite numbers",
+            pose.translation_m
+        ));
+    }
+    if let Some(i) = frame.waivers.iter().position(|w| !w.where_m.is_finite()) {
+        return Some(format!("waiver {i}: where_m is not finite"));
+    }
+    let norm = pose.rotation.length();
+    if norm.is_nan() || (norm - 1.0).abs() > 1e-3 {
+        return Some(format!(
+            "world_from_ego has a quaternion of length {norm}, expected 1"
+        ));
+    }
+    for (of, boxes, layout) in [
+        ("", &frame.boxes, &frame.layout),
+        ("source: ", &frame.source.boxes, &frame.source.layout),
+    ] {
+        for (id, b) in boxes {
+            if *id != b.id {
+                return Some(format!("{of}box {} is filed under id {}", b.id.0, id.0));
+            }
+            if let Some(problem) = b.problem() {
+                return Some(format!("{of}{problem}"));
+            }
+        }
+        let lines = layout.polylines.iter().enumerate();
+        for (i, line) in lines {
+            // Written so that NaN fails too. Lines are walked in steps of metres: one of 1e300 m would have no end.
+            let within = |p: &DVec2| p.abs().cmple(DVec2::splat(LARGEST_M)).all();
+            if !line.points_m.iter().all(within) {
+                return Some(format!(
+                    "{of}polyline {i}: a point is not finite or beyond {LARGEST_M} m"
+                ));
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,130 @@
+//! `scene.json`: all of a scene but its grids, as version 2 keeps it. A change here is a new version, see `migrate`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use scene::{BoxId, Frame, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Waiver};
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneHeader {
+    pub(super) name: Arc<str>,
+    pub(super) prompt: Arc<str>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) words: Vec<String>,
+    pub(super) seed: u64,
+    pub(super) current: usize,
+    pub(super) rig: Arc<SensorRig>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) background: Vec<Thing>,
+    pub(super) frames: Vec<FrameHeader>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FrameHeader {
+    pub(super) time_s: f64,
+    pub(super) world_from_ego: Pose,
+    pub(super) boxes: Vec<SceneBox>,
+    pub(super) polylines: Arc<Vec<Polyline>>,
+    /// Whether `relief.f32` is there.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(super) relief: bool,
+    /// Whether `painted.u8` is there.
+    pub(super) painted: bool,
+    #[serde(default, skip_serializing_if = "InferredHeader::is_empty")]
+    pub(super) inferred: InferredHeader,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) waivers: Vec<Waiver>,
+    pub(super) source: SourceHeader,
+}
+
+/// What of an imported frame is a guess.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct InferredHeader {
+    pub(super) layout: bool,
+    pub(super) boxes: BTreeSet<BoxId>,
+    #[serde(skip_serializing_if = "is_false")]
+    pub(super) background: bool,
+    /// Whether `unobserved.u16` is there.
+    pub(super) unobserved: bool,
+}
+
+impl InferredHeader {
+    fn is_empty(&self) -> bool {
+        !self.layout && self.boxes.is_empty() && !self.background && !self.unobserved
+    }
+}
+
+/// What is left out, or false, is as in the frame.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SourceHeader {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) boxes: Option<Vec<SceneBox>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) polylines: Option<Arc<Vec<Polyline>>>,
+    /// Whether `source_layout.u32` is there.
+    pub(super) layout: bool,
+    /// Whether `source_relief.f32` is there.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub(super) relief: bool,
+    /// Whether `source_occupancy.u8` is there.
+    pub(super) occupancy: bool,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
+impl SceneHeader {
+    /// Of a scene.
+    pub(super) fn of(scene: &Scene) -> Self {
+        Self {
+            name: scene.name.clone(),
+            prompt: scene.prompt.clone(),
+            words: scene.words.to_vec(),
+            seed: scene.seed,
+            current: scene.current,
+            rig: scene.rig.clone(),
+            background: scene.background.iter().cloned().collect(),
+            frames: scene.frames.iter().map(|f| frame_header(f)).collect(),
+        }
+    }
+}
+
+/// Name of a part of a frame within the zip.
+pub(super) fn entry_name(frame: usize, part: &str) -> String {
+    format!("frames/{frame:05}/{part}")
+}
+
+fn frame_header(frame: &Frame) -> FrameHeader {
+    let source = &frame.source;
+    let list = |boxes: &BTreeMap<BoxId, SceneBox>| boxes.values().copied().collect::<Vec<_>>();
+    FrameHeader {
+        time_s: frame.time_s,
+        world_from_ego: frame.world_from_ego,
+        boxes: list(&frame.boxes),
+        polylines: frame.layout.polylines.clone(),
+        relief: !frame.layout.relief.is_flat(),
+        painted: frame.painted.count_set() > 0,
+        inferred: InferredHeader {
+            layout: frame.inferred.layout,
+            boxes: frame.inferred.boxes.clone(),
+            background: frame.inferred.background,
+            unobserved: frame.inferred.unobserved.is_some(),
+        },
+        waivers: frame.waivers.to_vec(),
+        source: SourceHeader {
+            boxes: (source.boxes != frame.boxes).then(|| list(&source.boxes)),
+            polylines: (source.layout.polylines != frame.layout.polylines)
+                .then(|| source.layout.polylines.clone()),
+            layout: source.layout.cells() != frame.layout.cells(),
+            relief: source.layout.relief != frame.layout.relief,
+            occupancy: source.occupancy != frame.occupancy,
+        },
+    }
+}

@@ -1,0 +1,91 @@
+//! From an older version of the project file to the present one, a step per version. A new version is one file here and one
+//! line in [`ALL`]; `tests/reference/loom/` keeps a file of every version, which a test opens.
+
+mod v1;
+
+use std::io::{Read, Seek};
+
+use serde_json::Value;
+
+use super::archive::{MAX_JSON, Reader, parse};
+use super::{ProjectError, SCENE};
+
+/// The step from one version to the next.
+pub struct Migration {
+    /// The version that it takes.
+    pub from: u32,
+    /// What the next version has that this one had not, for a person.
+    pub what: &'static str,
+    /// What is done to a file.
+    pub change: Change,
+}
+
+/// What a step does.
+#[derive(Clone, Copy)]
+pub enum Change {
+    /// The next version only added keys and entries that may be absent: nothing is to be done.
+    Added,
+    /// `scene.json` or other entries change. Errors say in one line what cannot be taken over.
+    Rewrites(fn(&mut dyn Entries) -> Result<(), ProjectError>),
+}
+
+/// Every step, oldest first, each to the version that the next one takes.
+pub const ALL: [Migration; 1] = [v1::TO_V2];
+
+/// What a step may change.
+pub trait Entries {
+    /// `scene.json`.
+    fn scene(&mut self) -> Result<&mut Value, ProjectError>;
+    /// Takes an entry of at most `limit` bytes out of the file.
+    fn take(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError>;
+    /// Puts an entry into the file, in place of one of that name.
+    fn put(&mut self, entry: &str, bytes: Vec<u8>);
+}
+
+/// A file on its way to the present version. `scene.json` is kept as text until a step asks for it.
+pub(super) struct Old<'a, R> {
+    file: &'a mut Reader<R>,
+    scene: Option<Value>,
+}
+
+impl<'a, R: Read + Seek> Old<'a, R> {
+    pub(super) fn new(file: &'a mut Reader<R>) -> Self {
+        Self { file, scene: None }
+    }
+
+    pub(super) fn migrate(&mut self, step: &Migration) -> Result<(), ProjectError> {
+        match step.change {
+            Change::Added => Ok(()),
+            Change::Rewrites(change) => change(self),
+        }
+    }
+
+    /// `scene.json` of the present version.
+    pub(super) fn finish(self) -> Result<Vec<u8>, ProjectError> {
+        match self.scene {
+            None => self.file.bytes(SCENE, MAX_JSON),
+            Some(scene) => serde_json::to_vec(&scene).map_err(|e| ProjectError::Json {
+                entry: SCENE.into(),
+                detail: e.to_string(),
+            }),
+        }
+    }
+}
+
+impl<R: Read + Seek> Entries for Old<'_, R> {
+    fn scene(&mut self) -> Result<&mut Value, ProjectError> {
+        let scene = match self.scene.take() {
+            Some(scene) => scene,
+            None => parse(SCENE, &self.file.bytes(SCENE, MAX_JSON)?)?,
+        };
+        Ok(self.scene.insert(scene))
+    }
+
+    fn take(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError> {
+        self.file.bytes(entry, limit)
+    }
+
+    fn put(&mut self, entry: &str, bytes: Vec<u8>) {
+        self.file.put(entry, bytes);
+    }
+}

@@ -1,0 +1,68 @@
+//! The project file `.loom`: a zip with the whole scene. Equal scenes give equal bytes.
+//!
+//! | entry | holds |
+//! |---|---|
+//! | `manifest.json` | `format`, `version`, `frames` |
+//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background, and of each frame time, pose, boxes, polylines |
+//! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
+//! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, 40,000 little-endian numbers in m; only if it is not flat |
+//! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
+//! | `frames/00000/painted.u8` | painted voxels, 255 where none; only if there are any |
+//! | `frames/00000/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
+//! | `frames/00000/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
+//!
+//! The manifest's version selects what is done first: a file of an older version goes through the steps of [`migrate`],
+//! one per version, until it is as a file of this version. A newer version is refused.
+
+mod archive;
+mod check;
+mod error;
+mod header;
+mod manifest;
+pub mod migrate;
+mod read;
+#[cfg(test)]
+mod tests;
+mod write;
+
+use std::io::Cursor;
+use std::path::Path;
+
+use scene::Scene;
+
+use super::{atomic, input};
+pub use error::ProjectError;
+pub use write::to_bytes;
+
+/// Version written.
+pub const VERSION: u32 = 2;
+/// Frames a project may hold.
+pub const MAX_FRAMES: usize = 10_000;
+/// Largest project file that is written and read, bytes.
+pub const LARGEST_FILE: u64 = 512 << 20;
+
+const FORMAT: &str = "sceneloom";
+const MANIFEST: &str = "manifest.json";
+const SCENE: &str = "scene.json";
+
+/// Writes the scene to `path`, whole or not at all; the number of bytes written.
+pub fn save(path: &Path, scene: &Scene) -> Result<u64, ProjectError> {
+    let bytes = to_bytes(scene).map_err(|e| e.at(path))?;
+    atomic::write(path, &bytes).map_err(|e| ProjectError::from(e).at(path))?;
+    Ok(bytes.len() as u64)
+}
+
+/// Reads the scene at `path`. It carries a fresh revision.
+pub fn load(path: &Path) -> Result<Scene, ProjectError> {
+    // A large file of another kind is refused before it is read.
+    if !input::head(path, 4)?.starts_with(b"PK") {
+        return Err(ProjectError::NotAProject("no zip archive".into()).at(path));
+    }
+    let bytes = input::read(path, LARGEST_FILE)?;
+    from_bytes(&bytes).map_err(|e| e.at(path))
+}
+
+/// The scene in the bytes of a project file. It carries a fresh revision.
+pub fn from_bytes(bytes: &[u8]) -> Result<Scene, ProjectError> {
+    read::read(Cursor::new(bytes), &migrate::ALL)
+}

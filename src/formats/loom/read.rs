@@ -1,0 +1,164 @@
+//! A scene out of the entries of a project file, whatever its version.
+
+use std::collections::BTreeMap;
+use std::io::{Read, Seek};
+use std::sync::Arc;
+
+use scene::grid::NOT_PAINTED;
+use scene::{
+    Background, BoxId, Frame, GridSpec, Inferred, Relief, Scene, SceneBox, SceneRev, SourceFrame, Unobserved,
+    VoxelGrid, VoxelPaint,
+};
+
+use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
+use super::check::check;
+use super::header::{FrameHeader, SceneHeader, entry_name};
+use super::manifest::{AnyManifest, Manifest};
+use super::migrate::{Migration, Old};
+use super::{MANIFEST, MAX_FRAMES, ProjectError, SCENE};
+
+/// The scene in a project file. `migrations` lead from older versions to this one, each by one.
+pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Result<Scene, ProjectError> {
+    let mut file = Reader::new(reader)?;
+    let text = file.bytes(MANIFEST, MAX_JSON)?;
+    let version = AnyManifest::parse(&text)?.version(migrations)?;
+    let mut old = Old::new(&mut file);
+    for step in migrations.iter().filter(|step| step.from >= version) {
+        old.migrate(step)?;
+    }
+    let manifest: Manifest = parse(MANIFEST, &text)?;
+    within("the number of frames", manifest.frames as u64, MAX_FRAMES as u64)?;
+    let text = old.finish()?;
+    let header: SceneHeader = parse(SCENE, &text)?;
+    if header.frames.len() != manifest.frames {
+        return Err(ProjectError::Unsound(format!(
+            "scene.json: {} frames, expected {} as in manifest.json",
+            header.frames.len(),
+            manifest.frames
+        )));
+    }
+    let mut frames = Vec::with_capacity(header.frames.len());
+    for (index, frame) in header.frames.into_iter().enumerate() {
+        frames.push(Arc::new(read_frame(&mut file, index, frame)?));
+    }
+    file.expect_all_read()?;
+    let things = header.background.len();
+    let background: Background = header.background.into_iter().collect();
+    if background.len() != things {
+        return Err(ProjectError::Unsound(
+            "scene.json: two things of the background have the same id".into(),
+        ));
+    }
+    let scene = Scene {
+        rev: SceneRev::fresh(),
+        name: header.name,
+        prompt: header.prompt,
+        words: Arc::new(header.words),
+        rig: header.rig,
+        background: Arc::new(background),
+        frames,
+        current: header.current,
+        seed: header.seed,
+    };
+    check(&scene)?;
+    Ok(scene)
+}
+
+fn read_frame<R: Read + Seek>(
+    file: &mut Reader<R>,
+    index: usize,
+    header: FrameHeader,
+) -> Result<Frame, ProjectError> {
+    let name = |part: &str| entry_name(index, part);
+    let source = header.source;
+    let mut layout = file.layout(&name("layout.u32"), header.polylines)?;
+    if header.relief {
+        layout.relief = read_relief(file, &name("relief.f32"))?;
+    }
+    let occupancy = file.occupancy(&name("occupancy.u8"), &VoxelGrid::new())?;
+    let painted = match header.painted {
+        true => {
+            let entry = name("painted.u8");
+            let dense = file.labels(&entry, NOT_PAINTED)?;
+            VoxelPaint::from_dense(&dense).map_err(|found| wrong_voxels(&entry, found as u64))?
+        }
+        false => VoxelPaint::new(),
+    };
+    let unobserved = match header.inferred.unobserved {
+        true => {
+            let bytes = file.exactly(&name("unobserved.u16"), GridSpec::COLUMNS, 2, "columns")?;
+            let words = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
+            Unobserved::from_words(words.collect())
+        }
+        false => None,
+    };
+    let boxes = unique(index, header.boxes)?;
+    if let Some(id) = header.inferred.boxes.iter().find(|id| !boxes.contains_key(id)) {
+        return Err(ProjectError::Unsound(format!(
+            "scene.json: frame {index}: box {} is marked as inferred, but there is none",
+            id.0
+        )));
+    }
+    let source_polylines = source.polylines.unwrap_or_else(|| layout.polylines.clone());
+    let mut source_layout = match source.layout {
+        true => file.layout(&name("source_layout.u32"), source_polylines)?,
+        false => {
+            let mut same_cells = layout.clone();
+            same_cells.polylines = source_polylines;
+            same_cells
+        }
+    };
+    source_layout.relief = match source.relief {
+        true => read_relief(file, &name("source_relief.f32"))?,
+        false => layout.relief.clone(),
+    };
+    let source = SourceFrame {
+        layout: source_layout,
+        boxes: match source.boxes {
+            Some(list) => unique(index, list)?,
+            None => boxes.clone(),
+        },
+        // Bricks in which the two agree stay one memory: "what changed" compares pointers.
+        occupancy: match source.occupancy {
+            true => file.occupancy(&name("source_occupancy.u8"), &occupancy)?,
+            false => occupancy.clone(),
+        },
+    };
+    Ok(Frame {
+        time_s: header.time_s,
+        world_from_ego: header.world_from_ego,
+        boxes,
+        layout,
+        occupancy,
+        painted,
+        inferred: Inferred {
+            layout: header.inferred.layout,
+            boxes: header.inferred.boxes,
+            background: header.inferred.background,
+            unobserved,
+        },
+        waivers: Arc::new(header.waivers),
+        source: Arc::new(source),
+    })
+}
+
+fn unique(frame: usize, list: Vec<SceneBox>) -> Result<BTreeMap<BoxId, SceneBox>, ProjectError> {
+    let mut boxes = BTreeMap::new();
+    for b in list {
+        if boxes.insert(b.id, b).is_some() {
+            let id = b.id.0;
+            return Err(ProjectError::Unsound(format!(
+                "scene.json: frame {frame}: two boxes have the id {id}"
+            )));
+        }
+    }
+    Ok(boxes)
+}
+
+fn read_relief<R: Read + Seek>(file: &mut Reader<R>, entry: &str) -> Result<Relief, ProjectError> {
+    let bytes = file.exactly(entry, GridSpec::COLUMNS, 4, "columns")?;
+    let heights = bytes
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    Relief::from_heights(heights.collect()).map_err(|e| ProjectError::Unsound(format!("{entry}: {e}")))
+}

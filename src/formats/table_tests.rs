@@ -1,0 +1,380 @@
+//! Tests made from the tables: what can be written and read comes back, and no bad file does harm.
+
+use std::collections::BTreeMap;
+use std::panic::catch_unwind;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use scene::message::LONGEST;
+use scene::{
+    BevLayer, BevLayout, BoxId, CameraMaps, Class, Frame, LidarPoint, LidarSweep, Scene, SceneBox, SensorRig,
+    VoxelGrid,
+};
+
+use crate::export::{self, Exporter, Picture, Products, Seen};
+use crate::import::{self, Content, Importer, Source};
+use crate::{FormatError, Holds, box_list, loom, occ3d};
+
+/// A small scene: a road, a car and its voxels, some paint.
+pub(crate) fn scene() -> Scene {
+    let mut layout = BevLayout::default();
+    (0..200).for_each(|x| layout.set(BevLayer::DrivableArea, x, 100, true));
+    let car = SceneBox {
+        id: BoxId(4),
+        class: Class::Car,
+        center_m: DVec3::new(10.0 / 3.0, -3.25, 0.85),
+        size_m: DVec3::new(4.6, 1.95, 1.7),
+        yaw_rad: 0.1,
+        velocity_mps: DVec2::new(3.0, -0.1),
+        label: Default::default(),
+    };
+    let mut occupancy = VoxelGrid::new();
+    (0..60).for_each(|i| occupancy.set(60 + i, 100 + i % 7, i % 16, (i % 17) as u8));
+    let mut frame = Frame::new(layout, [(car.id, car)].into(), occupancy);
+    frame.painted.set(3, 4, 5, Class::Manmade.id());
+    frame.occupancy.set(3, 4, 5, Class::Manmade.id());
+    let mut scene = Scene::single("small", frame, Arc::new(SensorRig::default()), 7);
+    scene.prompt = "fog".into();
+    scene
+}
+
+/// Products of two cameras of four pixels and a sweep of one point.
+struct Small;
+
+impl Products for Small {
+    fn seen(&mut self) -> Result<Seen, FormatError> {
+        Ok(Seen {
+            lidar_returns: Some([(BoxId(4), 12)].into()),
+            camera_pixels: None,
+        })
+    }
+
+    fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
+        let point = LidarPoint {
+            position_in_ego: [1.0, 2.0, 3.0],
+            range_m: 4.0,
+            ring: 5,
+            azimuth: 1,
+            class: Class::Car,
+            intensity: 20.0,
+            drop_probability: 0.0,
+        };
+        Ok(LidarSweep {
+            points: vec![point],
+            rays: 2,
+            physical: true,
+        })
+    }
+
+    fn camera_maps(
+        &mut self,
+        take: &mut dyn FnMut(CameraMaps) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        let maps = |camera: &str| CameraMaps {
+            camera: camera.into(),
+            width: 2,
+            height: 2,
+            semantic: vec![0, 0, 4, 19],
+            depth_m: vec![-1.0, 3.0, 1.5, 100.0],
+            expected_m: vec![0.0; 4],
+            median_m: vec![-1.0; 4],
+            coverage: vec![0.0, 1.0, 1.0, 1.0],
+        };
+        take(maps("FRONT"))?;
+        take(maps("../BACK"))
+    }
+
+    fn pictures(
+        &mut self,
+        take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        take(self.view()?)
+    }
+
+    fn view(&mut self) -> Result<Picture, FormatError> {
+        Ok(Picture {
+            camera: "FRONT".into(),
+            width: 1,
+            height: 1,
+            rgba: vec![1, 2, 3, 255],
+        })
+    }
+}
+
+fn read(importer: &Importer, bytes: &[u8]) -> Result<Content, FormatError> {
+    (importer.read)(&Source { bytes, name: "small" })
+}
+
+fn exporters() -> impl Iterator<Item = &'static Exporter> {
+    export::all().iter().copied().chain([&export::loom::EXPORTER])
+}
+
+/// Panics where `b` has not what the format says to hold of `a`.
+fn assert_holds(holds: Holds, a: &Scene, b: &Scene) {
+    let (of_a, of_b) = (a.frame(), b.frame());
+    match holds {
+        Holds::Scene => {
+            assert_eq!(
+                (&a.name, &a.prompt, &a.rig, &a.background, a.seed, a.current),
+                (&b.name, &b.prompt, &b.rig, &b.background, b.seed, b.current)
+            );
+            assert!(a.frames == b.frames);
+        }
+        Holds::Occupancy => assert!(of_a.occupancy == of_b.occupancy),
+        Holds::Boxes => assert_eq!(of_a.boxes, of_b.boxes),
+        Holds::Roads | Holds::Points | Holds::Pictures => panic!("{holds:?} cannot be compared yet"),
+    }
+}
+
+#[test]
+fn what_can_be_written_and_read_comes_back() {
+    let scene = scene();
+    let mut one_way = Vec::new();
+    let mut both = Vec::new();
+    for exporter in exporters() {
+        let files = (exporter.write)(&scene, &mut Small).expect(exporter.id);
+        assert!(
+            files.iter().all(|f| !f.bytes.is_empty() && !f.name.contains('/')),
+            "{files:?}"
+        );
+        let Some(importer) = import::all().iter().find(|i| i.id == exporter.id) else {
+            one_way.push(exporter.id);
+            continue;
+        };
+        assert_eq!(importer.holds, exporter.holds, "{}", exporter.id);
+        let [file] = files.as_slice() else {
+            panic!(
+                "{}: {} files, expected one that is read",
+                exporter.id,
+                files.len()
+            );
+        };
+        assert_eq!(Some(file.name.as_str()), exporter.file_name);
+        let Ok(Content::Scene(loaded)) = read(importer, &file.bytes) else {
+            panic!("{}: no scene", exporter.id);
+        };
+        exporter
+            .holds
+            .iter()
+            .for_each(|what| assert_holds(*what, &scene, &loaded.scene));
+        both.push(exporter.id);
+    }
+    let written_only = one_way.clone();
+    one_way.extend(import::all().iter().map(|i| i.id).filter(|id| !both.contains(id)));
+    println!("read and written: {both:?}; one way: {one_way:?}");
+    assert_eq!(both, ["occ3d", "boxes", "loom"]);
+    assert_eq!(
+        written_only,
+        ["nuscenes-lidar", "ply", "semantic", "depth", "pictures", "view"]
+    );
+    assert_eq!(one_way[written_only.len()..], ["pcd", "opendrive"]);
+}
+
+#[test]
+fn every_line_of_the_tables_is_whole() {
+    let mut ids = BTreeMap::new();
+    for i in import::all() {
+        assert_eq!(ids.insert(i.id, ()), None, "{} twice", i.id);
+        assert!(
+            !i.title.is_empty() && !i.holds.is_empty() && i.largest > 0,
+            "{}",
+            i.id
+        );
+        for e in i.extensions {
+            assert!(!e.contains('.') && *e == e.to_lowercase(), "{e}");
+            let claimed = import::all().iter().filter(|o| o.extensions.contains(e)).count();
+            assert_eq!(claimed, 1, "{e}");
+        }
+        let sample = (i.sample)();
+        assert!(
+            (i.recognises)(&sample),
+            "{} does not recognise its own sample",
+            i.id
+        );
+        let others = import::all()
+            .iter()
+            .filter(|o| o.id != i.id && (o.recognises)(&sample));
+        assert_eq!(others.count(), 0, "the sample of {} is claimed by others", i.id);
+        read(i, &sample).expect(i.id);
+    }
+    let mut ids = BTreeMap::new();
+    for e in exporters() {
+        assert_eq!(ids.insert(e.id, ()), None, "{} twice", e.id);
+        assert!(!e.title.is_empty() && !e.holds.is_empty(), "{}", e.id);
+    }
+    assert!(
+        import::in_words().contains("point clouds (.pcd)"),
+        "{}",
+        import::in_words()
+    );
+    assert!(import::extensions().contains(&"xodr"));
+}
+
+/// A seeded stream of numbers, good enough to damage files with.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % n
+    }
+}
+
+/// One line about a bad file, or none if it is read; never a panic.
+fn refusal(importer: &'static Importer, bytes: &[u8]) -> Option<String> {
+    let outcome = catch_unwind(|| read(importer, bytes).map(drop));
+    let line = outcome
+        .unwrap_or_else(|_| panic!("{} panics", importer.id))
+        .err()?
+        .to_string();
+    assert!(
+        !line.is_empty() && !line.contains(char::is_control),
+        "{}: {line:?}",
+        importer.id
+    );
+    assert!(line.chars().count() <= LONGEST, "{}: {line}", importer.id);
+    Some(line)
+}
+
+#[test]
+fn empty_truncated_and_random_files_are_one_line() {
+    for importer in import::all() {
+        let sample = (importer.sample)();
+        refusal(importer, b"").expect("an empty file is refused");
+        for part in [1, 2, 5, 9] {
+            let cut = sample.len() * part / 10;
+            assert!(
+                refusal(importer, &sample[..cut]).is_some(),
+                "{} cut at {cut}",
+                importer.id
+            );
+        }
+        let mut dice = Dice(26);
+        for length in [1, 40, 4000, 100_000] {
+            let noise: Vec<u8> = (0..length).map(|_| dice.below(256) as u8).collect();
+            refusal(importer, &noise).expect("noise is refused");
+        }
+        for _ in 0..60 {
+            let mut damaged = sample.clone();
+            for _ in 0..=dice.below(4) {
+                let at = dice.below(damaged.len());
+                damaged[at] = dice.below(256) as u8;
+            }
+            refusal(importer, &damaged);
+        }
+    }
+}
+
+/// Files that promise more than they hold, or quote a megabyte: for each format what would hurt it most.
+#[test]
+fn huge_claims_and_long_names_are_one_line() {
+    let of = |id: &str| {
+        import::all()
+            .iter()
+            .find(|i| i.id == id)
+            .copied()
+            .expect("a format")
+    };
+    let long = "x".repeat(1 << 20);
+    let replaced = |id: &str, from: &str, to: &str| {
+        let text = String::from_utf8((of(id).sample)()).expect("text");
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1).into_bytes()
+    };
+    let zipped = |name: &str, bytes: &[u8]| {
+        let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        zip.start_file(name, zip::write::SimpleFileOptions::default())
+            .expect("memory");
+        std::io::Write::write_all(&mut zip, bytes).expect("memory");
+        zip.finish().expect("memory").into_inner()
+    };
+    let npy = |shape: &str| {
+        let header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': {shape}, }}\n");
+        let mut npy = b"\x93NUMPY\x01\x00".to_vec();
+        npy.extend((header.len() as u16).to_le_bytes());
+        npy.extend(header.as_bytes());
+        npy
+    };
+    let cases = [
+        ("pcd", replaced("pcd", "POINTS 5", "POINTS 18446744073709551615")),
+        (
+            "pcd",
+            replaced("pcd", "FIELDS x y z intensity", &format!("FIELDS x y z {long}")),
+        ),
+        (
+            "pcd",
+            replaced("pcd", "10.1 -3.1 0.1", &format!("10.1 {long} 0.1")),
+        ),
+        ("boxes", replaced("boxes", "\"car\"", &format!("{long:?}"))),
+        ("boxes", replaced("boxes", "sceneloom_boxes", &long)),
+        (
+            "opendrive",
+            replaced("opendrive", "length=\"300\"", &format!("length=\"{long}\"")),
+        ),
+        (
+            "opendrive",
+            replaced("opendrive", "<line/>", &format!("<{long}/>")),
+        ),
+        (
+            "occ3d",
+            zipped("semantics.npy", &npy("(99999999999, 99999999999, 9)")),
+        ),
+        (
+            "occ3d",
+            zipped("semantics.npy", &npy(&format!("(1, '{}')", "x".repeat(3000)))),
+        ),
+        ("occ3d", zipped(&format!("{}.npy", &long[..60_000]), b"")),
+        (
+            "loom",
+            zipped(
+                "manifest.json",
+                format!("{{\"format\":{long:?},\"version\":1}}").as_bytes(),
+            ),
+        ),
+        (
+            "loom",
+            zipped(
+                "manifest.json",
+                format!("{{\"format\":\"sceneloom\",\"version\":1,{long:?}:1}}").as_bytes(),
+            ),
+        ),
+        (
+            "loom",
+            zipped(
+                "manifest.json",
+                br#"{"format":"sceneloom","version":18446744073709551615,"frames":0}"#,
+            ),
+        ),
+    ];
+    for (id, bytes) in cases {
+        refusal(of(id), &bytes).unwrap_or_else(|| panic!("{id}: read, expected a refusal"));
+    }
+    // A zip with a foreign entry of a long name beside all that belongs to it.
+    let mut zip = zip::ZipWriter::new_append(std::io::Cursor::new((of("loom").sample)())).expect("ours");
+    zip.start_file(&long[..60_000], zip::write::SimpleFileOptions::default())
+        .expect("memory");
+    let foreign = zip.finish().expect("memory").into_inner();
+    let line = refusal(of("loom"), &foreign).expect("an unknown entry");
+    assert!(
+        line.starts_with("entry \"xxx") && line.ends_with("is not known"),
+        "{line}"
+    );
+}
+
+/// The readers that other code calls directly keep to one line, too.
+#[test]
+fn typed_errors_are_as_short() {
+    let long = "x".repeat(1 << 20);
+    let boxes = format!("{{\"format\":{long:?},\"version\":1}}");
+    let lines = [
+        box_list::read(boxes.as_bytes()).expect_err("cut off"),
+        loom::from_bytes(long.as_bytes()).expect_err("no zip").to_string(),
+        occ3d::read(long.as_bytes()).expect_err("no zip").to_string(),
+    ];
+    for line in lines {
+        assert!(line.chars().count() <= LONGEST && !line.contains('\n'), "{line}");
+    }
+}

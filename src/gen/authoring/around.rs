@@ -1,0 +1,71 @@
+//! Procedural scenery around things that are there already.
+
+use glam::DVec2;
+
+use scene::raster::{disc_cells, line_cells, polygon_cells};
+use scene::{Background, Form, GridSpec};
+
+/// Room around a thing of the file, m.
+const ROOM_M: f64 = 1.0;
+
+/// The things that are there, and of the drawn ones those that keep clear of them.
+pub fn merged(there: Background, drawn: &Background) -> Background {
+    let mut taken = vec![false; GridSpec::COLUMNS];
+    for thing in there.iter() {
+        columns(&thing.form, ROOM_M, |x, y| taken[x * GridSpec::NY + y] = true);
+    }
+    let mut out = there;
+    for thing in drawn.iter() {
+        let mut free = true;
+        columns(&thing.form, 0.0, |x, y| free &= !taken[x * GridSpec::NY + y]);
+        if free {
+            out.add(thing.form.clone());
+        }
+    }
+    out
+}
+
+/// The columns that a form stands on or hangs over, grown by a margin.
+pub fn columns(form: &Form, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
+    let around = |outline_m: &[DVec2], visit: &mut dyn FnMut(usize, usize)| {
+        polygon_cells(outline_m, &mut *visit);
+        let ring: Vec<DVec2> = outline_m.iter().chain(outline_m.first()).copied().collect();
+        line_cells(&ring, margin_m + GridSpec::VOXEL_M / 2.0, visit);
+    };
+    match form {
+        Form::Building(b) => around(&b.outline_m, &mut visit),
+        Form::Shrubs(s) => around(&s.outline_m, &mut visit),
+        Form::Line(l) => line_cells(&l.points_m, l.width_m / 2.0 + margin_m, visit),
+        Form::Bridge(b) => line_cells(&b.points_m, b.width_m / 2.0 + margin_m, visit),
+        Form::Tree(t) => disc_cells(t.position_m, t.crown_radius_m + margin_m, visit),
+        Form::Post(p) => disc_cells(p.position_m, form.overhang_m() + margin_m, visit),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::background::{Building, Tree, TreeKind};
+
+    #[test]
+    fn drawn_scenery_keeps_clear_of_what_is_there() {
+        let tree = |x: f64| {
+            Form::Tree(Tree {
+                position_m: DVec2::new(x, 15.0),
+                height_m: 6.0,
+                crown_radius_m: 1.5,
+                kind: TreeKind::Broadleaf,
+            })
+        };
+        let mut there = Background::default();
+        let house = Building::rectangle(DVec2::new(0.0, 15.0), DVec2::splat(5.0), DVec2::X, 9.0);
+        there.add(Form::Building(house.clone()));
+        let mut drawn = Background::default();
+        for x in [-20.0, 0.0, 6.0, 20.0] {
+            drawn.add(tree(x));
+        }
+        let both = merged(there, &drawn);
+        let forms: Vec<Form> = both.iter().map(|t| t.form.clone()).collect();
+        assert_eq!(forms, [Form::Building(house), tree(-20.0), tree(20.0)]);
+    }
+}

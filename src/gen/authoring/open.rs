@@ -1,0 +1,229 @@
+//! Scenes from files and templates: what the command line and the window share.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use glam::DVec2;
+
+use super::around;
+use formats::import::{self, Content};
+use formats::opendrive::RoadNetwork;
+use formats::{atomic, input, project};
+use scene::{Frame, Scene, SensorRig, draft};
+use world::scenery::{self, Setting, Side, Style};
+use world::terrain::Terrain;
+use world::voxelize::{Vertical, complete};
+use world::{World, template, traffic};
+
+/// A file with fewer things beside the road in view says nothing about the place: scenery is drawn.
+const ENOUGH_THINGS: usize = 5;
+
+/// The scene that ships with the program.
+pub fn bundled() -> anyhow::Result<Scene> {
+    let bytes = assets::scenes::FIRST_LIGHT;
+    project::from_bytes(bytes).context("the bundled scene")
+}
+
+/// A sensor rig from a JSON file.
+pub fn rig(path: &Path) -> anyhow::Result<SensorRig> {
+    let name = path.display();
+    let text = input::read_text(path, input::LARGEST_TEXT)?;
+    let rig: SensorRig = serde_json::from_str(&text).with_context(|| name.to_string())?;
+    match rig.problem() {
+        Some(problem) => bail!("{name}: {problem}"),
+        None => Ok(rig),
+    }
+}
+
+/// Writes a sensor rig as JSON.
+pub fn save_rig(rig: &SensorRig, path: &Path) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(rig).context("the sensors")?;
+    atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
+}
+
+/// A scene from a file of any format that is read, see [`formats::import`].
+pub fn scene(path: &Path) -> anyhow::Result<Scene> {
+    match import::read(path)?.1 {
+        Content::Scene(loaded) => Ok(loaded.scene),
+        Content::Roads(network) => {
+            Ok(on_roads(*network, &import::scene_name(path), &Placement::default()).scene)
+        }
+    }
+}
+
+/// A scene from Occ3D labels: their voxels as they are, layout, boxes and background inferred.
+pub fn labels(path: &Path) -> anyhow::Result<Scene> {
+    match import::read_as(&import::occ3d::IMPORTER, path)? {
+        Content::Scene(loaded) => Ok(loaded.scene),
+        Content::Roads(_) => bail!("{}: roads, expected labels", path.display()),
+    }
+}
+
+/// Where and how a road network becomes a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Placement {
+    /// Ego position in the file's frame, m; none means a good place on a lane.
+    pub at_m: Option<DVec2>,
+    /// Ego heading in the file's frame, rad; none means along the lane.
+    pub heading_rad: Option<f64>,
+    /// Fixes the traffic.
+    pub seed: u64,
+    /// No vehicles and people.
+    pub empty: bool,
+    /// Nothing beside the road but what the file puts there.
+    pub bare: bool,
+}
+
+/// A scene made from a foreign file, and what was found in it.
+pub struct Imported {
+    /// The scene.
+    pub scene: Scene,
+    /// Roads in the file.
+    pub roads: usize,
+    /// Lanes in the file.
+    pub lanes: usize,
+    /// Columns that are drivable although no traffic lane lies there, by the kind of lane.
+    pub drivable_beside_traffic: BTreeMap<String, usize>,
+    /// Bridges: roads of the file that cross above the ground.
+    pub bridges: usize,
+    /// Things that the file puts beside the road, bridges not counted.
+    pub things_of_file: usize,
+    /// What was not understood, counted by kind.
+    pub skipped: BTreeMap<String, usize>,
+    /// Where the ego stands in the file's frame: x, y in m and heading in rad.
+    pub pose: (DVec2, f64),
+}
+
+/// Reads an OpenDRIVE file.
+pub fn road_network(path: &Path) -> anyhow::Result<RoadNetwork> {
+    match import::read_as(&import::opendrive::IMPORTER, path)? {
+        Content::Roads(network) => Ok(*network),
+        Content::Scene(_) => bail!("{}: a scene, expected roads", path.display()),
+    }
+}
+
+/// Imports a road network from a file, see [`on_roads`].
+pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
+    Ok(on_roads(
+        road_network(path)?,
+        &import::scene_name(path),
+        placement,
+    ))
+}
+
+/// A scene on a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
+/// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
+/// scenery out, and the occupancy is the draft until it is generated.
+pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Imported {
+    let (at, lane_heading) = match placement.at_m {
+        Some(at) => network
+            .pose_on_lane_near(at)
+            .map_or((at, 0.0), |pose| (at, pose.heading_rad)),
+        None => network.suggest_pose(),
+    };
+    let heading = placement.heading_rad.unwrap_or(lane_heading);
+    let import = network.to_layout(at, heading);
+    let spec = if placement.empty {
+        traffic::TrafficSpec::EMPTY
+    } else {
+        traffic::TrafficSpec::NORMAL
+    };
+    let seed = placement.seed;
+    let boxes = traffic::place(&import.layout, seed, &spec);
+    let things_of_file = import.background.len() - import.bridge_count;
+    let mut scene = if placement.bare {
+        let occupancy = draft::draft(&import.layout, boxes.values());
+        let frame = Frame::new(import.layout, boxes, occupancy);
+        let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), seed);
+        scene.background = Arc::new(import.background);
+        scene
+    } else {
+        let background = match things_of_file < ENOUGH_THINGS {
+            true => {
+                let drawn = scenery::background(&import.layout, &boxes, seed);
+                around::merged(import.background, &drawn)
+            }
+            false => import.background,
+        };
+        of_world(
+            &World::with_background(import.layout, boxes, background, seed),
+            name,
+        )
+    };
+    scene.seed = seed;
+    Imported {
+        scene,
+        roads: import.road_count,
+        lanes: import.lane_count,
+        drivable_beside_traffic: import.drivable_beside_traffic,
+        bridges: import.bridge_count,
+        things_of_file,
+        skipped: import.skipped,
+        pose: (at, heading),
+    }
+}
+
+/// A complete procedural world of a template: layout, traffic, occupancy. `None` for an unknown name.
+pub fn from_template(name: &str, seed: u64) -> Option<Scene> {
+    from_template_on(name, seed, None, Terrain::Flat)
+}
+
+/// The same in a setting (none: one that suits the road) and on a terrain.
+pub fn from_template_on(name: &str, seed: u64, setting: Option<Setting>, terrain: Terrain) -> Option<Scene> {
+    let mut layout = template::layout(name, seed)?;
+    layout.relief = terrain.relief(&layout, seed);
+    let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
+    let style = match setting {
+        Some(setting) => Style::both(Side::usual(setting)),
+        None => Style::drawn(&layout, seed),
+    };
+    let background = scenery::background_of(&layout, &boxes, &style, seed);
+    let world = World::with_background(layout, boxes, background, seed);
+    let mut scene = of_world(&world, name);
+    scene.seed = seed;
+    Some(scene)
+}
+
+/// A world as a scene: every voxel of it, and its background as things.
+pub fn of_world(world: &World, name: &str) -> Scene {
+    let occupancy = complete(world, Vertical::Occ3d);
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let rig = Arc::new(SensorRig::default());
+    let mut scene = Scene::single(name, frame, rig, world.seed());
+    scene.background = Arc::new(world.background.clone());
+    scene
+}
+
+/// The files of a folder with this extension, at any depth, in the order of their names; an error if
+/// there is none, which says `what` they should hold.
+pub fn files_below(dir: &Path, extension: &str, what: &str) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut folders = vec![dir.to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        let entries = std::fs::read_dir(&folder).with_context(|| format!("read {}", folder.display()))?;
+        for entry in entries {
+            let entry = entry.with_context(|| format!("read {}", folder.display()))?;
+            // Links are not followed: one that leads upwards would never end.
+            if entry.file_type().is_ok_and(|t| t.is_dir()) {
+                folders.push(entry.path());
+            } else if entry.path().extension().is_some_and(|e| e == extension) {
+                found.push(entry.path());
+            }
+        }
+    }
+    if found.is_empty() {
+        bail!("{}: no .{extension} files, expected {what}", dir.display());
+    }
+    found.sort();
+    Ok(found)
+}
+
+#[cfg(test)]
+#[path = "open_tests.rs"]
+mod tests;
+
+#[cfg(test)]
+#[path = "open_background_tests.rs"]
+mod background_tests;

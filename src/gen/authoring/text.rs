@@ -1,0 +1,334 @@
+//! Text to scenes and edits: what the window and the command line share.
+
+use std::collections::BTreeMap;
+
+use anyhow::bail;
+
+use super::open;
+use super::prompting::{How, Laid, lay_out};
+use editor::Edit;
+use place::description::Description;
+use scene::{Frame, Scene};
+use words::answer::answer;
+use words::beside::edits::{OpenBackground, ThingOutcome, carry_out as carry_out_beside, means_barriers};
+use words::beside::wishes::scenery;
+use words::carry_out::carry_out;
+use words::describe::{Described, describe};
+use words::hear::{Heard, hear, hear_objects};
+use words::reader::Mode;
+use words::reading::Reading;
+use words::stage::{OpenScene, Outcome};
+use world::World;
+
+/// A scene made from a description.
+pub struct Made {
+    /// The scene, its occupancy drafted.
+    pub scene: Scene,
+    /// Graph, road, places, and how they came about.
+    pub laid: Laid,
+}
+
+/// What a prompt says of a new scene.
+#[derive(Clone, Debug)]
+pub struct Prompted {
+    /// Who read it, and what is doubtful; its reading may have been changed by hand since.
+    pub heard: Heard,
+    /// What a scene is made of.
+    pub described: Described,
+}
+
+impl Prompted {
+    /// The description of what was heard.
+    pub fn new(heard: Heard) -> Self {
+        let described = describe(&heard.reading);
+        Self { heard, described }
+    }
+
+    /// The answer in a sentence.
+    pub fn answer(&self) -> String {
+        let remarks = &self.described.remarks;
+        let mut text = answer(&self.heard.reading, None, remarks, &self.heard.missing);
+        let Reading { acts, background } = &self.heard.reading;
+        if acts.is_empty() && self.heard.missing.is_empty() {
+            text.clear();
+        }
+        if !background.is_empty() {
+            let words: Vec<String> = background.iter().map(|s| s.described()).collect();
+            text = format!("{text} Beside the road: {}.", words.join("; "));
+        }
+        text.trim().to_owned()
+    }
+
+    /// What the reader should know of it, one line each.
+    pub fn doubts(&self) -> Vec<String> {
+        doubts(&self.heard)
+    }
+}
+
+/// What is doubtful about how a text was read, one line each.
+pub fn doubts(heard: &Heard) -> Vec<String> {
+    use words::answer::sentence;
+    let mut out = Vec::new();
+    let unsure = heard.unsure.iter().filter_map(|i| heard.reading.acts.get(*i));
+    let unsure: Vec<String> = unsure.map(|a| sentence(&a.what)).collect();
+    if !unsure.is_empty() {
+        out.push(format!("not sure of: {}", unsure.join("; ")));
+    }
+    if let Some(other) = &heard.other {
+        out.push(format!("it may also mean: {}", answer(other, None, &[], &[])));
+    }
+    out
+}
+
+/// Reads a prompt for a new scene; an error in one line if there is nothing in it that could become one.
+pub fn read(prompt: &str) -> anyhow::Result<Prompted> {
+    if prompt.trim().is_empty() {
+        bail!(
+            "the prompt is empty: say what the scene should hold, such as \"two parked cars and a bus ahead, at night\""
+        );
+    }
+    let prompted = Prompted::new(hear(prompt, Mode::Prompt)?);
+    if prompted.described.description.is_empty() {
+        let some: Vec<&str> = prompted
+            .heard
+            .missing
+            .iter()
+            .take(4)
+            .map(|m| m.words.as_str())
+            .collect();
+        let what = if some.is_empty() {
+            String::new()
+        } else {
+            format!(" (not understood: {})", some.join(", "))
+        };
+        bail!("nothing in the prompt names a part of a driving scene{what}; prompts are read in English");
+    }
+    Ok(prompted)
+}
+
+/// Road, objects and ego for a description, all drawn from `seed`. The occupancy is that of a procedural world, as
+/// `sceneloom new` makes it.
+pub fn make(prompt: &str, description: &Description, seed: u64, how: &How) -> Made {
+    made(lay_out(prompt, description, seed, how), seed)
+}
+
+/// A scene of a layout from words; what its background lacks is added to what the road lacks.
+pub fn made(mut laid: Laid, seed: u64) -> Made {
+    let relief = &laid.road.layout.relief;
+    for b in &mut laid.placement.boxes {
+        // On a road that was kept; boxes that were kept too stand on its ground already.
+        if b.center_m.z == b.size_m.z / 2.0 {
+            b.center_m.z += relief.height_m(b.center_m.truncate());
+        }
+    }
+    let boxes: BTreeMap<_, _> = laid.placement.boxes.iter().map(|b| (b.id, *b)).collect();
+    let (things, short) = scenery(&laid.description, &laid.road.layout, &boxes, seed);
+    laid.road.missing.extend(short);
+    let world = World::with_background(laid.road.layout.clone(), boxes, things, seed);
+    let mut scene = open::of_world(&world, "prompt");
+    scene.prompt = laid.description.style().into();
+    Made { scene, laid }
+}
+
+/// What a text changes in a scene.
+#[derive(Clone, Debug)]
+pub struct Edited {
+    /// Who read it, and what is doubtful.
+    pub heard: Heard,
+    /// What came of it: changes, questions, remarks.
+    pub outcome: Outcome,
+    /// The same of what stands beside the road.
+    pub things: ThingOutcome,
+}
+
+impl Edited {
+    /// All edits, in order: those of the background after those of boxes and map.
+    pub fn edits(&self) -> Vec<Edit> {
+        [self.outcome.edits.as_slice(), &self.things.edits].concat()
+    }
+
+    /// True if something must be answered first.
+    pub fn asks(&self) -> bool {
+        !(self.outcome.questions.is_empty() && self.things.questions.is_empty())
+    }
+
+    /// The answer in a sentence.
+    pub fn answer(&self) -> String {
+        let mut parts = Vec::new();
+        let reading = &self.heard.reading;
+        if !reading.acts.is_empty() || !self.heard.missing.is_empty() || reading.is_empty() {
+            parts.push(answer(
+                &self.heard.reading,
+                Some(&self.outcome),
+                &self.outcome.remarks,
+                &self.heard.missing,
+            ));
+        }
+        if !self.things.done.is_empty() {
+            parts.push(format!("Beside the road: {}.", self.things.done.join("; ")));
+        }
+        parts.extend(self.things.cannot.iter().map(|c| format!("Not done: {c}.")));
+        parts.join(" ")
+    }
+}
+
+/// Reads words as edits of a scene, and carries them out on a copy.
+///
+/// # Errors
+///
+/// If the bundled weights are damaged.
+pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edited> {
+    let mut heard = hear(prompt, Mode::Edit)?;
+    // ("fence" and "guard rail" name barriers too, where there are some)
+    if means_barriers(&heard.reading.background, &scene.frame().boxes) {
+        heard = hear_objects(prompt, Mode::Edit)?;
+    }
+    Ok(edited(heard, scene, seed))
+}
+
+/// Carries out a reading that is known.
+pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
+    let frame = scene.frame();
+    let mut outcome = carry_out(&heard.reading, &open_scene(scene), seed);
+    put_on_ground(&mut outcome.edits, frame);
+    let open = OpenBackground {
+        things: &scene.background,
+        world_from_ego: frame.world_from_ego,
+        layout: &frame.layout,
+        boxes: &frame.boxes,
+    };
+    Edited {
+        things: carry_out_beside(&heard.reading.background, &open, seed),
+        heard,
+        outcome,
+    }
+}
+
+/// Words place things on level ground: what they add stands on the ground of the frame, what they move keeps its height
+/// above it.
+fn put_on_ground(edits: &mut [Edit], frame: &Frame) {
+    let relief = &frame.layout.relief;
+    if relief.is_flat() {
+        return;
+    }
+    let ground_m = |center_m: glam::DVec3| relief.height_m(center_m.truncate());
+    for edit in edits {
+        match edit {
+            Edit::AddBox { center_m, size_m, .. } => center_m.z = ground_m(*center_m) + size_m.z / 2.0,
+            Edit::MoveBox {
+                id,
+                center_m: Some(center_m),
+                ..
+            } => {
+                let was_m = frame.boxes.get(id).map_or(0.0, |b| ground_m(b.center_m));
+                center_m.z += ground_m(*center_m) - was_m;
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The part of a scene that text edits look at.
+pub fn open_scene(scene: &Scene) -> OpenScene<'_> {
+    let frame = scene.frame();
+    OpenScene {
+        boxes: &frame.boxes,
+        layout: &frame.layout,
+        prompt: &scene.prompt,
+    }
+}
+
+/// What was left out or could not be met, in words, one line each.
+pub fn shortfalls(made: &Laid) -> Vec<String> {
+    let description = &made.description;
+    let mut out = Vec::new();
+    for (o, nodes) in description.foreground.iter().zip(&made.graphed.nodes) {
+        let left: Vec<&String> = made
+            .placement
+            .left_out
+            .iter()
+            .filter(|(id, _)| nodes.contains(id))
+            .map(|(_, why)| why)
+            .collect();
+        let beyond = (o.count.n as usize).saturating_sub(nodes.len());
+        if let Some(why) = left.first() {
+            let placed = nodes.len() - left.len();
+            out.push(format!("{}: {placed} of {} placed: {why}", o.called(), o.count.n));
+        } else if beyond > 0 {
+            out.push(format!("{}: {} of {} placed", o.called(), nodes.len(), o.count.n));
+        }
+    }
+    for (i, o) in description.foreground.iter().enumerate() {
+        let far = o
+            .relations
+            .iter()
+            .filter_map(|r| r.distance_m)
+            .find(|d| *d > 40.0);
+        if let Some(d) = far {
+            out.push(format!(
+                "{}: {d:.0} m lies outside the scene, which reaches 40 m from the ego vehicle",
+                o.called()
+            ));
+        }
+        let nodes = &made.graphed.nodes[i];
+        let mut names: Vec<&str> = made
+            .placement
+            .unmet
+            .iter()
+            .map(|k| &made.graphed.graph.edges[*k])
+            .filter(|e| nodes.contains(&e.from))
+            .map(|e| e.relation.name())
+            .collect();
+        names.dedup();
+        if !names.is_empty() {
+            out.push(format!(
+                "{}: could not be met: {}",
+                o.called(),
+                names.join(", ").replace('_', " ")
+            ));
+        }
+    }
+    out.extend(made.road.missing.iter().cloned());
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use editor::Document;
+    use scene::{Relief, SceneBox};
+
+    /// What words add or move on a grade stands on its ground.
+    #[test]
+    fn words_know_the_ground() {
+        let prompted = read("a parked car 12 m ahead, a bus 25 m ahead").expect("a scene");
+        let description = prompted.described.description;
+        let mut scene = make("", &description, 3, &How::default()).scene;
+        let frame = Arc::make_mut(&mut scene.frames[0]);
+        frame.layout.relief = Relief::from_fn(|p| 0.06 * p.x);
+        let above_m = |frame: &Frame, b: &SceneBox| {
+            b.center_m.z - b.size_m.z / 2.0 - frame.layout.relief.height_m(b.center_m.truncate())
+        };
+        for b in frame.boxes.values_mut() {
+            b.center_m.z += 0.06 * b.center_m.x;
+        }
+        let reading = read_edit(
+            "add a truck 18 m ahead; move the bus 5 m back; replace the car with a van",
+            &scene,
+            1,
+        )
+        .expect("weights");
+        let edits = reading.edits();
+        assert!(edits.len() >= 3, "{reading:?}");
+        let mut document = Document::new(scene);
+        document.apply_all("Words", &edits).expect("sound edits");
+        let frame = document.scene().frame().clone();
+        assert!(frame.boxes.len() >= 3);
+        for b in frame.boxes.values() {
+            let above_m = above_m(&frame, b);
+            assert!(above_m.abs() < 0.15, "{:?} {above_m} m above the ground", b.class);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What the program is worth: suites over held-out worlds, trials of edits, the trade of speed for accuracy. The command line
+//! (`sceneloom eval`, `sceneloom trade`), the window's Calibrate and its Refine share it.
+
+pub mod held_out;
+pub mod machine;
+pub mod markdown;
+pub mod options;
+pub mod origin;
+pub mod stops;
+pub mod suite;
+pub mod suites;
+pub mod trials;
+
+/// Who is told how far a measurement has come.
+pub trait Progress: Sync {
+    /// `step` of `steps` of `stage` are done.
+    fn at(&self, stage: &str, step: usize, steps: usize);
+}
+
+/// Nobody is told.
+impl Progress for () {
+    fn at(&self, _: &str, _: usize, _: usize) {}
+}

@@ -1,0 +1,77 @@
+//! How busy the machine is, which one it is, what memory is held: figures of a busy machine are worth little, those of another one nothing.
+
+use std::sync::LazyLock;
+
+use serde::Serialize;
+
+/// Load per core above which times are not to be trusted.
+pub const BUSY: f64 = 0.5;
+
+/// What the machine does beside us.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Load {
+    /// Mean number of running processes over the last minute, per core; `None` where the system does not tell.
+    pub per_core: Option<f64>,
+    /// Cores.
+    pub cores: usize,
+}
+
+impl Load {
+    /// Of now.
+    pub fn now() -> Self {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let text = std::fs::read_to_string("/proc/loadavg").ok();
+        let one = text.and_then(|t| t.split_whitespace().next()?.parse::<f64>().ok());
+        Self {
+            per_core: one.map(|l| l / cores as f64),
+            cores,
+        }
+    }
+
+    /// True if times taken now are not to be trusted.
+    pub fn is_busy(&self) -> bool {
+        self.per_core.is_some_and(|l| l > BUSY)
+    }
+
+    /// One line for the user.
+    pub fn describe(&self) -> String {
+        match self.per_core {
+            Some(l) => format!("{l:.2} running processes per core on {} cores", self.cores),
+            None => format!("load unknown on {} cores", self.cores),
+        }
+    }
+}
+
+/// Names this machine: processor, threads, what our kernels find.
+pub fn machine() -> String {
+    // (asked for with every frame of the panel)
+    static NAME: LazyLock<String> = LazyLock::new(describe_machine);
+    NAME.clone()
+}
+
+fn describe_machine() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text
+        .lines()
+        .find_map(|l| l.strip_prefix("model name")?.split_once(": "));
+    let threads = rayon::current_num_threads();
+    let bytes = if nn::int8::fast_here() { ", VNNI" } else { "" };
+    format!(
+        "{}, {threads} threads{bytes}",
+        name.map_or("unknown processor", |(_, name)| name.trim())
+    )
+}
+
+/// Largest memory this process has held, MB; `None` where the system does not tell.
+pub fn peak_rss_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kb: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some((kb / 102.4).round() / 10.0)
+}
+
+/// Lets the system forget the largest memory this process has held, so that the next one is that of what follows.
+pub fn forget_peak_memory() {
+    // Where it does not work, peaks are those of the whole run, which is what the reader must then assume.
+    std::fs::write("/proc/self/clear_refs", "5").ok();
+}

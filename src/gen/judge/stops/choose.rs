@@ -1,0 +1,140 @@
+//! The stops of the quality slider, chosen from what was measured.
+
+use std::path::Path;
+
+use anyhow::Context;
+
+use super::cases;
+use super::edits::Outcome;
+use super::report::Row;
+use crate::machine::{Load, machine};
+use formats::atomic;
+use job::GenParams;
+use metrics::stats::mean_ci95;
+use nets::OccModels;
+use numeric::quantile::{median, quantile};
+use trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
+
+/// Stops from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
+pub fn stops_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Stops {
+    let placed: Vec<Placed> = rows.iter().map(|r| r.placed()).collect();
+    let kept = well_apart(rows, &placed);
+    let names = names(&kept.iter().map(|i| placed[*i]).collect::<Vec<_>>());
+    let mut stops: Vec<Stop> = Vec::new();
+    for (i, name) in kept.iter().zip(names) {
+        stops.extend(stop(name, rows[*i], placed[*i]));
+    }
+    stops.extend(reference_stop(rows, reference));
+    Stops {
+        weights: models.card.hashes,
+        machine: machine(),
+        build: String::new(),
+        load_per_core: Load::now().per_core,
+        reference: format!("{} steps, every token, f32", reference.steps),
+        stops,
+    }
+}
+
+/// Rows of the front in the order of their times, only those whose time rises and whose error falls by enough to be felt.
+fn well_apart(rows: &[&Row], placed: &[Placed]) -> Vec<usize> {
+    let on_front = front(placed);
+    let mut order: Vec<usize> = (0..rows.len())
+        .filter(|i| on_front[*i] && rows[*i].cost().is_some())
+        .collect();
+    order.sort_by(|a, b| placed[*a].wall_s.median.total_cmp(&placed[*b].wall_s.median));
+    let mut kept: Vec<usize> = Vec::new();
+    for i in order {
+        let of = |k: usize| (placed[k].wall_s.median, placed[k].error.median);
+        match kept.last().map(|k| of(*k)) {
+            Some((_, error)) if of(i).1 >= 0.85 * error => {}
+            // Nearly as fast and much nearer: nobody would choose the other.
+            Some((wall_s, error)) if of(i).0 <= 1.1 * wall_s => {
+                if of(i).1 < 0.5 * error {
+                    kept.pop();
+                    kept.push(i);
+                }
+            }
+            _ => kept.push(i),
+        }
+    }
+    kept
+}
+
+/// What the kept ones are called, from the fastest to the most exact.
+fn names(kept: &[Placed]) -> Vec<String> {
+    let last = kept.len().saturating_sub(1);
+    let middle = knee(kept).unwrap_or(0);
+    let middle = if last >= 2 {
+        middle.clamp(1, last - 1)
+    } else {
+        middle
+    };
+    let numbered = |name: &str, nth: usize| match nth {
+        0 => name.to_owned(),
+        n => format!("{name} {}", n + 1),
+    };
+    let name = |k: usize| match k {
+        0 => "draft".to_owned(),
+        k if k == last => "accurate".into(),
+        k if k == middle => "balanced".into(),
+        k if k < middle => numbered("quick", k - 1),
+        k => numbered("careful", k - middle - 1),
+    };
+    (0..kept.len()).map(name).collect()
+}
+
+/// A row as a stop; `None` if nothing can be foretold of its time.
+fn stop(name: String, row: &Row, placed: Placed) -> Option<Stop> {
+    let errors = row.all(|o| o.error);
+    let probe = row.outcomes.iter().take(cases::KINDS.len());
+    Some(Stop {
+        name,
+        knobs: StopKnobs::of(&row.setting.params),
+        error: placed.error,
+        error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
+        invented: Some(mean_ci95(&row.all(|o| o.invented)).0),
+        cost: row.cost()?,
+        invert_s: median(&row.all(|o| o.invert_s)),
+        probe: probe.map(|o| o.result_hash).collect(),
+    })
+}
+
+/// The reference as a stop. One step of all tokens, from the dense setting, gives what it takes; `None` if that was not
+/// measured.
+fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
+    let dense = rows.iter().find(|r| {
+        let p = &r.setting.params;
+        !p.local && p.steps == 10 && p.reuse_steps == 1
+    })?;
+    let step_s = |o: &Outcome| o.stages_s.get("denoise").copied().unwrap_or(0.0) / 10.0;
+    let (step, total) = (
+        median(&dense.all(step_s)),
+        median(&dense.all(|o| median(&o.wall_s))),
+    );
+    let none = Interval {
+        median: 0.0,
+        low: 0.0,
+        high: 0.0,
+        n: dense.outcomes.len(),
+    };
+    let steps = f64::from(reference.steps);
+    Some(Stop {
+        name: "reference".into(),
+        knobs: StopKnobs::of(&reference),
+        error: none,
+        error_of_one: [0.0, 0.0],
+        invented: None,
+        cost: Cost {
+            fixed_s: total + step * (steps - 10.0),
+            per_token_s: 0.0,
+        },
+        invert_s: step * steps,
+        probe: Vec::new(),
+    })
+}
+
+/// Writes stops where they are to be read by [`Stops::parse`]. Errors name the file.
+pub fn write_stops(path: &Path, stops: &Stops) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(stops).context("write stops")?;
+    atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
+}

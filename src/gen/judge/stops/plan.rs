@@ -1,0 +1,252 @@
+//! A run of `sceneloom trade`: what is measured, and what is made of it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::bail;
+use serde_json::{Value, json};
+
+use super::cases::{self, Case};
+use super::choose::stops_of;
+pub use super::choose::write_stops;
+use super::edits::{Bench, Outcome, reference_params};
+use super::measure::Raw;
+use super::report::{Row, sensor_json, untouched_the_same};
+use super::sensors;
+use super::settings::{self, Setting};
+use crate::Progress;
+use crate::held_out::bare_scene;
+use job::{GenParams, JobCtx};
+use nets::OccModels;
+use scene::Scene;
+use trade::{Placed, StopKnobs, Stops, front, hypervolume};
+
+/// What can be measured.
+pub const PARTS: [&str; 5] = ["edit", "scene", "lidar", "splat", "vae"];
+
+/// What is measured, and how often.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// Scene whose edits are measured; without one, held-out worlds.
+    pub scene: Option<PathBuf>,
+    /// Some of [`PARTS`].
+    pub parts: Vec<String>,
+    /// Number of held-out worlds, 1 to 1000.
+    pub frames: usize,
+    /// Timed runs of each setting on each case, 1 to 1000.
+    pub repeats: usize,
+    /// Steps of the reference, 2 to 1000.
+    pub reference_steps: u32,
+    /// Random settings across all knobs, beside each knob by itself.
+    pub draws: usize,
+    /// Only these settings, as the report names them; all if none is named.
+    pub only: Vec<String>,
+    /// Folder that keeps the references between runs.
+    pub keep_references: Option<PathBuf>,
+    /// Fixes draws and turns.
+    pub seed: u64,
+    /// Which process of a larger run this is: its turns are its own.
+    pub process: u64,
+}
+
+/// A setting in a plot of time against error.
+#[derive(Clone, Debug)]
+pub struct Mark {
+    /// Its name.
+    pub name: String,
+    /// Wall time, s: median and interval.
+    pub wall_s: [f64; 3],
+    /// Error, share of voxels: median and interval.
+    pub error: [f64; 3],
+    /// Nothing beats it.
+    pub on_front: bool,
+    /// It is a stop of the slider, and this one is called so.
+    pub stop: Option<String>,
+}
+
+/// What a run found.
+#[derive(Default)]
+pub struct Found {
+    /// One entry per setting of every part.
+    pub points: Vec<Value>,
+    /// The settings of edits, to be plotted.
+    pub marks: Vec<Mark>,
+    /// The stops of the slider, if edits were measured.
+    pub stops: Option<Stops>,
+    /// Figures over all settings of a part.
+    pub figures: Value,
+    /// How far half of the reference's steps lie from the reference; null if edits were not measured.
+    pub self_check: Value,
+}
+
+impl Plan {
+    /// Checks the numbers. Errors in one line: which option, what was found, what was expected.
+    pub fn check(&self) -> anyhow::Result<()> {
+        if let Some(unknown) = self.parts.iter().find(|p| !PARTS.contains(&p.as_str())) {
+            bail!("--parts {unknown}: expected {}", PARTS.join(", "));
+        }
+        if !(2..=1000).contains(&self.reference_steps) {
+            bail!("--reference-steps {}: expected 2 to 1000", self.reference_steps);
+        }
+        for (name, number) in [("--frames", self.frames), ("--repeats", self.repeats)] {
+            if !(1..=1000).contains(&number) {
+                bail!("{name} {number}: expected 1 to 1000");
+            }
+        }
+        Ok(())
+    }
+
+    /// Base and settings of edits or scenes.
+    pub(super) fn settings(&self, part: &str) -> (GenParams, Vec<Setting>) {
+        let (base, mut settings) = if part == "edit" {
+            let base = GenParams::default();
+            (base, settings::of_edits(base, self.draws, self.seed))
+        } else {
+            let base = GenParams::whole_scene();
+            (base, settings::of_scenes(base))
+        };
+        settings.retain(|s| self.only.is_empty() || self.only.contains(&s.name));
+        (base, settings)
+    }
+
+    /// What a part is measured on. Errors name the scene's file.
+    pub(super) fn cases(&self, part: &str) -> anyhow::Result<Vec<Case>> {
+        let whole = |scene: Scene, name: String| {
+            let scene = Arc::new(scene);
+            vec![Case {
+                name,
+                before: scene.clone(),
+                after: scene,
+            }]
+        };
+        let of = |scene: Scene, name: String, seed: u64| match part {
+            "edit" => cases::of_scene(&scene, &name, seed),
+            _ => whole(scene, name),
+        };
+        if let Some(path) = &self.scene {
+            let found = of(
+                authoring::open::scene(path)?,
+                path.display().to_string(),
+                self.seed,
+            );
+            if found.is_empty() {
+                bail!("{}: nothing to edit: no car and no road", path.display());
+            }
+            return Ok(found);
+        }
+        let worlds = 0..self.frames as u64;
+        Ok(worlds
+            .flat_map(|i| of(bare_scene(i), format!("world {i}"), i))
+            .collect())
+    }
+
+    /// True if a part is to be measured.
+    pub(super) fn has(&self, part: &str) -> bool {
+        self.parts.iter().any(|p| p == part)
+    }
+
+    /// What the outcomes say, and what the sensors' knobs cost, which is measured here. Errors if weights or the scene cannot be
+    /// used.
+    pub fn report(
+        &self,
+        raw: &Raw,
+        models: &Arc<OccModels>,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Found> {
+        let mut found = Found {
+            figures: json!({}),
+            ..Found::default()
+        };
+        for (part, cases) in &raw.parts {
+            self.add_part(part, cases, models, &mut found);
+        }
+        self.sensors(models, &mut found)?;
+        if let Some(stops) = &found.stops {
+            let usual = StopKnobs::of(&GenParams::default());
+            for mark in &mut found.marks {
+                let named = |s: &&trade::Stop| settings::name_of(&s.knobs, &usual) == mark.name;
+                mark.stop = stops.stops.iter().find(named).map(|s| s.name.clone());
+            }
+        }
+        found.self_check = self.self_check(models, progress)?;
+        Ok(found)
+    }
+
+    /// Edits or scenes: points, marks, stops, figures.
+    fn add_part(&self, part: &str, cases: &[(String, Vec<Outcome>)], models: &OccModels, found: &mut Found) {
+        let (base, settings) = self.settings(part);
+        let of_setting = |i: usize| cases.iter().filter_map(move |(_, o)| o.get(i)).cloned().collect();
+        let rows = settings.into_iter().enumerate().map(|(i, setting)| Row {
+            setting,
+            outcomes: of_setting(i),
+        });
+        let rows: Vec<Row> = rows.collect();
+        let same_target: Vec<&Row> = rows.iter().filter(|r| !r.setting.other_target).collect();
+        let placed: Vec<Placed> = same_target.iter().map(|r| r.placed()).collect();
+        let mut on_front = front(&placed).into_iter();
+        for row in &rows {
+            let on_front = !row.setting.other_target && on_front.next().unwrap_or(false);
+            found.points.push(row.json(part, on_front));
+            if part == "edit" && !row.setting.other_target {
+                let p = row.placed();
+                found.marks.push(Mark {
+                    name: row.setting.name.clone(),
+                    wall_s: [p.wall_s.median, p.wall_s.low, p.wall_s.high],
+                    error: [p.error.median, p.error.low, p.error.high],
+                    on_front,
+                    stop: None,
+                });
+            }
+        }
+        found.figures[format!("hypervolume_{part}")] = hypervolume(&placed, 30.0, 0.2).into();
+        let same = cases.iter().all(|(_, o)| untouched_the_same(o, &rows));
+        found.figures[format!("untouched_identical_{part}")] = same.into();
+        if part == "edit" {
+            let reference = reference_params(base, self.reference_steps);
+            found.stops = Some(stops_of(&same_target, reference, models));
+        }
+    }
+
+    fn sensors(&self, models: &Arc<OccModels>, found: &mut Found) -> anyhow::Result<()> {
+        let (frames, repeats) = (self.frames.min(4), self.repeats);
+        let mut out = Vec::new();
+        if self.has("lidar") {
+            out.extend(sensors::lidars(frames, repeats)?);
+        }
+        if self.has("splat") {
+            out.extend(sensors::splats(frames, repeats));
+        }
+        if self.has("vae") {
+            out.extend(sensors::vaes(models, frames, repeats)?);
+        }
+        found.points.extend(out.iter().map(sensor_json));
+        Ok(())
+    }
+
+    /// How far half of the reference's steps lie from the reference, on the first case: what its own error is like.
+    fn self_check(&self, models: &Arc<OccModels>, progress: &dyn Progress) -> anyhow::Result<Value> {
+        if !self.has("edit") {
+            return Ok(Value::Null);
+        }
+        let found = self.cases("edit")?;
+        if found.is_empty() {
+            return Ok(Value::Null);
+        }
+        progress.at("self-check", 0, 1);
+        let bench = Bench {
+            models: models.clone(),
+            reference_steps: self.reference_steps,
+            kept_in: self.keep_references.clone(),
+        };
+        let half = Setting {
+            name: "half".into(),
+            params: reference_params(GenParams::default(), self.reference_steps / 2),
+            other_target: false,
+        };
+        let ctx = JobCtx::detached();
+        let outcomes = bench.run(&found[..1], &[half], 0, GenParams::default(), 0, &ctx, |_| {})?;
+        Ok(outcomes[0].first().map_or(Value::Null, |o| {
+            json!({ "case": found[0].name, "steps": self.reference_steps / 2, "error": o.error, "latent_error": o.latent_error })
+        }))
+    }
+}

@@ -1,0 +1,77 @@
+//! `eval editing`: do edits do what they say, and nothing else? On complete worlds, on simulated labels and on any folder of
+//! Occ3D frames.
+
+mod fidelity;
+mod fit;
+mod fresh;
+mod invention;
+mod materials;
+mod success;
+mod tally;
+mod tried;
+
+use anyhow::bail;
+use serde_json::json;
+
+use crate::Progress;
+use crate::suite::{Found, Options};
+use crate::trials::Trial;
+use authoring::open;
+use editor::Document;
+use job::pipeline::OccPipeline;
+use job::{GenParams, GenReport, Job, JobCtx, Pipeline};
+use materials::Material;
+use scene::{Scene, VoxelGrid};
+
+impl Options {
+    /// All of it for procedural worlds; what edits invent for a folder of frames.
+    pub(crate) fn editing(
+        &self,
+        pipeline: &mut OccPipeline,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Found> {
+        for (name, number) in [("--frames", self.frames), ("--vehicles", self.vehicles)] {
+            if number == 0 {
+                bail!("{name} is 0, expected at least 1");
+            }
+        }
+        let presets = self.presets()?;
+        if let Some(dir) = &self.data {
+            let mut files = open::files_below(dir, "npz", "Occ3D frames")?;
+            files.truncate(self.frames);
+            let material = Material::Files(files);
+            let found = self.invention(&material, &presets, pipeline, progress)?;
+            let report =
+                json!({ "data": dir, "files": material.count(), "invented": { "frames": found.report } });
+            return Ok((report, Vec::new()));
+        }
+        let (mut report, mut bars) = self.success(pipeline, progress)?;
+        for material in [Material::Complete(self.frames), Material::Labels(self.frames)] {
+            let found = self.invention(&material, &presets, pipeline, progress)?;
+            report["invented"][material.name()] = found.report;
+            let name = match material {
+                Material::Complete(_) => "removals that invent little, complete worlds",
+                _ => "removals that invent little, simulated labels",
+            };
+            bars.extend(found.removals_clear.map(|share| (name, share, 0.95)));
+        }
+        Ok((report, bars))
+    }
+}
+
+/// Applies one edit and regenerates; occupancy after it, and the cost.
+pub(super) fn edited(
+    pipeline: &mut OccPipeline,
+    scene: &Scene,
+    trial: &Trial,
+    params: GenParams,
+) -> anyhow::Result<(VoxelGrid, GenReport)> {
+    let mut document = Document::new(scene.clone());
+    document.apply("Edit", &trial.edit)?;
+    let job = Job {
+        scene: document.scene().clone(),
+        params,
+    };
+    let result = pipeline.run(&job, &JobCtx::detached())?;
+    Ok((result.occupancy, result.report))
+}

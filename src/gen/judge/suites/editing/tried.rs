@@ -1,0 +1,117 @@
+//! One edit, tried: the networks' own result, and what the composite makes of it.
+
+use std::sync::Arc;
+
+use crate::trials::{Reached, Trial};
+use editor::Document;
+use job::invented::Invented;
+use job::keep_clear::{keep_clear, keep_unobserved};
+use job::keep_grounded::keep_grounded;
+use job::keep_objects::{keep_ground, keep_objects};
+use job::pipeline::OccPipeline;
+use job::redraw;
+use job::request::{Request, voxels_of};
+use job::{GenParams, Job, JobCtx, Pipeline};
+use scene::{BevLayout, Class, Scene, SceneBox, VoxelGrid, draft};
+
+/// States of a result, in the order in which the composite makes them: the networks alone; with placed boxes and painted
+/// ground kept; as the editor shows it, with the road kept clear and unobserved places kept as well.
+pub const STATES: [&str; 3] = ["networks", "objects_kept", "shown"];
+
+/// What became of an edit.
+pub struct Tried {
+    /// What it reached, by state.
+    pub reached: [Reached; 3],
+    /// What it invented, by state.
+    pub invented: [Invented; 3],
+    /// About the object that it brought, if it brought one.
+    pub brought: Option<Brought>,
+}
+
+/// Voxels of an object that came, moved or changed its class.
+#[derive(Clone, Copy, Debug)]
+pub struct Brought {
+    /// Its class now.
+    pub class: Class,
+    /// In the source, where an object of the same class moved; else none.
+    pub before: Option<usize>,
+    /// In the draft.
+    pub draft: usize,
+    /// Of the networks alone.
+    pub networks: usize,
+    /// As shown.
+    pub shown: usize,
+    /// Of those shown, what the networks alone had put at the same places.
+    pub shared: usize,
+}
+
+impl Brought {
+    fn of(
+        trial: &Trial,
+        b: &SceneBox,
+        layout: &BevLayout,
+        source: &VoxelGrid,
+        states: &[VoxelGrid; 3],
+    ) -> Self {
+        let from_ground = |(x, y, layers): (usize, usize, usize)| {
+            layers - draft::ground_bin(layout, x, y).min(layers.saturating_sub(1))
+        };
+        let [networks, _, shown] = states;
+        // Voxels of the class in both.
+        let mut both = VoxelGrid::new();
+        let same = networks
+            .iter_set()
+            .filter(|(x, y, z, l)| shown.get(*x, *y, *z) == *l);
+        same.filter(|(.., l)| *l == b.class.id())
+            .for_each(|(x, y, z, l)| both.set(x, y, z, l));
+        Self {
+            class: b.class,
+            before: trial
+                .gone()
+                .filter(|old| old.class == b.class)
+                .map(|old| voxels_of(source, old)),
+            draft: draft::box_columns(b).into_iter().map(from_ground).sum(),
+            networks: voxels_of(networks, b),
+            shown: voxels_of(shown, b),
+            shared: voxels_of(&both, b),
+        }
+    }
+}
+
+/// Tries an edit; `pipeline` keeps what it knew before. With `params.keep_objects` off the networks' own result comes back,
+/// and the steps of the composite are applied here, each as the pipeline applies it.
+pub fn try_edit(
+    pipeline: &OccPipeline,
+    scene: &Scene,
+    trial: &Trial,
+    params: GenParams,
+) -> anyhow::Result<Tried> {
+    let mut document = Document::new(scene.clone());
+    document.apply("Edit", &trial.edit)?;
+    let job = Job {
+        scene: document.scene().clone(),
+        params: GenParams {
+            keep_objects: false,
+            ..params
+        },
+    };
+    let networks = pipeline.clone().run(&job, &JobCtx::detached())?.occupancy;
+    let frame = Arc::clone(job.scene.frame());
+    let (region, request) = (redraw::region_of(&frame, &params), Request::of(&frame));
+    let mut kept = networks.clone();
+    keep_objects(&frame, &region, false, &mut kept);
+    keep_ground(&frame, &region, &mut kept);
+    let mut shown = kept.clone();
+    keep_unobserved(&frame, &region, &params.redraw, &request, &mut shown);
+    keep_clear(&frame, &region, &params.redraw, &request, &mut shown);
+    keep_grounded(&frame, &region, false, &request, &mut shown);
+    let states = [networks, kept, shown];
+    let source = &frame.source.occupancy;
+    Ok(Tried {
+        reached: [0, 1, 2].map(|i| trial.judge(source, &states[i])),
+        invented: [0, 1, 2].map(|i| Invented::of_request(&request, &frame, &states[i], &region)),
+        brought: trial
+            .filled()
+            .map(|b| Brought::of(trial, b, &frame.layout, source, &states)),
+    })
+}

@@ -1,0 +1,140 @@
+//! What context is worth: a square of a world drawn anew, with and without what stands around it.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::OTHER_SEED;
+use crate::suite::with_interval;
+use job::pipeline::OccPipeline;
+use job::region::Region;
+use job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
+use scene::{Class, Density, GridSpec, VoxelGrid};
+
+/// Side of the square, columns, how often it is drawn, and the step of its places.
+const REDRAWN: usize = 28;
+const DRAWS: u64 = 3;
+const PLACE_STEP: usize = 12;
+
+/// IoU of redrawn squares frame by frame: with context and without; of the square, of its seam.
+#[derive(Default)]
+pub struct Redrawn([[Vec<f64>; 2]; 2]);
+
+impl Redrawn {
+    /// Redraws the fullest square of the job's world.
+    pub fn add(&mut self, pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<()> {
+        for (shares, of) in self.0.iter_mut().zip(redrawn_iou(pipeline, job)?) {
+            shares.iter_mut().zip(of).for_each(|(all, one)| all.push(one));
+        }
+        Ok(())
+    }
+
+    /// Means with intervals, and what context adds.
+    pub fn report(&self) -> Value {
+        json!({
+            "redrawn_square_iou": with_interval(&self.0[0][0]),
+            "redrawn_square_iou_without_context": with_interval(&self.0[1][0]),
+            "seam_iou": with_interval(&self.0[0][1]),
+            "seam_iou_without_context": with_interval(&self.0[1][1]),
+            "redrawn_square_iou_gain_of_context": gain(&self.0, 0),
+            "seam_iou_gain_of_context": gain(&self.0, 1),
+        })
+    }
+}
+
+/// True if a voxel above the ground is occupied: the road is the layout's business.
+fn standing(grid: &VoxelGrid, x: usize, y: usize) -> impl Iterator<Item = bool> {
+    grid.column(x, y)[1..].iter().map(|l| *l != Class::FREE)
+}
+
+/// The columns of the square in which most stands.
+fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
+    let square = |x0: usize, y0: usize| {
+        let ys = move |x| (y0..y0 + REDRAWN).map(move |y| [x, y]);
+        (x0..x0 + REDRAWN).flat_map(ys).collect::<Vec<_>>()
+    };
+    let starts = || (PLACE_STEP..GridSpec::NX - REDRAWN - PLACE_STEP).step_by(PLACE_STEP);
+    let squares = starts().flat_map(|x| starts().map(move |y| square(x, y)));
+    let count = |c: &Vec<[usize; 2]>| {
+        let each = c
+            .iter()
+            .map(|[x, y]| standing(grid, *x, *y).filter(|s| *s).count());
+        each.sum::<usize>()
+    };
+    squares.max_by_key(count).unwrap_or_default()
+}
+
+/// Draws a whole scene of a world's layout, character and steps that sees nothing of the world, puts what it drew into the
+/// world's fullest square, and redraws that square from fresh noise: so nothing, not even the latents around, knows what
+/// stood there. Of the redrawn square and of the whole scene's, IoU of what stands in it with the world there, and of what
+/// stands along its border with the world's columns right outside: walls and hedges should go on. Means of some draws.
+fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2]; 2]> {
+    let frame = job.scene.frame();
+    let truth = &frame.occupancy;
+    let square = fullest_square(truth);
+    let mut columns = vec![false; GridSpec::COLUMNS];
+    square
+        .iter()
+        .for_each(|[x, y]| columns[x * GridSpec::NY + y] = true);
+    let density = Density::of(truth, frame.layout.cells());
+    let mut job = Job {
+        params: GenParams {
+            strength: 1.0,
+            keep_objects: false,
+            seed: job.params.seed,
+            named: Named::default().or(&density),
+            ..GenParams::default()
+        },
+        ..job.clone()
+    };
+    let ctx = JobCtx::detached();
+    let region = Region::of_columns(columns.clone());
+    // What stands in the square, and right beside it against what was drawn along its border.
+    let shares = |drawn: &VoxelGrid| {
+        let [mut inside, mut seam] = [[0u64; 2]; 2];
+        let count = |sums: &mut [u64; 2], a: [usize; 2], b: [usize; 2]| {
+            for (a, b) in standing(truth, a[0], a[1]).zip(standing(drawn, b[0], b[1])) {
+                sums[0] += u64::from(a && b);
+                sums[1] += u64::from(a || b);
+            }
+        };
+        for [x, y] in &square {
+            count(&mut inside, [*x, *y], [*x, *y]);
+            for outside in [[x - 1, *y], [x + 1, *y], [*x, y - 1], [*x, y + 1]] {
+                if !columns[outside[0] * GridSpec::NY + outside[1]] {
+                    count(&mut seam, outside, [*x, *y]);
+                }
+            }
+        }
+        [inside, seam].map(|[both, either]| both as f64 / either.max(1) as f64)
+    };
+    let mut mean = [[0.0; 2]; 2];
+    for draw in 0..DRAWS {
+        job.params.seed = job.params.seed.wrapping_add(draw);
+        job.params.region = RegionMode::Full;
+        let blind = pipeline.run(&job, &ctx)?;
+        let mut other = job.clone();
+        other.params.region = RegionMode::Auto;
+        other.params.seed = job.params.seed.wrapping_add(OTHER_SEED);
+        let frame = Arc::make_mut(&mut other.scene).frame_mut();
+        let source = Arc::make_mut(&mut frame.source);
+        for [x, y] in &square {
+            let drawn = blind.occupancy.column(*x, *y);
+            source.occupancy.column_mut(*x, *y).copy_from_slice(drawn);
+        }
+        frame.occupancy = source.occupancy.clone();
+        let seen = pipeline.redraw_region(&other, region.clone(), &ctx)?;
+        for (mean, result) in mean.iter_mut().zip([seen, blind]) {
+            for (mean, share) in mean.iter_mut().zip(shares(&result.occupancy)) {
+                *mean += share / DRAWS as f64;
+            }
+        }
+    }
+    Ok(mean)
+}
+
+/// What context adds, frame by frame: of the square (0) or of its seam (1).
+fn gain(redrawn: &[[Vec<f64>; 2]; 2], of: usize) -> Value {
+    let pairs = redrawn[0][of].iter().zip(&redrawn[1][of]);
+    with_interval(&pairs.map(|(seen, blind)| seen - blind).collect::<Vec<_>>())
+}

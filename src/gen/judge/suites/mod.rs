@@ -1,0 +1,9 @@
+//! The suites, one folder or file each.
+
+pub mod editing;
+pub mod generation;
+pub mod layout;
+pub mod lidar;
+pub mod splat;
+pub mod vae;
+pub mod world;

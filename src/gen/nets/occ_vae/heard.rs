@@ -1,0 +1,61 @@
+//! What the decoder is told of the columns that it decodes.
+
+use crate::ModelError;
+use crate::encoder::{HEIGHT, VoxelTable};
+use nn::Ops;
+use nn::map::Window;
+use nn::weights::{WeightFile, WeightsError};
+use scene::{GridSpec, VoxelGrid};
+
+/// What the decoder is told of the columns that it decodes.
+#[derive(Clone, Copy, Default)]
+pub struct Heard<'a> {
+    /// The draft of the layout, with the background where that is given.
+    pub draft: Option<&'a VoxelGrid>,
+    /// Which voxels of a labelled frame were observed ([`Unobserved::observed`]), 200x200.
+    ///
+    /// [`Unobserved::observed`]: scene::Unobserved::observed
+    pub observed: Option<&'a [u32]>,
+}
+
+/// What the decoder's columns hear.
+pub(super) struct Ears<B: Ops> {
+    drafted: VoxelTable<B>,
+    observed: B::Table, // one vector per bit
+}
+
+impl<B: Ops> Ears<B> {
+    /// Takes the tensors `observed` and `drafted`.
+    pub fn new(ops: &B, w: &mut WeightFile<'_>, width: usize) -> Result<Self, WeightsError> {
+        let bits = HEIGHT + 1;
+        let weight = w.take("observed.weight", &[width, bits])?;
+        let turned = (0..bits * width).map(|i| weight[i % width * bits + i / width]);
+        let observed = ops.table_from(turned.collect(), width);
+        Ok(Self {
+            observed: observed.map_err(|e| w.backend_error(e))?,
+            drafted: VoxelTable::new(ops, w, "drafted", width)?,
+        })
+    }
+
+    /// Adds what is heard to every column of a window; `map` has one place per column.
+    pub fn add_to(
+        &self,
+        ops: &B,
+        mut map: B::Tensor,
+        heard: Heard<'_>,
+        window: Window,
+    ) -> Result<B::Tensor, ModelError> {
+        if let Some(draft) = heard.draft {
+            map = self.drafted.add_to(ops, map, draft, window)?;
+        }
+        let Some(observed) = heard.observed else {
+            return Ok(map);
+        };
+        let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));
+        let bits = |row: usize, column: usize| {
+            let told = observed[(corner[0] + row) * GridSpec::NY + corner[1] + column];
+            (0..HEIGHT + 1).filter(move |bit| told >> bit & 1 == 1)
+        };
+        Ok(ops.bag(&self.observed, map, bits)?)
+    }
+}

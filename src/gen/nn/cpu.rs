@@ -1,0 +1,218 @@
+//! The processor as a backend: packed matrices, eight bits, fused attention. Work is cut into pieces of fixed size, so
+//! the number of threads cannot change a bit.
+
+use rayon::prelude::*;
+
+use crate::Precision;
+use crate::kernels;
+use crate::layers::{Linear, NORM_EPS, Norm, ResBlock};
+use crate::map::Map;
+use crate::ops::{BlockParts, Ops, OpsError, Values};
+use crate::transformer::Block;
+
+/// Rows of a map that are normed in one piece.
+const PIECE: usize = 200;
+
+/// The processor.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cpu;
+
+/// Vectors of a table.
+pub struct Table {
+    entries: Vec<f32>, // [entry][width]
+    width: usize,
+}
+
+impl Values for Map {
+    fn rows(&self) -> usize {
+        self.rows
+    }
+    fn columns(&self) -> usize {
+        self.columns
+    }
+    fn width(&self) -> usize {
+        self.width
+    }
+}
+
+/// A map of the same places with other values.
+fn with(map: &Map, data: Vec<f32>, width: usize) -> Map {
+    Map { data, width, ..*map }
+}
+
+fn normed(x: &Map, scale: &[f32], shift: &[f32]) -> Map {
+    let mut out = vec![0.0; x.data.len()];
+    let norm = |out: &mut [f32], x: &[f32]| kernels::norm_rows(x, NORM_EPS, scale, shift, out);
+    out.par_chunks_mut(PIECE * x.width)
+        .zip(x.data.par_chunks(PIECE * x.width))
+        .for_each(|(out, x)| norm(out, x));
+    with(x, out, x.width)
+}
+
+impl Ops for Cpu {
+    const NAME: &'static str = "cpu";
+    type Tensor = Map;
+    type Linear = Linear;
+    type Norm = Norm;
+    type Residual = ResBlock;
+    type Table = Table;
+    type Block = Block;
+
+    fn upload(&self, map: Map) -> Result<Map, OpsError> {
+        Ok(map)
+    }
+
+    fn download(&self, x: Map) -> Result<Map, OpsError> {
+        Ok(x)
+    }
+
+    fn linear_from(&self, weight: &[f32], bias: Vec<f32>, inputs: usize) -> Result<Linear, OpsError> {
+        Ok(Linear::from_parts(weight, bias, inputs))
+    }
+
+    fn norm_from(&self, scale: Vec<f32>, shift: Vec<f32>) -> Result<Norm, OpsError> {
+        Ok(Norm { scale, shift })
+    }
+
+    fn residual_from(
+        &self,
+        norm: Norm,
+        weight: &[f32],
+        bias: Vec<f32>,
+        kernel: usize,
+        second: Linear,
+    ) -> Result<ResBlock, OpsError> {
+        Ok(ResBlock::from_parts(norm, weight, bias, kernel, second))
+    }
+
+    fn table_from(&self, entries: Vec<f32>, width: usize) -> Result<Table, OpsError> {
+        Ok(Table { entries, width })
+    }
+
+    fn block_from(&self, parts: BlockParts<Linear>) -> Result<Block, OpsError> {
+        Ok(Block::new(parts))
+    }
+
+    fn apply(&self, linear: &Linear, x: &Map, piece: usize) -> Result<Map, OpsError> {
+        // One piece is not worth waking other threads for.
+        let data = match x.rows * x.columns <= piece {
+            true => linear.vector(&x.data),
+            false => linear.parallel(&x.data, piece),
+        };
+        Ok(with(x, data, linear.outputs()))
+    }
+
+    fn apply_each(&self, layers: &[&Linear], x: &Map) -> Result<Vec<Map>, OpsError> {
+        let each = layers.par_iter();
+        Ok(each.map(|l| with(x, l.vector(&x.data), l.outputs())).collect())
+    }
+
+    fn norm(&self, norm: &Norm, x: Map) -> Result<Map, OpsError> {
+        Ok(normed(&x, &norm.scale, &norm.shift))
+    }
+
+    fn modulate(&self, x: &Map, ada: &Map) -> Result<Map, OpsError> {
+        let (shift, scale) = ada.data.split_at(x.width);
+        let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
+        Ok(normed(x, &scale, shift))
+    }
+
+    fn residual(&self, block: &ResBlock, mut x: Map) -> Result<Map, OpsError> {
+        block.apply(&mut x);
+        Ok(x)
+    }
+
+    fn reach(block: &ResBlock) -> usize {
+        block.reach()
+    }
+
+    fn bag<I: Iterator<Item = usize>>(
+        &self,
+        table: &Table,
+        mut x: Map,
+        entries: impl Fn(usize, usize) -> I + Sync,
+    ) -> Result<Map, OpsError> {
+        let width = table.width;
+        x.data
+            .par_chunks_mut(x.columns * width)
+            .enumerate()
+            .for_each(|(row, sums)| {
+                for (column, sum) in sums.chunks_exact_mut(width).enumerate() {
+                    for entry in entries(row, column) {
+                        let vector = &table.entries[entry * width..][..width];
+                        sum.iter_mut().zip(vector).for_each(|(s, v)| *s += v);
+                    }
+                }
+            });
+        Ok(x)
+    }
+
+    fn ada(block: &Block) -> &Linear {
+        &block.ada
+    }
+
+    fn block(
+        &self,
+        block: &Block,
+        mut x: Map,
+        ada: &Map,
+        places: &[usize],
+        keys_values: &mut Map,
+        precision: Precision,
+    ) -> Result<Map, OpsError> {
+        block.apply(&mut x.data, &ada.data, places, &mut keys_values.data, precision);
+        Ok(x)
+    }
+
+    fn likeliest(
+        &self,
+        head: &Linear,
+        x: &Map,
+        places: &[usize],
+        voxels: usize,
+        piece: usize,
+    ) -> Result<Vec<u8>, OpsError> {
+        let mut labels = vec![0; places.len() * voxels];
+        labels
+            .par_chunks_mut(piece * voxels)
+            .zip(places.par_chunks(piece))
+            .for_each(|(labels, places)| {
+                let mut rows = Vec::with_capacity(places.len() * x.width);
+                for place in places {
+                    rows.extend_from_slice(&x.data[place * x.width..][..x.width]);
+                }
+                let logits = head.vector(&rows);
+                let each = logits.chunks_exact(head.outputs());
+                each.zip(labels.chunks_exact_mut(voxels))
+                    .for_each(|(logits, labels)| kernels::likeliest(logits, labels));
+            });
+        Ok(labels)
+    }
+
+    fn silu(&self, mut x: Map) -> Result<Map, OpsError> {
+        x.data.iter_mut().for_each(|v| *v = kernels::silu(*v));
+        Ok(x)
+    }
+
+    fn add(&self, mut x: Map, y: &Map) -> Result<Map, OpsError> {
+        let add = |x: &mut [f32]| x.iter_mut().zip(&y.data).for_each(|(x, y)| *x += y);
+        match y.data.len() == x.data.len() {
+            true => add(&mut x.data),
+            false => x.data.par_chunks_exact_mut(x.width).for_each(add),
+        }
+        Ok(x)
+    }
+
+    fn subtract(&self, x: &Map, y: &Map) -> Result<Map, OpsError> {
+        let data = x.data.iter().zip(&y.data).map(|(x, y)| x - y).collect();
+        Ok(with(x, data, x.width))
+    }
+
+    fn fold(&self, x: &Map) -> Result<Map, OpsError> {
+        Ok(x.fold())
+    }
+
+    fn unfold(&self, x: &Map) -> Result<Map, OpsError> {
+        Ok(x.unfold())
+    }
+}

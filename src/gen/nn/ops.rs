@@ -1,0 +1,243 @@
+//! What a backend offers: blocks of networks and the values that pass between them. A network written against [`Ops`]
+//! runs on the processor's kernels ([`Cpu`](crate::Cpu)) and on any other implementation.
+
+use thiserror::Error;
+
+use crate::Precision;
+use crate::map::Map;
+use crate::weights::{WeightFile, WeightsError};
+
+/// Why a backend could not compute. One line. The processor's never fails.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{backend}: {reason}")]
+pub struct OpsError {
+    /// Name of the backend.
+    pub backend: &'static str,
+    /// What it said.
+    pub reason: String,
+}
+
+impl OpsError {
+    /// From any error, on one line.
+    pub fn new(backend: &'static str, error: impl std::fmt::Display) -> Self {
+        let text = error.to_string();
+        let reason = text.lines().next().unwrap_or("no reason").to_owned();
+        Self { backend, reason }
+    }
+}
+
+/// Values of a backend: `rows x columns` places of `width` channels, as [`Map`] has them.
+pub trait Values: Clone + Send + Sync {
+    /// Places along x.
+    fn rows(&self) -> usize;
+    /// Places along y.
+    fn columns(&self) -> usize;
+    /// Channels of a place.
+    fn width(&self) -> usize;
+    /// All numbers.
+    fn numbers(&self) -> usize {
+        self.rows() * self.columns() * self.width()
+    }
+}
+
+/// Parts of a transformer block ([`Ops::block`]).
+pub struct BlockParts<L> {
+    /// Time to shift, scale and gate of attention, then of the MLP: `width` to `6 width`.
+    pub ada: L,
+    /// Queries, keys and values: `width` to `3 width`.
+    pub qkv: L,
+    /// `width` to `width`.
+    pub proj: L,
+    /// `width` to `4 width`.
+    pub fc1: L,
+    /// `4 width` to `width`.
+    pub fc2: L,
+    /// Weight `[width][3][3]` and bias of a depthwise convolution over the values, where there is one.
+    pub local: Option<(Vec<f32>, Vec<f32>)>,
+    /// Attention heads.
+    pub heads: usize,
+    /// Tokens along one side of the square map.
+    pub side: usize,
+}
+
+/// A backend. The `_from` functions make a block of its numbers, the named ones take those numbers from a weight file;
+/// the others compute.
+pub trait Ops: Send + Sync + Sized + 'static {
+    /// Name for messages.
+    const NAME: &'static str;
+    /// What passes between blocks.
+    type Tensor: Values;
+    /// y = x W + b at every place.
+    type Linear: Send + Sync;
+    /// Layer norm of every place, with scale and shift.
+    type Norm: Send + Sync;
+    /// x + W2 gelu(W1 norm(x)) of a map: W1 is a 3x3 or 1x1 convolution, W2 1x1.
+    type Residual: Send + Sync;
+    /// One vector per entry.
+    type Table: Send + Sync;
+    /// A transformer block with modulation by time (adaLN-Zero).
+    type Block: Send + Sync;
+
+    /// Values of the processor to the backend.
+    fn upload(&self, map: Map) -> Result<Self::Tensor, OpsError>;
+    /// Back to the processor.
+    fn download(&self, x: Self::Tensor) -> Result<Map, OpsError>;
+
+    /// `weight` is `[outputs][inputs]`.
+    fn linear_from(&self, weight: &[f32], bias: Vec<f32>, inputs: usize) -> Result<Self::Linear, OpsError>;
+    /// Scale and shift per channel.
+    fn norm_from(&self, scale: Vec<f32>, shift: Vec<f32>) -> Result<Self::Norm, OpsError>;
+    /// `weight` is that of the convolution, `[out][in][kernel][kernel]`; the kernel is 1 or 3.
+    fn residual_from(
+        &self,
+        norm: Self::Norm,
+        weight: &[f32],
+        bias: Vec<f32>,
+        kernel: usize,
+        second: Self::Linear,
+    ) -> Result<Self::Residual, OpsError>;
+    /// `entries` is `[entry][width]`.
+    fn table_from(&self, entries: Vec<f32>, width: usize) -> Result<Self::Table, OpsError>;
+    /// A transformer block.
+    fn block_from(&self, parts: BlockParts<Self::Linear>) -> Result<Self::Block, OpsError>;
+
+    /// At every place; the processor works on `piece` places at a time.
+    fn apply(&self, linear: &Self::Linear, x: &Self::Tensor, piece: usize) -> Result<Self::Tensor, OpsError>;
+    /// Several layers of the same input.
+    fn apply_each(&self, layers: &[&Self::Linear], x: &Self::Tensor) -> Result<Vec<Self::Tensor>, OpsError>;
+    /// Layer norm of every place.
+    fn norm(&self, norm: &Self::Norm, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// Layer norm of every place without learned numbers, then times 1 + scale plus shift; `ada` is one place of
+    /// shift, then scale.
+    fn modulate(&self, x: &Self::Tensor, ada: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// A residual block.
+    fn residual(&self, block: &Self::Residual, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// How many places away such a block looks.
+    fn reach(block: &Self::Residual) -> usize;
+    /// Adds to every place of `x` the sum of some entries of a table, which are given by row and column.
+    fn bag<I: Iterator<Item = usize>>(
+        &self,
+        table: &Self::Table,
+        x: Self::Tensor,
+        entries: impl Fn(usize, usize) -> I + Sync,
+    ) -> Result<Self::Tensor, OpsError>;
+    /// The layer of a transformer block that modulates it.
+    fn ada(block: &Self::Block) -> &Self::Linear;
+    /// A transformer block over some tokens of a square map, which stand at `places` of it. `keys_values` holds keys, then
+    /// values of all tokens of the map; those of these tokens are renewed first. `ada` is one place: what
+    /// [`ada`](Self::ada) makes of the time.
+    fn block(
+        &self,
+        block: &Self::Block,
+        x: Self::Tensor,
+        ada: &Self::Tensor,
+        places: &[usize],
+        keys_values: &mut Self::Tensor,
+        precision: Precision,
+    ) -> Result<Self::Tensor, OpsError>;
+    /// The likeliest class of every voxel of some places, `[place][voxel]`: `head` gives logits `[class][voxel]`. The
+    /// lowest class keeps a tie. The processor works on `piece` places at a time.
+    fn likeliest(
+        &self,
+        head: &Self::Linear,
+        x: &Self::Tensor,
+        places: &[usize],
+        voxels: usize,
+        piece: usize,
+    ) -> Result<Vec<u8>, OpsError>;
+
+    /// x * sigmoid(x).
+    fn silu(&self, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// x + y, or x + one place at every place if `y` is one place.
+    fn add(&self, x: Self::Tensor, y: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// x - y.
+    fn subtract(&self, x: &Self::Tensor, y: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// [`Map::fold`].
+    fn fold(&self, x: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// [`Map::unfold`].
+    fn unfold(&self, x: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
+
+    /// One place of these numbers.
+    fn vector(&self, numbers: Vec<f32>) -> Result<Self::Tensor, OpsError> {
+        self.upload(Map {
+            rows: 1,
+            columns: 1,
+            width: numbers.len(),
+            data: numbers,
+        })
+    }
+
+    /// Takes `name.weight` [outputs, inputs] and `name.bias`; `tail` is what the stored shape has after those two (1x1 of a
+    /// convolution).
+    fn linear(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        [inputs, outputs]: [usize; 2],
+        tail: &[usize],
+    ) -> Result<Self::Linear, WeightsError> {
+        let weight = w.take(&format!("{name}.weight"), &[&[outputs, inputs], tail].concat())?;
+        let bias = w.take(&format!("{name}.bias"), &[outputs])?;
+        self.linear_from(&weight, bias, inputs)
+            .map_err(|e| w.backend_error(e))
+    }
+
+    /// Takes `name.weight` and `name.bias`.
+    fn load_norm(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        width: usize,
+    ) -> Result<Self::Norm, WeightsError> {
+        let scale = w.take(&format!("{name}.weight"), &[width])?;
+        let shift = w.take(&format!("{name}.bias"), &[width])?;
+        self.norm_from(scale, shift).map_err(|e| w.backend_error(e))
+    }
+
+    /// Takes `name.norm`, `name.conv1`, `name.conv2`; the kernel is 1 or 3.
+    fn load_residual(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        width: usize,
+        kernel: usize,
+    ) -> Result<Self::Residual, WeightsError> {
+        let weight = w.take(&format!("{name}.conv1.weight"), &[width, width, kernel, kernel])?;
+        let bias = w.take(&format!("{name}.conv1.bias"), &[width])?;
+        let norm = self.load_norm(w, &format!("{name}.norm"), width)?;
+        let second = self.linear(w, &format!("{name}.conv2"), [width, width], &[1, 1])?;
+        self.residual_from(norm, &weight, bias, kernel, second)
+            .map_err(|e| w.backend_error(e))
+    }
+
+    /// Takes `name.ada`, `name.qkv`, `name.proj`, `name.fc1`, `name.fc2`, and `name.local` where it is wanted.
+    fn load_block(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        width: usize,
+        [heads, side]: [usize; 2],
+        local: bool,
+    ) -> Result<Self::Block, WeightsError> {
+        let local = match local {
+            true => Some((
+                w.take(&format!("{name}.local.weight"), &[width, 1, 3, 3])?,
+                w.take(&format!("{name}.local.bias"), &[width])?,
+            )),
+            false => None,
+        };
+        let mut linear =
+            |part: &str, inputs, outputs| self.linear(w, &format!("{name}.{part}"), [inputs, outputs], &[]);
+        let parts = BlockParts {
+            ada: linear("ada", width, 6 * width)?,
+            qkv: linear("qkv", width, 3 * width)?,
+            proj: linear("proj", width, width)?,
+            fc1: linear("fc1", width, 4 * width)?,
+            fc2: linear("fc2", 4 * width, width)?,
+            local,
+            heads,
+            side,
+        };
+        self.block_from(parts).map_err(|e| w.backend_error(e))
+    }
+}

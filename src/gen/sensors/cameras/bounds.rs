@@ -1,0 +1,58 @@
+//! How large pictures may be: a bound on the pixels of one, and on the memory of a run.
+
+/// Most pixels of one picture: 8K (7680 x 4320) fits, 8192 x 8192 does not.
+pub const MAX_IMAGE_PIXELS: u64 = 1 << 25;
+
+/// Most memory that the pictures of one run take, bytes. They are rendered and written one after another, so it counts
+/// what one picture takes and what is kept until the end, such as a sheet of all of them.
+pub const MAX_RUN_BYTES: u64 = 3 << 30;
+
+/// Why there is no picture.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CameraError {
+    /// More pixels than [`MAX_IMAGE_PIXELS`].
+    #[error("a picture of {width}x{height} has {pixels} pixels, expected at most {MAX_IMAGE_PIXELS}")]
+    Pixels {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+        /// Their product.
+        pixels: u64,
+    },
+    /// More memory than [`MAX_RUN_BYTES`].
+    #[error(
+        "pictures of {width}x{height} take {} MB, expected at most {} MB: a smaller size fits",
+        bytes / 1_000_000,
+        MAX_RUN_BYTES / 1_000_000
+    )]
+    Memory {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+        /// What they take.
+        bytes: u64,
+    },
+    /// Nobody waits for it any more.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// Checks pictures of a size of which one takes `bytes_per_pixel` while it is made, beside `kept_bytes` that stay until
+/// the end of the run. Errors if that is more than the bounds allow.
+pub fn check([width, height]: [u32; 2], bytes_per_pixel: u64, kept_bytes: u64) -> Result<(), CameraError> {
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels > MAX_IMAGE_PIXELS {
+        return Err(CameraError::Pixels {
+            width,
+            height,
+            pixels,
+        });
+    }
+    let bytes = (pixels * bytes_per_pixel).saturating_add(kept_bytes);
+    match bytes > MAX_RUN_BYTES {
+        true => Err(CameraError::Memory { width, height, bytes }),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,243 @@
+//! What cameras can show of a scene: one table of sources that the window, the export and the command line share.
+//!
+//! A new source is one file with a type that implements [`CameraSource`], and one line in [`all`].
+
+pub mod bounds;
+pub mod layout;
+mod marched;
+pub mod normals;
+mod picture;
+pub mod pictures;
+pub mod planes;
+pub mod shapes;
+pub mod splats;
+mod view;
+pub mod voxels;
+
+pub use bounds::CameraError;
+pub use marched::march_scene;
+pub use picture::CameraPicture;
+pub use view::{Knob, SourceId, View, ViewId};
+
+use super::appearance::{CameraImage, Conditions, Look, Quality};
+use super::cloud::GaussianCloud;
+use super::march::GroundHeight;
+use scene::{Background, Camera, CameraMaps, Frame, SensorRig};
+
+/// Every source, in the order of menus: sources of the same view follow each other.
+pub fn all() -> &'static [&'static dyn CameraSource] {
+    &[
+        &splats::Splats,
+        &voxels::Voxels,
+        &shapes::Shapes,
+        &pictures::Pictures,
+        &planes::PlaneStacks,
+        &layout::LayoutMaps,
+        &normals::Normals,
+    ]
+}
+
+/// Every view, in the order of menus.
+pub fn views() -> Vec<View> {
+    let mut views: Vec<View> = Vec::new();
+    for view in all().iter().flat_map(|s| s.views()) {
+        if views.iter().all(|v| v.id != view.id) {
+            views.push(*view);
+        }
+    }
+    views
+}
+
+/// The sources that give a view, in the order of menus.
+pub fn sources_of(view: ViewId) -> Vec<&'static dyn CameraSource> {
+    let gives = |s: &&&'static dyn CameraSource| s.views().iter().any(|v| v.id == view);
+    all().iter().filter(gives).copied().collect()
+}
+
+/// The source that gives a view: the preferred one if it does, else the first that does.
+pub fn source_of(view: ViewId, preferred: SourceId) -> &'static dyn CameraSource {
+    let sources = sources_of(view);
+    let chosen = sources.iter().find(|s| s.id() == preferred).or(sources.first());
+    chosen.copied().unwrap_or(&shapes::Shapes)
+}
+
+/// The source of that name.
+pub fn source(id: SourceId) -> Option<&'static dyn CameraSource> {
+    all().iter().find(|s| s.id() == id).copied()
+}
+
+/// What of a scene decides a source's pictures, besides rig and seed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// The voxels.
+    pub occupancy: bool,
+    /// Map layers, lines, relief.
+    pub layout: bool,
+    /// The boxes.
+    pub boxes: bool,
+    /// What stands beside the roads, apart from its voxels.
+    pub background: bool,
+    /// Time of day and weather.
+    pub conditions: bool,
+}
+
+/// How much of the scene is made ready.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Detail {
+    /// What can be seen, for the window.
+    Live,
+    /// All of it, for files.
+    #[default]
+    Full,
+}
+
+/// What pictures are made from.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraInput<'a> {
+    /// Occupancy, layout, boxes and the pose in the world.
+    pub frame: &'a Frame,
+    /// The cameras and the size of the ego vehicle.
+    pub rig: &'a SensorRig,
+    /// What stands beside the roads.
+    pub background: &'a Background,
+    /// Time, weather, and the seed that varies shapes and textures.
+    pub conditions: Conditions,
+    /// How much is made ready.
+    pub detail: Detail,
+}
+
+/// How one picture is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderOptions {
+    /// Width and height in pixels; 0 gives an empty picture.
+    pub size: [u32; 2],
+    /// Speed or beauty, where a source has both.
+    pub quality: Quality,
+}
+
+/// A graphics card that can draw in place of the processor. Each method says so if it cannot.
+pub trait Card {
+    /// Takes a cloud up; false if the processor has to draw it.
+    fn set_cloud(&mut self, cloud: &GaussianCloud) -> bool;
+    /// Maps of the cloud that was set last; `None` if the processor has to draw them.
+    fn maps(&mut self, camera: &Camera, size: [u32; 2]) -> Option<CameraMaps>;
+    /// Takes a look up; false if the processor has to draw it.
+    fn set_look(&mut self, look: &Look) -> bool;
+    /// A picture of the look that was set last, which is `look`; `None` if the processor has to draw it.
+    fn picture(
+        &mut self,
+        look: &Look,
+        camera: &Camera,
+        size: [u32; 2],
+        quality: Quality,
+    ) -> Option<CameraImage>;
+}
+
+/// What a rendering may use, and whether it is still wanted.
+pub struct RenderContext<'a> {
+    /// The card that the scene was taken up to; `None`: the processor draws.
+    pub card: Option<&'a mut dyn Card>,
+    /// True once nobody waits for the picture any more.
+    pub cancelled: &'a dyn Fn() -> bool,
+}
+
+impl RenderContext<'_> {
+    /// The processor draws, to the end.
+    pub fn processor() -> Self {
+        Self {
+            card: None,
+            cancelled: &|| false,
+        }
+    }
+}
+
+/// One way to make camera pictures of a scene.
+pub trait CameraSource: Sync {
+    /// Its name, unique in the table.
+    fn id(&self) -> SourceId;
+
+    /// Name on a button.
+    fn title(&self) -> &'static str;
+
+    /// What it does, for the tip of the button.
+    fn hint(&self) -> &'static str;
+
+    /// The views that one rendering gives, at least one.
+    fn views(&self) -> &'static [View];
+
+    /// What of the scene decides its pictures.
+    fn needs(&self) -> Needs;
+
+    /// Where its pictures have the ground.
+    fn ground(&self) -> GroundHeight {
+        GroundHeight::Physical
+    }
+
+    /// Name of its time in the report of `sceneloom render`.
+    fn report_key(&self) -> &'static str;
+
+    /// True if the window shows a coarse picture first, because a full one takes its time.
+    fn previews(&self) -> bool {
+        false
+    }
+
+    /// Memory that rendering one picture and writing its files take at most, bytes per pixel.
+    fn bytes_per_pixel(&self) -> u64;
+
+    /// Makes a scene ready for any number of cameras.
+    fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a>;
+}
+
+/// A scene made ready by one source.
+pub trait PreparedCameras {
+    /// True for what a graphics card can draw.
+    fn suits_card(&self) -> bool {
+        false
+    }
+
+    /// Takes it up to a graphics card; false if the processor has to draw it.
+    fn upload(&self, _card: &mut dyn Card) -> bool {
+        false
+    }
+
+    /// What a camera shows. Called by [`Ready::render`], which checks size and cancellation first.
+    fn draw(&self, camera: &Camera, options: &RenderOptions, card: Option<&mut dyn Card>) -> CameraPicture;
+}
+
+/// A source with a scene made ready: what renders.
+pub struct Ready<'a> {
+    source: &'static dyn CameraSource,
+    scene: Box<dyn PreparedCameras + 'a>,
+}
+
+impl<'a> Ready<'a> {
+    /// Makes a scene ready.
+    pub fn new(source: &'static dyn CameraSource, input: &CameraInput<'a>) -> Self {
+        Self {
+            source,
+            scene: source.prepare(input),
+        }
+    }
+
+    /// Takes it up to the card that `find` gives, which is asked only if a card can draw this; true if it will.
+    pub fn upload_to<'c>(&self, find: impl FnOnce() -> Option<&'c mut (dyn Card + 'c)>) -> bool {
+        self.scene.suits_card() && find().is_some_and(|card| self.scene.upload(card))
+    }
+
+    /// What a camera shows. Errors if the picture is larger than [`bounds`] allow, or nobody waits for it any more.
+    pub fn render(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        context: RenderContext<'_>,
+    ) -> Result<CameraPicture, CameraError> {
+        bounds::check(options.size, self.source.bytes_per_pixel(), 0)?;
+        if (context.cancelled)() {
+            return Err(CameraError::Cancelled);
+        }
+        Ok(self.scene.draw(camera, options, context.card))
+    }
+}
+
+#[cfg(test)]
+mod tests;

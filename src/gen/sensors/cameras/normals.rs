@@ -1,0 +1,106 @@
+//! Normal maps: which way the surfaces of the pictures face, in the camera's frame.
+//!
+//! Red is right, green is up, blue is towards the camera, each `n * 0.5 + 0.5`: what faces the camera is light blue, the
+//! road green. The sky is grey (128, 128, 128), which is no direction at all.
+
+use glam::{DQuat, Vec3};
+use rayon::prelude::*;
+
+use super::{
+    CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+    ViewId,
+};
+use crate::appearance::{CameraImage, Conditions, Look};
+use crate::march::CameraRays;
+use scene::Camera;
+
+/// What it shows.
+pub const VIEW: View = View::new(
+    ViewId::new("normals"),
+    "Normals",
+    "which way surfaces face: right red, up green, towards the camera blue",
+);
+
+/// Colour of the sky.
+pub const SKY: [u8; 3] = [128; 3];
+
+/// The source.
+pub struct Normals;
+
+impl CameraSource for Normals {
+    fn id(&self) -> SourceId {
+        SourceId::new("normals")
+    }
+
+    fn title(&self) -> &'static str {
+        "Normals"
+    }
+
+    fn hint(&self) -> &'static str {
+        "the surfaces of the pictures, without light"
+    }
+
+    fn views(&self) -> &'static [View] {
+        &[VIEW]
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            occupancy: true,
+            layout: true,
+            boxes: true,
+            ..Needs::default()
+        }
+    }
+
+    fn report_key(&self) -> &'static str {
+        "normals"
+    }
+
+    fn bytes_per_pixel(&self) -> u64 {
+        24
+    }
+
+    fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
+        // Surfaces are the same by day and night; the seed shapes leaves and cars.
+        let conditions = Conditions {
+            seed: input.conditions.seed,
+            ..Conditions::default()
+        };
+        Box::new(Ready(Look::new(input.frame, input.rig, &conditions)))
+    }
+}
+
+/// The colour of a normal of the ego frame in the pictures of a camera.
+fn color(ego_from_camera: DQuat, normal: Vec3) -> [u8; 3] {
+    // Optical axes are right, down, forward.
+    let n = ego_from_camera.conjugate() * normal.as_dvec3();
+    [n.x, -n.y, -n.z].map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8)
+}
+
+struct Ready(Look);
+
+impl PreparedCameras for Ready {
+    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+        let [width, height] = options.size;
+        let rays = CameraRays::new(camera, width, height);
+        let rotation = camera.ego_from_camera().rotation;
+        let row = width as usize * 4;
+        let mut rgba = vec![255; row * height as usize];
+        if !rgba.is_empty() {
+            rgba.par_chunks_mut(row).enumerate().for_each(|(y, row)| {
+                for (x, out) in row.chunks_exact_mut(4).enumerate() {
+                    let direction = rays.direction(x as f64 + 0.5, y as f64 + 0.5).as_vec3();
+                    let normal = self.0.surface_normal(rays.origin.as_vec3(), direction);
+                    out[..3].copy_from_slice(&normal.map_or(SKY, |n| color(rotation, n)));
+                }
+            });
+        }
+        CameraPicture::Picture(CameraImage {
+            camera: camera.name.clone(),
+            width: width as usize,
+            height: height as usize,
+            rgba,
+        })
+    }
+}

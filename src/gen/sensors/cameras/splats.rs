@@ -1,0 +1,85 @@
+//! Classes and depths by splatting Gaussians at voxel centres.
+
+use super::view::MAP_VIEWS;
+use super::{
+    CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras, RenderOptions, SourceId,
+    View,
+};
+use crate::cloud::GaussianCloud;
+use crate::march::GroundHeight;
+use crate::splat::{self, SplatOptions};
+use scene::Camera;
+
+/// Name of the source.
+pub const ID: SourceId = SourceId::new("splats");
+
+/// Voxels below the surface that still count for a live picture; see [`GaussianCloud::from_grid_shell`].
+const SHELL_LAYERS: usize = 2;
+
+/// The source.
+pub struct Splats;
+
+impl CameraSource for Splats {
+    fn id(&self) -> SourceId {
+        ID
+    }
+
+    fn title(&self) -> &'static str {
+        "Splats"
+    }
+
+    fn hint(&self) -> &'static str {
+        "Gaussians at voxel centres, as the papers render"
+    }
+
+    fn views(&self) -> &'static [View] {
+        MAP_VIEWS
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            occupancy: true,
+            layout: true,
+            ..Needs::default()
+        }
+    }
+
+    fn ground(&self) -> GroundHeight {
+        GroundHeight::AsLabelled
+    }
+
+    fn report_key(&self) -> &'static str {
+        "cameras"
+    }
+
+    fn bytes_per_pixel(&self) -> u64 {
+        80
+    }
+
+    fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
+        let (grid, cells) = (&input.frame.occupancy, input.frame.layout.cells());
+        Box::new(Ready(match input.detail {
+            Detail::Live => GaussianCloud::from_grid_shell(grid, cells, SHELL_LAYERS),
+            Detail::Full => GaussianCloud::from_grid(grid, cells),
+        }))
+    }
+}
+
+struct Ready(GaussianCloud);
+
+impl PreparedCameras for Ready {
+    fn suits_card(&self) -> bool {
+        true
+    }
+
+    fn upload(&self, card: &mut dyn Card) -> bool {
+        card.set_cloud(&self.0)
+    }
+
+    fn draw(&self, camera: &Camera, options: &RenderOptions, card: Option<&mut dyn Card>) -> CameraPicture {
+        let [width, height] = options.size;
+        let drawn = card.and_then(|c| c.maps(camera, options.size));
+        let draw = || splat::render(&self.0, camera, width, height, &SplatOptions::default());
+        CameraPicture::Maps(drawn.unwrap_or_else(draw))
+    }
+}

@@ -1,0 +1,89 @@
+//! Names of what pictures show and of what they are made from.
+
+/// Names a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SourceId(&'static str);
+
+impl SourceId {
+    /// Of that name.
+    pub const fn new(name: &'static str) -> Self {
+        Self(name)
+    }
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        self.0
+    }
+}
+
+impl Default for SourceId {
+    /// What the window renders classes and depths from.
+    fn default() -> Self {
+        super::shapes::ID
+    }
+}
+
+/// Names a view: what a picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ViewId(&'static str);
+
+impl ViewId {
+    /// Classes; several sources give them.
+    pub const SEMANTIC: ViewId = ViewId::new("semantic");
+    /// Distance along the optical axis; several sources give it.
+    pub const DEPTH: ViewId = ViewId::new("depth");
+
+    /// Of that name.
+    pub const fn new(name: &'static str) -> Self {
+        Self(name)
+    }
+
+    /// Name on the command line and in file names.
+    pub fn name(self) -> &'static str {
+        self.0
+    }
+}
+
+impl Default for ViewId {
+    fn default() -> Self {
+        Self::SEMANTIC
+    }
+}
+
+/// A setting that belongs to a view, beside what its source needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Knob {
+    /// Depth of the plane that is shown.
+    PlaneDepth,
+}
+
+/// What a picture shows, as menus offer it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct View {
+    /// Its name.
+    pub id: ViewId,
+    /// Name on a button.
+    pub title: &'static str,
+    /// What it shows, for the tip of the button.
+    pub hint: &'static str,
+    /// A setting of the window that decides what is seen.
+    pub knob: Option<Knob>,
+}
+
+impl View {
+    /// Without a setting of its own.
+    pub const fn new(id: ViewId, title: &'static str, hint: &'static str) -> Self {
+        Self {
+            id,
+            title,
+            hint,
+            knob: None,
+        }
+    }
+}
+
+/// The views that maps of classes and depths give.
+pub(super) const MAP_VIEWS: &[View] = &[
+    View::new(ViewId::SEMANTIC, "Semantic", "classes"),
+    View::new(ViewId::DEPTH, "Depth", "2 m warm to 60 m cold"),
+];

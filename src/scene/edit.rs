@@ -1,0 +1,347 @@
+//! Every change of a scene as a value, with its errors and its JSON: what tools, words, command line and files all
+//! produce. The editor applies them.
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::grid::GridSpec;
+use crate::shape::Shape;
+use crate::{BevLayer, BoxId, BoxLabel, Class, Form, Polyline, SceneBox, SensorRig, ThingId, VoxelGrid};
+
+/// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
+/// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Edit {
+    /// Takes a box out, and its voxels.
+    RemoveBox {
+        /// The box.
+        id: BoxId,
+    },
+    /// Puts a box in, and voxels of its class.
+    AddBox {
+        /// One of the ten object classes.
+        class: Class,
+        /// Centre in the ego frame, m.
+        center_m: DVec3,
+        /// Length, width, height, m.
+        size_m: DVec3,
+        /// Heading, degrees counter-clockwise from ego x.
+        yaw_deg: f64,
+        /// Velocity over ground in the ego frame's axes, m/s; none means standing.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        velocity_mps: Option<DVec2>,
+        /// Its number; none means the next one free.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        id: Option<BoxId>,
+        /// What it is called and how it is painted.
+        #[serde(default, skip_serializing_if = "BoxLabel::is_empty")]
+        label: BoxLabel,
+    },
+    /// Moves, turns or resizes a box; what is left out stays.
+    MoveBox {
+        /// The box.
+        id: BoxId,
+        /// New centre in the ego frame, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        center_m: Option<DVec3>,
+        /// New heading, degrees counter-clockwise from ego x.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        yaw_deg: Option<f64>,
+        /// New length, width, height, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        size_m: Option<DVec3>,
+    },
+    /// Names and paints a box; what is left out of the label is none. No voxel changes, and nothing is generated.
+    LabelBox {
+        /// The box.
+        id: BoxId,
+        /// Its name and paint from now on.
+        label: BoxLabel,
+    },
+    /// Turns a box into another class; its size and paint stay, its name goes.
+    SetBoxClass {
+        /// The box.
+        id: BoxId,
+        /// One of the ten object classes.
+        class: Class,
+    },
+    /// Sets or clears a map layer. Clearing dividers or stop lines cuts the lines behind them there.
+    PaintBev {
+        /// One of the eight map layers.
+        layer: BevLayer,
+        /// Where.
+        shape: Shape,
+        /// True sets, false clears.
+        value: bool,
+    },
+    /// Puts things beside the road, and their voxels.
+    AddThings {
+        /// What and where, world frame.
+        forms: Vec<Form>,
+    },
+    /// Takes things out, and their voxels.
+    RemoveThings {
+        /// The things.
+        ids: Vec<ThingId>,
+    },
+    /// Moves and turns things together.
+    MoveThings {
+        /// The things.
+        ids: Vec<ThingId>,
+        /// How far in the world frame, m.
+        by_m: DVec2,
+        /// Turn about the middle of them all, degrees counter-clockwise.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        turn_deg: f64,
+    },
+    /// Makes things higher (or, with a negative number, lower).
+    RaiseThings {
+        /// The things.
+        ids: Vec<ThingId>,
+        /// By how much, m; a storey is 3 m.
+        by_m: f64,
+    },
+    /// Gives a thing another form.
+    ChangeThing {
+        /// The thing.
+        id: ThingId,
+        /// What and where from now on, world frame.
+        form: Form,
+    },
+    /// Takes man-made and plant voxels out that belong to no thing, and lays the ground where they stood. Painted voxels stay.
+    ClearScenery {
+        /// Where; everywhere if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        shape: Option<Shape>,
+    },
+    /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
+    AddPolylines {
+        /// What they mean and where they run, ego frame, m; at least two vertices each.
+        lines: Vec<Polyline>,
+    },
+    /// Sets voxels to a class (`free` removes them) and locks them.
+    PaintVoxels {
+        /// Indices `[x, y, z]`.
+        cells: Vec<[usize; 3]>,
+        /// Any class.
+        class: Class,
+    },
+    /// Gives painted voxels back to generation; what they show stays for now.
+    UnlockVoxels {
+        /// Indices `[x, y, z]`.
+        cells: Vec<[usize; 3]>,
+    },
+    /// Gives every painted voxel of the frame back to generation.
+    ClearPaint {},
+    /// Corrects what was inferred wrongly when the frame was imported: the box or layer changes, in the source
+    /// too, and no voxel does, so that nothing is generated.
+    Correct {
+        /// A change of a box or of a map layer.
+        edit: Box<Edit>,
+    },
+    /// An edit of another moment of the clip than the current one, or of a whole track. Exactly one of `frame`, `time_s` and
+    /// `track` is given.
+    At {
+        /// Index of the frame.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        frame: Option<usize>,
+        /// Time in the clip, s; the nearest frame is meant.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        time_s: Option<f64>,
+        /// The track: every frame that holds this box.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        track: Option<BoxId>,
+        /// What is changed there.
+        edit: Box<Edit>,
+    },
+    /// Confirms what was inferred when the frame was imported: it is marked as a guess no more.
+    ConfirmInferred {},
+    /// Lets a finding of the checks stand, with the reason. One that was waived before gets the new reason.
+    Waive {
+        /// Name of the check.
+        check: String,
+        /// The box it is about, if it is about one.
+        #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+        box_id: Option<BoxId>,
+        /// Where it was found, ego frame, m.
+        where_m: DVec3,
+        /// Why it may stay; not empty.
+        reason: String,
+    },
+    /// Takes a waiver back: the finding counts again. Nothing if there is none.
+    Unwaive {
+        /// Name of the check.
+        check: String,
+        /// The box it is about, if it is about one.
+        #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
+        box_id: Option<BoxId>,
+        /// Where it was found, ego frame, m.
+        where_m: DVec3,
+    },
+    /// Replaces the text that describes the style.
+    SetPrompt {
+        /// The text; empty means none.
+        prompt: String,
+    },
+    /// Notes words that were typed to change the scene.
+    KeepWords {
+        /// The words.
+        words: String,
+    },
+    /// Replaces the sensors of the vehicle. No voxel changes.
+    SetRig {
+        /// The new ones.
+        rig: Box<SensorRig>,
+    },
+    /// Takes a generated occupancy as the frame's own and as the source of what comes. Not in JSON.
+    #[serde(skip)]
+    AdoptResult {
+        /// What was generated for the current state.
+        occupancy: VoxelGrid,
+    },
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+/// Why an edit was refused; the scene is then as before. One line each.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditError {
+    /// No box of that id.
+    #[error("box {} does not exist in this frame", .id.0)]
+    UnknownBox {
+        /// The id asked for.
+        id: BoxId,
+    },
+    /// A box of that id is there already.
+    #[error("box {} exists already in this frame", .id.0)]
+    DuplicateBox {
+        /// The id asked for.
+        id: BoxId,
+    },
+    /// No thing of that id.
+    #[error("thing {} does not exist in this scene", .id.0)]
+    UnknownThing {
+        /// The id asked for.
+        id: ThingId,
+    },
+    /// The thing that would result is not sound; see [`Form::problem`].
+    #[error("{0}")]
+    BadThing(String),
+    /// No id is left for a new box.
+    #[error("no box id is left above {}", u32::MAX)]
+    NoIdLeft,
+    /// The box that would result is not sound; see [`SceneBox::problem`].
+    #[error("{0}")]
+    BadBox(String),
+    /// The sensors that would result are not sound; see [`SensorRig::problem`].
+    #[error("{0}")]
+    BadRig(String),
+    /// Layers of objects come from boxes.
+    #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
+    ObjectLayer(BevLayer),
+    /// What is corrected was edited before, and that edit is not generated yet.
+    #[error("{0} has an edit that is not generated yet, expected none under a correction")]
+    Unsettled(String),
+    /// Voxels and the prompt are not inferred.
+    #[error("only boxes and map layers can be corrected")]
+    NoCorrection,
+    /// A number that cannot be used.
+    #[error("{field} is {found}, expected {expected}")]
+    Number {
+        /// Key of the edit.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// A list that is too short.
+    #[error("{field} holds {found} entries, expected at least {expected}")]
+    TooFew {
+        /// Key of the edit.
+        field: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Entries needed.
+        expected: usize,
+    },
+    /// An index beyond the grid.
+    #[error(
+        "cell {cell:?} is outside the grid of {} x {} x {}",
+        GridSpec::NX,
+        GridSpec::NY,
+        GridSpec::NZ
+    )]
+    CellOutside {
+        /// The index: x, y and perhaps z.
+        cell: Vec<usize>,
+    },
+    /// A shape that misses the grid or every cell centre.
+    #[error("the shape covers no cell of the grid")]
+    NoCell,
+    /// A waiver of no check, without a place or without a reason.
+    #[error("{0}")]
+    BadWaiver(String),
+    /// A moment that the clip does not have, or none.
+    #[error("{0}")]
+    BadMoment(String),
+    /// A move that names no change.
+    #[error("move_box needs at least one of center_m, yaw_deg and size_m")]
+    NothingToMove,
+}
+
+impl Edit {
+    /// The box that [`Edit::AddBox`] puts in, where the edit names its number.
+    pub fn added_box(&self) -> Option<SceneBox> {
+        match self {
+            Self::AddBox {
+                class,
+                center_m,
+                size_m,
+                yaw_deg,
+                velocity_mps,
+                id: Some(id),
+                label,
+            } => Some(SceneBox {
+                id: *id,
+                class: *class,
+                center_m: *center_m,
+                size_m: *size_m,
+                yaw_rad: yaw_deg.to_radians(),
+                velocity_mps: velocity_mps.unwrap_or_default(),
+                label: *label,
+            }),
+            _ => None,
+        }
+    }
+
+    /// True if it changes things of the background.
+    pub fn is_of_things(&self) -> bool {
+        matches!(
+            self,
+            Self::AddThings { .. }
+                | Self::RemoveThings { .. }
+                | Self::MoveThings { .. }
+                | Self::RaiseThings { .. }
+                | Self::ChangeThing { .. }
+        )
+    }
+}
+
+impl From<SceneBox> for Edit {
+    /// Puts this very box in, with its id.
+    fn from(b: SceneBox) -> Self {
+        Self::AddBox {
+            class: b.class,
+            center_m: b.center_m,
+            size_m: b.size_m,
+            yaw_deg: b.yaw_rad.to_degrees(),
+            velocity_mps: Some(b.velocity_mps),
+            id: Some(b.id),
+            label: b.label,
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Messages for people: one line of bounded length, whatever a file, a driver or a parser says.
+
+use std::error::Error;
+use std::fmt::Display;
+
+/// Characters of the longest message.
+pub const LONGEST: usize = 300;
+
+/// A message as one line of at most [`LONGEST`] characters. Lines are joined by `; `, control characters become spaces.
+pub fn one_line(message: &(impl Display + ?Sized)) -> String {
+    shortened(&joined(&message.to_string()), LONGEST)
+}
+
+/// An error with its causes as one line of at most [`LONGEST`] characters. A cause that its parent has quoted already is
+/// left out, and so is a parent with which its cause begins.
+pub fn of_error(error: &(dyn Error + 'static)) -> String {
+    let mut text = String::new();
+    let mut next = Some(error);
+    while let Some(cause) = next {
+        let line = joined(&cause.to_string());
+        if line.starts_with(&text) {
+            text = line;
+        } else if !text.contains(&line) {
+            text = format!("{text}: {line}");
+        }
+        next = cause.source();
+    }
+    shortened(&text, LONGEST)
+}
+
+/// A piece of a file, made safe to quote: control characters become spaces, and what is longer than `most` characters
+/// ends in `…`.
+pub fn quoted(text: &str, most: usize) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut out: String = text.chars().take(most).map(plain).collect();
+    if text.chars().nth(most).is_some() {
+        out.push('…');
+    }
+    out
+}
+
+/// A line of at most `most` characters: of a longer one the middle is left out, because a message begins with the file
+/// and ends with the place in it.
+pub fn shortened(line: &str, most: usize) -> String {
+    let length = line.chars().count();
+    if length <= most {
+        return line.to_owned();
+    }
+    let kept = most.saturating_sub(3); // " … " stands for the rest
+    let tail = kept / 3;
+    let head: String = line.chars().take(kept - tail).collect();
+    let end: String = line.chars().skip(length - tail).collect();
+    format!("{head} … {end}")
+}
+
+/// Lines without their margins, joined.
+fn joined(text: &str) -> String {
+    let lines = text.lines().map(str::trim).filter(|l| !l.is_empty());
+    let line = lines.collect::<Vec<_>>().join("; ");
+    match line.contains(char::is_control) {
+        true => line.replace(char::is_control, " "),
+        false => line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug)]
+    struct Said(&'static str, Option<Box<Said>>);
+
+    impl Display for Said {
+        fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str(self.0)
+        }
+    }
+
+    impl Error for Said {
+        fn source(&self) -> Option<&(dyn Error + 'static)> {
+            self.1.as_deref().map(|s| s as _)
+        }
+    }
+
+    #[test]
+    fn a_message_is_one_line_of_bounded_length() {
+        assert_eq!(one_line("a\r\n\n  b\tc\n"), "a; b c");
+        assert_eq!(one_line(&7), "7");
+        let long = format!("begin {} end", "é".repeat(1 << 20));
+        let line = one_line(&long);
+        assert_eq!(line.chars().count(), LONGEST);
+        assert!(line.starts_with("begin é") && line.contains(" … ") && line.ends_with("é end"));
+        let fits = "x".repeat(LONGEST);
+        assert_eq!(one_line(&fits), fits);
+        assert_eq!(shortened("abc", 2), " … ");
+        assert_eq!(quoted("ab\ncd", 4), "ab c…");
+    }
+
+    #[test]
+    fn causes_are_told_once() {
+        let chain = |lines: &[&'static str]| {
+            let mut error = None;
+            for line in lines.iter().rev() {
+                error = Some(Box::new(Said(line, error)));
+            }
+            of_error(&*error.expect("a line"))
+        };
+        assert_eq!(
+            chain(&["read a.json", "no such\nfile"]),
+            "read a.json: no such; file"
+        );
+        assert_eq!(
+            chain(&["a.json: cut short (3)", "cut short"]),
+            "a.json: cut short (3)"
+        );
+        assert_eq!(chain(&["a.json", "a.json: cut short"]), "a.json: cut short");
+        assert_eq!(chain(&[""]), "");
+    }
+}

@@ -1,0 +1,157 @@
+//! What a drawable is, and the table of all of them.
+//!
+//! A new drawable is one file here with a type that implements [`Drawable`], one shader of the same name, and one line in
+//! [`all`].
+
+use std::fmt::Debug;
+
+use glam::DMat4;
+
+use super::change::Change;
+use super::marks::Marks;
+use super::shared::{FrameUniforms, Shared};
+use super::{ViewCamera, ViewOptions, ViewScene};
+
+/// Every drawable. Those of one layer are drawn in this order: near opaque things before far ones, since a software
+/// rasteriser then shades little that is covered later.
+pub(super) fn all() -> Vec<Box<dyn Drawable>> {
+    vec![
+        Box::new(super::ego::Ego::default()),
+        Box::new(super::points::Points::default()),
+        Box::new(super::voxels::Voxels::new()),
+        Box::new(super::background::Backdrop::default()),
+        Box::new(super::ground::Ground::default()),
+        Box::new(super::lines::Lines::default()),
+        Box::new(super::faces::Faces::default()),
+    ]
+}
+
+/// When something is drawn. A drawable may draw in several layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Layer {
+    /// Before all, where only a part of a picture is drawn again.
+    Erase,
+    /// What hides what is behind it.
+    Opaque,
+    /// What nothing opaque covers.
+    Backdrop,
+    /// The plane on the ground.
+    Ground,
+    /// What shows through opaque things, faintly.
+    Covered,
+    /// Translucent rectangles.
+    Fills,
+    /// Lines in sight.
+    Lines,
+}
+
+impl Layer {
+    /// Every layer, first to last.
+    pub const ALL: [Layer; 7] = [
+        Layer::Erase,
+        Layer::Opaque,
+        Layer::Backdrop,
+        Layer::Ground,
+        Layer::Covered,
+        Layer::Fills,
+        Layer::Lines,
+    ];
+}
+
+/// The device, and what all drawables share on it.
+#[derive(Clone, Copy)]
+pub(super) struct Gpu<'a> {
+    pub device: &'a wgpu::Device,
+    pub queue: &'a wgpu::Queue,
+    pub shared: &'a Shared,
+}
+
+/// What a picture shows, with what several drawables would compute of it.
+#[derive(Clone, Copy)]
+pub(super) struct Shown<'a> {
+    pub scene: &'a ViewScene<'a>,
+    /// Lines and fills over the voxels.
+    pub marks: &'a Marks,
+    /// Fingerprint of the layout's cells.
+    pub bev: u64,
+}
+
+/// How a picture is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub camera: &'a ViewCamera,
+    /// Maps the ego frame to -1 to 1 of what is drawn, with room for the discs of returns.
+    pub clip: DMat4,
+    pub uniforms: &'a FrameUniforms,
+    pub options: &'a ViewOptions,
+    pub shared: &'a Shared,
+    /// Samples per pixel, 1 or 4.
+    pub samples: u32,
+    /// True if only a part of the picture is drawn again.
+    pub part: bool,
+}
+
+/// Something that is drawn into the 3D view.
+pub(super) trait Drawable: Debug + Send + Sync {
+    /// Its name, that of its file and of its shader.
+    fn name(&self) -> &'static str;
+
+    /// Takes over what is shown, and uploads what differs from the last time; what of the picture changes by that.
+    /// Nothing that is the same costs more than a comparison.
+    fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change;
+
+    /// Makes its pipelines for so many samples per pixel, once.
+    fn build(&mut self, gpu: Gpu<'_>, samples: u32);
+
+    /// Draws its part of a layer.
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>, layer: Layer);
+
+    /// Memory of its vertices on the device, bytes.
+    fn memory_bytes(&self) -> u64;
+
+    /// Rectangles that it holds, seen or not.
+    fn quads(&self) -> usize {
+        0
+    }
+}
+
+/// A pipeline for 1 sample per pixel and one for 4, made when they are needed.
+#[derive(Debug, Default)]
+pub(super) struct Pipelines([Option<wgpu::RenderPipeline>; 2]);
+
+impl Pipelines {
+    /// Makes that for so many samples, unless it is there.
+    pub fn build(&mut self, samples: u32, make: impl FnOnce() -> wgpu::RenderPipeline) {
+        self.0[usize::from(samples > 1)].get_or_insert_with(make);
+    }
+
+    /// Sets that for the view's samples; false if it was never made.
+    pub fn set(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>) -> bool {
+        match &self.0[usize::from(view.samples > 1)] {
+            Some(pipeline) => {
+                pass.set_pipeline(pipeline);
+                true
+            }
+            None => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shaders::SHADERS;
+
+    #[test]
+    fn every_drawable_has_a_shader_of_its_name() {
+        let drawables = all();
+        for drawable in &drawables {
+            let named = SHADERS.iter().any(|s| s.name == drawable.name());
+            assert!(named, "no shader {}", drawable.name());
+        }
+        // Shaders of the 3D view without a drawable draw nothing.
+        let unused = |name: &&str| *name != "ui_mesh" && drawables.iter().all(|d| d.name() != *name);
+        let unused: Vec<&str> = SHADERS.iter().map(|s| s.name).filter(unused).collect();
+        assert!(unused.is_empty(), "{unused:?}");
+    }
+}

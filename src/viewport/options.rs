@@ -1,0 +1,160 @@
+//! What one picture shows and how: borrowed by whoever draws it.
+
+use super::GROUND_TOP_M;
+use scene::{BoxId, LidarSweep, SceneBox, SensorRig, VoxelGrid};
+
+/// What is behind the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Background {
+    /// Vertical gradient, sRGB.
+    Gradient {
+        /// At the upper edge.
+        top: [u8; 3],
+        /// At the lower edge.
+        bottom: [u8; 3],
+    },
+    /// Nothing: alpha 0. Fog is off.
+    Transparent,
+}
+
+impl Background {
+    /// For a dark window.
+    pub const DARK: Background = Background::Gradient {
+        top: [58, 66, 80],
+        bottom: [27, 30, 37],
+    };
+    /// For a light window.
+    pub const LIGHT: Background = Background::Gradient {
+        top: [206, 218, 231],
+        bottom: [238, 240, 243],
+    };
+}
+
+/// Where the layout shows as a plane on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayoutPlane {
+    /// Nowhere.
+    Off,
+    /// In columns without any voxel.
+    WhereEmpty,
+    /// Everywhere, over ground voxels too.
+    Always,
+}
+
+/// What is shown and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewOptions {
+    /// Show the occupancy.
+    pub voxels: bool,
+    /// Bit c hides class c.
+    pub hidden_classes: u32,
+    /// Hide voxels above this height, ego z, m; the bin that holds it stays.
+    pub clip_above_m: Option<f64>,
+    /// Thin lines between voxels.
+    pub voxel_edges: bool,
+    /// Sun shadows and shading by the sky that is in sight.
+    pub shadows: bool,
+    /// Road markings of the layout on ground voxels.
+    pub markings: bool,
+    /// The layout as a plane.
+    pub layout_plane: LayoutPlane,
+    /// Opacity of that plane, 0 to 1.
+    pub layout_opacity: f32,
+    /// Boxes as wire frames.
+    pub boxes: bool,
+    /// How much lower boxes, ego vehicle and cameras are drawn than they are, m. Labels put the ground
+    /// 0.6 m below the physical one ([`GROUND_TOP_M`]), so this makes things stand on the drawn road;
+    /// whoever picks boxes in the view adds it to the ray's z first. 0 draws them where they are.
+    pub drop_m: f64,
+    /// LiDAR returns.
+    pub lidar: bool,
+    /// Size of a LiDAR return, pixels.
+    pub point_px: f32,
+    /// The ego vehicle.
+    pub ego: bool,
+    /// Frusta of the rig's cameras.
+    pub frusta: bool,
+    /// Lines on the ground every 10 m, and axes.
+    pub grid_lines: bool,
+    /// What is behind.
+    pub background: Background,
+    /// Samples per pixel: 1, or 4 for smooth edges; other values mean 1.
+    pub samples: u32,
+    /// Physical pixels per point, for line widths.
+    pub pixels_per_point: f32,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self {
+            voxels: true,
+            hidden_classes: 0,
+            clip_above_m: None,
+            voxel_edges: true,
+            shadows: true,
+            markings: true,
+            layout_plane: LayoutPlane::WhereEmpty,
+            layout_opacity: 0.9,
+            boxes: true,
+            drop_m: -GROUND_TOP_M,
+            lidar: true,
+            point_px: 2.5,
+            ego: true,
+            frusta: false,
+            grid_lines: true,
+            background: Background::DARK,
+            samples: 4,
+            pixels_per_point: 1.0,
+        }
+    }
+}
+
+/// Returns of a LiDAR with a colour each.
+#[derive(Clone, Copy, Debug)]
+pub struct LidarView<'a> {
+    /// The returns.
+    pub sweep: &'a LidarSweep,
+    /// sRGB, one per return; see [`lidar_colors`].
+    pub colors: &'a [[u8; 4]],
+}
+
+/// Voxels under the brush or the pointer, or marked.
+#[derive(Clone, Copy, Debug)]
+pub struct BrushCells<'a> {
+    /// Voxel indices x, y, z; those outside of the grid are ignored.
+    pub cells: &'a [[usize; 3]],
+    /// sRGB.
+    pub color: [u8; 3],
+}
+
+/// All that one picture shows, borrowed.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewScene<'a> {
+    /// Occupancy.
+    pub grid: &'a VoxelGrid,
+    /// Layout, one bit per layer, `[x][y]`, 40,000 cells; of another size it shows nothing.
+    pub bev: &'a [u32],
+    /// Boxes; those with a [`SceneBox::problem`] are left out.
+    pub boxes: &'a [&'a SceneBox],
+    /// Selected boxes.
+    pub selected: &'a [BoxId],
+    /// Box under the pointer.
+    pub hovered: Option<BoxId>,
+    /// Voxels under the brush, or marked: one list for each colour.
+    pub brush: &'a [BrushCells<'a>],
+    /// LiDAR returns.
+    pub lidar: Option<LidarView<'a>>,
+    /// Sensors and ego vehicle.
+    pub rig: &'a SensorRig,
+    /// What is shown.
+    pub options: &'a ViewOptions,
+}
+
+/// A usable [`ViewOptions::drop_m`].
+pub(super) fn drop_m(options: &ViewOptions) -> f64 {
+    if options.drop_m.is_finite() {
+        options.drop_m.clamp(-100.0, 100.0)
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,181 @@
+//! The built command on files of many formats, and on what is no file at all: one line, no waiting, no reading to the end.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use formats::{box_list, export, import, project};
+use scene::{Class, GridSpec};
+use serde_json::Value;
+
+fn sceneloom(args: &[&str]) -> (i32, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_sceneloom"))
+        .args(args)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .output()
+        .expect("the built program runs");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.code().unwrap_or(-1),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+fn import(file: &str, out: &str) -> Value {
+    let (code, said, error) = sceneloom(&["import", file, "-o", out, "--json"]);
+    assert_eq!(code, 0, "{error}");
+    serde_json::from_str(&said).expect("one JSON object")
+}
+
+/// A labelled cloud of a scene's own voxels is that scene's occupancy.
+#[test]
+fn a_point_cloud_becomes_a_scene() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let scene = app::open::from_template("straight", 3).expect("a template");
+    let occupancy = &scene.frame().occupancy;
+    let mut cloud = Vec::new();
+    for (x, y, z, class) in occupancy.iter_set() {
+        let at = GridSpec::center(x, y, z).as_vec3();
+        cloud.extend([at.x, at.y, at.z].into_iter().flat_map(f32::to_le_bytes));
+        cloud.push(class);
+    }
+    let header = format!(
+        "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH {0}\nHEIGHT 1\n\
+         VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA binary\n",
+        cloud.len() / 13
+    );
+    std::fs::write(path("street.pcd"), [header.as_bytes(), &cloud].concat()).expect("written");
+    let report = import(&path("street.pcd"), &path("street.loom"));
+    assert_eq!(
+        (&report["format"], &report["skipped"]),
+        (&"pcd".into(), &serde_json::json!({}))
+    );
+    assert_eq!(report["occupied_voxels"], occupancy.count_set());
+    let found = project::load(Path::new(&path("street.loom"))).expect("a scene");
+    assert!(found.frame().occupancy == *occupancy && &*found.name == "street");
+    // The classes are enough to infer roads and boxes from, as with any labels.
+    let cars = found
+        .frame()
+        .boxes
+        .values()
+        .filter(|b| b.class == Class::Car)
+        .count();
+    assert!(cars > 0 && found.frame().inferred.layout, "{report}");
+    // Any command takes it as it is.
+    let (code, said, error) = sceneloom(&["check", &path("street.pcd"), "--json"]);
+    assert!(code < 2 && said.starts_with('{'), "{error}");
+}
+
+#[test]
+fn a_list_of_boxes_becomes_a_scene() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let scene = app::open::from_template("straight", 3).expect("a template");
+    let bytes = box_list::to_bytes("s", scene.frame(), None, None).expect("finite");
+    std::fs::write(path("boxes.json"), bytes).expect("written");
+    let report = import(&path("boxes.json"), &path("boxes.loom"));
+    assert_eq!(report["boxes"], scene.frame().boxes.len());
+    let found = project::load(Path::new(&path("boxes.loom"))).expect("a scene");
+    assert_eq!(found.frame().boxes, scene.frame().boxes);
+}
+
+/// The help names what the tables hold.
+#[test]
+fn the_help_lists_every_format() {
+    let (code, help, _) = sceneloom(&["import", "--help"]);
+    let words = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(code == 0 && words.contains(&import::in_words()), "{help}");
+    let (_, help, _) = sceneloom(&["export", "--help"]);
+    for format in export::all() {
+        assert!(help.contains(format.id), "{} is not in {help}", format.id);
+    }
+}
+
+/// Pipes, devices, folders and sparse files are refused at once wherever a file can be named.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_of_a_sane_size_is_refused_at_once() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let made = Command::new("mkfifo").arg(path("pipe")).status();
+    assert!(made.expect("mkfifo").success());
+    let sparse = std::fs::File::create(path("sparse.loom")).expect("made");
+    sparse.set_len(1 << 36).expect("a sparse file");
+    std::fs::write(path("s.loom"), assets::scenes::FIRST_LIGHT).expect("written");
+    let since = Instant::now();
+    let mut refusals = 0;
+    for (name, what) in [
+        (path("pipe"), "a pipe, expected a regular file"),
+        ("/dev/zero".to_owned(), "a device, expected a regular file"),
+        (path(""), "a folder, expected a regular file"),
+        (path("sparse.loom"), "bytes, expected at most"),
+    ] {
+        let (scene, out) = (path("s.loom"), path("out"));
+        let commands: [&[&str]; 6] = [
+            &["import", &name, "-o", &out],
+            &["check", &name],
+            &["export", &name, "--format", "occ3d", "-o", &out],
+            &["edit", &scene, "--edits", &name, "-o", &out],
+            &["render", &scene, "--rig", &name, "-o", &out],
+            &["diff", &name, &scene],
+        ];
+        for args in commands {
+            let (code, _, error) = sceneloom(args);
+            let lines = error.trim_end().lines().count();
+            assert!(
+                code == 2 && lines == 1 && error.contains(what),
+                "{args:?}: {code} {error}"
+            );
+            refusals += 1;
+        }
+    }
+    assert!(
+        refusals == 24 && since.elapsed() < Duration::from_secs(60),
+        "{:?}",
+        since.elapsed()
+    );
+    assert!(!dir.path().join("out").exists());
+}
+
+/// What a file holds a megabyte of is quoted in part.
+#[test]
+fn a_megabyte_in_a_file_is_a_line_of_300_characters() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let long = "x".repeat(1 << 20);
+    std::fs::write(path("s.loom"), assets::scenes::FIRST_LIGHT).expect("written");
+    std::fs::write(
+        path("a.xodr"),
+        format!("<OpenDRIVE><road length='{long}'/></OpenDRIVE>"),
+    )
+    .expect("written");
+    std::fs::write(path("b.xodr"), format!("<{long}/>")).expect("written");
+    let list = format!("{{\"format\":\"sceneloom_boxes\",\"boxes\":[{{\"id\":1,\"class\":{long:?}}}]}}");
+    std::fs::write(path("boxes.json"), list).expect("written");
+    std::fs::write(path("edits.json"), format!("[{{{long:?}:1}}]")).expect("written");
+    std::fs::write(path("rig.json"), format!("{{\"name\":1,{long:?}:1}}")).expect("written");
+    let out = path("out");
+    let (scene, edits, rig) = (path("s.loom"), path("edits.json"), path("rig.json"));
+    let (a, b, boxes) = (path("a.xodr"), path("b.xodr"), path("boxes.json"));
+    let commands: [(&[&str], &str); 5] = [
+        (&["import", &a, "-o", &out], "a.xodr"),
+        (&["import", &b, "-o", &out], "b.xodr"),
+        (&["import", &boxes, "-o", &out], "boxes.json"),
+        (&["edit", &scene, "--edits", &edits, "-o", &out], "edits.json"),
+        (&["render", &scene, "--rig", &rig, "-o", &out], "rig.json"),
+    ];
+    for (args, file) in commands {
+        let (code, _, error) = sceneloom(args);
+        let line = error.trim_end();
+        // "sceneloom: " goes before it.
+        assert!(code == 2 && line.contains(file), "{args:?}: {line}");
+        assert!(
+            line.chars().count() <= 312 && !line.contains('\n'),
+            "{}: {line}",
+            line.len()
+        );
+    }
+}

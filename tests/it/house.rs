@@ -1,0 +1,200 @@
+//! The house as docs/architecture.md describes it: who knows whom, how long files are, which licences are used, and that a
+//! reader finds things where the document says.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const DOCUMENT: &str = include_str!("../../docs/architecture.md");
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn files(folder: &str, named: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
+    let (mut found, mut open) = (Vec::new(), vec![root().join(folder)]);
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
+            if path.is_dir() {
+                open.push(path);
+            } else if name.is_some_and(|n| named(&n)) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+fn rust(folder: &str) -> Vec<PathBuf> {
+    files(folder, &|name| name.ends_with(".rs"))
+}
+
+/// Rooms by name: their folder, and the rooms that their program code depends on.
+fn rooms() -> BTreeMap<String, (String, Vec<String>)> {
+    let workspace = read(&root().join("Cargo.toml"));
+    let path_of = |line: &str| -> Option<(String, String)> {
+        let (name, rest) = line.split_once(" = { package = \"sceneloom-")?;
+        let path = rest.split_once("path = \"")?.1.split_once('"')?.0;
+        Some((name.to_owned(), path.to_owned()))
+    };
+    let folders: BTreeMap<String, String> = workspace.lines().filter_map(path_of).collect();
+    let mut rooms = BTreeMap::new();
+    for (name, folder) in &folders {
+        let manifest = read(&root().join(folder).join("Cargo.toml"));
+        let dependencies = manifest.split("[dependencies]").nth(1).unwrap_or("");
+        let dependencies = dependencies.split("\n[").next().unwrap_or("");
+        let named = |line: &str| line.split(['.', ' ', '=']).next().unwrap_or("").to_owned();
+        let known = dependencies
+            .lines()
+            .map(named)
+            .filter(|n| folders.contains_key(n));
+        rooms.insert(name.clone(), (folder.clone(), known.collect()));
+    }
+    assert!(rooms.len() > 15, "rooms of the workspace: {rooms:?}");
+    rooms
+}
+
+#[test]
+fn rooms_know_only_whom_they_may() {
+    for (name, (folder, known)) in rooms() {
+        assert!(
+            DOCUMENT.contains(&format!("| {name} | `{folder}/`")),
+            "docs/architecture.md does not name {name} in {folder}"
+        );
+        // The two gen rooms that open and change scenes may know those that do.
+        let opens_scenes = matches!(&*name, "authoring" | "judge");
+        for other in known {
+            let may = match (&*name, &*other) {
+                ("app", _) => true,
+                (_, "app") => false,
+                ("assets" | "numeric", _) => false,
+                ("scene", other) => matches!(other, "assets" | "numeric"),
+                ("editor" | "formats" | "viewport", other) => matches!(other, "scene" | "assets" | "numeric"),
+                (_, "editor" | "formats") => opens_scenes,
+                (_, "viewport") => false,
+                _ => true,
+            };
+            assert!(may, "{name} must not know {other}");
+        }
+    }
+}
+
+#[test]
+fn files_are_short_and_the_shell_is_small() {
+    const LONGEST: usize = 600;
+    let lines = |path: &PathBuf| read(path).lines().count();
+    for folder in ["src", "tests", "benches", "fuzz", "training", "assets"] {
+        for path in rust(folder) {
+            let found = lines(&path);
+            assert!(
+                found <= LONGEST,
+                "{}: {found} lines, at most {LONGEST}",
+                path.display()
+            );
+        }
+    }
+    let mut all: Vec<usize> = rust("src").iter().map(lines).collect();
+    all.sort_unstable();
+    let median = all[all.len() / 2];
+    println!(
+        "{} files, median {median} lines, {} in all",
+        all.len(),
+        all.iter().sum::<usize>()
+    );
+    assert!(median <= 200, "{median}");
+    let shell: usize = rust("src/app").iter().map(lines).sum();
+    println!("src/app: {shell} lines");
+}
+
+#[test]
+fn documents_are_short_and_their_links_lead_somewhere() {
+    let readme = read(&root().join("README.md"));
+    assert!(readme.len() <= 9000, "README.md has {} bytes", readme.len());
+    let mut documents = files("docs", &|name| name.ends_with(".md"));
+    documents.extend(files("tests", &|name| name.ends_with(".md")));
+    documents.extend([root().join("README.md"), root().join("training/README.md")]);
+    for document in documents {
+        let text = read(&document);
+        for link in text.split("](").skip(1).filter_map(|t| t.split_once(')')) {
+            let target = link.0.split('#').next().unwrap_or("");
+            if target.is_empty() || target.contains("://") || target.contains(char::is_whitespace) {
+                continue;
+            }
+            let path = document.parent().expect("a folder").join(target);
+            assert!(path.exists(), "{}: {target} is not there", document.display());
+        }
+    }
+}
+
+/// Licences of all libraries that are built on this system, against the list in deny.toml. An expression is met if one of
+/// its alternatives consists of listed licences.
+#[test]
+fn licences_are_permissive() {
+    let output = std::process::Command::new(env!("CARGO"))
+        .current_dir(root())
+        .args(["metadata", "--format-version", "1", "--offline", "--locked"])
+        .args(["--filter-platform", "x86_64-unknown-linux-gnu"])
+        .output()
+        .expect("cargo");
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let allowed = read(&root().join("deny.toml"));
+    let is_allowed = |one: &str| allowed.contains(&format!("\"{one}\""));
+    let packages = metadata["packages"].as_array().expect("packages");
+    assert!(packages.len() > 300, "{}", packages.len());
+    for package in packages {
+        let name = &package["name"];
+        let text = package["license"].as_str().unwrap_or("none").replace('/', " OR ");
+        let met = text.split(" AND ").all(|part| {
+            let part = part.trim().trim_start_matches('(').trim_end_matches(')');
+            part.split(" OR ").any(|one| is_allowed(one.trim()))
+        });
+        assert!(met, "{name} is under {text}");
+    }
+}
+
+/// Ten lines that a reader of docs/architecture.md is asked to find, and the folder that the answer is. Somebody who had
+/// read nothing else named the folder of each (see docs/architecture.md, at the end).
+const TEN: [(&str, &str); 10] = [
+    ("pub enum Edit {", "src/scene/"),
+    ("pub fn commit_drag(", "src/editor/"),
+    ("pub struct DdimStep", "src/gen/diffusion/"),
+    ("pub struct GenWorker", "src/gen/job/"),
+    ("pub struct Int8Matrix", "src/gen/nn/"),
+    ("pub struct OccVae ", "src/gen/nets/"),
+    ("pub trait CameraSource", "src/gen/sensors/"),
+    ("pub struct Reading {", "src/gen/words/"),
+    ("pub fn frechet", "src/gen/metrics/"),
+    ("pub trait Pane", "src/app/panes/"),
+];
+
+#[test]
+fn ten_lines_are_where_the_document_says() {
+    for (line, folder) in TEN {
+        let room = folder.trim_end_matches('/');
+        assert!(
+            DOCUMENT.contains(room),
+            "docs/architecture.md does not name {folder}"
+        );
+        let holds = |path: &&PathBuf| read(path).contains(line);
+        let everywhere: Vec<PathBuf> = rust("src").iter().filter(holds).cloned().collect();
+        assert!(!everywhere.is_empty(), "{line} is nowhere");
+        for path in everywhere {
+            assert!(
+                path.starts_with(root().join(room)),
+                "{line} is in {}, expected {folder}",
+                path.display()
+            );
+        }
+    }
+}
