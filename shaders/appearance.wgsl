@@ -35,7 +35,9 @@ fn a_clouds() -> f32 { return view.air[0].w; }
 fn a_sun() -> vec3f { return view.air[1].xyz; }
 fn a_haze_per_m() -> f32 { return view.air[1].w; }
 fn a_zenith() -> vec3f { return view.air[2].xyz; }
-fn a_wet() -> f32 { return view.air[2].w; }
+// Falling rain is 2 more than the wet ground.
+fn a_rain() -> bool { return view.air[2].w >= 2.0; }
+fn a_wet() -> f32 { return view.air[2].w - select(0.0, 2.0, a_rain()); }
 fn a_horizon() -> vec3f { return view.air[3].xyz; }
 fn a_snow() -> f32 { return view.air[3].w; }
 fn a_ambient() -> vec3f { return view.air[4].xyz; }

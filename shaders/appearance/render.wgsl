@@ -3,7 +3,7 @@
 
 fn falling(o: vec3f, d: vec3f, t: f32, pixel: f32, start: vec3f) -> vec3f {
     var color = start;
-    let rain = a_wet() >= 1.0;
+    let rain = a_rain();
     if !rain && !(a_snow() > 0.0) {
         return color;
     }

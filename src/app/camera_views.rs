@@ -6,7 +6,6 @@ use egui::ColorImage;
 
 use super::state::{LidarModel, UiState};
 use scene::Scene;
-use sensors::appearance::Conditions;
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
 use sensors::march::MarchScene;
 use viewport::LidarColorMode;
@@ -63,10 +62,7 @@ pub fn camera_input(scene: &Scene, detail: Detail) -> CameraInput<'_> {
         frame: scene.frame(),
         rig: &scene.rig,
         background: &scene.background,
-        conditions: Conditions {
-            seed: scene.seed,
-            ..Conditions::from_prompt(&scene.prompt)
-        },
+        conditions: scene.conditions,
         detail,
     }
 }

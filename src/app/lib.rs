@@ -11,8 +11,6 @@ pub mod command;
 mod endpoint;
 pub mod export;
 pub mod graphics;
-#[cfg(test)]
-mod guarded_tests;
 mod marks;
 mod meant;
 pub mod paint;

@@ -9,7 +9,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::Shape;
 use scene::draft::draft;
-use scene::{BevLayer, BevLayout, BoxId, Class, Frame, GridSpec, SceneBox, SensorRig};
+use scene::{
+    BevLayer, BevLayout, BoxId, Class, Conditions, Frame, GridSpec, SceneBox, SensorRig, TimeOfDay, Weather,
+};
 
 fn start() -> Scene {
     let mut layout = BevLayout::default();
@@ -37,8 +39,23 @@ fn start() -> Scene {
 
 /// All that two equal scenes share, the revision aside.
 fn same(a: &Scene, b: &Scene) -> bool {
-    (&a.name, &a.prompt, &a.rig, &a.frames, a.current, a.seed)
-        == (&b.name, &b.prompt, &b.rig, &b.frames, b.current, b.seed)
+    (
+        &a.name,
+        &a.prompt,
+        a.conditions,
+        &a.rig,
+        &a.frames,
+        a.current,
+        a.seed,
+    ) == (
+        &b.name,
+        &b.prompt,
+        b.conditions,
+        &b.rig,
+        &b.frames,
+        b.current,
+        b.seed,
+    )
 }
 
 fn add(x: f64, y: f64) -> Edit {
@@ -108,6 +125,9 @@ fn any_edit() -> impl Strategy<Value = Edit> {
         voxels.prop_map(|cells| Edit::UnlockVoxels { cells }),
         Just(Edit::ClearPaint {}),
         "[a-c]{0,2}".prop_map(|prompt| Edit::SetPrompt { prompt }),
+        (0..4usize, 0..6usize, 0..3u64).prop_map(|(time, weather, seed)| Edit::SetConditions {
+            conditions: Conditions::usual(TimeOfDay::ALL[time], Weather::ALL[weather], seed),
+        }),
     ]
 }
 

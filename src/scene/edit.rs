@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::grid::GridSpec;
 use crate::shape::Shape;
-use crate::{BevLayer, BoxId, BoxLabel, Class, Form, Polyline, SceneBox, SensorRig, ThingId, VoxelGrid};
+use crate::{
+    BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Polyline, SceneBox, SensorRig, ThingId,
+    VoxelGrid,
+};
 
 /// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
@@ -184,6 +187,11 @@ pub enum Edit {
         /// The text; empty means none.
         prompt: String,
     },
+    /// Replaces light and air. No voxel changes.
+    SetConditions {
+        /// The new ones.
+        conditions: Conditions,
+    },
     /// Notes words that were typed to change the scene.
     KeepWords {
         /// The words.
@@ -230,6 +238,12 @@ pub enum EditError {
     /// The thing that would result is not sound; see [`Form::problem`].
     #[error("{0}")]
     BadThing(String),
+    /// As many boxes as a frame holds are there.
+    #[error("this frame holds {} boxes already, expected at most {}", .0, Frame::MAX_BOXES)]
+    TooManyBoxes(usize),
+    /// As many waivers as a frame holds are there.
+    #[error("this frame holds {} waivers already, expected at most {}", .0, Frame::MAX_WAIVERS)]
+    TooManyWaivers(usize),
     /// No id is left for a new box.
     #[error("no box id is left above {}", u32::MAX)]
     NoIdLeft,
@@ -239,6 +253,9 @@ pub enum EditError {
     /// The sensors that would result are not sound; see [`SensorRig::problem`].
     #[error("{0}")]
     BadRig(String),
+    /// The conditions that would result are not sound; see [`Conditions::problem`].
+    #[error("{0}")]
+    BadConditions(String),
     /// Layers of objects come from boxes.
     #[error("layer {:?} shows boxes and cannot be painted, expected one of the eight map layers", .0.name())]
     ObjectLayer(BevLayer),
@@ -316,6 +333,18 @@ impl Edit {
             }),
             _ => None,
         }
+    }
+
+    /// True if it changes a box.
+    pub fn is_of_a_box(&self) -> bool {
+        matches!(
+            self,
+            Self::AddBox { .. }
+                | Self::RemoveBox { .. }
+                | Self::MoveBox { .. }
+                | Self::LabelBox { .. }
+                | Self::SetBoxClass { .. }
+        )
     }
 
     /// True if it changes things of the background.

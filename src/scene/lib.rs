@@ -4,6 +4,7 @@ pub mod background;
 pub mod box_label;
 pub mod boxes;
 pub mod classes;
+pub mod conditions;
 pub mod density;
 pub mod distance;
 pub mod draft;
@@ -39,6 +40,7 @@ pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
+pub use conditions::{Conditions, Sun, TimeOfDay, Weather};
 pub use density::Density;
 pub use edit::{Edit, EditError};
 pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
@@ -101,6 +103,11 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// Boxes that a frame holds at most.
+    pub const MAX_BOXES: usize = 20_000;
+    /// Waivers that a frame holds at most.
+    pub const MAX_WAIVERS: usize = 10_000;
+
     /// A frame whose occupancy is its own source.
     pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, occupancy: VoxelGrid) -> Self {
         let source = Arc::new(SourceFrame {
@@ -140,8 +147,10 @@ pub struct Scene {
     pub rev: SceneRev,
     /// Name shown to the user.
     pub name: Arc<str>,
-    /// Free text that describes style (time of day, weather); empty when none.
+    /// Free text that describes the style; empty when none. What it says of light and air is in `conditions`.
     pub prompt: Arc<str>,
+    /// Light and air.
+    pub conditions: Conditions,
     /// What was typed to make it and to change it, in order.
     pub words: Arc<Vec<String>>,
     /// Cameras and LiDARs.
@@ -157,12 +166,16 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A clip of a single frame.
+    /// A clip of a single frame on a clear day.
     pub fn single(name: &str, frame: Frame, rig: Arc<SensorRig>, seed: u64) -> Self {
         Self {
             rev: SceneRev::fresh(),
             name: name.into(),
             prompt: "".into(),
+            conditions: Conditions {
+                seed,
+                ..Conditions::default()
+            },
             words: Arc::default(),
             rig,
             background: Arc::default(),

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
 use scene::look::LookData;
-use scene::{Camera, Frame, SensorRig, VoxelGrid};
-use sensors::appearance::{CameraImage, Conditions, Look, Quality, TimeOfDay, Weather};
+use scene::{Camera, Conditions, Frame, SensorRig, TimeOfDay, VoxelGrid, Weather};
+use sensors::appearance::{CameraImage, Look, Quality};
 use viewport::{LookRenderer, headless_device};
 use world::World;
 use world::voxelize::{Vertical, complete};
@@ -72,11 +72,7 @@ fn pictures_agree_with_the_processor() {
         ("dawn, overcast", TimeOfDay::Dawn, Weather::Overcast),
         ("sandstorm", TimeOfDay::Day, Weather::Sandstorm),
     ] {
-        let conditions = Conditions {
-            time,
-            weather,
-            seed: 3,
-        };
+        let conditions = Conditions::usual(time, weather, 3);
         let look = Look::new(&frame, &rig, &conditions);
         let mut gpu = gpu();
         gpu.set_look(&look.data()).expect("room");

@@ -11,8 +11,8 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use scene::draft::draft;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Frame, Polyline, PolylineKind, Pose, Scene, SceneBox, SensorRig,
-    VoxelGrid,
+    BevLayer, BevLayout, BoxId, Class, Conditions, Frame, Polyline, PolylineKind, Pose, Scene, SceneBox,
+    SensorRig, TimeOfDay, VoxelGrid, Weather,
 };
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
@@ -53,6 +53,15 @@ fn clip() -> Scene {
         u64::MAX,
     );
     scene.prompt = "night, rain".into();
+    scene.conditions = Conditions {
+        wetness: 0.3,
+        visibility_m: 1e3 / 3.0,
+        sun: Some(scene::Sun {
+            azimuth_deg: -12.5,
+            elevation_deg: 1.0 / 3.0,
+        }),
+        ..Conditions::usual(TimeOfDay::Dusk, Weather::Snow, u64::MAX)
+    };
     scene.frames.push(Arc::new(Frame {
         time_s: 0.5,
         ..settled.clone()
@@ -94,8 +103,8 @@ fn clip() -> Scene {
 
 fn assert_same(a: &Scene, b: &Scene) {
     assert_eq!(
-        (&a.name, &a.prompt, a.current, a.seed),
-        (&b.name, &b.prompt, b.current, b.seed)
+        (&a.name, &a.prompt, a.conditions, a.current, a.seed),
+        (&b.name, &b.prompt, b.conditions, b.current, b.seed)
     );
     assert_eq!(a.rig, b.rig);
     assert_eq!(a.frames.len(), b.frames.len());
@@ -404,10 +413,10 @@ fn what_is_missing_or_unknown_is_named() {
     assert!(missing.contains("missing field `seed`"), "{missing}");
     let count = json_refusal("manifest.json", "\"frames\":3", "\"frames\":2");
     assert!(count.contains("3 frames, expected 2"), "{count}");
-    let version = json_refusal("manifest.json", "\"version\":2,", "\"version\":3,\"new_key\":0,");
+    let version = json_refusal("manifest.json", "\"version\":3,", "\"version\":4,\"new_key\":0,");
     assert_eq!(
         version,
-        "manifest.json: version is 3, expected 2; open it with the sceneloom that wrote it"
+        "manifest.json: version is 4, expected 3; open it with the sceneloom that wrote it"
     );
     let format = json_refusal("manifest.json", "\"sceneloom\"", "\"krita\"");
     assert_eq!(
@@ -488,6 +497,52 @@ proptest! {
     }
 }
 
+/// Files from before the conditions are drawn as their prompts were; newer ones must have them.
+#[test]
+fn old_files_take_their_conditions_from_the_prompt() {
+    let opened = |prompt: &str, version: u32| {
+        let mut scene = clip();
+        scene.prompt = prompt.into();
+        let mut entries = unpack(&project::to_bytes(&scene).expect("sound"));
+        for (name, content) in &mut entries {
+            let text = || String::from_utf8(content.clone()).expect("JSON");
+            if name == "manifest.json" {
+                *content = text()
+                    .replace("\"version\":3", &format!("\"version\":{version}"))
+                    .into_bytes();
+            } else if name == "scene.json" {
+                let mut json: serde_json::Value = serde_json::from_str(&text()).expect("JSON");
+                let gone = json.as_object_mut().expect("an object").remove("conditions");
+                assert!(gone.is_some());
+                *content = json.to_string().into_bytes();
+            }
+        }
+        project::from_bytes(&pack(&entries))
+    };
+    for (prompt, time, weather) in [
+        ("", TimeOfDay::Day, Weather::Clear),
+        ("night, rain, downtown", TimeOfDay::Night, Weather::Rain),
+        ("a foggy evening", TimeOfDay::Dusk, Weather::Fog),
+        ("it is no longer raining", TimeOfDay::Day, Weather::Rain),
+    ] {
+        for version in [1, 2] {
+            let scene = opened(prompt, version).expect("an old file");
+            assert_eq!(
+                scene.conditions,
+                Conditions::usual(time, weather, scene.seed),
+                "{prompt}"
+            );
+            assert_eq!(&*scene.prompt, prompt);
+        }
+    }
+    assert_eq!(
+        text_of(opened("night", 3)),
+        "scene.json: conditions are missing, expected them since version 3"
+    );
+    let damp = json_refusal("scene.json", "\"wetness\":0.3", "\"wetness\":1.3");
+    assert_eq!(damp, "scene.json: conditions: wetness is 1.3, expected 0 to 1");
+}
+
 /// Background and relief, of the frame and of its source, come back bit for bit; a file of version 1 opens without either.
 #[test]
 fn background_and_relief_come_back_and_version_1_opens() {
@@ -525,8 +580,8 @@ fn background_and_relief_come_back_and_version_1_opens() {
         .expect("there")
         .1;
     let text = String::from_utf8(manifest.clone()).expect("JSON");
-    assert!(text.contains("\"version\":2"), "{text}");
-    *manifest = text.replace("\"version\":2", "\"version\":1").into_bytes();
+    assert!(text.contains("\"version\":3"), "{text}");
+    *manifest = text.replace("\"version\":3", "\"version\":1").into_bytes();
     let old = project::from_bytes(&pack(&entries)).expect("version 1 opens");
     assert!(old.background.is_empty() && old.frames[0].layout.relief.is_flat());
 

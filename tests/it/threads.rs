@@ -17,10 +17,8 @@ use nets::{Heard, OccModels, fine_vae};
 use nn::Precision;
 use numeric::hash::Fnv1a;
 use place::to_graph::to_graph;
-use scene::{Class, Frame, Scene, SensorRig};
-use sensors::appearance::{
-    Conditions, Quality, RayMarched, SynthesisInput, TimeOfDay, ViewSynthesizer, Weather,
-};
+use scene::{Class, Conditions, Frame, Scene, SensorRig, TimeOfDay, Weather};
+use sensors::appearance::{Quality, RayMarched, SynthesisInput, ViewSynthesizer};
 use sensors::cloud::GaussianCloud;
 use sensors::learned::{Drops, rig_sweep};
 use sensors::march::{MarchOptions, MarchScene};
@@ -235,11 +233,7 @@ fn pictures() {
                 rig: &scene.rig,
                 size: [96, 54],
                 prompt: "",
-                conditions: Conditions {
-                    time,
-                    weather,
-                    seed: 3,
-                },
+                conditions: Conditions::usual(time, weather, 3),
                 quality: Quality::Full,
             };
             let pictures = RayMarched.synthesize(&input).expect("pictures");

@@ -1,10 +1,9 @@
 //! `sceneloom check`: the quality checks of a scene, and what of it can be repaired.
 
-use editor::Apply;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::{anyhow, bail};
+use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
 use super::{Common, Outcome, Stop, output};
@@ -65,12 +64,8 @@ impl Check {
         if let Some(path) = &self.output {
             let before = findings.len();
             let mut apply = || -> anyhow::Result<()> {
-                for edit in checks::fix_all(&scene, &findings) {
-                    if let Err(error) = edit.apply(&mut scene) {
-                        bail!("a fix does not apply: {error}");
-                    }
-                }
-                Ok(())
+                let edits = checks::fix_all(&scene, &findings);
+                editor::apply_all(&edits, &mut scene).context("a fix does not apply")
             };
             apply()?;
             findings = self.findings(&scene);

@@ -13,6 +13,7 @@ use super::render::sense;
 use super::{Common, Outcome, output};
 use crate::open;
 use crate::picture::{self, Picture, View3d};
+use crate::text::with_conditions;
 use editor::{Document, Edit, Shape};
 use formats::project;
 use job::pipeline::OccPipeline;
@@ -188,11 +189,12 @@ impl Demo {
         let calls = progress.with_ctx(|ctx| pipeline.prepare(&job, ctx))?;
         let invert_s = start.elapsed().as_secs_f64();
         let mut rows = Vec::new();
+        let seed = document.scene().conditions.seed;
         for (i, (label, edits)) in edits(document.scene()).into_iter().enumerate() {
             let before = sink.row(document.scene())?;
             let edit_start = Instant::now();
             document
-                .apply_all(label, &edits)
+                .apply_all(label, &with_conditions(&edits, seed))
                 .with_context(|| label.to_string())?;
             let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
             let wall_s = edit_start.elapsed().as_secs_f64();

@@ -72,6 +72,10 @@ impl Diff {
             "prompt".into(),
             json!({ "changed": a.prompt != b.prompt, "a": a.prompt, "b": b.prompt }),
         );
+        report.insert(
+            "conditions".into(),
+            json!({ "changed": a.conditions != b.conditions, "a": a.conditions, "b": b.conditions }),
+        );
         report.insert("rig_changed".into(), (a.rig != b.rig).into());
         report.insert("frames".into(), json!([a.frames.len(), b.frames.len()]));
         if let Some(path) = &self.output {

@@ -9,6 +9,7 @@ use super::generate::run_and_adopt;
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, Stop, output};
 use crate::open;
+use crate::text::with_conditions;
 use editor::{Document, Edit};
 use formats::{input, project};
 use job::pipeline::OccPipeline;
@@ -50,10 +51,11 @@ impl EditCommand {
         let edits = read_edits(&self.edits)?;
         let progress = Progress::new(&self.common);
         let params = self.generation.params(GenParams::default())?;
+        let seed = scene.conditions.seed;
         let mut document = Document::new(scene);
         let before = document.scene().clone();
         document
-            .apply_all("Edit", &edits)
+            .apply_all("Edit", &with_conditions(&edits, seed))
             .with_context(|| self.edits.display().to_string())?;
         let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
         let round_trip = if self.verify {

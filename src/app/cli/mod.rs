@@ -21,6 +21,7 @@ mod render;
 mod scenery;
 mod shot;
 mod trade;
+mod wrong;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -84,7 +85,7 @@ enum Command {
 /// Whether a command line can be parsed, program name first; the message that a user would see if not. Runs nothing.
 pub fn accepts(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<(), String> {
     let parsed = Cli::try_parse_from(arguments);
-    parsed.map(|_| ()).map_err(|e| e.to_string())
+    parsed.map(|_| ()).map_err(|e| wrong::message(&e))
 }
 
 /// What reads our output may end early (`| head`): then the program ends too, as others do, and says nothing.
@@ -106,7 +107,10 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // --help and --version come this way too, with exit 0; bad arguments with 2.
-            let _ = error.print();
+            match error.use_stderr() {
+                true => eprint!("{}", wrong::message(&error)),
+                false => drop(error.print()),
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };

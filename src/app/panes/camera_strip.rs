@@ -41,8 +41,6 @@ pub struct CamerasInput<'a> {
     pub views: Option<&'a Arc<Vec<CameraView>>>,
     /// The pictures belong to an earlier state.
     pub stale: bool,
-    /// Text that decides time and weather.
-    pub prompt: &'a str,
     /// Returns of the newest sweep.
     pub lidar_points: Option<usize>,
 }
@@ -53,7 +51,6 @@ impl<'a> CamerasInput<'a> {
         Self {
             scene,
             views: sensing.cameras(),
-            prompt: &scene.prompt,
             stale: sensing.cameras_stale(rev),
             lidar_points: sensing.lidar().map(|l| l.points.len()),
         }

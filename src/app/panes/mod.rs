@@ -10,6 +10,7 @@ pub mod camera_strip;
 mod cameras;
 pub mod checks;
 pub mod compare;
+mod conditions;
 pub mod history;
 pub mod id;
 mod label;

@@ -8,7 +8,6 @@ use crate::prompting::Ask;
 use crate::tools::Choose;
 use editor::Edit;
 use scene::{BoxId, Frame};
-use sensors::appearance::Conditions;
 use sensors::cameras::pictures;
 
 /// Most boxes that are chosen after an edit; of more one sees no more than of none.
@@ -27,8 +26,7 @@ impl SceneloomApp {
         let after = self.document.settled_scene();
         self.generation.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
         let changed = changed_boxes(before.frame(), after.frame());
-        let conditions = |prompt: &str| Conditions::from_prompt(prompt);
-        let other_light = conditions(&before.prompt) != conditions(&after.prompt);
+        let other_light = before.conditions != after.conditions;
         if !changed.is_empty() && changed.len() <= MOST_CHOSEN {
             self.state.choose(&changed, Choose::Only);
         }

@@ -18,6 +18,8 @@ pub mod folders;
 pub mod generation;
 mod generation_commands;
 pub mod guard;
+#[cfg(test)]
+mod guarded_tests;
 mod hints;
 pub mod keymap;
 mod keys;

@@ -23,6 +23,9 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
             id,
             label,
         } => {
+            if frame.boxes.len() >= Frame::MAX_BOXES {
+                return Err(EditError::TooManyBoxes(frame.boxes.len()));
+            }
             let id = match *id {
                 Some(id) => id,
                 None => next_id(frame)?,
@@ -80,9 +83,10 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
 fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
     let taken: &BTreeMap<_, _> = &frame.boxes;
     if taken.contains_key(&BoxId(u32::MAX)) {
-        // `next_box_id` counts up from the highest; look for a gap instead.
-        let free = (1..u32::MAX).find(|id| !taken.contains_key(&BoxId(*id)));
-        return free.map(BoxId).ok_or(EditError::NoIdLeft);
+        // `next_box_id` counts up from the highest; the lowest gap instead.
+        let above_zero = taken.keys().filter(|id| id.0 > 0);
+        let free = (1..).zip(above_zero).find(|(free, id)| id.0 != *free);
+        return free.map(|(id, _)| BoxId(id)).ok_or(EditError::NoIdLeft);
     }
     Ok(frame.next_box_id())
 }

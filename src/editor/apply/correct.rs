@@ -28,6 +28,9 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
             let new = waive::checked(check, *box_id, *where_m, reason)?;
             let list = Arc::make_mut(&mut frame.waivers);
             list.retain(|w| !same_finding(w, check, *box_id, *where_m));
+            if list.len() >= Frame::MAX_WAIVERS {
+                return Err(EditError::TooManyWaivers(list.len()));
+            }
             list.push(new);
         }
         Edit::Unwaive {

@@ -1,6 +1,7 @@
 //! Applies edits: the authored data, and at once a rough version in the voxels.
 
 mod at;
+mod box_run;
 mod boxes;
 mod correct;
 mod map;
@@ -33,6 +34,15 @@ impl Apply for Edit {
                 if scene.prompt.as_ref() != prompt {
                     scene.rev = scene::SceneRev::fresh();
                     scene.prompt = prompt.as_str().into();
+                }
+            }
+            Self::SetConditions { conditions } => {
+                if let Some(problem) = conditions.problem() {
+                    return Err(EditError::BadConditions(problem));
+                }
+                if scene.conditions != *conditions {
+                    scene.rev = scene::SceneRev::fresh();
+                    scene.conditions = *conditions;
                 }
             }
             Self::KeepWords { words } => {
@@ -76,7 +86,13 @@ impl Apply for Edit {
 
 /// Applies edits in order; an error stops there. Things that are changed one after another are drawn once, at the end.
 pub fn apply_all(edits: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
-    for run in edits.chunk_by(|a, b| a.is_of_things() && b.is_of_things()) {
+    let goes_on =
+        |a: &Edit, b: &Edit| a.is_of_things() && b.is_of_things() || a.is_of_a_box() && b.is_of_a_box();
+    for run in edits.chunk_by(goes_on) {
+        if run[0].is_of_a_box() {
+            box_run::apply(run, scene)?;
+            continue;
+        }
         if !run[0].is_of_things() {
             run.iter().try_for_each(|edit| edit.apply(scene))?;
             continue;

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::lanes::{gap_deg, near};
-use super::{Context, Finding, Fix, Severity, name_of};
+use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use scene::{BevLayer, Class, GridSpec, SceneBox};
 
@@ -15,7 +15,7 @@ const TOLERATED_DEG: f64 = 60.0;
 /// From here on it is against the lane and not across it, degrees.
 const AGAINST_DEG: f64 = 120.0;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let layout = &context.frame.layout;
     let on_wheels = |c: Class| c.is_vehicle() || c == Class::Motorcycle;
     for b in context.boxes.iter().filter(|b| on_wheels(b.class)) {

@@ -1,6 +1,6 @@
 //! Boxes in whose place no voxel of their class stands.
 
-use super::{Context, Finding, Fix, Severity, name_of};
+use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use scene::draft::box_columns;
 use scene::raster::box_cells;
@@ -10,7 +10,7 @@ pub const NAME: &str = "box_without_occupancy";
 /// Voxels this far outside a box still belong to it, m.
 const MARGIN_M: f64 = 0.3;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let grid = &context.frame.occupancy;
     for b in &context.boxes {
         let columns = box_columns(b);

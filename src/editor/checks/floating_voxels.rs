@@ -1,6 +1,6 @@
 //! Voxels that hang in the air: nothing connects them to the ground.
 
-use super::{Context, Finding, Fix, Severity, middle};
+use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
 use scene::support::{CROWN, bins_set, groups, is_known_to_float, main_class, stem};
 use scene::{Class, GridSpec};
@@ -9,7 +9,7 @@ pub const NAME: &str = "floating_voxels";
 /// Groups that are listed one by one, the largest; the rest is one finding.
 const LISTED: usize = 40;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     let bits = context.bits();
     let mut cells = Vec::new();

@@ -3,6 +3,7 @@
 
 mod against_lane;
 mod box_without_occupancy;
+mod findings;
 mod floating_voxels;
 mod geometry;
 mod lanes;
@@ -16,12 +17,13 @@ mod unsound;
 mod unsupported_parts;
 pub mod waive;
 
-use crate::Apply;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
 
 use super::Edit;
+use findings::Findings;
+pub use findings::MOST;
 use scene::draft::{ground_bin, ground_class};
 use scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, support};
 
@@ -106,7 +108,7 @@ struct Bits {
     supported: Vec<u16>,
 }
 
-type Check = fn(&Context<'_>, &mut Vec<Finding>);
+type Check = fn(&Context<'_>, &mut Findings);
 
 /// Every check, in the order of reports.
 const CHECKS: [(&str, Check); 12] = [
@@ -130,8 +132,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Runs every check on the frame being edited; errors first, else in the order of [`names`]. Without `seen` the two
-/// checks that need sensors are left out.
+/// checks that need sensors are left out. Of each check at most [`MOST`] findings are listed; one more counts the rest.
 pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
+    run(scene, seen, &CHECKS)
+}
+
+fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> Vec<Finding> {
     let Some(frame) = scene.frames.get(scene.current) else {
         return Vec::new();
     };
@@ -152,12 +158,12 @@ pub fn run_checks(scene: &Scene, seen: Option<&Seen>) -> Vec<Finding> {
             .saturating_add(1)
             .into(),
     };
-    let mut findings = Vec::new();
-    for (_, check) in CHECKS {
+    let mut findings = Findings::default();
+    for (name, check) in checks {
         check(&context, &mut findings);
+        findings.end(name);
     }
-    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    findings
+    findings.done()
 }
 
 /// The first fix of every finding that has one, as edits to be applied together. A fix that no longer applies after
@@ -168,7 +174,7 @@ pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
     let mut fix = |findings: &[&Finding], scratch: &mut Scene| {
         for fix in findings.iter().filter_map(|f| f.fixes.first()) {
             let mut next = scratch.clone();
-            if fix.edits.iter().all(|edit| edit.apply(&mut next).is_ok()) && next.rev != scratch.rev {
+            if crate::apply_all(&fix.edits, &mut next).is_ok() && next.rev != scratch.rev {
                 *scratch = next;
                 edits.extend(fix.edits.iter().cloned());
             }
@@ -180,16 +186,18 @@ pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
     );
     // A box that is moved out of one may come to stand in the next.
     for _ in 0..MOST_ROUNDS {
-        let left = run_checks(&scratch, None);
-        let crowded: Vec<&Finding> = waive::open(scratch.frame(), &left)
-            .filter(|f| f.check == overlapping_boxes::NAME)
-            .collect();
-        if crowded.is_empty() {
+        let left = run(
+            &scratch,
+            None,
+            &[(overlapping_boxes::NAME, overlapping_boxes::check)],
+        );
+        let frame = scratch.frame().clone();
+        let crowded: Vec<&Finding> = waive::open(&frame, &left).collect();
+        let before = scratch.rev;
+        fix(&crowded, &mut scratch);
+        if scratch.rev == before {
             break;
         }
-        let mut next = scratch.clone();
-        fix(&crowded, &mut next);
-        scratch = next;
     }
     edits
 }
@@ -250,3 +258,5 @@ fn middle(cells: &[[usize; 3]]) -> DVec3 {
 #[cfg(test)]
 #[path = "tests.rs"]
 mod tests;
+#[cfg(test)]
+mod tests_noise;

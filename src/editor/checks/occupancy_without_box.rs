@@ -1,6 +1,6 @@
 //! Voxels of a movable class that belong to no box.
 
-use super::{Context, Finding, Fix, Severity, middle, removal};
+use super::{Context, Finding, Findings, Fix, MOST, Severity, middle, removal};
 use crate::Edit;
 use scene::raster::box_cells;
 use scene::{Class, GridSpec, infer, support};
@@ -10,8 +10,10 @@ pub const NAME: &str = "occupancy_without_box";
 const MARGIN_M: f64 = 0.6;
 /// Smaller groups are noise of labels, voxels.
 const LEAST_VOXELS: usize = 4;
+/// A group that would need more boxes is noise, and a person has to decide.
+const MOST_BOXES: usize = 64;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     // Bit per class: columns in which it is explained by a box.
     let mut explained = vec![0u32; GridSpec::COLUMNS];
@@ -27,34 +29,42 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             left[label as usize].push([x, y, z]);
         }
     }
+    let mut groups: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     for class in Class::OBJECTS {
         let cells = std::mem::take(&mut left[class as usize]);
-        if cells.len() < LEAST_VOXELS {
+        let of_class = support::groups(cells).into_iter();
+        groups.extend(of_class.filter(|g| g.len() >= LEAST_VOXELS).map(|g| (class, g)));
+    }
+    if groups.len() > MOST {
+        // The largest are listed.
+        groups.sort_by_key(|(_, g)| std::cmp::Reverse(g.len()));
+    }
+    for (class, group) in groups {
+        if out.is_full() {
+            out.count(Severity::Warning, middle(&group));
             continue;
         }
-        for group in support::groups(cells) {
-            if group.len() < LEAST_VOXELS {
-                continue;
-            }
-            out.push(Finding {
-                check: NAME,
-                severity: Severity::Warning,
-                where_m: middle(&group),
-                box_id: None,
-                cells: group.clone(),
-                text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
-                fixes: vec![
+        out.push(Finding {
+            check: NAME,
+            severity: Severity::Warning,
+            where_m: middle(&group),
+            box_id: None,
+            cells: group.clone(),
+            text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
+            fixes: match boxes_for(context, class, &group) {
+                boxes if boxes.len() > MOST_BOXES => Vec::new(),
+                edits => vec![
                     Fix {
                         label: "Add a box",
-                        edits: boxes_for(context, class, &group),
+                        edits,
                     },
                     Fix {
                         label: "Remove these voxels",
                         edits: removal(frame, &group),
                     },
                 ],
-            });
-        }
+            },
+        });
     }
 }
 

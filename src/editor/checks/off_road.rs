@@ -2,7 +2,7 @@
 
 use super::geometry::{shared_area_m2, shared_height_m};
 use super::lanes::nearest;
-use super::{Context, Finding, Fix, Severity, name_of};
+use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, Class, GridSpec, SceneBox};
@@ -16,7 +16,7 @@ const REACH_M: f64 = 12.0;
 const ROAD: u32 =
     1 << BevLayer::DrivableArea as u32 | 1 << BevLayer::CarparkArea as u32 | 1 << BevLayer::RoadBlock as u32;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let layout = &context.frame.layout;
     // Without any road the layout says nothing about where vehicles belong.
     if layout.cells().iter().all(|c| c & ROAD == 0) {

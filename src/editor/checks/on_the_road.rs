@@ -1,6 +1,6 @@
 //! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
 
-use super::{Context, Finding, Fix, Severity, middle, removal};
+use super::{Context, Finding, Findings, Fix, Severity, middle, removal};
 use scene::support::{bins_set, groups, main_class, supported};
 use scene::{BevLayer, BevLayout, Class, GridSpec};
 
@@ -15,7 +15,7 @@ const LISTED: usize = 40;
 /// How far away the ground is looked for under a thing that covers it, columns.
 const REACH: usize = 8;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     let (grid, layout) = (&frame.occupancy, &frame.layout);
     let bits = context.bits();

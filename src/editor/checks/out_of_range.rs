@@ -1,6 +1,6 @@
 //! Boxes that stick in the ground, hover over it, or leave the grid at its top or sides.
 
-use super::{Context, Finding, Fix, Severity, name_of};
+use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use scene::{GridSpec, SceneBox};
 
@@ -8,7 +8,7 @@ pub const NAME: &str = "out_of_range";
 /// How far a bottom may lie from the ground, m: it is known by the column, and boxes are level.
 const TOLERANCE_M: f64 = 0.6;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     for b in &context.boxes {
         let ground_m = context.frame.layout.relief.height_m(b.center_m.truncate());
         let Some((severity, problem, may_drop)) = problem(b, ground_m) else {

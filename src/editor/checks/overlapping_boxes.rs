@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::geometry::{area_m2, shared_area_m2, shared_height_m, way_out_m};
 use super::unsound::are_duplicates;
-use super::{Context, Finding, Fix, Severity, name_of};
+use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 
 pub const NAME: &str = "overlapping_boxes";
@@ -16,10 +16,15 @@ const WRONG_SHARE: f64 = 0.3;
 /// Room that is left between boxes that are moved apart, m.
 const GAP_M: f64 = 0.1;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
+    let across_m: Vec<f64> = context
+        .boxes
+        .iter()
+        .map(|b| b.size_m.truncate().length())
+        .collect();
     for (i, a) in context.boxes.iter().enumerate() {
-        for b in &context.boxes[i + 1..] {
-            let reach = (a.size_m.truncate().length() + b.size_m.truncate().length()) / 2.0;
+        for (b, b_across_m) in context.boxes[i + 1..].iter().zip(&across_m[i + 1..]) {
+            let reach = (across_m[i] + b_across_m) / 2.0;
             let (pa, pb) = (a.center_m.truncate(), b.center_m.truncate());
             if pa.distance_squared(pb) >= reach * reach
                 || shared_height_m(a, b) <= TOLERATED_HEIGHT_M
@@ -31,7 +36,15 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             if share <= TOLERATED_SHARE {
                 continue;
             }
-            let wrong = share > WRONG_SHARE;
+            let severity = match share > WRONG_SHARE {
+                true => Severity::Error,
+                false => Severity::Warning,
+            };
+            let where_m = (a.center_m + b.center_m) / 2.0;
+            if out.is_full() {
+                out.count(severity, where_m);
+                continue;
+            }
             let remove = Fix {
                 label: "Remove the later box",
                 edits: vec![Edit::RemoveBox { id: b.id }],
@@ -49,8 +62,8 @@ pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
             };
             out.push(Finding {
                 check: NAME,
-                severity: if wrong { Severity::Error } else { Severity::Warning },
-                where_m: (a.center_m + b.center_m) / 2.0,
+                severity,
+                where_m,
                 box_id: Some(b.id),
                 cells: Vec::new(),
                 text: format!(

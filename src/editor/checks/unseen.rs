@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::box_without_occupancy::voxels;
-use super::{Context, Finding, Severity, name_of};
+use super::{Context, Finding, Findings, Severity, name_of};
 use scene::BoxId;
 
 pub const NO_CAMERA: &str = "unseen_by_cameras";
 pub const NO_LIDAR: &str = "no_lidar_returns";
 
-pub fn by_cameras(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn by_cameras(context: &Context<'_>, out: &mut Findings) {
     let counts = context.seen.and_then(|s| s.camera_pixels.as_ref());
     unseen(
         context,
@@ -20,7 +20,7 @@ pub fn by_cameras(context: &Context<'_>, out: &mut Vec<Finding>) {
     );
 }
 
-pub fn by_lidar(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn by_lidar(context: &Context<'_>, out: &mut Findings) {
     let counts = context.seen.and_then(|s| s.lidar_returns.as_ref());
     unseen(context, NO_LIDAR, counts, "has no LiDAR return", out);
 }
@@ -30,7 +30,7 @@ fn unseen(
     check: &'static str,
     counts: Option<&BTreeMap<BoxId, u32>>,
     problem: &str,
-    out: &mut Vec<Finding>,
+    out: &mut Findings,
 ) {
     let Some(counts) = counts else { return };
     for b in &context.boxes {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::{Context, Finding, Fix, Severity, middle, name_of, removal};
+use super::{Context, Finding, Findings, Fix, Severity, middle, name_of, removal};
 use crate::Edit;
 use scene::{BoxId, Class, SceneBox};
 
@@ -14,7 +14,7 @@ pub const NAME: &str = "unsound";
 const SAME_M: f64 = 0.15;
 const SAME_RAD: f64 = 0.1;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     for (id, b) in &frame.boxes {
         let problem = match b.problem() {

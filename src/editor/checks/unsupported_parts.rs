@@ -2,7 +2,7 @@
 //! that hangs in a hedge. What touches nothing at all is `floating_voxels`.
 
 use super::floating_voxels::lowest_m;
-use super::{Context, Finding, Fix, Severity, middle};
+use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
 use scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
 use scene::{Class, GridSpec};
@@ -13,7 +13,7 @@ const LEAST_VOXELS: usize = 8;
 /// Parts that are listed one by one, the largest.
 const LISTED: usize = 40;
 
-pub fn check(context: &Context<'_>, out: &mut Vec<Finding>) {
+pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     let bits = context.bits();
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();

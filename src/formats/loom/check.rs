@@ -25,6 +25,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
             "current is {found}, expected below the number of frames, {frames}"
         ));
     }
+    if let Some(problem) = scene.conditions.problem() {
+        return unsound(format!("conditions: {problem}"));
+    }
     if let Some(problem) = scene.rig.problem() {
         return unsound(format!("rig: {problem}"));
     }
@@ -63,6 +66,10 @@ fn frame_problem(frame: &Frame) -> Option<String> {
         ("", &frame.boxes, &frame.layout),
         ("source: ", &frame.source.boxes, &frame.source.layout),
     ] {
+        let (found, most) = (boxes.len(), Frame::MAX_BOXES);
+        if found > most {
+            return Some(format!("{of}{found} boxes, expected at most {most}"));
+        }
         for (id, b) in boxes {
             if *id != b.id {
                 return Some(format!("{of}box {} is filed under id {}", b.id.0, id.0));

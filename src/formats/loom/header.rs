@@ -1,17 +1,18 @@
-//! `scene.json`: all of a scene but its grids, as version 2 keeps it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as version 3 keeps it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use scene::{BoxId, Frame, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Waiver};
+use scene::{BoxId, Conditions, Frame, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Waiver};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneHeader {
     pub(super) name: Arc<str>,
     pub(super) prompt: Arc<str>,
+    pub(super) conditions: Conditions,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) words: Vec<String>,
     pub(super) seed: u64,
@@ -86,6 +87,7 @@ impl SceneHeader {
         Self {
             name: scene.name.clone(),
             prompt: scene.prompt.clone(),
+            conditions: scene.conditions,
             words: scene.words.to_vec(),
             seed: scene.seed,
             current: scene.current,

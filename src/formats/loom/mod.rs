@@ -35,7 +35,7 @@ pub use error::ProjectError;
 pub use write::to_bytes;
 
 /// Version written.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Frames a project may hold.
 pub const MAX_FRAMES: usize = 10_000;
 /// Largest project file that is written and read, bytes.

@@ -53,6 +53,7 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
         rev: SceneRev::fresh(),
         name: header.name,
         prompt: header.prompt,
+        conditions: header.conditions,
         words: Arc::new(header.words),
         rig: header.rig,
         background: Arc::new(background),

@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use scene::background::{Background, Form, Tree, TreeKind};
-use scene::{BevLayer, BevLayout, BoxId, Class, Frame, Relief, Scene, SceneBox, SensorRig, VoxelGrid};
+use scene::{
+    BevLayer, BevLayout, BoxId, Class, Conditions, Frame, Relief, Scene, SceneBox, SensorRig, TimeOfDay,
+    VoxelGrid, Weather,
+};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
@@ -41,6 +44,12 @@ fn sample(version: u32) -> Scene {
     let mut scene = Scene::single(&name, frame, Arc::new(SensorRig::default()), u64::MAX);
     scene.prompt = "night, rain".into();
     scene.words = Arc::new(vec!["a street at night".into()]);
+    // Versions 1 and 2 had the prompt alone; version 3 says what it means, and more.
+    scene.conditions = Conditions::usual(TimeOfDay::Night, Weather::Rain, u64::MAX);
+    if version >= 3 {
+        scene.conditions.visibility_m = 300.0;
+        scene.conditions.seed = 7;
+    }
     if version >= 2 {
         let mut background = Background::default();
         background.add(Form::Tree(Tree {
@@ -64,6 +73,7 @@ fn assert_same(a: &Scene, b: &Scene) {
         (
             &a.name,
             &a.prompt,
+            &a.conditions,
             &a.words,
             &a.rig,
             &a.background,
@@ -73,6 +83,7 @@ fn assert_same(a: &Scene, b: &Scene) {
         (
             &b.name,
             &b.prompt,
+            &b.conditions,
             &b.words,
             &b.rig,
             &b.background,
@@ -185,15 +196,15 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1] = migrate::ALL;
-    let chain = [FROM_0, v1];
+    let [v1, v2] = migrate::ALL;
+    let chain = [FROM_0, v1, v2];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.
-    let now = to_bytes(&sample(2)).expect("sound");
+    let now = to_bytes(&sample(3)).expect("sound");
     assert_same(
         &read::read(Cursor::new(now), &chain).expect("the present version"),
-        &sample(2),
+        &sample(3),
     );
     // What a step cannot take over is one line, and what it leaves lying is named.
     let mut entries = unpack(&of_version_0());

@@ -374,8 +374,8 @@ fn road_under(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use place::description::TimeOfDay;
     use scene::Class;
+    use scene::TimeOfDay;
     use words::describe::described;
 
     #[test]

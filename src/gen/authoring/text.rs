@@ -13,6 +13,7 @@ use words::answer::answer;
 use words::beside::edits::{OpenBackground, ThingOutcome, carry_out as carry_out_beside, means_barriers};
 use words::beside::wishes::scenery;
 use words::carry_out::carry_out;
+use words::conditions::of_style;
 use words::describe::{Described, describe};
 use words::hear::{Heard, hear, hear_objects};
 use words::reader::Mode;
@@ -127,6 +128,7 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     let world = World::with_background(laid.road.layout.clone(), boxes, things, seed);
     let mut scene = open::of_world(&world, "prompt");
     scene.prompt = laid.description.style().into();
+    scene.conditions = laid.description.conditions(scene.seed);
     Made { scene, laid }
 }
 
@@ -235,7 +237,21 @@ pub fn open_scene(scene: &Scene) -> OpenScene<'_> {
         boxes: &frame.boxes,
         layout: &frame.layout,
         prompt: &scene.prompt,
+        conditions: scene.conditions,
     }
+}
+
+/// Edits of a list in which each new style text sets the conditions that it names, as the same words would in a prompt.
+pub fn with_conditions(edits: &[Edit], seed: u64) -> Vec<Edit> {
+    let mut out = Vec::with_capacity(edits.len());
+    for edit in edits {
+        out.push(edit.clone());
+        if let Edit::SetPrompt { prompt } = edit {
+            let conditions = of_style(prompt, seed);
+            out.push(Edit::SetConditions { conditions });
+        }
+    }
+    out
 }
 
 /// What was left out or could not be met, in words, one line each.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::beside_road::Said;
 use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
-use scene::{BoxLabel, Class};
+use scene::{BoxLabel, Class, Conditions, TimeOfDay, Weather};
 
 macro_rules! named {
     ($(#[$doc:meta])* $name:ident { $($variant:ident = $text:literal),+ $(,)? }) => {
@@ -23,14 +23,6 @@ macro_rules! named {
     };
 }
 
-named!(
-    /// When.
-    TimeOfDay { Dawn = "dawn", Day = "day", Dusk = "dusk", Night = "night" }
-);
-named!(
-    /// Under which sky; the names are those that pictures are made under.
-    Weather { Clear = "clear", Overcast = "overcast", Rain = "rain", Snow = "snow", Fog = "fog", Sandstorm = "sandstorm" }
-);
 named!(
     /// Among what.
     Environment {
@@ -217,6 +209,12 @@ impl Description {
             self.environment.map(Environment::name),
         ];
         words.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// Light and air of the scene; what nobody spoke of is a clear day.
+    pub fn conditions(&self, seed: u64) -> Conditions {
+        let (time, weather) = (self.time_of_day, self.weather);
+        Conditions::usual(time.unwrap_or_default(), weather.unwrap_or_default(), seed)
     }
 
     /// True if nothing was said that changes a scene.

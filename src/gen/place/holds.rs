@@ -180,54 +180,7 @@ pub fn holds(
     let crosswise = || map.nearest(p).is_some_and(|l| l.dir.dot(heading).abs() < 0.7);
     let (held, distance) = match to {
         Target::Thing(b) => {
-            let (axis, d) = (course(b), p - b.center_m.truncate());
-            let (fwd, lat) = (axis.dot(d), axis.perp_dot(d));
-            let half = b.size_m.truncate() / 2.0;
-            let is_ego = b.id == BoxId(u32::MAX);
-            let toward = heading.dot((at(b) - p).normalize_or_zero());
-            let held = match relation {
-                // (roads bend: what is far down the road is ahead of the ego vehicle)
-                R::InFrontOf => {
-                    fwd > half.x
-                        && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
-                }
-                R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
-                // Of the ego vehicle it means the whole side of the street.
-                R::LeftOf => {
-                    lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0))
-                }
-                R::RightOf => {
-                    -lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0))
-                }
-                R::Near if distance_m.is_some() => true,
-                R::Near => gap_m(from, b) <= 5.5,
-                R::NextTo => gap_m(from, b) <= 3.2,
-                R::FarFrom => gap_m(from, b) >= 20.5,
-                R::Between => and.is_some_and(|c| {
-                    let (a, c) = (at(b), at(c));
-                    let (line, length) = ((c - a).normalize_or_zero(), c.distance(a));
-                    let t = (p - a).dot(line) / length.max(1e-9);
-                    (0.12..=0.88).contains(&t) && line.perp_dot(p - a).abs() <= (0.3 * length).max(1.8)
-                }),
-                R::Across => {
-                    p.distance(at(b)) > 4.0
-                        && map
-                            .course(p)
-                            .zip(map.course(at(b)))
-                            .is_some_and(|(x, y)| (x.1 - y.1).abs() > 4.0 && (x.0 - y.0).abs() < 14.0)
-                }
-                R::Blocking => standing && fwd > half.x && lat.abs() < 1.0 + from.size_m.y / 2.0,
-                R::Facing => toward > 0.75,
-                R::FacingAway => toward < -0.75,
-                R::Following => {
-                    fwd < -half.x && lat.abs() < 2.0 && -fwd < 36.0 && heading.dot(b.heading()) > 0.88
-                }
-                R::SameDirection => heading.dot(b.heading()) > 0.88,
-                R::OppositeDirection => heading.dot(b.heading()) < -0.88,
-                R::Crossing => fwd > half.x && crosswise(),
-                R::WaitingAt => standing && gap_m(from, b) < 7.0,
-                R::On | R::ParkedOn => is_ego && in_role(map, LaneRole::Ego, p),
-            };
+            let held = to_thing(map, relation, from, b, and, distance_m.is_some());
             let distance = measured(relation, from, b);
             (held, distance)
         }
@@ -285,6 +238,63 @@ pub fn holds(
         }
     };
     held && distance_m.is_none_or(|d| (distance - d).abs() <= (0.15 * d).max(1.5))
+}
+
+/// True if `relation` holds between a box and another; `measured_m`: a distance was stated, which decides what is near.
+fn to_thing(
+    map: &LaneMap<'_>,
+    relation: RelationKind,
+    from: &SceneBox,
+    b: &SceneBox,
+    and: Option<&SceneBox>,
+    measured_m: bool,
+) -> bool {
+    use RelationKind as R;
+    let p = from.center_m.truncate();
+    let standing = from.velocity_mps.length() < 0.5;
+    let heading = from.heading();
+    let crosswise = || map.nearest(p).is_some_and(|l| l.dir.dot(heading).abs() < 0.7);
+    let (axis, d) = (course(b), p - b.center_m.truncate());
+    let (fwd, lat) = (axis.dot(d), axis.perp_dot(d));
+    let half = b.size_m.truncate() / 2.0;
+    let is_ego = b.id == BoxId(u32::MAX);
+    let toward = heading.dot((at(b) - p).normalize_or_zero());
+    match relation {
+        // (roads bend: what is far down the road is ahead of the ego vehicle)
+        R::InFrontOf => {
+            fwd > half.x && lat.abs() <= (if is_ego && fwd > 10.0 { 0.85 } else { 0.6 } * fwd).max(2.0)
+        }
+        R::Behind => -fwd > half.x && lat.abs() <= (-0.6 * fwd).max(2.0),
+        // Of the ego vehicle it means the whole side of the street.
+        R::LeftOf => lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (2.0 * lat).max(half.x + 4.0)),
+        R::RightOf => -lat > half.y.max(0.8) + 0.1 && (is_ego || fwd.abs() <= (-2.0 * lat).max(half.x + 4.0)),
+        R::Near if measured_m => true,
+        R::Near => gap_m(from, b) <= 5.5,
+        R::NextTo => gap_m(from, b) <= 3.2,
+        R::FarFrom => gap_m(from, b) >= 20.5,
+        R::Between => and.is_some_and(|c| {
+            let (a, c) = (at(b), at(c));
+            let (line, length) = ((c - a).normalize_or_zero(), c.distance(a));
+            let t = (p - a).dot(line) / length.max(1e-9);
+            (0.12..=0.88).contains(&t) && line.perp_dot(p - a).abs() <= (0.3 * length).max(1.8)
+        }),
+        R::Across => {
+            p.distance(at(b)) > 4.0
+                && map
+                    .course(p)
+                    .zip(map.course(at(b)))
+                    .is_some_and(|(x, y)| (x.1 - y.1).abs() > 4.0 && (x.0 - y.0).abs() < 14.0)
+        }
+        R::Blocking => standing && fwd > half.x && lat.abs() < 1.0 + from.size_m.y / 2.0,
+        R::Facing => toward > 0.75,
+        R::FacingAway => toward < -0.75,
+        R::Following => fwd < -half.x && lat.abs() < 2.0 && -fwd < 36.0 && heading.dot(b.heading()) > 0.88,
+        R::SameDirection => heading.dot(b.heading()) > 0.88,
+        R::OppositeDirection => heading.dot(b.heading()) < -0.88,
+        R::Crossing => fwd > half.x && crosswise(),
+        R::WaitingAt => standing && gap_m(from, b) < 7.0,
+        R::On | R::ParkedOn => is_ego && in_role(map, LaneRole::Ego, p),
+    }
 }
 
 fn area(map: &LaneMap<'_>, relation: RelationKind, from: &SceneBox, off: f64, center: DVec2) -> bool {

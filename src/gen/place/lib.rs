@@ -1,6 +1,7 @@
 //! From a description to boxes on a map by rules: scene graph, road, and the best free place for every object.
 
 pub mod beside_road;
+mod cost;
 pub mod description;
 pub mod holds;
 pub mod lanes;

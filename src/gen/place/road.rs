@@ -187,14 +187,29 @@ fn judge(
     layout: &BevLayout,
 ) -> (Vec<String>, usize) {
     let map = LaneMap::new(layout);
+    let missing = missing(d, needs, junction, layout, &map);
+    (missing, wishes(d, parked, nodes, layout, &map))
+}
+
+/// How much of the lanes of a role lies near the ego vehicle, points.
+fn points_of(map: &LaneMap<'_>, role: LaneRole) -> usize {
+    let near = map
+        .points
+        .iter()
+        .filter(|p| p.role == role && p.p.length() < 35.0);
+    near.count()
+}
+
+/// What a layout lacks, in words.
+fn missing(
+    d: &Description,
+    needs: &[LaneRole],
+    junction: bool,
+    layout: &BevLayout,
+    map: &LaneMap<'_>,
+) -> Vec<String> {
     let mut missing = Vec::new();
-    let mut wishes = 0;
-    let role = |r: LaneRole| {
-        map.points
-            .iter()
-            .filter(|p| p.role == r && p.p.length() < 35.0)
-            .count()
-    };
+    let role = |r: LaneRole| points_of(map, r);
     let mut lack = |there: bool, what: &str| {
         if !there {
             missing.push(format!("no {what} on this kind of road"));
@@ -242,6 +257,30 @@ fn judge(
     if d.road.one_way && d.road.kind != Some(Road::Roundabout) {
         lack(role(LaneRole::Oncoming) == 0, "one-way variation");
     }
+    if let Some(lanes) = d.road.lanes {
+        let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
+        // ("a three-lane motorway" has three each way; of other roads all lanes are counted)
+        let each_way = d.road.one_way || d.road.kind == Some(Road::Highway) && lanes <= 3;
+        let wanted = if each_way {
+            lanes as usize
+        } else {
+            (lanes as usize).div_ceil(2)
+        };
+        // (of more than three one sees no more than three: our own and one on either side)
+        if forward != wanted.min(3) {
+            missing.push(format!(
+                "{lanes} lanes were asked for, and {forward} of this road go our way"
+            ));
+        }
+    }
+    missing
+}
+
+/// How many softer wishes a layout leaves open.
+fn wishes(d: &Description, parked: bool, nodes: usize, layout: &BevLayout, map: &LaneMap<'_>) -> usize {
+    let mut wishes = 0;
+    let role = |r: LaneRole| points_of(map, r);
+    let walkway = layout.count(BevLayer::Walkway);
     // "I drive in the middle lane of three"
     if let Some(own) = d.road.own_lane {
         let (left, right) = (role(LaneRole::Left) > 8, role(LaneRole::Right) > 8);
@@ -258,22 +297,6 @@ fn judge(
             .lanes
             .is_some_and(|n| if d.road.one_way { n < 3 } else { n < 5 });
         wishes += usize::from(role(LaneRole::Left) <= 8) + usize::from(!two && role(LaneRole::Right) <= 8);
-    }
-    if let Some(lanes) = d.road.lanes {
-        let forward = 1 + usize::from(role(LaneRole::Left) > 8) + usize::from(role(LaneRole::Right) > 8);
-        // ("a three-lane motorway" has three each way; of other roads all lanes are counted)
-        let each_way = d.road.one_way || d.road.kind == Some(Road::Highway) && lanes <= 3;
-        let wanted = if each_way {
-            lanes as usize
-        } else {
-            (lanes as usize).div_ceil(2)
-        };
-        // (of more than three one sees no more than three: our own and one on either side)
-        if forward != wanted.min(3) {
-            missing.push(format!(
-                "{lanes} lanes were asked for, and {forward} of this road go our way"
-            ));
-        }
     }
     // who is on the stripes so far ahead wants them there
     for o in &d.foreground {
@@ -325,7 +348,7 @@ fn judge(
     }
     wishes += usize::from(right && role(LaneRole::Right) < 8 && strip < 300);
     wishes += usize::from(parked && strip < 300);
-    (missing, wishes)
+    wishes
 }
 
 #[cfg(test)]

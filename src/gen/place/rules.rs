@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::holds::{Target, course, ego, holds, measured, overlap_m};
+use super::cost::{moved_far, off_line, off_measure, off_near, off_thing, turned_where_it_is};
+use super::holds::{Target, ego, holds, overlap_m};
 use super::lanes::{LaneMap, REACH_M};
-use super::spots::{Spot, spots};
+use super::spots::{Spot, is_beside, spots};
 use scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
 use scene::raster::box_cells;
-use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, SceneBox};
+use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 use world::draw::Draw;
 
 /// As far off, m, is wholly wrong for what should be near.
@@ -300,84 +301,8 @@ impl Placer<'_> {
         let mut candidates = spots(self.map, o, size_m, &stated, &mut self.draw);
         candidates.extend(self.from.and_then(|old| turned_where_it_is(old, &stated)));
         let siblings: Vec<DVec2> = self.siblings(id, o, edges);
-        let blocks = stated.iter().any(|(e, _)| e.relation == RelationKind::Blocking);
-        let small = matches!(o.class, Class::TrafficCone | Class::Barrier);
-        let between: Vec<[DVec2; 2]> = stated.iter().filter_map(|(e, t)| self.line(e, t)).collect();
-        // A rough cost first; the costly tests only for those that could win.
-        let mut ranked: Vec<(f64, usize)> = Vec::with_capacity(candidates.len());
-        for (i, s) in candidates.iter().enumerate() {
-            let far = s.p.length();
-            let chance = self.draw.unit();
-            let mut cost = match self.from {
-                Some(old) => s.cost + 0.3 * chance + moved_far(old, s),
-                // (what is described is seen from the front, if nothing else was said)
-                None => s.cost + 0.02 * (far - 14.0).abs() + 0.05 * (-s.p.x).clamp(0.0, 25.0) + chance * 1.2,
-            };
-            cost += self.exact * off_measure(&stated, s, size_m);
-            cost += between.iter().map(|ends| 0.5 * off_line(*ends, s.p)).sum::<f64>();
-            if let Some(near) = siblings.iter().map(|q| q.distance(s.p)).min_by(f64::total_cmp) {
-                cost += match o.class {
-                    Class::TrafficCone | Class::Barrier => 0.5 * near,
-                    _ => 0.02 * near,
-                };
-            }
-            // What is before or behind a thing is by it.
-            cost += stated.iter().map(|(e, t)| off_thing(e, t, s.p)).sum::<f64>();
-            // In a lane is rather in its middle than on its edge.
-            if small {
-                cost += stated
-                    .iter()
-                    .map(|(e, t)| self.off_middle(e, t, s.p))
-                    .sum::<f64>();
-            }
-            // Small things that block a lane stand side by side across it.
-            if blocks && small {
-                let along = |q: &DVec2| (s.p - *q).dot(DVec2::from_angle(s.yaw_rad)).abs();
-                cost += 3.0 * siblings.iter().map(along).min_by(f64::total_cmp).unwrap_or(0.0);
-            }
-            // what is ahead or behind is rather in our lane or near it
-            let along = stated.iter().any(|(e, t)| {
-                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
-                    && matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind)
-            });
-            if along && self.from.is_none() {
-                let off = self.map.course(s.p).map_or(s.p.y, |c| c.1).abs();
-                cost += 0.15 * (off - 3.0).max(0.0);
-            }
-            // "Left" at its plainest is beside.
-            let beside = stated.iter().any(|(e, t)| {
-                let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
-                ego && matches!(e.relation, RelationKind::LeftOf | RelationKind::RightOf)
-            });
-            if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
-                cost += 1.5 + 0.03 * s.p.x.abs();
-            }
-            // behind something ahead is rather between it and the ego vehicle
-            let beyond = stated.iter().any(|(e, t)| {
-                // (who follows what comes towards us is beyond it)
-                let follows = |b: &SceneBox| e.relation == RelationKind::Following && b.heading().x > 0.0;
-                matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX
-                    && b.center_m.x > 6.0
-                    && (e.relation == RelationKind::Behind || follows(b)))
-            });
-            if beyond && s.p.x < 0.0 {
-                // (however long the way there is)
-                cost += if self.from.is_some() { 10.0 } else { 2.0 };
-            }
-            // what comes towards the ego vehicle has not passed it yet
-            let comes = stated.iter().any(|(e, t)| {
-                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
-                    && e.relation == RelationKind::OppositeDirection
-            });
-            if comes && s.p.x < 4.0 {
-                cost += 2.0;
-            }
-            if edges.is_empty() && s.p.x < -2.0 {
-                cost += 0.8; // what is simply there is seen rather ahead
-            }
-            ranked.push((cost, i));
-        }
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let simply = edges.is_empty();
+        let ranked = self.ranked(o, size_m, &candidates, &stated, &siblings, simply);
         let along = stated.iter().any(|(e, _)| {
             matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind) && e.distance_m.is_some()
         });
@@ -454,6 +379,97 @@ impl Placer<'_> {
             Some((_, b)) => Some(b),
             None => None,
         }
+    }
+
+    /// Candidates by a rough cost, the least first: the costly tests only for those that could win. `simply`: nothing is said of
+    /// where the object is.
+    fn ranked(
+        &mut self,
+        o: &ObjectNode,
+        size_m: DVec3,
+        candidates: &[Spot],
+        stated: &[(Edge, Option<Target>)],
+        siblings: &[DVec2],
+        simply: bool,
+    ) -> Vec<(f64, usize)> {
+        let blocks = stated.iter().any(|(e, _)| e.relation == RelationKind::Blocking);
+        let small = matches!(o.class, Class::TrafficCone | Class::Barrier);
+        let between: Vec<[DVec2; 2]> = stated.iter().filter_map(|(e, t)| self.line(e, t)).collect();
+        let mut ranked: Vec<(f64, usize)> = Vec::with_capacity(candidates.len());
+        for (i, s) in candidates.iter().enumerate() {
+            let far = s.p.length();
+            let chance = self.draw.unit();
+            let mut cost = match self.from {
+                Some(old) => s.cost + 0.3 * chance + moved_far(old, s),
+                // (what is described is seen from the front, if nothing else was said)
+                None => s.cost + 0.02 * (far - 14.0).abs() + 0.05 * (-s.p.x).clamp(0.0, 25.0) + chance * 1.2,
+            };
+            cost += self.exact * off_measure(stated, s, size_m);
+            cost += between.iter().map(|ends| 0.5 * off_line(*ends, s.p)).sum::<f64>();
+            if let Some(near) = siblings.iter().map(|q| q.distance(s.p)).min_by(f64::total_cmp) {
+                cost += match o.class {
+                    Class::TrafficCone | Class::Barrier => 0.5 * near,
+                    _ => 0.02 * near,
+                };
+            }
+            // What is before or behind a thing is by it.
+            cost += stated.iter().map(|(e, t)| off_thing(e, t, s.p)).sum::<f64>();
+            // In a lane is rather in its middle than on its edge.
+            if small {
+                cost += stated
+                    .iter()
+                    .map(|(e, t)| self.off_middle(e, t, s.p))
+                    .sum::<f64>();
+            }
+            // Small things that block a lane stand side by side across it.
+            if blocks && small {
+                let along = |q: &DVec2| (s.p - *q).dot(DVec2::from_angle(s.yaw_rad)).abs();
+                cost += 3.0 * siblings.iter().map(along).min_by(f64::total_cmp).unwrap_or(0.0);
+            }
+            // what is ahead or behind is rather in our lane or near it
+            let along = stated.iter().any(|(e, t)| {
+                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                    && matches!(e.relation, RelationKind::InFrontOf | RelationKind::Behind)
+            });
+            if along && self.from.is_none() {
+                let off = self.map.course(s.p).map_or(s.p.y, |c| c.1).abs();
+                cost += 0.15 * (off - 3.0).max(0.0);
+            }
+            // "Left" at its plainest is beside.
+            let beside = stated.iter().any(|(e, t)| {
+                let ego = matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX);
+                ego && matches!(e.relation, RelationKind::LeftOf | RelationKind::RightOf)
+            });
+            if beside && s.p.x.abs() > (2.0 * s.p.y.abs()).max(6.3) {
+                cost += 1.5 + 0.03 * s.p.x.abs();
+            }
+            // behind something ahead is rather between it and the ego vehicle
+            let beyond = stated.iter().any(|(e, t)| {
+                // (who follows what comes towards us is beyond it)
+                let follows = |b: &SceneBox| e.relation == RelationKind::Following && b.heading().x > 0.0;
+                matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX
+                    && b.center_m.x > 6.0
+                    && (e.relation == RelationKind::Behind || follows(b)))
+            });
+            if beyond && s.p.x < 0.0 {
+                // (however long the way there is)
+                cost += if self.from.is_some() { 10.0 } else { 2.0 };
+            }
+            // what comes towards the ego vehicle has not passed it yet
+            let comes = stated.iter().any(|(e, t)| {
+                matches!(t, Some(Target::Thing(b)) if b.id.0 == u32::MAX)
+                    && e.relation == RelationKind::OppositeDirection
+            });
+            if comes && s.p.x < 4.0 {
+                cost += 2.0;
+            }
+            if simply && s.p.x < -2.0 {
+                cost += 0.8; // what is simply there is seen rather ahead
+            }
+            ranked.push((cost, i));
+        }
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        ranked
     }
 
     /// True if a statement does not hold even roughly: not but for the metres, and nothing like it. `strip`: a strip of the road
@@ -575,127 +591,10 @@ impl Placer<'_> {
     }
 }
 
-/// Who is only told where to look stays where he is (what drives keeps to its lane).
-fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>)]) -> Option<Spot> {
-    use RelationKind as R;
-    let drives = old.class != Class::Pedestrian && old.velocity_mps.length() > 0.5;
-    let p = old.center_m.truncate();
-    let mut looks = None;
-    for (e, to) in stated {
-        match (e.relation, to) {
-            (R::On | R::ParkedOn, Some(Target::Lane(_))) => {}
-            (R::Facing | R::FacingAway, Some(to)) => {
-                let away = if e.relation == R::FacingAway { -1.0 } else { 1.0 };
-                looks = Some(match to {
-                    Target::Thing(b) if b.id.0 == u32::MAX => -p * away,
-                    Target::Thing(b) => (b.center_m.truncate() - p) * away,
-                    _ => return None,
-                });
-            }
-            _ => return None,
-        }
-    }
-    let moves = old.velocity_mps.length() > 0.5;
-    looks.filter(|_| !drives).map(|way| Spot {
-        p,
-        yaw_rad: way.to_angle(),
-        cost: -10.0,
-        still: !moves,
-        moves,
-        on_road: true,
-        anywhere: old.class == Class::Pedestrian,
-    })
-}
-
-/// What it costs to bring a box to a place: the way, and turning it.
-fn moved_far(old: &SceneBox, s: &Spot) -> f64 {
-    let turned = 1.0 - old.heading().dot(DVec2::from_angle(s.yaw_rad));
-    let walks = old.class == Class::Pedestrian;
-    0.25 * old.center_m.truncate().distance(s.p) + if walks { 0.2 } else { 1.5 } * turned
-}
-
-/// Metres beside the line, and beyond the middle half of it.
-fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
-    let line = ends[1] - ends[0];
-    let (dir, length) = (line.normalize_or_zero(), line.length());
-    let along = dir.dot(p - ends[0]) - length / 2.0;
-    // (the middle is where a reader looks first)
-    dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
-}
-
-/// What it costs to be far before or behind what was named.
-fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
-    match (e.relation, to) {
-        (RelationKind::InFrontOf | RelationKind::Behind, Some(Target::Thing(b)))
-            if b.id.0 != u32::MAX && e.distance_m.is_none() =>
-        {
-            let gap = p.distance(b.center_m.truncate()) - b.size_m.x / 2.0;
-            0.15 * (gap - 6.0).clamp(0.0, 30.0)
-        }
-        _ => 0.0,
-    }
-}
-
-/// Metres that something is farther off than near, at most 30, where it was said to be near.
-fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
-    match (e.relation, to) {
-        (RelationKind::Near, Some(Target::Thing(to))) if e.distance_m.is_none() => {
-            Some((super::holds::gap_m(b, to) - 3.0).clamp(0.0, 30.0))
-        }
-        _ => None,
-    }
-}
-
-/// How far a place misses what was said in metres, and how far off the line of what it is behind or between.
-fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f64 {
-    let b = SceneBox {
-        id: BoxId(0),
-        class: Class::Car,
-        center_m: s.p.extend(0.0),
-        size_m,
-        yaw_rad: s.yaw_rad,
-        velocity_mps: DVec2::ZERO,
-        label: BoxLabel::default(),
-    };
-    let of = |(e, t): &(Edge, Option<Target>)| {
-        let Some(Target::Thing(to)) = t else {
-            return 0.0;
-        };
-        let missed = e
-            .distance_m
-            .map_or(0.0, |d| (measured(e.relation, &b, to) - d).abs());
-        // beside is level with it
-        let level = if e.relation == RelationKind::NextTo && to.class != Class::Pedestrian {
-            0.6 * course(to).dot(s.p - to.center_m.truncate()).abs()
-        } else {
-            0.0
-        };
-        missed.min(20.0) + level.min(12.0)
-    };
-    stated.iter().map(of).sum()
-}
-
 /// True if the relation binds an object to a lane role that only holds for standing things.
 pub fn stands(relation: RelationKind) -> bool {
     matches!(
         relation,
         RelationKind::ParkedOn | RelationKind::WaitingAt | RelationKind::Blocking
-    )
-}
-
-/// Strips on either side of the road: its edges and the sidewalks.
-fn is_beside(role: LaneRole) -> bool {
-    is_roadside(role)
-        || matches!(
-            role,
-            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
-        )
-}
-
-/// Roles beside the lanes.
-pub(super) fn is_roadside(role: LaneRole) -> bool {
-    matches!(
-        role,
-        LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside
     )
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 
 use super::holds::{Target, course};
 use super::lanes::{LaneMap, REACH_M};
-use super::rules::{is_roadside, stands};
+use super::rules::stands;
 use scene::graph::{Edge, LaneRole, ObjectNode, ObjectState, RelationKind};
 use scene::{BevLayer, Class};
 use world::draw::Draw;
@@ -102,10 +102,6 @@ pub fn spots(
             && !said(RelationKind::OppositeDirection)
             && !said(RelationKind::Facing),
     };
-    let thing = stated.iter().find_map(|(e, t)| match t {
-        Some(Target::Thing(b)) => Some((e, *b)),
-        _ => None,
-    });
     let near_thing = stated.iter().any(|(e, t)| {
         matches!(t, Some(Target::Thing(b)) if b.id.0 != u32::MAX)
             && !matches!(
@@ -114,71 +110,8 @@ pub fn spots(
             )
     });
     match o.class {
-        Class::Pedestrian => {
-            let crossing = said(RelationKind::Crossing)
-                || stated
-                    .iter()
-                    .any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
-            match lane_role {
-                _ if crossing => g.crossing_people(),
-                Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role))
-                    if !is_walk(role) =>
-                {
-                    g.base.on_road = true;
-                    g.lanes(role, true);
-                }
-                _ => g.walks(),
-            }
-            let on_junction = |(e, t): &(Edge, Option<Target>)| {
-                matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On
-            };
-            if stated.iter().any(on_junction) {
-                g.amid_junction();
-            }
-            if (near_thing || thing.is_some()) && !crossing {
-                g.base.anywhere = near_thing;
-                g.base.on_road = true;
-                g.base.cost += 1.5;
-                g.around(stated);
-                g.base.cost -= 1.5;
-            }
-            if g.out.is_empty() {
-                // No sidewalk here: the verge will do.
-                g.base.anywhere = true;
-                g.verge();
-            }
-        }
-        Class::TrafficCone | Class::Barrier => {
-            g.base.still = true;
-            g.base.moves = false;
-            match lane_role {
-                Some((
-                    RelationKind::Blocking | RelationKind::On | RelationKind::ParkedOn | RelationKind::Across,
-                    role,
-                )) if !is_walk(role) && !is_roadside(role) && role != LaneRole::Carpark => {
-                    g.across_lane(role, o.class);
-                }
-                Some((_, role)) if is_walk(role) => {
-                    g.base.anywhere = true;
-                    g.walks();
-                }
-                Some((_, role)) => g.edge(role),
-                None => {
-                    if said(RelationKind::Blocking) {
-                        g.across_lane(LaneRole::Ego, o.class);
-                    } else {
-                        g.edge(LaneRole::Roadside);
-                        g.base.cost = 0.8;
-                        g.across_lane(LaneRole::Road, o.class);
-                        g.base.cost = 0.0;
-                    }
-                }
-            }
-            if near_thing || g.out.is_empty() {
-                g.base.anywhere = true;
-                g.around(stated);
-            }
-        }
+        Class::Pedestrian => g.people(lane_role, stated, near_thing),
+        Class::TrafficCone | Class::Barrier => g.small(o.class, lane_role, stated, near_thing),
         _ => g.vehicle(o, lane_role, stated, near_thing),
     }
     let mut out = g.out;
@@ -206,6 +139,23 @@ pub fn spots(
     out
 }
 
+/// Strips on either side of the road: its edges and the sidewalks.
+pub(super) fn is_beside(role: LaneRole) -> bool {
+    is_roadside(role)
+        || matches!(
+            role,
+            LaneRole::Sidewalk | LaneRole::LeftSidewalk | LaneRole::RightSidewalk
+        )
+}
+
+/// Roles beside the lanes.
+pub(super) fn is_roadside(role: LaneRole) -> bool {
+    matches!(
+        role,
+        LaneRole::Roadside | LaneRole::LeftRoadside | LaneRole::RightRoadside
+    )
+}
+
 fn is_walk(role: LaneRole) -> bool {
     matches!(
         role,
@@ -220,6 +170,88 @@ impl Gather<'_, '_> {
             yaw_rad,
             ..self.base
         });
+    }
+
+    fn people(
+        &mut self,
+        lane_role: Option<(RelationKind, LaneRole)>,
+        stated: &[(Edge, Option<Target>)],
+        near_thing: bool,
+    ) {
+        let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
+        let things = stated.iter().any(|(_, t)| matches!(t, Some(Target::Thing(_))));
+        let crossing = said(RelationKind::Crossing)
+            || stated
+                .iter()
+                .any(|(e, t)| matches!(t, Some(Target::Crossing)) && e.relation == RelationKind::On);
+        match lane_role {
+            _ if crossing => self.crossing_people(),
+            Some((RelationKind::On | RelationKind::Blocking | RelationKind::ParkedOn, role))
+                if !is_walk(role) =>
+            {
+                self.base.on_road = true;
+                self.lanes(role, true);
+            }
+            _ => self.walks(),
+        }
+        let on_junction = |(e, t): &(Edge, Option<Target>)| {
+            matches!(t, Some(Target::Junction)) && e.relation == RelationKind::On
+        };
+        if stated.iter().any(on_junction) {
+            self.amid_junction();
+        }
+        if (near_thing || things) && !crossing {
+            self.base.anywhere = near_thing;
+            self.base.on_road = true;
+            self.base.cost += 1.5;
+            self.around(stated);
+            self.base.cost -= 1.5;
+        }
+        if self.out.is_empty() {
+            // No sidewalk here: the verge will do.
+            self.base.anywhere = true;
+            self.verge();
+        }
+    }
+
+    /// Cones and barriers.
+    fn small(
+        &mut self,
+        class: Class,
+        lane_role: Option<(RelationKind, LaneRole)>,
+        stated: &[(Edge, Option<Target>)],
+        near_thing: bool,
+    ) {
+        let said = |kind: RelationKind| stated.iter().any(|(e, _)| e.relation == kind);
+        self.base.still = true;
+        self.base.moves = false;
+        match lane_role {
+            Some((
+                RelationKind::Blocking | RelationKind::On | RelationKind::ParkedOn | RelationKind::Across,
+                role,
+            )) if !is_walk(role) && !is_roadside(role) && role != LaneRole::Carpark => {
+                self.across_lane(role, class);
+            }
+            Some((_, role)) if is_walk(role) => {
+                self.base.anywhere = true;
+                self.walks();
+            }
+            Some((_, role)) => self.edge(role),
+            None => {
+                if said(RelationKind::Blocking) {
+                    self.across_lane(LaneRole::Ego, class);
+                } else {
+                    self.edge(LaneRole::Roadside);
+                    self.base.cost = 0.8;
+                    self.across_lane(LaneRole::Road, class);
+                    self.base.cost = 0.0;
+                }
+            }
+        }
+        if near_thing || self.out.is_empty() {
+            self.base.anywhere = true;
+            self.around(stated);
+        }
     }
 
     fn vehicle(

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::account::{Missing, Why, missing};
 use super::beside::{self, Taken, take};
 use super::canonical::canonical;
+use super::conditions;
 use super::grammar;
 use super::guess::take_out_guesses;
 use super::notation;
@@ -114,6 +115,7 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         By::Learned => take_out_guesses(&mut reading, &said.tokens),
         _ => Vec::new(),
     };
+    conditions::set_right(&mut reading, &said.tokens);
     let unsure = match by {
         By::Learned => (0..reading.acts.len())
             .filter(|i| reading.acts[*i].confidence < UNSURE)

@@ -8,6 +8,7 @@ pub mod beside;
 pub mod canonical;
 pub mod carry_out;
 mod check;
+pub mod conditions;
 pub mod describe;
 pub mod grammar;
 mod guess;

@@ -8,9 +8,9 @@ use super::beside::Said;
 use super::named::named;
 use super::nouns::Noun;
 use place::beside_road::Span;
-use place::description::{Density, Environment, Road, TimeOfDay, Weather};
-use scene::Paint;
+use place::description::{Density, Environment, Road};
 use scene::graph::{LaneRole, ObjectState, SizeHint};
+use scene::{Paint, TimeOfDay, Weather};
 
 /// All that a text asks for, in order.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -10,7 +10,9 @@ use super::remark::Remark;
 use place::holds::{in_role, overlap_m, role_of};
 use place::lanes::LaneMap;
 use scene::graph::{LaneRole, ObjectState};
-use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Edit, Polyline, PolylineKind, SceneBox, Shape};
+use scene::{
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Edit, Polyline, PolylineKind, SceneBox, Shape,
+};
 
 /// An open scene, as far as words need it.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +21,10 @@ pub struct OpenScene<'a> {
     pub boxes: &'a BTreeMap<BoxId, SceneBox>,
     /// Map.
     pub layout: &'a BevLayout,
-    /// Its conditions in words: `night, rain`.
+    /// Its style in words: `night, rain`.
     pub prompt: &'a str,
+    /// Its light and air.
+    pub conditions: Conditions,
 }
 
 /// A box that a question names.
@@ -88,6 +92,7 @@ pub struct Stage<'a> {
     /// Boxes as they were before the first act.
     pub(super) first: &'a BTreeMap<BoxId, SceneBox>,
     pub(super) prompt: String,
+    pub(super) conditions: Conditions,
     pub(super) seed: u64,
     pub(super) act: usize,
     /// Boxes that some act of the text says to stay.
@@ -114,6 +119,7 @@ impl<'a> Stage<'a> {
             boxes: scene.boxes.clone(),
             first: scene.boxes,
             prompt: scene.prompt.to_owned(),
+            conditions: scene.conditions,
             seed,
             act: 0,
             stays: std::collections::BTreeSet::new(),
@@ -203,6 +209,13 @@ impl<'a> Stage<'a> {
             shape: Shape::Polygon { points_m },
             value: false,
         });
+    }
+
+    /// Sets light and air.
+    pub(super) fn set_conditions(&mut self, conditions: Conditions) {
+        self.conditions = conditions;
+        self.done().scene = true;
+        self.out.edits.push(Edit::SetConditions { conditions });
     }
 
     /// Replaces the text that describes the style.

@@ -173,6 +173,7 @@ fn random_and_hostile_texts_end() {
         boxes: &boxes,
         layout: &chosen.layout,
         prompt: "day",
+        conditions: Default::default(),
     };
     let n: u64 = std::env::var("SCENELOOM_TEXTS")
         .ok()

@@ -39,6 +39,31 @@ impl Street {
     }
 }
 
+/// How far streets reach from the ego, m.
+const FAR_M: f64 = 75.0;
+
+/// What the streets of a layout have in common.
+struct Usual {
+    lanes: usize, // each way
+    lane_m: f64,
+    walk_m: f64,
+    parking_m: f64,
+}
+
+impl Usual {
+    fn street(&self, axis: Vec<DVec2>) -> Street {
+        Street {
+            axis,
+            forward: self.lanes,
+            backward: self.lanes,
+            lane_m: self.lane_m,
+            walk_m: self.walk_m,
+            parking_m: self.parking_m,
+            shoulder_m: 0.4,
+        }
+    }
+}
+
 /// Everything that is drawn before it becomes cells.
 #[derive(Default)]
 struct Plan {
@@ -95,58 +120,30 @@ pub fn layout_with_room(name: &str, seed: u64, room_m: f64) -> Option<BevLayout>
         0.0
     };
     let lanes = 1 + draw.weighted(&[0.6, 0.4]);
-    let street = |axis: Vec<DVec2>| Street {
-        axis,
-        forward: lanes,
-        backward: lanes,
+    let usual = Usual {
+        lanes,
         lane_m,
         walk_m,
         parking_m,
-        shoulder_m: 0.4,
     };
+    let street = |axis: Vec<DVec2>| usual.street(axis);
     // The ego drives in the innermost or outermost right-hand lane.
     let ego_lane = draw.below(lanes) as f64 + 0.5;
     let y = ego_lane * lane_m;
-    let far = 75.0;
+    let far = FAR_M;
     let here = DVec2::new(-far, y);
     match name {
         "straight" | "suburb" => {
             let mut s = street(straight(here, DVec2::new(far, y)));
             if name == "suburb" {
-                (s.forward, s.backward, s.parking_m) = (1, 1, 0.0);
-                s.axis = straight(DVec2::new(-far, lane_m / 2.0), DVec2::new(far, lane_m / 2.0));
-                for _ in 0..4 {
-                    // Driveways.
-                    let (x, side) = (draw.range(-35.0, 35.0), if draw.chance(0.5) { 1.0 } else { -1.0 });
-                    let (w, edge) = (draw.range(2.8, 4.0), lane_m / 2.0 + side * lane_m);
-                    let end = edge + side * draw.range(9.0, 14.0);
-                    plan.aprons.push(vec![
-                        DVec2::new(x, edge - side),
-                        DVec2::new(x + w, edge - side),
-                        DVec2::new(x + w, end),
-                        DVec2::new(x, end),
-                    ]);
-                }
+                suburb(&mut plan, &mut draw, &mut s, lane_m);
             }
             if draw.chance(0.5) {
                 crossing(&mut plan, &s, draw.range(8.0, 25.0), draw.range(2.5, 4.0));
             }
             plan.streets.push(s);
         }
-        "curve" => {
-            let radius = draw.range(25.0, 90.0) * if draw.chance(0.5) { 1.0 } else { -1.0 };
-            let start = draw.range(-15.0, 10.0);
-            let center = DVec2::new(start, y + radius);
-            let quarter = -std::f64::consts::FRAC_PI_2 * radius.signum();
-            let sweep = (1.35f64).min(90.0 / radius.abs()) * radius.signum();
-            let mut axis = straight(here, DVec2::new(start, y));
-            let bend = arc(center, radius.abs(), quarter, quarter + sweep);
-            let end = bend[bend.len() - 1];
-            let away = (end - bend[bend.len() - 2]).normalize_or(DVec2::X);
-            axis.extend(&bend[1..]);
-            axis.extend(&straight(end, end + away * 80.0)[1..]);
-            plan.streets.push(street(axis));
-        }
+        "curve" => curve(&mut plan, &mut draw, &usual, y),
         "t-junction" | "intersection" => {
             let x = draw.range(10.0, 26.0);
             let center = DVec2::new(x, y);
@@ -165,92 +162,147 @@ pub fn layout_with_room(name: &str, seed: u64, room_m: f64) -> Option<BevLayout>
             plan.streets.push(other);
             junction(&mut plan, &mut draw, center, both, side, across);
         }
-        "roundabout" => {
-            let radius = draw.range(9.0, 14.0);
-            let mut center = DVec2::new(draw.range(18.0, 26.0), y);
-            let ring_width = draw.range(5.5, 7.5);
-            if room_m > 0.0 {
-                center.x = center.x.max(room_m + radius + ring_width / 2.0);
-            }
-            let arms =
-                [0.0, 1.0, 2.0, 3.0].map(|k: f64| k * std::f64::consts::FRAC_PI_2 + std::f64::consts::PI);
-            for (k, angle) in arms.into_iter().enumerate() {
-                if k > 0 && draw.chance(0.15) {
-                    continue;
-                }
-                let jitter = if k == 0 { 0.0 } else { draw.range(-0.2, 0.2) };
-                let d = DVec2::from_angle(angle + jitter);
-                let mut arm = street(straight(center + d * far, center + d * (radius + 2.0)));
-                arm.parking_m = 0.0;
-                plan.streets.push(arm);
-            }
-            let ring = arc(center, radius, 0.0, std::f64::consts::TAU);
-            plan.streets.push(Street {
-                // Counter-clockwise traffic: lanes right of a counter-clockwise axis.
-                axis: offset_line(&ring, ring_width / 2.0),
-                forward: 1,
-                backward: 0,
-                lane_m: ring_width,
-                walk_m,
-                parking_m: 0.0,
-                shoulder_m: 0.2,
-            });
-            plan.junctions.push((center, radius + ring_width / 2.0 + 5.0));
-            plan.islands.push((center, radius - ring_width / 2.0));
-        }
-        "highway" => {
-            let n = 2 + draw.below(3);
-            let own = draw.below(n) as f64 + 0.5;
-            let gap = draw.range(1.5, 5.0);
-            let (a, b) = (own * lane_m + gap / 2.0, DVec2::new(far, 0.0));
-            let bend = draw.range(-0.15, 0.15);
-            let line = |offset: f64| -> Vec<DVec2> {
-                straight(-b, b)
-                    .into_iter()
-                    .map(|p| DVec2::new(p.x, offset + bend * p.x * p.x / 160.0))
-                    .collect()
-            };
-            let lanes = |axis, forward, backward| Street {
-                axis,
-                forward,
-                backward,
-                lane_m,
-                walk_m: 0.0,
-                parking_m: 0.0,
-                shoulder_m: 2.2,
-            };
-            let mut right = lanes(line(a - gap / 2.0), n, 0);
-            let mut left = lanes(line(a + gap / 2.0), 0, n);
-            right.shoulder_m = draw.range(0.8, 3.0);
-            left.shoulder_m = right.shoulder_m;
-            plan.streets.extend([right, left]);
-        }
-        "parking" => {
-            let s = street(straight(here, DVec2::new(far, y)));
-            let side = if draw.chance(0.5) { 1.0 } else { -1.0 };
-            let edge = y + side * (lanes as f64 * lane_m + parking_m + walk_m + 0.4);
-            let (x0, x1) = (draw.range(-34.0, -15.0), draw.range(12.0, 34.0));
-            let deep = draw.range(16.0, 24.0);
-            let corner = |x, depth: f64| DVec2::new(x, edge + side * depth);
-            plan.lots.push(vec![
-                corner(x0, 0.0),
-                corner(x1, 0.0),
-                corner(x1, deep),
-                corner(x0, deep),
-            ]);
-            let gate = draw.range(x0 + 4.0, x1 - 8.0);
-            let inner = y + side * (lanes as f64 * lane_m - 0.5);
-            plan.aprons.push(vec![
-                DVec2::new(gate, inner),
-                DVec2::new(gate + 6.0, inner),
-                corner(gate + 6.0, 1.0),
-                corner(gate, 1.0),
-            ]);
-            plan.streets.push(s);
-        }
+        "roundabout" => roundabout(&mut plan, &mut draw, &usual, y, room_m),
+        "highway" => highway(&mut plan, &mut draw, lane_m),
+        "parking" => parking(&mut plan, &mut draw, &usual, y),
         _ => return None,
     }
     Some(plan.draw())
+}
+
+/// One lane each way, and driveways.
+fn suburb(plan: &mut Plan, draw: &mut Draw, s: &mut Street, lane_m: f64) {
+    let far = FAR_M;
+    (s.forward, s.backward, s.parking_m) = (1, 1, 0.0);
+    s.axis = straight(DVec2::new(-far, lane_m / 2.0), DVec2::new(far, lane_m / 2.0));
+    for _ in 0..4 {
+        // Driveways.
+        let (x, side) = (draw.range(-35.0, 35.0), if draw.chance(0.5) { 1.0 } else { -1.0 });
+        let (w, edge) = (draw.range(2.8, 4.0), lane_m / 2.0 + side * lane_m);
+        let end = edge + side * draw.range(9.0, 14.0);
+        plan.aprons.push(vec![
+            DVec2::new(x, edge - side),
+            DVec2::new(x + w, edge - side),
+            DVec2::new(x + w, end),
+            DVec2::new(x, end),
+        ]);
+    }
+}
+
+/// A bend to the left or the right.
+fn curve(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64) {
+    let (here, street) = (DVec2::new(-FAR_M, y), |axis| usual.street(axis));
+    let radius = draw.range(25.0, 90.0) * if draw.chance(0.5) { 1.0 } else { -1.0 };
+    let start = draw.range(-15.0, 10.0);
+    let center = DVec2::new(start, y + radius);
+    let quarter = -std::f64::consts::FRAC_PI_2 * radius.signum();
+    let sweep = (1.35f64).min(90.0 / radius.abs()) * radius.signum();
+    let mut axis = straight(here, DVec2::new(start, y));
+    let bend = arc(center, radius.abs(), quarter, quarter + sweep);
+    let end = bend[bend.len() - 1];
+    let away = (end - bend[bend.len() - 2]).normalize_or(DVec2::X);
+    axis.extend(&bend[1..]);
+    axis.extend(&straight(end, end + away * 80.0)[1..]);
+    plan.streets.push(street(axis));
+}
+
+/// A ring of one lane with two to four arms.
+fn roundabout(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64, room_m: f64) {
+    let (far, walk_m, street) = (FAR_M, usual.walk_m, |axis| usual.street(axis));
+    let radius = draw.range(9.0, 14.0);
+    let mut center = DVec2::new(draw.range(18.0, 26.0), y);
+    let ring_width = draw.range(5.5, 7.5);
+    if room_m > 0.0 {
+        center.x = center.x.max(room_m + radius + ring_width / 2.0);
+    }
+    let arms = [0.0, 1.0, 2.0, 3.0].map(|k: f64| k * std::f64::consts::FRAC_PI_2 + std::f64::consts::PI);
+    for (k, angle) in arms.into_iter().enumerate() {
+        if k > 0 && draw.chance(0.15) {
+            continue;
+        }
+        let jitter = if k == 0 { 0.0 } else { draw.range(-0.2, 0.2) };
+        let d = DVec2::from_angle(angle + jitter);
+        let mut arm = street(straight(center + d * far, center + d * (radius + 2.0)));
+        arm.parking_m = 0.0;
+        plan.streets.push(arm);
+    }
+    let ring = arc(center, radius, 0.0, std::f64::consts::TAU);
+    plan.streets.push(Street {
+        // Counter-clockwise traffic: lanes right of a counter-clockwise axis.
+        axis: offset_line(&ring, ring_width / 2.0),
+        forward: 1,
+        backward: 0,
+        lane_m: ring_width,
+        walk_m,
+        parking_m: 0.0,
+        shoulder_m: 0.2,
+    });
+    plan.junctions.push((center, radius + ring_width / 2.0 + 5.0));
+    plan.islands.push((center, radius - ring_width / 2.0));
+}
+
+/// Two carriageways with a strip between them.
+fn highway(plan: &mut Plan, draw: &mut Draw, lane_m: f64) {
+    let far = FAR_M;
+    let n = 2 + draw.below(3);
+    let own = draw.below(n) as f64 + 0.5;
+    let gap = draw.range(1.5, 5.0);
+    let (a, b) = (own * lane_m + gap / 2.0, DVec2::new(far, 0.0));
+    let bend = draw.range(-0.15, 0.15);
+    let line = |offset: f64| -> Vec<DVec2> {
+        straight(-b, b)
+            .into_iter()
+            .map(|p| DVec2::new(p.x, offset + bend * p.x * p.x / 160.0))
+            .collect()
+    };
+    let lanes = |axis, forward, backward| Street {
+        axis,
+        forward,
+        backward,
+        lane_m,
+        walk_m: 0.0,
+        parking_m: 0.0,
+        shoulder_m: 2.2,
+    };
+    let mut right = lanes(line(a - gap / 2.0), n, 0);
+    let mut left = lanes(line(a + gap / 2.0), 0, n);
+    right.shoulder_m = draw.range(0.8, 3.0);
+    left.shoulder_m = right.shoulder_m;
+    plan.streets.extend([right, left]);
+}
+
+/// A car park beside the street, with a gate.
+fn parking(plan: &mut Plan, draw: &mut Draw, usual: &Usual, y: f64) {
+    let Usual {
+        lanes,
+        lane_m,
+        walk_m,
+        parking_m,
+    } = *usual;
+    let far = FAR_M;
+    let here = DVec2::new(-far, y);
+    let street = |axis| usual.street(axis);
+    let s = street(straight(here, DVec2::new(far, y)));
+    let side = if draw.chance(0.5) { 1.0 } else { -1.0 };
+    let edge = y + side * (lanes as f64 * lane_m + parking_m + walk_m + 0.4);
+    let (x0, x1) = (draw.range(-34.0, -15.0), draw.range(12.0, 34.0));
+    let deep = draw.range(16.0, 24.0);
+    let corner = |x, depth: f64| DVec2::new(x, edge + side * depth);
+    plan.lots.push(vec![
+        corner(x0, 0.0),
+        corner(x1, 0.0),
+        corner(x1, deep),
+        corner(x0, deep),
+    ]);
+    let gate = draw.range(x0 + 4.0, x1 - 8.0);
+    let inner = y + side * (lanes as f64 * lane_m - 0.5);
+    plan.aprons.push(vec![
+        DVec2::new(gate, inner),
+        DVec2::new(gate + 6.0, inner),
+        corner(gate + 6.0, 1.0),
+        corner(gate, 1.0),
+    ]);
+    plan.streets.push(s);
 }
 
 /// A template of any kind, turned and shifted, for training on roads at every angle.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::{BoxId, BoxLabel, Class, GridSpec, Relief, SceneBox, VoxelGrid};
+use crate::{BoxId, BoxLabel, Class, Frame, GridSpec, Relief, SceneBox, VoxelGrid};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
@@ -14,13 +14,16 @@ const SEVERAL: f64 = 1.6;
 /// Objects are two voxels taller in these labels than they are: the ground lies in bin 0.
 const SMEAR_M: f64 = 2.0 * GridSpec::VOXEL_M;
 
-/// A box for every object in the labels. Which end of it is the front is a guess.
+/// A box for every object in the labels, [`Frame::MAX_BOXES`] at most. Which end of it is the front is a guess.
 pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
     let mut out = BTreeMap::new();
     let relief = super::relief(labels);
     for class in Class::OBJECTS {
         for component in components(labels, class, &relief) {
             for part in split(class, &component) {
+                if out.len() >= Frame::MAX_BOXES {
+                    return out;
+                }
                 let id = BoxId(out.len() as u32 + 1);
                 let mut b = part.to_box(id, class);
                 b.center_m.z += relief.height_m(b.center_m.truncate());

@@ -5,8 +5,8 @@ use app::open;
 use app::recovery::{Recovery, ago};
 use editor::{Document, Edit};
 use job::{GenParams, Named};
-use scene::BoxId;
-use sensors::appearance::{Conditions, Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use scene::{BoxId, Conditions};
+use sensors::appearance::{Quality, RayMarched, SynthesisInput, ViewSynthesizer};
 use sensors::cloud::GaussianCloud;
 use sensors::splat;
 

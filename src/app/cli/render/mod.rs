@@ -14,8 +14,8 @@ use super::{Common, Outcome, output};
 use crate::camera_views::camera_input;
 use crate::graphics::Graphics;
 use crate::{open, picture};
-use scene::{CameraMaps, LidarSweep, Scene};
-use sensors::appearance::{Conditions, Quality, TimeOfDay, Weather};
+use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
+use sensors::appearance::Quality;
 use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderContext, RenderOptions, SourceId};
 use sensors::lidar;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
@@ -40,10 +40,10 @@ pub struct Render {
     /// What classes and depths are rendered from: Gaussians, exact rays to the voxels, or those with boxes as shapes.
     #[arg(long, value_name = "NAME", value_parser = source(), default_value = "splats")]
     source: SourceId,
-    /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the prompt's.
+    /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the scene's.
     #[arg(long, value_name = "NAME")]
     weather: Option<Weather>,
-    /// Time of day of appearance: dawn, day, dusk, night; else the prompt's.
+    /// Time of day of appearance: dawn, day, dusk, night; else the scene's.
     #[arg(long, value_name = "NAME")]
     time: Option<TimeOfDay>,
     /// One sample per pixel for appearance: several times faster, rougher edges.
@@ -74,14 +74,11 @@ type Times = BTreeMap<&'static str, f64>;
 impl Render {
     /// The scene as camera sources take it, under the weather and time that were asked for.
     fn input<'a>(&self, scene: &'a Scene) -> CameraInput<'a> {
-        let input = camera_input(scene, Detail::Full);
+        let own = scene.conditions;
+        let timed = self.time.map_or(own, |time| own.at(time));
         CameraInput {
-            conditions: Conditions {
-                time: self.time.unwrap_or(input.conditions.time),
-                weather: self.weather.unwrap_or(input.conditions.weather),
-                ..input.conditions
-            },
-            ..input
+            conditions: self.weather.map_or(timed, |weather| timed.under(weather)),
+            ..camera_input(scene, Detail::Full)
         }
     }
 

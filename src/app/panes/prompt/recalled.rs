@@ -166,7 +166,7 @@ mod tests {
         job::guard::panic_next("recall");
         assert_eq!(found(), Err("recall panicked: asked for by a test".into()));
         assert_eq!(found(), Ok(true));
-        let mut plan = super::super::prompt_plan::Plan::default();
+        let mut plan = super::super::plan::Plan::default();
         job::guard::panic_next("variants");
         let first = plan.first_variant(&ask).map_err(|e| e.to_string());
         assert_eq!(first, Err("variants panicked: asked for by a test".into()));

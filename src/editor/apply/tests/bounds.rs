@@ -1,6 +1,7 @@
 //! Edits that change nothing, that are refused, that are large.
 
 use super::*;
+use scene::{Conditions, TimeOfDay, Weather};
 
 #[test]
 fn what_changes_nothing_keeps_the_revision() {
@@ -9,6 +10,9 @@ fn what_changes_nothing_keeps_the_revision() {
     let nothing = [
         Edit::SetPrompt { prompt: "".into() },
         Edit::ClearPaint {},
+        Edit::SetConditions {
+            conditions: scene.conditions,
+        },
         Edit::SetBoxClass {
             id: BoxId(1),
             class: Class::Car,
@@ -161,4 +165,28 @@ fn the_largest_edits_are_quick() {
     let (paint, remove) = (best(&everything), best(&Edit::RemoveBox { id: BoxId(1) }));
     println!("paint 40,000 cells: {paint:?}, remove a car: {remove:?}");
     assert!(paint.as_millis() < 16 && remove.as_millis() < 4);
+}
+
+#[test]
+fn conditions_are_set_whole_or_not_at_all() {
+    let mut scene = street();
+    let (rev, before) = (scene.rev, scene.conditions);
+    let bad = Conditions {
+        wetness: 2.0,
+        ..before
+    };
+    let error = Edit::SetConditions { conditions: bad }
+        .apply(&mut scene)
+        .expect_err("refused");
+    assert_eq!(error.to_string(), "wetness is 2, expected 0 to 1");
+    assert_eq!((scene.rev, scene.conditions), (rev, before));
+    let night = before.at(TimeOfDay::Night).under(Weather::Snow);
+    let edit = Edit::SetConditions { conditions: night };
+    let frame = scene.frame().clone();
+    edit.apply(&mut scene).expect("sound");
+    assert_eq!(scene.conditions, night);
+    assert!(
+        scene.rev != rev && Arc::ptr_eq(&frame, scene.frame()),
+        "no voxel changes"
+    );
 }

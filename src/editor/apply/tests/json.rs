@@ -61,6 +61,8 @@ fn json_forms_are_those_of_the_command_line() {
         json!({"clear_paint": {}}),
         json!({"set_prompt": {"prompt": ""}}),
         json!({"keep_words": {"words": "remove the bus"}}),
+        json!({"set_conditions": {"conditions": {"time": "night", "weather": "rain", "wetness": 0.5, "visibility_m": 400.0,
+            "sun": {"azimuth_deg": 20.0, "elevation_deg": 30.0}, "seed": 3}}}),
     ] {
         let edit = parse(form.clone()).expect("a documented form");
         assert_eq!(serde_json::to_value(&edit).expect("plain data"), form);

@@ -1,7 +1,9 @@
 //! From an older version of the project file to the present one, a step per version. A new version is one file here and one
 //! line in [`ALL`]; `tests/reference/loom/` keeps a file of every version, which a test opens.
 
+mod old_prompt;
 mod v1;
+mod v2;
 
 use std::io::{Read, Seek};
 
@@ -30,7 +32,7 @@ pub enum Change {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 1] = [v1::TO_V2];
+pub const ALL: [Migration; 2] = [v1::TO_V2, v2::TO_V3];
 
 /// What a step may change.
 pub trait Entries {

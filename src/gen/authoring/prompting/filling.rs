@@ -9,9 +9,9 @@ use super::How;
 use crate::memory::own_scenes;
 use graph_layout::facts::{self, RoadKind};
 use graph_layout::memory::{Entry, Memory, Open, RoadRef};
-use place::description::{Count, Description, Environment, ObjectSpec, TimeOfDay, Weather};
+use place::description::{Count, Description, Environment, ObjectSpec};
 use scene::graph::ObjectState;
-use scene::{BoxLabel, Class};
+use scene::{BoxLabel, Class, TimeOfDay, Weather};
 
 /// Most objects that memory adds.
 const MOST_REMEMBERED: usize = 14;

@@ -2,7 +2,6 @@
 
 use glam::{DVec3, Quat, Vec2, Vec3};
 
-use super::conditions::Conditions;
 use super::field::Field;
 use super::ground::Ground;
 use super::sky::Air;
@@ -10,7 +9,7 @@ use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
 use scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M, FAR_M};
-use scene::{Frame, SceneBox, SensorRig};
+use scene::{Conditions, Frame, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;

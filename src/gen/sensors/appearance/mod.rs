@@ -2,7 +2,6 @@
 //! layout and boxes, without any weights. Everything is computed in the world (hashes of places, never
 //! of pixels), so neighbouring cameras and successive frames agree.
 
-pub mod conditions;
 mod field;
 mod ground;
 mod look;
@@ -14,12 +13,11 @@ mod shade;
 mod sky;
 mod things;
 
-pub use conditions::{Conditions, TimeOfDay, Weather};
 pub use look::Look;
 
 use rayon::prelude::*;
 
-use scene::{Frame, SensorRig};
+use scene::{Conditions, Frame, SensorRig};
 
 /// How much work goes into a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -42,7 +40,7 @@ pub struct SynthesisInput<'a> {
     pub size: [u32; 2],
     /// Free text; learned models read all of it.
     pub prompt: &'a str,
-    /// Time, weather and seed; they win over the prompt.
+    /// Light and air; they win over the prompt.
     pub conditions: Conditions,
     /// Speed or beauty.
     pub quality: Quality,

@@ -17,7 +17,8 @@ impl Look {
             air: [
                 with(air.to_sun, air.clouds),
                 with(air.sun, air.haze_per_m),
-                with(air.zenith, air.wet),
+                // Falling rain is 2 more than the wet ground.
+                with(air.zenith, air.wet + if air.rain { 2.0 } else { 0.0 }),
                 with(air.horizon, air.snow),
                 with(air.ambient, air.dust),
                 with(air.bounce, air.lamps),

@@ -113,7 +113,7 @@ impl Look {
     /// the vehicle, so that all cameras see the same ones.
     fn falling(&self, o: Vec3, d: Vec3, t: f32, pixel: f32, mut color: Vec3) -> Vec3 {
         let air = &self.air;
-        let (rain, snow) = (air.wet >= 1.0, air.snow > 0.0);
+        let (rain, snow) = (air.rain, air.snow > 0.0);
         if !rain && !snow {
             return color;
         }

@@ -3,8 +3,8 @@
 
 use glam::{IVec3, Vec2, Vec3};
 
-use super::conditions::{Conditions, TimeOfDay, Weather};
 use super::noise::{fbm2, hash1, ramp, unit, unit3, value2};
+use scene::{Conditions, TimeOfDay, Weather};
 
 /// Light and air.
 #[derive(Clone, Debug)]
@@ -29,6 +29,8 @@ pub struct Air {
     pub haze: Vec3,
     /// How wet the ground is, 0 to 1.
     pub wet: f32,
+    /// True while rain falls.
+    pub rain: bool,
     /// How much snow lies, 0 to 1.
     pub snow: f32,
     /// How much dust lies, 0 to 1.
@@ -87,6 +89,10 @@ impl Air {
             ),
         };
         let azimuth = 2.45 + (unit(hash1(seed, 4)) - 0.5) * if seed == 0 { 0.0 } else { 5.0 };
+        let (azimuth, elevation_deg) = match c.sun {
+            Some(sun) => ((sun.azimuth_deg as f32).to_radians(), sun.elevation_deg as f32),
+            None => (azimuth, elevation_deg),
+        };
         let elevation = f32::to_radians(elevation_deg);
         let mut air = Self {
             to_sun: v(
@@ -100,9 +106,10 @@ impl Air {
             ambient,
             bounce: (sun * elevation.sin() + ambient) * 0.16,
             clouds: 0.42,
-            haze_per_m: 0.0011,
+            haze_per_m: c.lost_per_m() as f32,
             haze: horizon * 0.95,
-            wet: 0.0,
+            wet: c.wetness as f32,
+            rain: c.weather == Weather::Rain,
             snow: 0.0,
             dust: 0.0,
             lamps,
@@ -135,32 +142,25 @@ impl Air {
                 let low = self.sun / self.sun.max_element().max(1e-3);
                 let tint = v(0.96, 1.0, 1.05) * Vec3::ONE.lerp(low / low.dot(v(0.25, 0.5, 0.25)), 0.22);
                 self.cover(if night { v(0.96, 1.0, 1.05) } else { tint }, 0.70, 0.0);
-                self.haze_per_m = 0.003;
             }
             Weather::Rain => {
                 self.cover(v(0.91, 1.0, 1.11), 0.36, 0.0);
-                self.haze_per_m = 0.0085;
-                self.wet = 1.0;
                 self.lamps = self.lamps.max(0.45);
                 self.exposure *= 1.22;
             }
             Weather::Snow => {
                 self.cover(v(0.95, 1.0, 1.07), 0.46, 0.0);
-                self.haze_per_m = 0.010;
                 self.snow = 1.0;
                 self.lamps = self.lamps.max(0.3);
                 self.exposure *= 0.86;
             }
             Weather::Fog => {
                 self.cover(v(0.98, 1.0, 1.02), 0.55, 0.0);
-                self.haze_per_m = 0.042;
                 self.haze = self.ambient * 0.58;
                 self.lamps = self.lamps.max(0.5);
-                self.wet = 0.25;
             }
             Weather::Sandstorm => {
                 self.cover(v(1.30, 0.80, 0.38), 0.50, 0.10);
-                self.haze_per_m = 0.027;
                 self.haze = self.ambient * 0.56;
                 self.exposure *= 0.80;
                 self.dust = 1.0;

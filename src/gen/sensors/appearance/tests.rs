@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use scene::{BoxId, Class, GridSpec, Pose, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, GridSpec, Pose, SceneBox, Sun, TimeOfDay, VoxelGrid, Weather};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
@@ -14,11 +14,7 @@ fn street(seed: u64) -> Frame {
 }
 
 fn of(time: TimeOfDay, weather: Weather) -> Conditions {
-    Conditions {
-        time,
-        weather,
-        seed: 3,
-    }
+    Conditions::usual(time, weather, 3)
 }
 
 fn pictures(frame: &Frame, rig: &SensorRig, size: [u32; 2], conditions: Conditions) -> Vec<CameraImage> {
@@ -75,6 +71,47 @@ fn conditions_show() {
         take(TimeOfDay::Day, Weather::Rain).rgba,
         take(TimeOfDay::Day, Weather::Overcast).rgba
     );
+}
+
+/// Each number of the conditions shows, and rain falls on ground of any wetness.
+#[test]
+fn wetness_visibility_and_sun_show() {
+    let (frame, mut rig) = (street(5), SensorRig::default());
+    rig.cameras.truncate(2);
+    let take = |conditions| pictures(&frame, &rig, [96, 54], conditions).remove(1);
+    let day = of(TimeOfDay::Day, Weather::Clear);
+    let base = take(day);
+    let low = Sun {
+        azimuth_deg: 20.0,
+        elevation_deg: 12.0,
+    };
+    for other in [
+        Conditions { wetness: 0.8, ..day },
+        Conditions {
+            visibility_m: 60.0,
+            ..day
+        },
+        Conditions {
+            sun: Some(low),
+            ..day
+        },
+    ] {
+        assert_ne!(take(other).rgba, base.rgba, "{other:?}");
+    }
+    let blue = |i: &CameraImage| mean(i, 2);
+    let thick = take(Conditions {
+        visibility_m: 20.0,
+        ..day
+    });
+    assert!((blue(&thick) - blue(&base)).abs() > 5.0);
+    // Streaks of rain do not hang on how wet the ground is.
+    let look = |wetness| {
+        let rain = of(TimeOfDay::Day, Weather::Rain);
+        Look::new(&frame, &rig, &Conditions { wetness, ..rain })
+    };
+    assert!(look(0.3).air.rain && look(1.0).air.rain);
+    let wet = |l: &Look| l.data().air[2][3];
+    assert_eq!((wet(&look(0.25)), wet(&look(1.0))), (2.25, 3.0));
 }
 
 #[test]
@@ -241,8 +278,8 @@ fn bears_anything() {
             Pose::planar(f64::NAN, 0.0, 0.0),
         ] {
             frame.world_from_ego = pose;
-            for (i, (_, weather)) in Weather::ALL.into_iter().enumerate() {
-                let time = TimeOfDay::ALL[i % 4].1;
+            for (i, weather) in Weather::ALL.into_iter().enumerate() {
+                let time = TimeOfDay::ALL[i % 4];
                 for image in pictures(&frame, &rig, [23, 17], of(time, weather)) {
                     assert_eq!(image.rgba.len(), 23 * 17 * 4);
                     assert!(image.rgba.chunks(4).all(|p| p[3] == 255));

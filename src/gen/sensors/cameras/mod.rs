@@ -19,9 +19,10 @@ pub use marched::march_scene;
 pub use picture::CameraPicture;
 pub use view::{Knob, SourceId, View, ViewId};
 
-use super::appearance::{CameraImage, Conditions, Look, Quality};
+use super::appearance::{CameraImage, Look, Quality};
 use super::cloud::GaussianCloud;
 use super::march::GroundHeight;
+use scene::Conditions;
 use scene::{Background, Camera, CameraMaps, Frame, SensorRig};
 
 /// Every source, in the order of menus: sources of the same view follow each other.

@@ -10,9 +10,10 @@ use super::{
     CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
     ViewId,
 };
-use crate::appearance::{CameraImage, Conditions, Look};
+use crate::appearance::{CameraImage, Look};
 use crate::march::CameraRays;
 use scene::Camera;
+use scene::Conditions;
 
 /// What it shows.
 pub const VIEW: View = View::new(

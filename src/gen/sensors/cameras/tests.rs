@@ -6,8 +6,7 @@ mod normal_maps;
 use std::collections::BTreeSet;
 
 use super::*;
-use crate::appearance::{TimeOfDay, Weather};
-use scene::{BevLayout, VoxelGrid};
+use scene::{BevLayout, TimeOfDay, VoxelGrid, Weather};
 use world::World;
 use world::voxelize::{Vertical, complete};
 

@@ -158,47 +158,7 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
                 }
             }
             Word::Along => s.place.along = true,
-            Word::Number(n) => {
-                if !n.is_finite() || n < 0.0 {
-                    return None;
-                }
-                let before = i.checked_sub(1).map(|k| words[k]);
-                let wants = |v: Verb| verb == Some(v) || (verb.is_none() && carried == Some(v));
-                match (next(1), next(2)) {
-                    (Some(Word::Storey), after) => {
-                        let grows = matches!(after, Some(Word::Taller | Word::Lower));
-                        let changes = before == Some(Word::By) || wants(Verb::Raise) || wants(Verb::Lower);
-                        match grows || (changes && before != Some(Word::To)) {
-                            true => s.by = Some(Amount::Storeys(n)),
-                            false => s.height = Some(Amount::Storeys(n)),
-                        }
-                        i += 1;
-                    }
-                    (Some(Word::Metre), Some(Word::Tall | Word::Low)) => {
-                        s.height = Some(Amount::Metres(n));
-                        i += 2;
-                    }
-                    (Some(Word::Metre), Some(Word::Taller | Word::Lower)) => {
-                        s.by = Some(Amount::Metres(n));
-                        i += 1;
-                    }
-                    (Some(Word::Metre), _) => {
-                        match () {
-                            () if before == Some(Word::To) => s.height = Some(Amount::Metres(n)),
-                            () if before == Some(Word::By) || wants(Verb::Move) => {
-                                s.by = Some(Amount::Metres(n))
-                            }
-                            () if wants(Verb::Raise) || wants(Verb::Lower) => s.by = Some(Amount::Metres(n)),
-                            () => s.place.distance_m = Some(n),
-                        }
-                        i += 1;
-                    }
-                    (Some(Word::What(..) | Word::Tall | Word::Low | Word::Row), _) => {
-                        s.count = Some(n.min(500.0) as u32)
-                    }
-                    _ => return None,
-                }
-            }
+            Word::Number(n) => i += number(&mut s, n, (words.as_slice(), i), verb, carried)?,
             Word::Tall if what.is_some() && verb == Some(Verb::Make) => comparative = Some(Verb::Raise),
             Word::Tall => s.tall = Some(true),
             Word::Low => s.tall = Some(false),
@@ -253,6 +213,56 @@ fn read(clause: &[Token], span: Span, edits: bool, carried: Option<Verb>) -> Opt
     let whole = matches!(s.what, What::Place(_)) && s.place.side.is_none() && verb.is_none() && !no;
     let other = whole && !words.contains(&Word::Both);
     (!other && (edits || !may_be_barrier(&s))).then_some(s)
+}
+
+/// Reads a number and what it counts or measures: how many words after it belong to it. `None` if it fits nothing.
+fn number(
+    s: &mut Said,
+    n: f64,
+    (words, i): (&[Word], usize),
+    verb: Option<Verb>,
+    carried: Option<Verb>,
+) -> Option<usize> {
+    let next = |k: usize| words.get(i + k).copied();
+    if !n.is_finite() || n < 0.0 {
+        return None;
+    }
+    let before = i.checked_sub(1).map(|k| words[k]);
+    let wants = |v: Verb| verb == Some(v) || (verb.is_none() && carried == Some(v));
+    let taken = match (next(1), next(2)) {
+        (Some(Word::Storey), after) => {
+            let grows = matches!(after, Some(Word::Taller | Word::Lower));
+            let changes = before == Some(Word::By) || wants(Verb::Raise) || wants(Verb::Lower);
+            match grows || (changes && before != Some(Word::To)) {
+                true => s.by = Some(Amount::Storeys(n)),
+                false => s.height = Some(Amount::Storeys(n)),
+            }
+            1
+        }
+        (Some(Word::Metre), Some(Word::Tall | Word::Low)) => {
+            s.height = Some(Amount::Metres(n));
+            2
+        }
+        (Some(Word::Metre), Some(Word::Taller | Word::Lower)) => {
+            s.by = Some(Amount::Metres(n));
+            1
+        }
+        (Some(Word::Metre), _) => {
+            match () {
+                () if before == Some(Word::To) => s.height = Some(Amount::Metres(n)),
+                () if before == Some(Word::By) || wants(Verb::Move) => s.by = Some(Amount::Metres(n)),
+                () if wants(Verb::Raise) || wants(Verb::Lower) => s.by = Some(Amount::Metres(n)),
+                () => s.place.distance_m = Some(n),
+            }
+            1
+        }
+        (Some(Word::What(..) | Word::Tall | Word::Low | Word::Row), _) => {
+            s.count = Some(n.min(500.0) as u32);
+            0
+        }
+        _ => return None,
+    };
+    Some(taken)
 }
 
 /// True if the word names barriers too, which are boxes, and nothing tells that it runs along the road.

@@ -14,8 +14,7 @@ use super::reading::{Amount, Feature, Quantity, Reading, Thing, What};
 use super::remark::Remark;
 use super::resolve::{Spare, words_of};
 use super::stage::{OpenScene, Outcome, Stage};
-use place::description::{TimeOfDay, Weather};
-use scene::{BoxId, SceneBox};
+use scene::{BoxId, SceneBox, TimeOfDay, Weather};
 
 /// Most acts that are carried out.
 pub const MOST_ACTS: usize = 100;
@@ -226,8 +225,15 @@ impl Stage<'_> {
         }
     }
 
-    /// Another time of day or weather in the words of the style; the other words stay.
+    /// Another time of day or weather. The words of the style follow, so that they never say something else; its other words
+    /// stay.
     fn conditions(&mut self, time: Option<TimeOfDay>, weather: Option<Weather>) {
+        let mut conditions = self.conditions;
+        conditions = time.map_or(conditions, |t| conditions.at(t));
+        conditions = weather.map_or(conditions, |w| conditions.under(w));
+        if conditions != self.conditions {
+            self.set_conditions(conditions);
+        }
         let mut words: Vec<&str> = self
             .prompt
             .split(',')

@@ -12,7 +12,7 @@ use super::carry_out;
 use place::road;
 use place::rules::place_with;
 use place::to_graph::to_graph;
-use scene::{BevLayout, BoxId, Class, Edit, Paint, SceneBox};
+use scene::{BevLayout, BoxId, Class, Conditions, Edit, Paint, SceneBox, TimeOfDay, Weather};
 
 struct Base {
     layout: BevLayout,
@@ -36,6 +36,7 @@ impl Base {
             boxes: &self.boxes,
             layout: &self.layout,
             prompt: "day",
+            conditions: Default::default(),
         };
         carry_out(&parse(line).unwrap_or_else(|e| panic!("{line}: {e}")), &scene, 1)
     }
@@ -137,6 +138,8 @@ fn edits_hit_what_they_name() {
     let prompt = "night, rain".to_owned();
     let style = base.edit("time night ; weather rain").edits;
     assert_eq!(style.last(), Some(&Edit::SetPrompt { prompt }));
+    let conditions = Conditions::usual(TimeOfDay::Night, Weather::Rain, 0);
+    assert!(style.contains(&Edit::SetConditions { conditions }), "{style:?}");
     match base.edit("set the bus red").edits.as_slice() {
         [Edit::LabelBox { id, label }] => assert_eq!((*id, label.paint), (bus, Some(Paint::Red))),
         other => panic!("{other:?}"),

@@ -8,8 +8,9 @@ use super::super::reading::{
 };
 use super::Grammar;
 use super::things::state_of;
-use place::description::{Density, Environment, Road, TimeOfDay, Weather};
+use place::description::{Density, Environment, Road};
 use scene::graph::ObjectState;
+use scene::{TimeOfDay, Weather};
 
 type Found = Option<(What, usize)>;
 

@@ -6,8 +6,9 @@ use super::super::reading::{
     Relation, Thing, Turn, Way, What,
 };
 use super::{SIZES, STATES, anchors, paint, plain};
-use place::description::{Density, Environment, Road, TimeOfDay, Weather};
+use place::description::{Density, Environment, Road};
 use scene::graph::{ObjectState, SizeHint};
+use scene::{TimeOfDay, Weather};
 
 /// Why a line is no reading.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

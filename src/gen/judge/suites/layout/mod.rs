@@ -214,6 +214,7 @@ fn place_description(
         seed,
     );
     scene.prompt = laid.description.style().into();
+    scene.conditions = laid.description.conditions(scene.seed);
     (scene, laid)
 }
 
@@ -442,6 +443,7 @@ fn changed(
         boxes: &frame.boxes,
         layout: &frame.layout,
         prompt: &scene.prompt,
+        conditions: scene.conditions,
     };
     let outcome = carry_out(reading, &open, seed);
     let wall_s = read.wall_s + started.elapsed().as_secs_f64();

@@ -6,13 +6,13 @@ use std::time::{Duration, Instant};
 use egui::Context;
 use tempfile::tempdir;
 
-use crate::export::{ExportOptions, Format};
+use crate::export::ExportOptions;
 use crate::scenery::{Drawer, SceneryWish};
-use crate::trade::calibrate::{Background, News, Task};
 use crate::{AppConfig, SceneloomApp, open};
 use editor::Edit;
 use job::guard::panic_next;
 use job::{GenError, GenParams};
+use judge::stops::calibrate::{Background, News, Task};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -52,9 +52,9 @@ fn opening() {
     panic_next("open");
     app.load("Opening a file".into(), None, false, &ctx, make);
     wait_for(&mut app, "Opening a file: open panicked: asked for by a test");
-    assert!(app.opening.is_none());
+    assert!(app.files.opening.is_none());
     app.load("Opening a file".into(), None, false, &ctx, make);
-    while app.opening.is_some() {
+    while app.files.opening.is_some() {
         app.update(&ctx);
     }
     assert_eq!(
@@ -70,7 +70,7 @@ fn exports() {
     let path = folder.path().join("labels.npz");
     panic_next("export");
     for expected in ["Not exported: export panicked: asked for by a test", "Exported"] {
-        let formats = vec![Format::Occ3d];
+        let formats = vec![&formats::export::occ3d::EXPORTER];
         app.start_export(
             formats,
             ExportOptions::default(),
@@ -115,9 +115,9 @@ fn checks_and_sensors() {
         &mut app,
         "The scene was not checked: checks panicked: asked for by a test",
     );
-    assert!(app.checking.findings().is_none());
+    assert!(app.background.checking.findings().is_none());
     panic_next("sensing");
-    app.sensing.ask(app.document.scene(), wanted, true);
+    app.background.sensing.ask(app.document.scene(), wanted, true);
     wait_for(
         &mut app,
         "The sensors show an older scene: sensing panicked: asked for by a test",
@@ -125,9 +125,9 @@ fn checks_and_sensors() {
     let prompt = "another state".to_owned();
     app.apply("Prompt", &[Edit::SetPrompt { prompt }]);
     let rev = app.document.settled_scene().rev;
-    app.sensing.ask(app.document.scene(), wanted, true);
+    app.background.sensing.ask(app.document.scene(), wanted, true);
     let start = Instant::now();
-    while app.checking.is_stale(rev) || app.sensing.lidar_stale(rev) {
+    while app.background.checking.is_stale(rev) || app.background.sensing.lidar_stale(rev) {
         assert!(start.elapsed() < PATIENCE, "no findings");
         app.update(&Context::default());
         std::thread::sleep(Duration::from_millis(2));

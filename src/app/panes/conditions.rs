@@ -1,0 +1,142 @@
+//! The fields for light and air of the scene: time of day, weather, wetness, visibility, sun and seed.
+
+use egui::{DragValue, Ui};
+
+use crate::command::Command;
+use crate::theme;
+use crate::widgets::fields::{fields, number};
+use editor::Edit;
+use scene::{Conditions, Scene, Sun, TimeOfDay, Weather};
+
+/// Name of the undo step.
+const STEP: &str = "Change weather";
+
+/// Draws time and weather in a row, and a menu with the rest.
+pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+    let now = scene.conditions;
+    let (mut time, mut weather) = (now.time, now.weather);
+    egui::ComboBox::from_id_salt("time of day")
+        .width(80.0)
+        .selected_text(theme::sentence(time.name()))
+        .show_ui(ui, |ui| {
+            for value in TimeOfDay::ALL {
+                ui.selectable_value(&mut time, value, theme::sentence(value.name()));
+            }
+        });
+    egui::ComboBox::from_id_salt("weather")
+        .width(100.0)
+        .selected_text(theme::sentence(weather.name()))
+        .show_ui(ui, |ui| {
+            for value in Weather::ALL {
+                ui.selectable_value(&mut weather, value, theme::sentence(value.name()));
+            }
+        });
+    if (time, weather) != (now.time, now.weather) {
+        let prompt = with_conditions(&scene.prompt, time.name(), weather.name());
+        let conditions = now.at(time).under(weather);
+        let edits = vec![Edit::SetPrompt { prompt }, Edit::SetConditions { conditions }];
+        commands.push(Command::Apply(STEP, edits));
+    }
+    ui.menu_button("Air and sun…", |ui| air_and_sun(ui, now, commands))
+        .response
+        .on_hover_text("Wet ground, visibility, sun and seed of the pictures");
+}
+
+/// The numbers behind the names.
+fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
+    let mut new = now;
+    let mut response = number(
+        ui,
+        "Wet",
+        "Wetness of the ground",
+        &mut new.wetness,
+        0.0..=1.0,
+        "",
+        2,
+    );
+    let [near, far] = Conditions::VISIBILITY_M;
+    response |= number(
+        ui,
+        "Sight",
+        "Visibility, m",
+        &mut new.visibility_m,
+        near..=far,
+        " m",
+        0,
+    );
+    let mut placed = now.sun.is_some();
+    response |= ui
+        .checkbox(&mut placed, "Place the sun")
+        .on_hover_text("Else it stands as the time of day has it");
+    new.sun = placed.then(|| {
+        now.sun.unwrap_or(Sun {
+            azimuth_deg: 0.0,
+            elevation_deg: 30.0,
+        })
+    });
+    if let Some(sun) = &mut new.sun {
+        let azimuth = &mut sun.azimuth_deg;
+        response |= number(
+            ui,
+            "Azimuth",
+            "Azimuth of the sun",
+            azimuth,
+            -180.0..=180.0,
+            "°",
+            0,
+        );
+        let elevation = &mut sun.elevation_deg;
+        response |= number(
+            ui,
+            "Height",
+            "Elevation of the sun",
+            elevation,
+            0.0..=90.0,
+            "°",
+            0,
+        );
+    }
+    response |= ui
+        .horizontal(|ui| {
+            crate::widgets::fields::caption(ui, "Seed");
+            let seed = DragValue::new(&mut new.seed).speed(0.05);
+            ui.add_sized([86.0, theme::ROW], seed)
+                .accessible_name("Seed of the pictures")
+        })
+        .inner;
+    let edit = Edit::SetConditions { conditions: new };
+    fields(&response, STEP, vec![edit], commands);
+}
+
+/// The style text with its phrases about time and weather replaced; the others stay as they are.
+fn with_conditions(prompt: &str, time: &str, weather: &str) -> String {
+    let speaks = |phrase: &&str| words::conditions::read(phrase) != words::conditions::Said::default();
+    let phrases = prompt.split(',').map(str::trim).filter(|p| !p.is_empty());
+    let mut kept: Vec<&str> = phrases.filter(|p| !speaks(p)).collect();
+    kept.extend([time, weather]);
+    kept.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use words::conditions::read;
+
+    #[test]
+    fn other_phrases_stay() {
+        let prompt = with_conditions("busy market, rainy evening, red cars", "night", "snow");
+        assert_eq!(prompt, "busy market, red cars, night, snow");
+        for time in TimeOfDay::ALL {
+            for weather in Weather::ALL {
+                let again = with_conditions(&prompt, time.name(), weather.name());
+                let found = read(&again);
+                assert_eq!(
+                    (found.time, found.weather),
+                    (Some(time), Some(weather)),
+                    "{again}"
+                );
+            }
+        }
+        assert_eq!(with_conditions("", "day", "clear"), "day, clear");
+    }
+}

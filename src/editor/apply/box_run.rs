@@ -1,0 +1,39 @@
+//! A run of edits of boxes: one copy of the frame for all of them, where each alone would copy and compare it.
+
+use super::apply_to;
+use scene::{BoxId, Edit, EditError, Frame, Scene, SceneBox};
+
+/// Applies edits of boxes in order; an error stops there, and what came before it stays.
+pub(super) fn apply(run: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
+    let mut frame = Frame::clone(scene.frame());
+    let mut changed = false;
+    for (done, edit) in run.iter().enumerate() {
+        let before = touched(edit, &frame);
+        if let Err(error) = apply_to(edit, &mut frame) {
+            // The frame may be half changed; those before it are applied again, to a new copy.
+            apply(&run[..done], scene)?;
+            return Err(error);
+        }
+        changed |= before.is_none_or(|before| touched(edit, &frame) != Some(before));
+    }
+    if changed {
+        *scene.frame_mut() = frame;
+    }
+    Ok(())
+}
+
+/// The box that an edit may change, in the frame and in its source; none for a new one.
+fn touched(edit: &Edit, frame: &Frame) -> Option<[Option<SceneBox>; 2]> {
+    let of = |id: &BoxId| [&frame.boxes, &frame.source.boxes].map(|boxes| boxes.get(id).copied());
+    match edit {
+        Edit::RemoveBox { id }
+        | Edit::MoveBox { id, .. }
+        | Edit::LabelBox { id, .. }
+        | Edit::SetBoxClass { id, .. } => Some(of(id)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+#[path = "box_run_tests.rs"]
+mod tests;

@@ -1,0 +1,108 @@
+//! What it costs to put an object at a place, in the unit of the placer: how far the place is from what was said.
+
+use glam::{DVec2, DVec3};
+
+use super::holds::{Target, course, gap_m, measured};
+use super::spots::Spot;
+use scene::graph::{Edge, RelationKind};
+use scene::{BoxId, BoxLabel, Class, SceneBox};
+
+/// Who is only told where to look stays where he is (what drives keeps to its lane).
+pub(super) fn turned_where_it_is(old: &SceneBox, stated: &[(Edge, Option<Target>)]) -> Option<Spot> {
+    use RelationKind as R;
+    let drives = old.class != Class::Pedestrian && old.velocity_mps.length() > 0.5;
+    let p = old.center_m.truncate();
+    let mut looks = None;
+    for (e, to) in stated {
+        match (e.relation, to) {
+            (R::On | R::ParkedOn, Some(Target::Lane(_))) => {}
+            (R::Facing | R::FacingAway, Some(to)) => {
+                let away = if e.relation == R::FacingAway { -1.0 } else { 1.0 };
+                looks = Some(match to {
+                    Target::Thing(b) if b.id.0 == u32::MAX => -p * away,
+                    Target::Thing(b) => (b.center_m.truncate() - p) * away,
+                    _ => return None,
+                });
+            }
+            _ => return None,
+        }
+    }
+    let moves = old.velocity_mps.length() > 0.5;
+    looks.filter(|_| !drives).map(|way| Spot {
+        p,
+        yaw_rad: way.to_angle(),
+        cost: -10.0,
+        still: !moves,
+        moves,
+        on_road: true,
+        anywhere: old.class == Class::Pedestrian,
+    })
+}
+
+/// What it costs to bring a box to a place: the way, and turning it.
+pub(super) fn moved_far(old: &SceneBox, s: &Spot) -> f64 {
+    let turned = 1.0 - old.heading().dot(DVec2::from_angle(s.yaw_rad));
+    let walks = old.class == Class::Pedestrian;
+    0.25 * old.center_m.truncate().distance(s.p) + if walks { 0.2 } else { 1.5 } * turned
+}
+
+/// Metres beside the line, and beyond the middle half of it.
+pub(super) fn off_line(ends: [DVec2; 2], p: DVec2) -> f64 {
+    let line = ends[1] - ends[0];
+    let (dir, length) = (line.normalize_or_zero(), line.length());
+    let along = dir.dot(p - ends[0]) - length / 2.0;
+    // (the middle is where a reader looks first)
+    dir.perp_dot(p - ends[0]).abs() + 0.4 * along.abs() + 0.5 * (along.abs() - length / 4.0).max(0.0)
+}
+
+/// What it costs to be far before or behind what was named.
+pub(super) fn off_thing(e: &Edge, to: &Option<Target>, p: DVec2) -> f64 {
+    match (e.relation, to) {
+        (RelationKind::InFrontOf | RelationKind::Behind, Some(Target::Thing(b)))
+            if b.id.0 != u32::MAX && e.distance_m.is_none() =>
+        {
+            let gap = p.distance(b.center_m.truncate()) - b.size_m.x / 2.0;
+            0.15 * (gap - 6.0).clamp(0.0, 30.0)
+        }
+        _ => 0.0,
+    }
+}
+
+/// Metres that something is farther off than near, at most 30, where it was said to be near.
+pub(super) fn off_near(e: &Edge, to: &Option<Target>, b: &SceneBox) -> Option<f64> {
+    match (e.relation, to) {
+        (RelationKind::Near, Some(Target::Thing(to))) if e.distance_m.is_none() => {
+            Some((gap_m(b, to) - 3.0).clamp(0.0, 30.0))
+        }
+        _ => None,
+    }
+}
+
+/// How far a place misses what was said in metres, and how far off the line of what it is behind or between.
+pub(super) fn off_measure(stated: &[(Edge, Option<Target>)], s: &Spot, size_m: DVec3) -> f64 {
+    let b = SceneBox {
+        id: BoxId(0),
+        class: Class::Car,
+        center_m: s.p.extend(0.0),
+        size_m,
+        yaw_rad: s.yaw_rad,
+        velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
+    };
+    let of = |(e, t): &(Edge, Option<Target>)| {
+        let Some(Target::Thing(to)) = t else {
+            return 0.0;
+        };
+        let missed = e
+            .distance_m
+            .map_or(0.0, |d| (measured(e.relation, &b, to) - d).abs());
+        // beside is level with it
+        let level = if e.relation == RelationKind::NextTo && to.class != Class::Pedestrian {
+            0.6 * course(to).dot(s.p - to.center_m.truncate()).abs()
+        } else {
+            0.0
+        };
+        missed.min(20.0) + level.min(12.0)
+    };
+    stated.iter().map(of).sum()
+}
