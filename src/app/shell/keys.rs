@@ -159,7 +159,7 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 mod tests {
     use super::*;
     use crate::command::{FileCommand, GenerationCommand, ViewCommand};
-    use crate::tools::ToolCommand;
+    use crate::tools::{Choose, ToolCommand};
     use glam::DVec3;
     use scene::BoxId;
 
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn keys_wait_for_the_end_of_a_drag() {
         let mut state = UiState::default();
-        state.selected = Some(BoxId(3));
+        state.choose(&[BoxId(3)], Choose::Only);
         let hands = Hands {
             dragging: true,
             ..Hands::default()

@@ -527,8 +527,10 @@ mod tests {
 
     #[test]
     fn locked_layers_and_kinds() {
-        let mut ui = Hand::default();
-        ui.layers_locked = BevLayer::Walkway.bit();
+        let mut ui = Hand {
+            layers_locked: BevLayer::Walkway.bit(),
+            ..Hand::default()
+        };
         let paint = |layer| Edit::PaintBev {
             layer,
             shape: crate::Shape::Cells(vec![[1, 1]]),
