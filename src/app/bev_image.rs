@@ -5,17 +5,7 @@ use egui::{Color32, ColorImage};
 
 use scene::{BevLayer, BevLayout, Class, GridSpec, Unobserved, VoxelGrid};
 
-/// Map layers from the lowest to the uppermost, as the papers draw them; boxes come after.
-pub const DRAW_ORDER: [BevLayer; 8] = [
-    BevLayer::DrivableArea,
-    BevLayer::RoadBlock,
-    BevLayer::Walkway,
-    BevLayer::StopLine,
-    BevLayer::CarparkArea,
-    BevLayer::PedCrossing,
-    BevLayer::RoadDivider,
-    BevLayer::LaneDivider,
-];
+pub use editor::tools::DRAW_ORDER;
 
 /// Width and height in pixels of both pictures.
 pub const SIZE: [usize; 2] = [GridSpec::NY, GridSpec::NX];

@@ -1,16 +1,18 @@
-//! The bird's-eye view: a frame from above with forward up, drawn and taken hold of. Gestures are
-//! in `canvas_tools.rs`.
+//! The bird's-eye view: a frame from above with forward up, drawn and taken hold of. The tools are
+//! driven by `canvas_tools.rs`.
 
 use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{
-    Color32, ColorImage, PointerButton, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle,
-    TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Color32, ColorImage, PointerButton, Rect, Response, Sense, Stroke, StrokeKind, TextureHandle,
+    TextureOptions, Ui, WidgetInfo, pos2,
 };
 use glam::DVec2;
 
-use editor::{pick, pick_things};
+use editor::pick;
+use editor::pick_things;
+use editor::tools::{Hand, region, select};
 use scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerLook};
@@ -18,42 +20,16 @@ use super::canvas_draw::{
     BoxLook, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
     draw_unsettled,
 };
-use super::canvas_tools::Gesture;
+use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
+use super::marks::{self, Board};
 use super::pointer::{self, Held, Step};
-use super::state::{Tool, UiState, Underlay};
+pub use super::screen_map::ScreenMap;
+use super::state::{UiState, Underlay};
 use super::theme;
-use super::tools::things::draw;
+use super::thing_outlines;
 use crate::shell::live::Bounds;
-
-/// From the ego frame to the screen and back.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenMap {
-    /// The pane, points.
-    pub rect: Rect,
-    /// Point of the ego frame in the middle of the pane, m.
-    pub center_m: DVec2,
-    /// Points per metre.
-    pub scale: f64,
-}
-
-impl ScreenMap {
-    /// Where a point of the ego frame appears.
-    pub fn to_screen(&self, p_m: DVec2) -> Pos2 {
-        let d = (p_m - self.center_m) * self.scale;
-        self.rect.center() + vec2(-d.y as f32, -d.x as f32)
-    }
-
-    /// The point of the ego frame under a point of the screen, m.
-    pub fn to_ego(&self, p: Pos2) -> DVec2 {
-        let d = p - self.rect.center();
-        self.center_m + DVec2::new(-f64::from(d.y), -f64::from(d.x)) / self.scale
-    }
-
-    pub(super) fn rect_of(&self, min_m: DVec2, max_m: DVec2) -> Rect {
-        Rect::from_two_pos(self.to_screen(min_m), self.to_screen(max_m))
-    }
-}
+use crate::windows::row;
 
 /// The bird's-eye view's own state.
 pub struct Canvas {
@@ -61,8 +37,7 @@ pub struct Canvas {
     scale: f64,                 // points per metre; 0 before the first fit
     fitted: Option<egui::Vec2>, // the pane that all of the grid was fitted into, until the user moves the map
     held: Held,
-    /// What the pointer is doing.
-    pub(super) gesture: Gesture,
+    driver: Driver,
     /// The last map from ego to screen; tests click with it.
     pub map: Option<ScreenMap>,
     layers: Option<Shown<LayersKey>>,
@@ -83,6 +58,8 @@ struct Shown<K> {
 pub struct CanvasInput<'a> {
     /// The scene shown, a drag in progress included.
     pub scene: &'a Scene,
+    /// The scene without the drag in progress.
+    pub settled: &'a Scene,
     /// The newest sweep.
     pub lidar: Option<&'a LidarSweep>,
     /// Lowest and highest column that is still to be generated, both included.
@@ -100,7 +77,7 @@ const HALF_M: f64 = GridSpec::MAX_M[0];
 impl Canvas {
     /// True while the pointer draws, moves or marks something.
     pub fn is_dragging(&self) -> bool {
-        !matches!(self.gesture, Gesture::None | Gesture::Ignored)
+        self.driver.is_dragging()
     }
 }
 
@@ -111,7 +88,7 @@ impl Default for Canvas {
             scale: 0.0,
             fitted: None,
             held: Held::default(),
-            gesture: Gesture::None,
+            driver: Driver::default(),
             map: None,
             layers: None,
             occupancy: None,
@@ -138,7 +115,11 @@ impl Canvas {
         let steps = pointer::steps(ui, &response);
         let map = self.navigate(ui, &response, &steps, state);
         state.tools.pointer_m = response.hover_pos().map(|p| map.to_ego(p));
-        self.interact(ui, &response, &map, input.scene, state, commands);
+        if let Some(at_m) = state.tools.pointer_m {
+            state.readout = readout(input.scene, at_m);
+        }
+        self.driver
+            .drive(ui, &response, &steps, &seen(input, &map), state, commands);
         let map = ScreenMap {
             center_m: self.center_m,
             ..map
@@ -157,14 +138,13 @@ impl Canvas {
         let response = ui.interact(rect, ui.scope_id().with("still"), Sense::empty());
         let input = CanvasInput {
             scene,
+            settled: scene,
             lidar: None,
             unsettled: Arc::default(),
             generating: false,
         };
-        let state = UiState {
-            tool: Tool::Select,
-            ..state.clone()
-        };
+        let mut state = state.clone();
+        state.tool = select::ID;
         let map = ScreenMap { rect, ..*map };
         self.draw(ui, &response, &map, &input, &state);
     }
@@ -220,8 +200,8 @@ impl Canvas {
         if let Some(pointer) = response.hover_pos() {
             // With Ctrl held egui turns the wheel into a zoom: here it is the brush's size.
             if (zoom - 1.0).abs() > 1e-3 {
-                state.brush_m = (state.brush_m * f64::from(zoom))
-                    .clamp(*UiState::BRUSH_M.start(), *UiState::BRUSH_M.end());
+                state.brush_m =
+                    (state.brush_m * f64::from(zoom)).clamp(*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end());
             } else if scroll != 0.0 {
                 let under = map.to_ego(pointer);
                 let scale = self.scale * f64::from(scroll / 220.0).exp();
@@ -294,24 +274,23 @@ impl Canvas {
         }
         let hovered = response
             .hover_pos()
-            .filter(|_| state.tool == Tool::Select && matches!(self.gesture, Gesture::None))
+            .filter(|_| state.tool == select::ID && !self.driver.is_held())
             .map(|p| map.to_ego(p))
             .filter(|p| pick::box_at(scene.frame(), *p).is_none())
-            .and_then(|p| draw::under(scene, state, p, 8.0 / map.scale));
+            .and_then(|p| select::thing_under(scene, state, p, 8.0 / map.scale));
         let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
-        draw::outlines(&inside, map, scene, state, hovered);
+        thing_outlines::outlines(&inside, map, scene, &state.things, hovered);
         draw_ego(ui, map, &scene.rig);
         if state.show_boxes {
             draw_boxes(ui, map, response, input.scene, state);
         }
-        draw_unsettled(ui, map, input);
+        draw_unsettled(ui, map, &input.unsettled, input.generating);
         if let Some(meant) = &state.meant {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
             meant.draw(&inside, map, scene.frame());
         }
-        self.draw_tool(ui, response, map, scene, state);
         draw_scale_bar(ui, map);
-        super::tools::bev_draw::draw(ui, response, map, scene, state, &self.gesture);
+        self.draw_tool(ui, response, map, input, state);
     }
 
     fn layers_texture(&mut self, ui: &Ui, scene: &Scene, state: &UiState) -> egui::TextureId {
@@ -336,48 +315,47 @@ impl Canvas {
         texture(ui, &mut self.occupancy, scene.rev, "occupancy", make)
     }
 
-    fn draw_tool(&self, ui: &Ui, response: &Response, map: &ScreenMap, scene: &Scene, state: &UiState) {
+    /// What the tools draw, and what the pointer looks like.
+    fn draw_tool(
+        &self,
+        ui: &Ui,
+        response: &Response,
+        map: &ScreenMap,
+        input: &CanvasInput<'_>,
+        state: &UiState,
+    ) {
         let painter = ui.painter();
-        let shift = ui.input(|i| i.modifiers.shift);
-        let Some(pointer) = response.hover_pos() else {
-            return;
-        };
-        match (state.tool, &self.gesture) {
-            (Tool::Brush, Gesture::None | Gesture::Stroke { .. } | Gesture::Tool(_))
-                if state.tools.shape.has_width() =>
-            {
-                let erase = match &self.gesture {
-                    Gesture::Stroke { erase, .. } => *erase,
-                    _ => state.erase || shift,
-                };
-                let radius = (state.brush_m / 2.0 * map.scale) as f32;
-                let layer = state.layer.color();
-                let (color, fill) = match erase {
-                    true => (theme::bad(), theme::bad().gamma_multiply(0.12)),
-                    false => (theme::ON_CANVAS, theme::rgba(layer, 0.35)),
-                };
-                painter.circle_filled(pointer, radius, fill);
-                painter.circle_stroke(pointer, radius, Stroke::new(3.0, Color32::from_black_alpha(140)));
-                painter.circle_stroke(pointer, radius, Stroke::new(1.5, color));
-                painter.circle_filled(pointer, 1.5, color);
-            }
-            (Tool::AddBox, Gesture::None | Gesture::Place { .. }) => {
-                let (at_m, yaw_rad) = match self.gesture {
-                    Gesture::Place { at_m, yaw_rad } => (at_m, yaw_rad),
-                    _ => {
-                        let at_m = map.to_ego(pointer);
-                        (
-                            at_m,
-                            super::canvas_tools::lane_heading(scene.frame(), at_m).unwrap_or(0.0),
-                        )
-                    }
-                };
-                if let Some(ghost) = state.new_box(scene.frame(), state.box_class, at_m, yaw_rad) {
-                    draw_box(ui, map, &ghost, BoxLook::Ghost);
-                }
-            }
-            _ => {}
+        if state.tool == region::ID || !state.tools.region.is_empty() {
+            marks::region(painter, map, state.tools.region.cells());
         }
+        if state.tools.row_open {
+            for b in row::coming(input.scene.frame(), state) {
+                draw_box(ui, map, &b, BoxLook::Ghost);
+            }
+        }
+        let (marks, cursor) = self
+            .driver
+            .sight(ui, response.hover_pos(), &seen(input, map), state);
+        let board = Board {
+            painter,
+            view: map,
+            map: Some(map),
+        };
+        board.paint(ui, &marks);
+        // A still answers no pointer.
+        if response.hover_pos().is_some() && response.sense.senses_drag() {
+            let pans = ui.input(|i| i.key_down(egui::Key::Space) || i.pointer.middle_down());
+            let cursor = if pans { egui::CursorIcon::Grab } else { cursor };
+            ui.ctx().set_cursor_icon(cursor);
+        }
+    }
+}
+
+fn seen<'a>(input: &CanvasInput<'a>, map: &'a ScreenMap) -> Seen<'a> {
+    Seen {
+        scene: input.scene,
+        settled: input.settled,
+        view: map,
     }
 }
 
@@ -456,23 +434,4 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
         parts.push(format!("{name} #{}, {height_m:.1} m high", thing.id.0));
     }
     parts.join("  ·  ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_map_goes_both_ways() {
-        let map = ScreenMap {
-            rect: Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 300.0)),
-            center_m: DVec2::new(3.0, -2.0),
-            scale: 7.5,
-        };
-        let p = DVec2::new(11.25, 4.5);
-        assert!(map.to_ego(map.to_screen(p)).distance(p) < 1e-4);
-        // Forward is up, left is left.
-        assert!(map.to_screen(DVec2::new(10.0, -2.0)).y < map.rect.center().y);
-        assert!(map.to_screen(DVec2::new(3.0, 5.0)).x < map.rect.center().x);
-    }
 }

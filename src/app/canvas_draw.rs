@@ -4,11 +4,13 @@ use egui::{Align2, Color32, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui,
 use glam::DVec2;
 
 use editor::pick;
+use editor::tools::select;
 use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
-use super::canvas::{CanvasInput, ScreenMap};
-use super::state::{Tool, UiState};
+use super::screen_map::ScreenMap;
+use super::state::UiState;
 use super::theme;
+use crate::shell::live::Bounds;
 
 /// What of `outer` is not covered by `inner`.
 pub(super) fn around(inner: Rect, outer: Rect) -> [Rect; 4] {
@@ -145,7 +147,7 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
     let frame = scene.frame();
     let hovered = response
         .hover_pos()
-        .filter(|_| state.tool == Tool::Select)
+        .filter(|_| state.tool == select::ID)
         .and_then(|p| pick::box_at(frame, map.to_ego(p)));
     for b in frame.boxes.values() {
         if Some(b.id) != state.selected {
@@ -161,7 +163,7 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
     }
     if let Some(b) = state.selected.and_then(|id| frame.boxes.get(&id)) {
         draw_box(ui, map, b, BoxLook::Selected);
-        if state.tool == Tool::Select {
+        if state.tool == select::ID {
             draw_handles(ui, map, b);
         }
     }
@@ -207,15 +209,15 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
 }
 
 /// A dashed frame around what is still to be generated.
-pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, input: &CanvasInput<'_>) {
-    let color = if input.generating {
+pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, unsettled: &[Bounds], generating: bool) {
+    let color = if generating {
         theme::accent()
     } else {
         theme::warn()
     };
     let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
-    for (low, high) in input.unsettled.iter() {
+    for (low, high) in unsettled {
         let rect = map.rect_of(corner(*low) - half, corner(*high) + half).expand(2.0);
         ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
         let [a, b, c, d] = [

@@ -7,7 +7,7 @@ use editor::Edit;
 use scene::{BoxId, Class, SceneRev};
 use viewport::ViewPreset;
 
-use super::state::{Tool, VoxelVerb};
+use super::tools::ToolId;
 use crate::panes::id::PaneId;
 use crate::shell::workspace::Workspace;
 
@@ -170,21 +170,10 @@ pub enum Command {
     SelectNext(i32),
     /// Ends what is in hand: a drag, an enlarged camera, the selection, the tool.
     Escape,
-    /// Puts a new box of typical size on the ground, and chooses it.
-    AddBox {
-        /// One of the ten object classes.
-        class: Class,
-        /// Middle of the footprint, ego frame, m.
-        at_m: glam::DVec2,
-        /// Heading, rad.
-        yaw_rad: f64,
-    },
     /// Takes another tool.
-    Tool(Tool),
+    Tool(ToolId),
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
-    /// What the voxel brush does.
-    Verb(VoxelVerb),
     /// Makes the brush in hand larger (1) or smaller (-1).
     BrushSize(i32),
     /// What is read, written or begun.

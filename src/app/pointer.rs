@@ -4,8 +4,10 @@
 use egui::{Event, Modifiers, PointerButton, Pos2, Response, Ui, Vec2};
 
 use editor::Edit;
+use editor::tools::Act;
 
 use super::command::Command;
+use super::tools::ToolCommand;
 
 /// One event.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +86,17 @@ pub fn preview(commands: &mut Vec<Command>, edits: Vec<Edit>) {
     match commands.last_mut() {
         Some(Command::Preview(old)) => *old = edits,
         _ => commands.push(Command::Preview(edits)),
+    }
+}
+
+/// Asks for what a tool answered.
+pub fn carry_out(acts: Vec<Act>, commands: &mut Vec<Command>) {
+    for act in acts {
+        match act {
+            Act::Preview(edits) => preview(commands, edits),
+            Act::Cancel => commands.push(Command::CancelDrag),
+            act => commands.push(Command::Tools(ToolCommand::Act(act))),
+        }
     }
 }
 

@@ -1,78 +1,17 @@
 //! What the window shows and holds in hand, beside the document: tools, layers, options. Nothing
 //! here is saved with a scene.
 
+use std::ops::{Deref, DerefMut};
+
 use glam::DVec2;
 
 use editor::Edit;
 use job::Named;
-use scene::{BevLayer, BoxId, Class};
 use sensors::cameras::{self, CameraSource, SourceId, ViewId};
 use viewport::LidarColorMode;
 
 use super::panes::id::PaneId;
-use super::tools::things::ThingTool;
-
-/// What the primary button does on a canvas.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Tool {
-    /// Chooses, moves and turns boxes.
-    #[default]
-    Select,
-    /// Paints a map layer.
-    Brush,
-    /// Places boxes.
-    AddBox,
-    /// Paints voxels in the 3D view.
-    Voxel,
-    /// Measures on the ground.
-    Measure,
-    /// Marks what is drawn anew.
-    Region,
-    /// Puts things beside the road.
-    Thing(ThingTool),
-}
-
-impl Tool {
-    /// Every tool with its name and key.
-    pub const ALL: [(Tool, &'static str, &'static str); 11] = [
-        (Tool::Select, "Select", "V"),
-        (Tool::Brush, "Brush", "B"),
-        (Tool::AddBox, "Add box", "A"),
-        (Tool::Voxel, "Voxels", "B in 3D"),
-        (Tool::Measure, "Measure", "M"),
-        (Tool::Region, "Region", "N: draw anew"),
-        (Tool::Thing(ThingTool::Building), "Building", "Shift+B"),
-        (Tool::Thing(ThingTool::Tree), "Trees", "Shift+T"),
-        (Tool::Thing(ThingTool::Line), "Hedge, wall, fence", "Shift+L"),
-        (Tool::Thing(ThingTool::Shrubs), "Shrubs", "Shift+S"),
-        (
-            Tool::Thing(ThingTool::Post),
-            "Pole, sign, light",
-            "Shift+P; also stops, benches, bins",
-        ),
-    ];
-}
-
-/// What the voxel brush does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum VoxelVerb {
-    /// Puts voxels on the face under the pointer.
-    #[default]
-    Attach,
-    /// Takes voxels away.
-    Remove,
-    /// Gives voxels another class.
-    Recolour,
-}
-
-impl VoxelVerb {
-    /// Every verb with its name and key.
-    pub const ALL: [(VoxelVerb, &'static str, &'static str); 3] = [
-        (VoxelVerb::Attach, "Attach", "T"),
-        (VoxelVerb::Remove, "Remove", "R"),
-        (VoxelVerb::Recolour, "Recolour", "Y"),
-    ];
-}
+use super::tools::{Hand, ToolState, Toolbox};
 
 /// How the LiDAR sweep comes about.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -138,30 +77,10 @@ pub enum Underlay {
 /// State of the window.
 #[derive(Clone, Debug)]
 pub struct UiState {
-    /// Tool in hand.
-    pub tool: Tool,
-    /// The box chosen last.
-    pub selected: Option<BoxId>,
-    /// All chosen boxes; see [`UiState::chosen`].
-    pub selection: std::collections::BTreeSet<BoxId>,
-    /// What the tools hold.
-    pub tools: super::tools::ToolState,
-    /// Layer that the brush paints.
-    pub layer: BevLayer,
-    /// Diameter of the brush, m.
-    pub brush_m: f64,
-    /// True: the brush clears instead of setting.
-    pub erase: bool,
-    /// Class of the next box.
-    pub box_class: Class,
-    /// What the voxel brush does.
-    pub verb: VoxelVerb,
-    /// Class that the voxel brush paints.
-    pub voxel_class: Class,
-    /// Edge of the voxel brush, voxels, 1 to 5.
-    pub voxel_size: usize,
-    /// Bit per map layer that is drawn.
-    pub layers_shown: u32,
+    /// What the tools hold: the state is a [`Hand`] with more.
+    pub tools: ToolState,
+    /// The tools themselves.
+    pub toolbox: Toolbox,
     /// What lies under the layers.
     pub underlay: Underlay,
     /// Draw boxes.
@@ -219,18 +138,6 @@ pub struct UiState {
 }
 
 impl UiState {
-    /// Limits of the brush's diameter, m.
-    pub const BRUSH_M: std::ops::RangeInclusive<f64> = 0.4..=12.0;
-    /// Largest edge of the voxel brush.
-    pub const MAX_VOXEL_SIZE: usize = 5;
-    /// Diameters that the keys step through, m.
-    const BRUSH_STEPS_M: [f64; 11] = [0.4, 0.8, 1.2, 1.6, 2.4, 3.2, 4.0, 5.6, 7.2, 9.6, 12.0];
-
-    /// True if a map layer is drawn.
-    pub fn shows(&self, layer: BevLayer) -> bool {
-        self.layers_shown & layer.bit() != 0
-    }
-
     /// True if a camera of the rig is not rendered.
     pub fn camera_hidden(&self, camera: usize) -> bool {
         camera < 32 && self.cameras_hidden >> camera & 1 == 1
@@ -266,40 +173,27 @@ impl UiState {
         };
         edits.into_iter().map(meant).collect()
     }
+}
 
-    /// The brush in hand one step larger or smaller.
-    pub fn step_brush(&mut self, step: i32) {
-        if self.tool == Tool::Voxel {
-            let size = self.voxel_size as i32 + step;
-            self.voxel_size = size.clamp(1, Self::MAX_VOXEL_SIZE as i32) as usize;
-            return;
-        }
-        let sizes = Self::BRUSH_STEPS_M;
-        self.brush_m = if step > 0 {
-            let larger = sizes.into_iter().find(|s| *s > self.brush_m + 1e-6);
-            larger.unwrap_or(*Self::BRUSH_M.end())
-        } else {
-            let smaller = sizes.into_iter().rev().find(|s| *s < self.brush_m - 1e-6);
-            smaller.unwrap_or(*Self::BRUSH_M.start())
-        };
+impl Deref for UiState {
+    type Target = Hand;
+
+    fn deref(&self) -> &Hand {
+        &self.tools.hand
+    }
+}
+
+impl DerefMut for UiState {
+    fn deref_mut(&mut self) -> &mut Hand {
+        &mut self.tools.hand
     }
 }
 
 impl Default for UiState {
     fn default() -> Self {
         Self {
-            tool: Tool::Select,
-            selected: None,
-            selection: std::collections::BTreeSet::new(),
-            tools: super::tools::ToolState::default(),
-            layer: BevLayer::DrivableArea,
-            brush_m: 3.2,
-            erase: false,
-            box_class: Class::Car,
-            verb: VoxelVerb::Attach,
-            voxel_class: Class::Manmade,
-            voxel_size: 1,
-            layers_shown: 0xff,
+            tools: ToolState::default(),
+            toolbox: Toolbox::default(),
             underlay: Underlay::Layout,
             show_boxes: true,
             show_lines: true,
@@ -341,6 +235,7 @@ pub fn position_text(p_m: DVec2) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::{BoxId, Class};
 
     #[test]
     fn while_correcting_boxes_and_layers_change_no_voxel() {
@@ -357,29 +252,6 @@ mod tests {
             edit: Box::new(remove),
         };
         assert_eq!(ui.as_meant(edits), [corrected, voxels]);
-    }
-
-    #[test]
-    fn the_brush_steps_through_its_sizes_and_stays_in_range() {
-        let mut ui = UiState {
-            tool: Tool::Brush,
-            ..UiState::default()
-        };
-        for _ in 0..30 {
-            ui.step_brush(1);
-        }
-        assert_eq!(ui.brush_m, 12.0);
-        for _ in 0..30 {
-            ui.step_brush(-1);
-        }
-        assert_eq!(ui.brush_m, 0.4);
-        ui.step_brush(1);
-        assert_eq!(ui.brush_m, 0.8);
-        ui.tool = Tool::Voxel;
-        for (step, size) in [(-1, 1), (1, 2), (1, 3), (1, 4), (1, 5), (1, 5)] {
-            ui.step_brush(step);
-            assert_eq!(ui.voxel_size, size);
-        }
     }
 
     #[test]

@@ -1,5 +1,5 @@
 //! The 3D pane: the viewport's picture at the size of the pane, its camera, and what is under the
-//! pointer. Gestures of the tools are in `view3d_tools.rs`.
+//! pointer. The tools are driven by `canvas_tools.rs`.
 
 use std::sync::Arc;
 
@@ -9,19 +9,21 @@ use glam::{DVec2, DVec3};
 
 use editor::pick::{self, Hit, Ray};
 use editor::pick_things;
+use editor::tools::{Mark, View, ViewKind, Wants, point_of, select};
 use scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
 use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
 };
 
+use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
+use super::marks::Board;
 use super::pointer::{self, Held, Step};
-use super::state::{Tool, UiState, VoxelVerb, position_text};
+use super::screen_map::{point, pos};
+use super::state::{UiState, position_text};
 use super::theme;
-use super::tools::VoxelMode;
-use super::tools::view3d::ViewGesture;
-use super::view3d_tools::Gesture3d;
+use super::thing_outlines;
 use crate::shell::software_ui;
 
 /// Turn per point that the pointer moves, rad.
@@ -49,8 +51,7 @@ pub struct View3d {
     pub options: ViewOptions,
     gpu: Option<Gpu>,
     held: Held,
-    /// What the pointer is doing.
-    pub(super) gesture: Gesture3d,
+    driver: Driver,
     /// The pane drawn last; tests click with it.
     pub rect: Rect,
     colors: Option<(Arc<LidarSweep>, LidarColorMode, Vec<[u8; 4]>)>,
@@ -101,7 +102,7 @@ impl View3d {
             },
             gpu,
             held: Held::default(),
-            gesture: Gesture3d::None,
+            driver: Driver::default(),
             rect: Rect::NOTHING,
             colors: None,
             last_motion_s: f64::NEG_INFINITY,
@@ -149,22 +150,37 @@ impl View3d {
             return response;
         }
         let steps = pointer::steps(ui, &response);
-        let moved = self.navigate(ui, &response, &steps, input);
+        let moved = self.navigate(ui, &response, &steps, input, state);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
-        self.interact(ui, &response, &steps, input, state, commands);
+        let mut driver = self.driver;
+        driver.drive(ui, &response, &steps, &self.seen(input), state, commands);
+        self.driver = driver;
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
             state.readout = readout(input.scene, hit, &pointer.ray);
         }
         let now_s = ui.input(|i| i.time);
         // Where the processor draws, only what a drag or a brush touches is drawn again: that is quick as it is.
-        let brushes = state.tool != Tool::Select && response.hovered() && ui.input(|i| i.pointer.is_moving());
+        let brushes = state.tool != select::ID && response.hovered() && ui.input(|i| i.pointer.is_moving());
         if moved || (input.dragging || brushes) && !self.is_software() {
             self.last_motion_s = now_s;
         }
-        self.paint(ui, input, state, pointer.as_ref(), hit.as_ref(), now_s);
-        super::tools::view3d::draw(ui, self, input, state);
-        super::tools::view3d_things::draw(ui, self, input, state);
+        let (marks, cursor) = self
+            .driver
+            .sight(ui, response.hover_pos(), &self.seen(input), state);
+        if response.hovered() && !self.driver.is_held() {
+            ui.ctx().set_cursor_icon(cursor);
+        }
+        self.paint(ui, input, state, (hit.as_ref(), &marks), now_s);
+        let painter = ui.painter().with_clip_rect(rect);
+        let project = |p_m: DVec3| View3d::project(self, p_m);
+        thing_outlines::in_3d(&painter, &project, input.scene, &state.things);
+        let board = Board {
+            painter: &painter,
+            view: self,
+            map: None,
+        };
+        board.paint(ui, &marks);
         response
     }
 
@@ -183,13 +199,14 @@ impl View3d {
         self.options = options.clone();
         if self.gpu.is_some() {
             let now_s = ui.input(|i| i.time);
-            self.paint(ui, input, state, None, None, now_s);
+            let (marks, _) = self.driver.sight(ui, None, &self.seen(input), state);
+            self.paint(ui, input, state, (None, &marks), now_s);
         }
     }
 
     /// True while the pointer draws, moves or marks something.
     pub fn is_dragging(&self) -> bool {
-        !matches!(self.gesture, Gesture3d::None | Gesture3d::Ignored)
+        self.driver.is_dragging()
     }
 
     /// True if pictures are made by the processor.
@@ -227,7 +244,14 @@ impl View3d {
     }
 
     /// Camera motion by pointer and keys; true if the view changed.
-    fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], input: &View3dInput<'_>) -> bool {
+    fn navigate(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        steps: &[Step],
+        input: &View3dInput<'_>,
+        state: &UiState,
+    ) -> bool {
         let before = self.camera;
         let (shift, space) = ui.input(|i| (i.modifiers.shift, i.key_down(egui::Key::Space)));
         let wants = |button, modifiers: egui::Modifiers| match button {
@@ -253,7 +277,7 @@ impl View3d {
             }
         }
         // A block that is being drawn takes the wheel for its height.
-        let wheel_taken = matches!(self.gesture, Gesture3d::Tool(ViewGesture::Block { .. }));
+        let wheel_taken = self.driver.is_dragging() && state.toolbox.tool(state.tool).wants() == Wants::Wheel;
         if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from((scroll / 260.0).exp() * zoom);
@@ -297,8 +321,7 @@ impl View3d {
         ui: &Ui,
         input: &View3dInput<'_>,
         state: &UiState,
-        pointer: Option<&Pointer>,
-        hit: Option<&Hit>,
+        (hit, marks): (Option<&Hit>, &[Mark]),
         now_s: f64,
     ) {
         self.frames += 1;
@@ -323,9 +346,13 @@ impl View3d {
         let size = self.size_px();
         let frame = input.scene.frame();
         self.refresh_colors(input.lidar, state.lidar_colors);
-        let (cells, color) = self.brush_cells(input, state, pointer, hit);
+        let brushed = marks.iter().find_map(|mark| match mark {
+            Mark::Voxels(cells, color) => Some((&cells[..], *color)),
+            _ => None,
+        });
+        let (cells, color) = brushed.unwrap_or((&[], [0; 3]));
         let meant = state.meant.as_deref();
-        let mut brush = vec![BrushCells { cells: &cells, color }];
+        let mut brush = vec![BrushCells { cells, color }];
         if cells.is_empty() {
             brush.extend_from_slice(input.marked);
         }
@@ -336,11 +363,14 @@ impl View3d {
         for part in &mut brush {
             part.cells = &part.cells[..part.cells.len().min(MARKED)];
         }
-        let ghost = self.ghost(input.scene, state, pointer, hit);
+        let ghost = marks.iter().find_map(|mark| match mark {
+            Mark::Ghost(b) => Some(*b),
+            _ => None,
+        });
         let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
-            Some(Hit::Box { id, .. }) if state.tool == Tool::Select => Some(*id),
+            Some(Hit::Box { id, .. }) if state.tool == select::ID => Some(*id),
             _ => meant.and_then(|m| m.box_id),
         };
         let Some(gpu) = &mut self.gpu else { return };
@@ -388,65 +418,6 @@ impl View3d {
             (Some(sweep), Some(old)) if Arc::ptr_eq(sweep, &old.0) && old.1 == mode => Some(old),
             (Some(sweep), _) => Some((sweep.clone(), mode, lidar_colors(sweep, mode))),
         };
-    }
-
-    /// The voxels that a click would change, and their colour.
-    fn brush_cells(
-        &self,
-        input: &View3dInput<'_>,
-        state: &UiState,
-        pointer: Option<&Pointer>,
-        hit: Option<&Hit>,
-    ) -> (Vec<[usize; 3]>, [u8; 3]) {
-        if state.tool == Tool::Voxel && state.tools.voxel_mode == VoxelMode::Wand {
-            // No class has this colour.
-            return (state.tools.voxels.clone(), [255, 70, 255]);
-        }
-        let Some(pointer) = pointer else {
-            return (Vec::new(), [0; 3]);
-        };
-        match state.tool {
-            Tool::Voxel => {
-                let color = match state.verb {
-                    VoxelVerb::Remove => [238, 112, 104],
-                    _ if state.voxel_class == Class::Free => [200; 3],
-                    _ => state.voxel_class.color(),
-                };
-                let cells = self.voxel_target(input, state, &pointer.ray);
-                (state.tools.both_sides(cells), color)
-            }
-            Tool::Brush => {
-                let cells = hit.map_or_else(Vec::new, |hit| {
-                    let at = point_of(hit, &pointer.ray);
-                    super::view3d_tools::tops_in_disc(input.scene.frame(), at.truncate(), state.brush_m / 2.0)
-                });
-                (
-                    cells,
-                    if state.erase {
-                        [238, 112, 104]
-                    } else {
-                        state.layer.color()
-                    },
-                )
-            }
-            _ => (Vec::new(), [0; 3]),
-        }
-    }
-
-    fn ghost(
-        &self,
-        scene: &Scene,
-        state: &UiState,
-        pointer: Option<&Pointer>,
-        hit: Option<&Hit>,
-    ) -> Option<SceneBox> {
-        if state.tool != Tool::AddBox {
-            return None;
-        }
-        let at_m = point_of(hit?, &pointer?.ray).truncate();
-        let frame = scene.frame();
-        let yaw_rad = super::canvas_tools::lane_heading(frame, at_m).unwrap_or(0.0);
-        state.new_box(frame, state.box_class, at_m, yaw_rad)
     }
 
     /// The view as an image, `width` x `height` pixels, RGBA.
@@ -497,6 +468,39 @@ impl View3d {
     }
 }
 
+impl View for View3d {
+    fn kind(&self) -> ViewKind {
+        ViewKind::Space
+    }
+
+    fn project(&self, p_m: DVec3) -> Option<DVec2> {
+        View3d::project(self, p_m).map(point)
+    }
+
+    fn ray(&self, at: DVec2) -> Option<Ray> {
+        self.pointer(pos(at)).map(|p| p.ray)
+    }
+
+    fn right(&self) -> DVec3 {
+        self.camera.axes()[0]
+    }
+
+    fn scale(&self) -> f64 {
+        1.0
+    }
+}
+
+impl View3d {
+    /// What the tools see of the view.
+    fn seen<'a>(&'a self, input: &View3dInput<'a>) -> Seen<'a> {
+        Seen {
+            scene: input.scene,
+            settled: input.settled,
+            view: self,
+        }
+    }
+}
+
 /// The picture as a texture of egui; registered again when the viewport made a new one.
 fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
     let size = gpu.viewport.size();
@@ -513,15 +517,6 @@ fn register(gpu: &mut Gpu, samples: u32) -> egui::TextureId {
     };
     gpu.texture = Some((id, size, samples));
     id
-}
-
-/// The point that was hit, ego frame, m.
-pub(super) fn point_of(hit: &Hit, ray: &Ray) -> DVec3 {
-    match hit {
-        Hit::Box { distance_m, .. } => ray.at(*distance_m),
-        Hit::Voxel(v) => ray.at(v.distance_m),
-        Hit::Ground { point_in_ego } => *point_in_ego,
-    }
 }
 
 fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {

@@ -17,6 +17,7 @@ pub mod part;
 pub mod pick;
 pub mod pick_things;
 mod things;
+pub mod tools;
 pub mod transform;
 pub mod voxel_ops;
 

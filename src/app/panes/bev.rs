@@ -49,6 +49,7 @@ impl Pane for Bev {
         let rect = if mode == CompareMode::Side { right } else { area };
         let input = CanvasInput {
             scene,
+            settled: cx.document.settled_scene(),
             lidar: cx.sensing.lidar().map(|l| &**l),
             unsettled: cx.unsettled.clone(),
             generating: cx.generating,

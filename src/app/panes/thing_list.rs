@@ -10,6 +10,7 @@ use crate::theme;
 use crate::tools::things::{ThingCommand, words};
 use crate::tools::{Choose, ToolCommand};
 use crate::widgets::icons;
+use editor::tools::Act;
 use scene::{Background, Frame, Thing, ThingId};
 
 /// A row.
@@ -93,7 +94,7 @@ pub fn row_ui(
     };
     if clicked && !state.tools.things.is_open() {
         let why = "Background things are locked or hidden: see the list of layers".to_owned();
-        commands.push(Command::Tools(ToolCommand::Note(why)));
+        commands.push(Command::Tools(ToolCommand::Act(Act::Note(why))));
     } else if clicked {
         let choose = ThingCommand::Choose(ids, how);
         commands.push(Command::Tools(ToolCommand::Thing(choose)));

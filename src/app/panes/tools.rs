@@ -7,15 +7,20 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
+use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use crate::state::{Tool, UiState, Underlay, VoxelVerb};
+use crate::state::{UiState, Underlay};
 use crate::theme;
-use crate::tools::things::{self, ThingCommand};
-use crate::tools::{PaintShape, ToolCommand, panel as tools};
+use crate::tools::things::ThingCommand;
+use crate::tools::{ToolCommand, panel};
 use crate::widgets::hint::caption;
 use crate::widgets::icons::Icon;
 use crate::widgets::icons::{self, section};
-use scene::{BevLayer, BevLayout, Class, Frame, GridSpec};
+use editor::tools::brush;
+use scene::{BevLayer, BevLayout, Frame, GridSpec};
+
+/// Area of a cell that is drawn anew, m².
+const REGION_CELL_M2: f64 = 2.56;
 
 /// Options of the tool in hand, map layers.
 pub struct Tools;
@@ -46,22 +51,7 @@ impl Pane for Tools {
 /// Draws the panel.
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        match state.tool {
-            Tool::Select => tools::select(ui, state, commands),
-            Tool::Brush => brush_options(ui, state, commands),
-            Tool::Measure => tools::measure(ui, state),
-            Tool::Region => tools::region(ui, state, commands),
-            Tool::AddBox => {
-                section(ui, "Add box");
-                caption(ui, "Click to place, drag to set the heading. Boxes follow the nearest lane.");
-                ui.add_space(4.0);
-                tools::variants_ui(ui, state);
-                ui.add_space(4.0);
-                classes(ui, &Class::OBJECTS, &mut state.box_class, "Add");
-            }
-            Tool::Voxel => voxel_options(ui, state, commands),
-            Tool::Thing(tool) => things::panel::options(ui, tool, state),
-        }
+        options(ui, frame, state, commands);
         ui.add_space(theme::GAP);
         section(ui, "Map layers");
         for layer in BevLayer::MAP {
@@ -143,86 +133,15 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     });
 }
 
-fn brush_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
-    section(ui, "Brush");
-    tools::brush(ui, state, commands);
-    // A street is laid, a layer is picked: neither is erased.
-    if matches!(state.tools.shape, PaintShape::Street | PaintShape::Pick) {
-        return;
-    }
-    icons::segments(
-        ui,
-        &mut state.erase,
-        &[(false, "Paint", ""), (true, "Erase", "E, or hold Shift")],
-    );
-    if !state.tools.shape.has_width() {
-        return;
-    }
-    ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Size").color(theme::text_weak()));
-        let slider = egui::Slider::new(&mut state.brush_m, UiState::BRUSH_M)
-            .logarithmic(true)
-            .suffix(" m")
-            .fixed_decimals(1);
-        ui.add(slider)
-            .on_hover_text("[ and ], or Ctrl+wheel")
-            .accessible_name("Brush size");
-    });
-}
-
-fn voxel_options(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
-    section(ui, "Voxel brush");
-    tools::voxels(ui, state, commands);
-    let mut verb = state.verb;
-    let verbs = VoxelVerb::ALL.map(|(verb, name, key)| (verb, name, key));
-    if icons::segments(ui, &mut verb, &verbs) {
-        commands.push(Command::Verb(verb));
-    }
-    ui.add_space(4.0);
-    ui.horizontal(|ui| {
-        ui.label(egui::RichText::new("Size").color(theme::text_weak()));
-        let slider = egui::Slider::new(&mut state.voxel_size, 1..=UiState::MAX_VOXEL_SIZE).suffix(" vx");
-        ui.add(slider)
-            .on_hover_text("[ and ]")
-            .accessible_name("Voxel brush size");
-    });
-    ui.add_space(4.0);
-    if state.verb == VoxelVerb::Remove {
-        caption(
-            ui,
-            "Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.",
-        );
-    } else {
-        let shown: Vec<Class> = Class::ALL.into_iter().filter(|c| *c != Class::Free).collect();
-        classes(ui, &shown, &mut state.voxel_class, "Voxel");
-    }
-}
-
-/// Classes in two columns, one of them chosen.
-fn classes(ui: &mut Ui, shown: &[Class], chosen: &mut Class, verb: &str) {
-    let gap = 4.0;
-    let width = (ui.available_width() - gap) / 2.0;
-    ui.spacing_mut().item_spacing = vec2(gap, 2.0);
-    for pair in shown.chunks(2) {
-        ui.horizontal(|ui| {
-            for class in pair {
-                let label = class.label();
-                let short = match class {
-                    Class::ConstructionVehicle => "Digger, crane".to_owned(),
-                    Class::DriveableSurface => "Driveable".to_owned(),
-                    _ => theme::sentence(&label),
-                };
-                let size = vec2(width, theme::ROW);
-                ui.allocate_ui(size, |ui| {
-                    let name = format!("{verb} {label}");
-                    let row = icons::row(ui, theme::class_color(*class), &short, "", chosen == class, &name);
-                    if row.clicked() {
-                        *chosen = *class;
-                    }
-                });
-            }
-        });
+/// Options of the tool in hand.
+fn options(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+    state.region_m2 = state.tools.region.count() as f64 * REGION_CELL_M2;
+    let id = state.tool;
+    let settings = state.toolbox.tool(id).options(state);
+    for (setting, value) in panel::show(ui, &settings) {
+        let UiState { toolbox, tools, .. } = state;
+        let acts = toolbox.tool_mut(id).set(&mut tools.hand, frame, setting, value);
+        carry_out(acts, commands);
     }
 }
 
@@ -235,7 +154,7 @@ fn layer_row(
 ) {
     let label = layer.label();
     let shown = state.shows(layer);
-    let chosen = state.tool == Tool::Brush && state.layer == layer;
+    let chosen = state.tool == brush::ID && state.layer == layer;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let shows = eye(ui, shown, &format!("Show {label}")).on_hover_text("Alt+click shows it alone");
@@ -260,7 +179,7 @@ fn layer_row(
         let row = icons::row(ui, color, &name, &right, chosen, &format!("Paint {label}"));
         if row.on_hover_text("Choose for the brush").clicked() {
             state.layer = layer;
-            commands.push(Command::Tool(Tool::Brush));
+            commands.push(Command::Tool(brush::ID));
         }
     });
 }

@@ -4,15 +4,15 @@ use egui::Context;
 
 use editor::Edit;
 use editor::document::Label;
+use editor::tools::{add_box, select};
 use scene::SceneBox;
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
 use crate::command::Command;
 use crate::panes::objects::neighbour;
-use crate::state::Tool;
+use crate::state::UiState;
 use crate::tools::Choose;
-use crate::tools::things::Draft;
 
 impl SceneloomApp {
     /// Carries out one command.
@@ -33,13 +33,7 @@ impl SceneloomApp {
                 self.document.commit_drag(label);
                 self.note_correction();
             }
-            Command::CancelDrag => {
-                self.document.cancel_drag();
-                let draft = &mut self.state.tools.things.draft;
-                if draft.points_m().is_empty() {
-                    *draft = Draft::None;
-                }
-            }
+            Command::CancelDrag => self.document.cancel_drag(),
             Command::Undo => {
                 self.document.undo();
             }
@@ -55,19 +49,10 @@ impl SceneloomApp {
                 self.state.choose(next.as_slice(), Choose::Only);
             }
             Command::Escape => self.escape(),
-            Command::AddBox { class, at_m, yaw_rad } => {
-                let made = self
-                    .state
-                    .new_box(self.document.scene().frame(), class, at_m, yaw_rad);
-                if let Some(b) = made {
-                    self.add(&b, "Add box");
-                }
-            }
             Command::Tool(tool) => {
-                self.state.tool = tool;
-                self.state.tools.things.draft = Draft::None;
+                let UiState { toolbox, tools, .. } = &mut self.state;
+                toolbox.take(&mut tools.hand, tool);
             }
-            Command::Verb(verb) => (self.state.verb, self.state.tool) = (verb, Tool::Voxel),
             Command::BrushSize(step) => self.state.step_brush(step),
             Command::ConfirmInferred => {
                 self.state.correcting = false;
@@ -76,7 +61,7 @@ impl SceneloomApp {
             Command::ClearPaint => self.apply("Unlock painted voxels", &[Edit::ClearPaint {}]),
             Command::FixAll => self.fix_all(ctx),
             Command::PlaceClass(class) => {
-                self.state.tool = Tool::AddBox;
+                self.state.tool = add_box::ID;
                 self.state.box_class = class;
             }
             Command::File(command) => self.file_command(command, ctx),
@@ -114,7 +99,7 @@ impl SceneloomApp {
     }
 
     /// A correction changes what the source was inverted under.
-    fn note_correction(&mut self) {
+    pub(crate) fn note_correction(&mut self) {
         if self.state.correcting {
             self.generation.live.source_changed();
         }
@@ -125,22 +110,6 @@ impl SceneloomApp {
         self.document.scene().frame().boxes.get(&id).copied()
     }
 
-    fn add(&mut self, b: &SceneBox, label: &'static str) {
-        self.apply(
-            label,
-            &[Edit::AddBox {
-                class: b.class,
-                center_m: b.center_m,
-                size_m: b.size_m,
-                yaw_deg: b.yaw_rad.to_degrees(),
-                velocity_mps: (b.velocity_mps != glam::DVec2::ZERO).then_some(b.velocity_mps),
-                id: Some(b.id),
-                label: b.label,
-            }],
-        );
-        self.state.choose(&[b.id], Choose::Only);
-    }
-
     fn escape(&mut self) {
         if self.document.is_dragging() {
             self.document.cancel_drag();
@@ -148,8 +117,8 @@ impl SceneloomApp {
             self.state.inspected = None;
         } else if !self.state.tools.voxels.is_empty() {
             self.state.tools.voxels.clear();
-        } else if self.state.tool != Tool::Select {
-            self.state.tool = Tool::Select;
+        } else if self.state.tool != select::ID {
+            self.state.tool = select::ID;
         } else if self.state.any_chosen() {
             self.state.choose(&[], Choose::Only);
         } else {

@@ -260,7 +260,7 @@ mod tests {
     /// In every preset each chord calls for one action in one place, and every chord and id in the files is one.
     #[test]
     fn no_preset_holds_a_conflict() {
-        for action in ACTIONS {
+        for action in ACTIONS.iter() {
             for text in action.keys.split_whitespace() {
                 assert!(text.parse::<Chord>().is_ok(), "{}: {text}", action.id);
             }

@@ -7,9 +7,8 @@ use super::actions::{When, nudge_direction};
 use super::keymap::{Chord, Keymap};
 use crate::command::Command;
 use crate::panes::id::PaneId;
-use crate::state::{Tool, UiState};
+use crate::state::UiState;
 use crate::tools::ToolCommand;
-use crate::tools::things::ThingTool;
 
 /// Actions that do not wait for the end of a drag.
 const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
@@ -51,11 +50,8 @@ pub fn commands(
         }
         let over_3d = state.hovered_pane == Some(PaneId::VIEW3D);
         // With a brush in hand its own letters count.
-        let brush = matches!(
-            state.tool,
-            Tool::Brush | Tool::Voxel | Tool::Region | Tool::Thing(ThingTool::Shrubs)
-        );
-        let chosen = state.any_chosen() && !matches!(state.tool, Tool::Brush | Tool::Voxel);
+        let brush = state.tool.def().is_brush;
+        let chosen = state.any_chosen() && !state.tool.def().paints;
         let things = !state.tools.things.chosen.is_empty() && !brush;
         let applies = |when| match when {
             When::Always => true,
@@ -75,7 +71,7 @@ pub fn commands(
             drop_focus(ctx);
         }
         if !repeat || action.repeats {
-            commands.extend((action.command)(state));
+            commands.extend(action.run(state));
         }
     }
 }
@@ -163,7 +159,7 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 mod tests {
     use super::*;
     use crate::command::{FileCommand, GenerationCommand, ViewCommand};
-    use crate::tools::{PaintShape, ToolCommand};
+    use crate::tools::{Choose, ToolCommand};
     use glam::DVec3;
     use scene::BoxId;
 
@@ -198,28 +194,28 @@ mod tests {
         let mut state = UiState::default();
         assert_eq!(
             of(Key::A, Modifiers::NONE, &mut state, false),
-            [Command::Tool(Tool::AddBox)]
+            [Command::Tools(ToolCommand::Shortcut("add_box_tool"))]
         );
         assert!(of(Key::A, Modifiers::NONE, &mut state, true).is_empty());
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
-            [Command::Tools(ToolCommand::Shape(PaintShape::Stroke))]
+            [Command::Tools(ToolCommand::Shortcut("brush_tool"))]
         );
         state.hovered_pane = Some(PaneId::VIEW3D);
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
-            [Command::Tool(Tool::Voxel)]
+            [Command::Tools(ToolCommand::Shortcut("voxel_brush"))]
         );
-        of(Key::E, Modifiers::NONE, &mut state, false);
-        assert!(state.erase);
+        assert_eq!(
+            of(Key::E, Modifiers::NONE, &mut state, false),
+            [Command::Tools(ToolCommand::Shortcut("toggle_erase"))]
+        );
     }
 
     #[test]
     fn keys_wait_for_the_end_of_a_drag() {
-        let mut state = UiState {
-            selected: Some(BoxId(3)),
-            ..UiState::default()
-        };
+        let mut state = UiState::default();
+        state.choose(&[BoxId(3)], Choose::Only);
         let hands = Hands {
             dragging: true,
             ..Hands::default()

@@ -3,11 +3,11 @@
 use egui::{Rect, Ui, Vec2, pos2};
 
 use super::bookmarks::SLOTS;
-use super::toolbar::{ToolbarInput, item, short};
+use super::toolbar::{ToolbarInput, beside, item, short};
 use crate::command::{Command, FileCommand, GenerationCommand, ViewCommand, Window};
 use crate::panes;
 use crate::panes::id::PaneId;
-use crate::state::{Tool, UiState};
+use crate::state::UiState;
 use crate::theme;
 use crate::tools::ToolCommand;
 use crate::tools::things::ThingCommand;
@@ -108,10 +108,11 @@ fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, on: &mu
         Command::Tools(ToolCommand::ToLane),
     );
     ui.menu_button("Add beside the road", |ui| {
-        for (tool, name, key) in Tool::ALL {
-            if matches!(tool, Tool::Thing(_)) {
-                on(item(ui, name, short(key), true), Command::Tool(tool));
-            }
+        for tool in beside() {
+            on(
+                item(ui, tool.title, short(tool.key), true),
+                Command::Tool(tool.id),
+            );
         }
     });
     ui.separator();

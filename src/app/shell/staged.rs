@@ -10,7 +10,7 @@ use crate::command::{Command, GenerationCommand, Taken, Verdict};
 use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use crate::state::{Tool, UiState};
+use crate::state::UiState;
 use crate::theme;
 use editor::Edit;
 use editor::part::{Part, changed_by_class};
@@ -324,7 +324,7 @@ fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command
         .on_hover_text("The rest stays as it was");
     });
     if mark {
-        commands.push(Command::Tool(Tool::Region));
+        commands.push(Command::Tool(editor::tools::region::ID));
     }
 }
 

@@ -9,10 +9,12 @@ use super::menus::menus;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::id::PaneId;
 use crate::shell::workspace::Workspace;
-use crate::state::{Tool, UiState};
+use crate::state::UiState;
 use crate::theme;
-use crate::tools::things::ThingTool;
+use crate::tools::ToolId;
 use crate::widgets::icons::{self, Icon};
+use editor::tools::beside::building;
+use editor::tools::{Group, ToolDef, all};
 
 /// What the bar shows of the document and the worker.
 pub struct ToolbarInput<'a> {
@@ -60,10 +62,13 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
         });
         divider(ui);
         let narrow = ui.max_rect().width() < ROOM_FOR_ALL;
-        for (tool, name, key) in Tool::ALL {
-            let folded = narrow && matches!(tool, Tool::Thing(_));
-            if !folded && icons::button(ui, icon_of(tool), name, key, state.tool == tool, true).clicked() {
-                commands.push(Command::Tool(tool));
+        for tool in all() {
+            let folded = narrow && tool.group == Group::Beside;
+            let chosen = state.tool == tool.id;
+            if !folded
+                && icons::button(ui, Icon::named(tool.icon), tool.title, tool.key, chosen, true).clicked()
+            {
+                commands.push(Command::Tool(tool.id));
             }
         }
         if narrow {
@@ -114,37 +119,29 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
 /// In a narrower window the tools for things share one button, so that the name of the scene keeps its place, points.
 const ROOM_FOR_ALL: f32 = 1360.0;
 
-fn icon_of(tool: Tool) -> Icon {
-    match tool {
-        Tool::Select => Icon::Cursor,
-        Tool::Brush => Icon::Brush,
-        Tool::AddBox => Icon::AddBox,
-        Tool::Voxel => Icon::Voxel,
-        Tool::Measure => Icon::Measure,
-        Tool::Region => Icon::Region,
-        Tool::Thing(ThingTool::Building) => Icon::Building,
-        Tool::Thing(ThingTool::Tree) => Icon::Tree,
-        Tool::Thing(ThingTool::Line) => Icon::Fence,
-        Tool::Thing(ThingTool::Shrubs) => Icon::Shrubs,
-        Tool::Thing(ThingTool::Post) => Icon::Lamp,
-    }
-}
-
 /// One button for all tools for things; it opens their list.
-fn thing_tools(ui: &mut Ui, in_hand: Tool, commands: &mut Vec<Command>) {
-    let (shown, selected) = match in_hand {
-        Tool::Thing(_) => (in_hand, true),
-        _ => (Tool::Thing(ThingTool::Building), false),
+fn thing_tools(ui: &mut Ui, in_hand: ToolId, commands: &mut Vec<Command>) {
+    let selected = in_hand.def().group == Group::Beside;
+    let shown = if selected {
+        in_hand.def()
+    } else {
+        building::ID.def()
     };
     let hint = "buildings, trees, hedges, shrubs, posts";
-    let button = icons::button(ui, icon_of(shown), "Beside the road", hint, selected, true);
+    let icon = Icon::named(shown.icon);
+    let button = icons::button(ui, icon, "Beside the road", hint, selected, true);
     egui::Popup::menu(&button).show(|ui| {
-        for (tool, name, key) in Tool::ALL {
-            if matches!(tool, Tool::Thing(_)) && item(ui, name, short(key), true) {
-                commands.push(Command::Tool(tool));
+        for tool in beside() {
+            if item(ui, tool.title, short(tool.key), true) {
+                commands.push(Command::Tool(tool.id));
             }
         }
     });
+}
+
+/// The tools for things.
+pub(super) fn beside() -> impl Iterator<Item = &'static ToolDef> {
+    all().iter().copied().filter(|t| t.group == Group::Beside)
 }
 
 /// The chord alone, without what else the hint says.

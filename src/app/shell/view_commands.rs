@@ -5,7 +5,9 @@ use super::dock::Dock;
 use super::workspace::Workspace;
 use crate::command::{ViewCommand, Window};
 use crate::panes::id::PaneId;
-use crate::state::{CompareMode, Tool};
+use crate::state::CompareMode;
+use crate::tools::ToolId;
+use editor::tools::{brush, region, select, voxel};
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -52,10 +54,10 @@ impl SceneloomApp {
                 self.views.dock = Dock::workspace(workspace);
                 // Its tool comes to hand, unless one of the kind is there already.
                 self.state.tool = match (workspace, self.state.tool) {
-                    (Workspace::Paint, Tool::Brush | Tool::Region) => self.state.tool,
-                    (Workspace::Paint, _) => Tool::Brush,
-                    (Workspace::Voxels, _) => Tool::Voxel,
-                    (_, Tool::Brush | Tool::Voxel) => Tool::Select,
+                    (Workspace::Paint, tool) if paints_map(tool) => tool,
+                    (Workspace::Paint, _) => brush::ID,
+                    (Workspace::Voxels, _) => voxel::ID,
+                    (_, tool) if tool == brush::ID || tool == voxel::ID => select::ID,
                     (_, tool) => tool,
                 };
             }
@@ -98,4 +100,9 @@ impl SceneloomApp {
             Window::Keys => self.state.keys_open = !self.state.keys_open,
         }
     }
+}
+
+/// True for a tool of the workspace that paints the map.
+fn paints_map(tool: ToolId) -> bool {
+    tool == region::ID || tool.def().paints && tool != voxel::ID
 }

@@ -205,7 +205,7 @@ impl SceneloomApp {
         if self.state.sensors_open {
             sensors_ui(ui, &scene.rig, &mut self.state, commands);
         }
-        crate::tools::dialogs::show(ui, scene.frame(), &mut self.state, commands);
+        crate::windows::row::show(ui, scene.frame(), &mut self.state, commands);
         let recent = &self.preferences.settings.recent;
         self.overlays
             .palette

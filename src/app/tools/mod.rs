@@ -1,16 +1,11 @@
-//! The tools of the window: what they hold, what they do in either view, their options.
+//! What the window adds to the tools of the editor: what a user can ask beside the pointer, their options as a panel, and
+//! what they hold that the editor does not know. Nothing here knows the canvases, the panels or the application.
 
-pub mod bev;
-pub mod bev_draw;
-mod boxes;
 pub mod command;
-pub mod dialogs;
-pub mod gizmo;
-pub mod options;
 pub mod panel;
+mod state;
 pub mod things;
-pub mod view3d;
-pub mod view3d_things;
 
-pub use command::{Choose, ToolCommand};
-pub use options::{PaintShape, RegionShape, ToolState, VoxelMode};
+pub use command::ToolCommand;
+pub use editor::tools::{Choose, Hand, PaintShape, RegionShape, ToolId, Toolbox, VoxelMode, VoxelVerb};
+pub use state::ToolState;

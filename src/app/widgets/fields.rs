@@ -9,15 +9,16 @@ use editor::Edit;
 
 /// What the fields to its right are.
 pub fn caption(ui: &mut Ui, text: &str) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(52.0, theme::ROW), egui::Sense::hover());
+    label(ui, text, 52.0);
+}
+
+/// What the widget to its right is, in so many points.
+pub fn label(ui: &mut Ui, text: &str, width_points: f32) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(width_points, theme::ROW), egui::Sense::hover());
     let font = egui::TextStyle::Body.resolve(ui.style());
-    ui.painter().text(
-        rect.left_center(),
-        egui::Align2::LEFT_CENTER,
-        text,
-        font,
-        theme::text_weak(),
-    );
+    let at = rect.left_center();
+    ui.painter()
+        .text(at, egui::Align2::LEFT_CENTER, text, font, theme::text_weak());
 }
 
 /// Three numbers in a row; the response of all of them.

@@ -71,9 +71,29 @@ pub enum Icon {
     Tick,
     /// Bars of a chart.
     Bars,
+    /// Circle with its middle.
+    Circle,
 }
 
 impl Icon {
+    /// The icon that a tool names; an arrow for a name that is none.
+    pub fn named(name: &str) -> Self {
+        match name {
+            "brush" => Self::Brush,
+            "circle" => Self::Circle,
+            "add_box" => Self::AddBox,
+            "voxel" => Self::Voxel,
+            "measure" => Self::Measure,
+            "region" => Self::Region,
+            "building" => Self::Building,
+            "tree" => Self::Tree,
+            "fence" => Self::Fence,
+            "shrubs" => Self::Shrubs,
+            "lamp" => Self::Lamp,
+            _ => Self::Cursor,
+        }
+    }
+
     fn parts(self) -> &'static [Part] {
         match self {
             Icon::Cursor => shapes::CURSOR,
@@ -108,6 +128,7 @@ impl Icon {
             Icon::List => shapes::LIST,
             Icon::Tick => shapes::TICK,
             Icon::Bars => shapes::BARS,
+            Icon::Circle => shapes::CIRCLE,
         }
     }
 

@@ -228,3 +228,4 @@ pub(super) const BARS: &[Part] = &[
     Part::Closed(&[(6.8, 3.0), (9.2, 3.0), (9.2, 13.8), (6.8, 13.8)]),
     Part::Closed(&[(10.6, 6.0), (13.0, 6.0), (13.0, 13.8), (10.6, 13.8)]),
 ];
+pub(super) const CIRCLE: &[Part] = &[Part::Circle((8.0, 8.0), 6.0), Part::Circle((8.0, 8.0), 0.9)];

@@ -4,6 +4,7 @@ pub mod export;
 pub mod palette;
 pub mod performance;
 pub mod recovery;
+pub mod row;
 pub mod sensors;
 pub mod settings;
 pub mod shortcuts;

@@ -11,7 +11,7 @@ use crate::shell::keymap::Keymap;
 use crate::state::UiState;
 use crate::theme;
 use crate::tools::ToolCommand;
-use crate::tools::things::panel::TREES;
+use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, ThingKind};
 use scene::Class;
 use scene::background::{LineKind, PostKind};
@@ -118,7 +118,7 @@ impl Palette {
         if let Some(i) = run.filter(|i| *i < lines) {
             self.open = false;
             match items.swap_remove(i).does {
-                Does::Action(i) => commands.extend((ACTIONS[i].command)(state)),
+                Does::Action(i) => commands.extend(ACTIONS[i].run(state)),
                 Does::Command(command) => commands.push(command),
             }
         } else if shown.should_close() {

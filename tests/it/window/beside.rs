@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use app::Command;
-use app::state::Tool;
 use app::tools::ToolCommand;
-use app::tools::things::{ThingCommand, ThingTool};
+use app::tools::things::ThingCommand;
 use editor::Edit;
+use editor::tools::beside;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
@@ -61,7 +61,7 @@ fn a_building_is_drawn_and_raised_a_row_deleted_a_hedge_drawn_and_all_undone() {
     bench.tree_row();
     let (before, frame) = (bench.background(), bench.frame());
     bench.click("Building");
-    assert_eq!(bench.app().state.tool, Tool::Thing(ThingTool::Building));
+    assert_eq!(bench.app().state.tool, beside::building::ID);
     let way = [bench.bev(5.0, 18.0), bench.bev(17.0, 26.0)];
     bench.press_and_move(&way, Modifiers::NONE);
     assert!(bench.app().document.is_dragging(), "shown while it is drawn");
@@ -107,7 +107,7 @@ fn a_building_is_drawn_and_raised_a_row_deleted_a_hedge_drawn_and_all_undone() {
     assert_eq!(bench.background().len(), 1);
 
     bench.key(Modifiers::SHIFT, Key::L);
-    assert_eq!(bench.app().state.tool, Tool::Thing(ThingTool::Line));
+    assert_eq!(bench.app().state.tool, beside::line::ID);
     for [x, y] in [[-20.0, 22.0], [-10.0, 22.0], [-10.0, 30.0]] {
         bench.click_ground(x, y, Modifiers::NONE);
     }
@@ -269,10 +269,17 @@ fn strokes_posts_corners_and_fields() {
     bench.key(Modifiers::SHIFT, Key::B);
     bench.click_ground(20.0, -20.0, Modifiers::NONE);
     bench.click_ground(30.0, -20.0, Modifiers::NONE);
-    assert_eq!(bench.app().state.tools.things.draft.points_m().len(), 2);
+    assert_eq!(bench.app().state.toolbox.points_m(beside::building::ID).len(), 2);
     bench.key(Modifiers::NONE, Key::Escape);
-    assert!(bench.app().state.tools.things.draft.points_m().is_empty());
-    assert_eq!(bench.app().state.tool, Tool::Thing(ThingTool::Building));
+    assert!(
+        bench
+            .app()
+            .state
+            .toolbox
+            .points_m(beside::building::ID)
+            .is_empty()
+    );
+    assert_eq!(bench.app().state.tool, beside::building::ID);
     let raise = ToolCommand::Thing(ThingCommand::Raise(1));
     bench.app().execute(Command::Tools(raise), &ctx);
     assert_eq!(bench.history().len(), 8, "the wall is chosen still");

@@ -1,8 +1,8 @@
 //! A day of work from start to end: every step leaves what it should, and the invariants hold after each.
 
 use app::compare::CompareMode;
-use app::state::Tool;
 use editor::Edit;
+use editor::tools::select;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
@@ -130,6 +130,6 @@ fn a_day_of_work() {
     let reopened = bench.frame();
     assert_eq!(reopened.boxes, last.boxes);
     assert!(reopened.occupancy == last.occupancy && reopened.layout == last.layout);
-    assert_eq!(bench.app().state.tool, Tool::Select);
+    assert_eq!(bench.app().state.tool, select::ID);
     sweep(&mut bench);
 }

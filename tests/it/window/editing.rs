@@ -1,6 +1,6 @@
 //! Strokes, boxes and what is generated after them.
 
-use app::state::Tool;
+use editor::tools::brush;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
@@ -16,7 +16,7 @@ fn a_stroke_is_one_undo_step_and_shows_at_once() {
     bench.click("Paint carpark area");
     assert_eq!(
         (bench.app().state.tool, bench.app().state.layer),
-        (Tool::Brush, BevLayer::CarparkArea)
+        (brush::ID, BevLayer::CarparkArea)
     );
     let before = bench.frame();
     let way = [bench.bev(-20.0, 25.0), bench.bev(0.0, 25.0), bench.bev(0.0, 32.0)];

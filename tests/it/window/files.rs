@@ -1,9 +1,9 @@
 //! Failures, saving, opening, closing.
 
+use editor::tools::select;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use app::state::Tool;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use formats::project;
@@ -48,7 +48,7 @@ fn a_scene_is_saved_and_opened_again_by_the_path_field() {
     assert!(path.is_file() && !bench.app().document.is_dirty());
     assert_eq!(bench.app().path(), Some(path.as_path()));
     // Letters typed into the field are no shortcuts.
-    assert_eq!(bench.app().state.tool, Tool::Select);
+    assert_eq!(bench.app().state.tool, select::ID);
 
     bench.key(Modifiers::NONE, Key::Delete);
     assert_ne!(bench.frame(), saved);

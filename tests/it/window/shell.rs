@@ -4,8 +4,8 @@ use app::compare::CompareMode;
 use app::dock::Workspace;
 use app::panes::id::PaneId;
 use app::settings::Settings;
-use app::state::Tool;
 use app::theme::Look;
+use editor::tools::{add_box, measure, select};
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use scene::{BoxId, Class};
@@ -62,7 +62,7 @@ fn the_palette_finds_and_runs() {
     bench.harness.event(egui::Event::Text("cone".into()));
     bench.steps(2);
     bench.key(Modifiers::NONE, Key::Enter);
-    assert_eq!(bench.app().state.tool, Tool::AddBox);
+    assert_eq!(bench.app().state.tool, add_box::ID);
     assert_eq!(bench.app().state.box_class, Class::TrafficCone);
     bench.key(Modifiers::CTRL, Key::P);
     bench.steps(2);
@@ -71,7 +71,7 @@ fn the_palette_finds_and_runs() {
     assert!(bench.harness.query_by_label("Nothing of that name").is_some());
     bench.key(Modifiers::NONE, Key::Escape);
     assert!(bench.harness.query_by_label("Nothing of that name").is_none());
-    assert_eq!(bench.app().state.tool, Tool::AddBox, "closing it is no shortcut");
+    assert_eq!(bench.app().state.tool, add_box::ID, "closing it is no shortcut");
 }
 
 #[test]
@@ -86,9 +86,9 @@ fn keys_are_changed_in_the_sheet() {
     assert_eq!(bench.app().preferences.keymap.text("measure_tool"), "Ctrl+G");
     bench.key(Modifiers::NONE, Key::Escape);
     bench.key(Modifiers::NONE, Key::M);
-    assert_eq!(bench.app().state.tool, Tool::Select, "the old chord is free");
+    assert_eq!(bench.app().state.tool, select::ID, "the old chord is free");
     bench.key(Modifiers::CTRL, Key::G);
-    assert_eq!(bench.app().state.tool, Tool::Measure);
+    assert_eq!(bench.app().state.tool, measure::ID);
 }
 
 #[test]

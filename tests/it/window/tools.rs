@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 
 use app::Command;
-use app::state::Tool;
-use app::tools::{PaintShape, ToolCommand, VoxelMode};
+use app::tools::ToolCommand;
 use editor::Edit;
 use editor::arrange::{Row, RowAlong};
-use editor::transform::Kind;
+use editor::tools::{brush, circle, measure};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
@@ -101,7 +100,7 @@ fn boxes_are_chosen_by_clicks_rectangles_and_lassos_and_moved_together() {
     bench.steps(2);
     bench.ask(ToolCommand::ChooseAll);
     assert_eq!(bench.chosen(), [7, 8, 9, 10].into());
-    bench.ask(ToolCommand::Lasso(true));
+    bench.ask(ToolCommand::Shortcut("lasso"));
     let around = [[-25.0, 14.0], [-25.0, 26.0], [-14.0, 26.0], [-14.0, 14.0]];
     let way = around.map(|[x, y]| bench.bev(x, y));
     bench.drag(&way, Modifiers::NONE);
@@ -202,7 +201,7 @@ fn keys_steer_a_drag() {
     let at = bench.car(8).center_m;
     assert_eq!(at.truncate(), at.truncate().round(), "{at}");
     // An arrow keeps to its axis; scaling by it changes the length alone.
-    bench.ask(ToolCommand::Gizmo(Kind::Scale));
+    bench.ask(ToolCommand::Shortcut("gizmo_scale"));
     let map = bench.app().views.canvas.map.expect("drawn");
     let arm_m = 45.0 / map.scale;
     let (x, y) = (at.x, at.y);
@@ -219,7 +218,7 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     bench.off();
     bench.click("Paint carpark area");
     let before = bench.frame().layout.count(BevLayer::CarparkArea);
-    bench.ask(ToolCommand::Shape(PaintShape::Rectangle));
+    bench.ask(ToolCommand::Shortcut("shape_rectangle"));
     let corners = [bench.bev(-20.0, 20.0), bench.bev(-12.0, 30.0)];
     bench.press_and_move(&corners, Modifiers::NONE);
     assert!(bench.app().document.is_dragging(), "shown while drawing");
@@ -227,7 +226,7 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     bench.steps(2);
     let count = bench.frame().layout.count(BevLayer::CarparkArea) - before;
     assert!((450..=560).contains(&count), "{count}");
-    bench.ask(ToolCommand::Shape(PaintShape::Stroke));
+    bench.ask(ToolCommand::Shortcut("brush_tool"));
     let ends = [
         bench.bev(-30.0, 30.0),
         bench.bev(-30.0, 36.0),
@@ -236,24 +235,24 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     bench.drag(&ends, Modifiers::CTRL);
     assert!(bench.has(BevLayer::CarparkArea, -26.0, 30.0) && !bench.has(BevLayer::CarparkArea, -28.0, 34.0));
 
-    bench.ask(ToolCommand::Shape(PaintShape::Polygon));
+    bench.ask(ToolCommand::Shortcut("shape_polygon"));
     for [x, y] in [[10.0, 20.0], [10.0, 30.0], [20.0, 30.0]] {
         bench.click_at(x, y, Modifiers::NONE);
         bench.steps(30);
     }
     bench.click_at(30.0, 30.0, Modifiers::NONE);
-    assert_eq!(bench.app().state.tools.points_m.len(), 4);
+    assert_eq!(bench.app().state.toolbox.points_m(brush::ID).len(), 4);
     bench.key(Modifiers::NONE, Key::Backspace);
-    assert_eq!(bench.app().state.tools.points_m.len(), 3);
+    assert_eq!(bench.app().state.toolbox.points_m(brush::ID).len(), 3);
     bench.key(Modifiers::NONE, Key::Enter);
     assert!(bench.has(BevLayer::CarparkArea, 12.0, 28.0) && !bench.has(BevLayer::CarparkArea, 18.0, 22.0));
     bench.click_at(0.0, 25.0, Modifiers::NONE);
     bench.key(Modifiers::NONE, Key::Escape);
-    assert!(bench.app().state.tools.points_m.is_empty());
-    assert_eq!(bench.app().state.tool, Tool::Brush);
+    assert!(bench.app().state.toolbox.points_m(brush::ID).is_empty());
+    assert_eq!(bench.app().state.tool, brush::ID);
 
     let lines = bench.frame().layout.polylines.len();
-    bench.ask(ToolCommand::Shape(PaintShape::Street));
+    bench.ask(ToolCommand::Shortcut("shape_street"));
     for [x, y] in [[-35.0, -30.0], [35.0, -30.0]] {
         bench.click_at(x, y, Modifiers::NONE);
         bench.steps(30);
@@ -268,7 +267,7 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
     assert_eq!(bench.frame().layout.polylines.len(), lines + 3);
 
     bench.click("Paint walkway");
-    bench.ask(ToolCommand::Shape(PaintShape::Fill));
+    bench.ask(ToolCommand::Shortcut("shape_fill"));
     bench.click_at(11.0, 29.0, Modifiers::NONE);
     assert!(bench.has(BevLayer::Walkway, 12.0, 28.0) && !bench.has(BevLayer::Walkway, 0.0, 25.0));
     let pick = Modifiers::ALT;
@@ -288,12 +287,53 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
 }
 
 #[test]
+fn the_circle_brush_paints_and_erases_discs() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.click("Paint carpark area");
+    bench.click("Circle brush");
+    assert_eq!(bench.app().state.tool, circle::ID);
+    let before = bench.frame();
+    // Escape lets go of it.
+    let way = [bench.bev(-20.0, 25.0), bench.bev(-15.0, 25.0)];
+    bench.press_and_move(&way, Modifiers::NONE);
+    assert!(bench.app().document.is_dragging(), "shown while drawing");
+    assert!(
+        bench
+            .harness
+            .query_by_label_contains("Paints a disc of 5.0 m radius")
+            .is_some(),
+        "the hint says how large"
+    );
+    bench.key(Modifiers::NONE, Key::Escape);
+    bench.button(way[1], false, Modifiers::NONE);
+    bench.steps(2);
+    assert_eq!((bench.frame(), bench.history().len()), (before, 1));
+    // By its key: 5 m about the middle, then a hole of 2 m in it.
+    bench.key(Modifiers::SHIFT, Key::U);
+    bench.drag(&way, Modifiers::NONE);
+    let hole = [bench.bev(-20.0, 25.0), bench.bev(-18.0, 25.0)];
+    bench.drag(&hole, Modifiers::SHIFT);
+    for (x, y, painted) in [
+        (-20.0, 25.0, false),
+        (-21.6, 25.0, false),
+        (-20.0, 28.0, true),
+        (-16.0, 27.0, true),
+        (-16.0, 29.0, false),
+        (-14.6, 25.0, false),
+    ] {
+        assert_eq!(bench.has(BevLayer::CarparkArea, x, y), painted, "{x} {y}");
+    }
+    assert_eq!(bench.history(), ["Open", "Paint circle", "Erase circle"]);
+}
+
+#[test]
 fn a_street_across_a_street_makes_a_junction_in_one_step() {
     let mut bench = Bench::new();
     bench.off();
     let before = bench.frame();
     bench.key(Modifiers::NONE, Key::B);
-    bench.ask(ToolCommand::Shape(PaintShape::Street));
+    bench.ask(ToolCommand::Shortcut("shape_street"));
     bench.app().state.tools.street.walk_m = 2.0;
     for [x, y] in [[10.0, -35.0], [10.0, 35.0]] {
         bench.click_at(x, y, Modifiers::NONE);
@@ -333,14 +373,14 @@ fn locked_layers_are_not_painted_and_one_can_be_shown_alone() {
     bench.click("Paint carpark area");
     bench.click("Lock carpark area");
     let before = bench.frame();
-    for shape in [PaintShape::Stroke, PaintShape::Rectangle, PaintShape::Fill] {
-        bench.ask(ToolCommand::Shape(shape));
+    for shape in ["brush_tool", "shape_rectangle", "shape_fill", "circle_tool"] {
+        bench.ask(ToolCommand::Shortcut(shape));
         let way = [bench.bev(-20.0, 25.0), bench.bev(0.0, 28.0)];
         bench.drag(&way, Modifiers::NONE);
     }
     assert_eq!(bench.frame(), before);
     bench.click("Lock carpark area");
-    bench.ask(ToolCommand::Shape(PaintShape::Stroke));
+    bench.ask(ToolCommand::Shortcut("brush_tool"));
     let way = [bench.bev(-20.0, 25.0), bench.bev(0.0, 28.0)];
     bench.drag(&way, Modifiers::NONE);
     assert_ne!(bench.frame(), before);
@@ -363,15 +403,15 @@ fn distances_are_measured_and_stay() {
     bench.click("Measure");
     bench.click_at(-20.0, 20.0, Modifiers::NONE);
     bench.click_at(-10.0, 20.0, Modifiers::NONE);
-    let points = bench.app().state.tools.measure.points_m.clone();
+    let points = bench.app().state.toolbox.points_m(measure::ID).to_vec();
     assert!((points[0].distance(points[1]) - 10.0).abs() < 0.1);
     // A corner of the car catches the third.
     let corner = bench.car(7).footprint()[0];
     bench.click_at(corner.x + 0.2, corner.y + 0.2, Modifiers::NONE);
-    assert_eq!(bench.app().state.tools.measure.points_m[2], corner);
+    assert_eq!(bench.app().state.toolbox.points_m(measure::ID)[2], corner);
     bench.key(Modifiers::NONE, Key::Escape);
-    assert!(bench.app().state.tools.measure.points_m.is_empty());
-    assert_eq!(bench.app().state.tool, Tool::Measure);
+    assert!(bench.app().state.toolbox.points_m(measure::ID).is_empty());
+    assert_eq!(bench.app().state.tool, measure::ID);
     assert_eq!(bench.history(), ["Open"]);
 }
 
@@ -398,7 +438,7 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     let pane = bench.pane("3D view");
     let at = |x: f32, y: f32| pane.center() + egui::vec2(x, y);
     bench.app().state.voxel_class = Class::Manmade;
-    bench.ask(ToolCommand::Voxels(VoxelMode::Block));
+    bench.ask(ToolCommand::Shortcut("voxel_block"));
     bench.app().state.tools.voxel_height = 2;
     let before = bench.frame();
     bench.press_and_move(&[at(-100.0, -120.0), at(-60.0, -90.0)], Modifiers::NONE);
@@ -419,20 +459,22 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     );
     assert_eq!(bench.history(), ["Open", "Attach voxels"]);
     // The wand takes the block, whose voxels are then another class, then none.
-    bench.ask(ToolCommand::Voxels(VoxelMode::Wand));
+    bench.ask(ToolCommand::Shortcut("voxel_wand"));
     bench.drag(&[at(-80.0, -105.0)], Modifiers::NONE);
     assert_eq!(bench.app().state.tools.voxels.len(), block);
-    bench.ask(ToolCommand::PaintChosenVoxels(Class::Vegetation));
+    bench.app().state.voxel_class = Class::Vegetation;
+    bench.steps(2);
+    bench.click("Recolour them");
     let count = |bench: &Bench, class: Class| bench.frame().occupancy.class_counts()[class as usize];
     let vegetation = count(&bench, Class::Vegetation);
     assert!(vegetation >= block);
     // Pulled up from above nothing moves along the ray; seen from the side it does.
     bench.app().views.view3d.preset(viewport::ViewPreset::Perspective);
     bench.steps(4);
-    bench.ask(ToolCommand::Symmetry);
-    bench.ask(ToolCommand::Voxels(VoxelMode::Fill));
-    bench.app().state.verb = app::state::VoxelVerb::Remove;
-    bench.ask(ToolCommand::ChooseVoxels(vec![[1, 2, 3]], false));
+    bench.ask(ToolCommand::Shortcut("symmetry"));
+    bench.ask(ToolCommand::Shortcut("voxel_fill"));
+    bench.app().state.verb = app::tools::VoxelVerb::Remove;
+    bench.app().state.choose_voxels(vec![[1, 2, 3]], false);
     bench.ask(ToolCommand::Delete);
     assert!(bench.app().state.tools.voxels.is_empty());
     while bench.app().document.can_undo() {

@@ -1,7 +1,7 @@
 //! Views, layers and the 3D view.
 
 use app::panes::id::PaneId;
-use app::state::{Tool, VoxelVerb};
+use editor::tools::{VoxelVerb, voxel};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use formats::project;
@@ -60,7 +60,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     bench.key(Modifiers::NONE, Key::B);
     assert_eq!(
         (bench.app().state.tool, bench.app().state.verb),
-        (Tool::Voxel, VoxelVerb::Attach)
+        (voxel::ID, VoxelVerb::Attach)
     );
     let before = bench.frame();
     let middle = pane.center() + egui::vec2(0.0, 60.0);

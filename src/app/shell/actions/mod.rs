@@ -3,10 +3,14 @@
 mod editing;
 mod window;
 
+use std::sync::LazyLock;
+
 use glam::DVec3;
 
 use crate::command::Command;
 use crate::state::UiState;
+use crate::tools::ToolCommand;
+use editor::tools::{self, Shortcut};
 
 /// Where a chord counts; what stands later wins over what stands before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,8 +73,16 @@ pub struct ActionDef {
     pub keys: &'static str,
     /// Goes on while the key is held.
     pub repeats: bool,
-    /// What to do; none if only the window's state changes.
-    pub command: fn(&mut UiState) -> Option<Command>,
+    does: Does,
+}
+
+/// What an action does.
+#[derive(Clone, Copy)]
+enum Does {
+    /// Asks for something; nothing if only the window's state changes.
+    Command(fn(&mut UiState) -> Option<Command>),
+    /// The shortcut of a tool of that name.
+    Shortcut,
 }
 
 const fn action(
@@ -87,11 +99,19 @@ const fn action(
         when: When::Always,
         keys,
         repeats: false,
-        command,
+        does: Does::Command(command),
     }
 }
 
 impl ActionDef {
+    /// What the action asks for now.
+    pub fn run(&self, state: &mut UiState) -> Option<Command> {
+        match self.does {
+            Does::Command(command) => command(state),
+            Does::Shortcut => Some(Command::Tools(ToolCommand::Shortcut(self.id))),
+        }
+    }
+
     const fn over_3d(mut self) -> Self {
         self.when = When::Over3d;
         self
@@ -113,24 +133,32 @@ impl ActionDef {
     }
 }
 
-const COUNT: usize = editing::ACTIONS.len() + window::ACTIONS.len();
+/// Every action: those of the tools, and all others.
+pub static ACTIONS: LazyLock<Vec<ActionDef>> = LazyLock::new(|| {
+    let of_tools = tools::all().iter().flat_map(|tool| tool.shortcuts).map(of_tool);
+    let others = editing::ACTIONS.iter().chain(window::ACTIONS);
+    of_tools.chain(others.copied()).collect()
+});
 
-const ALL: [ActionDef; COUNT] = {
-    let mut all = [editing::ACTIONS[0]; COUNT];
-    let mut i = 1;
-    while i < COUNT {
-        let first = editing::ACTIONS.len();
-        all[i] = match i < first {
-            true => editing::ACTIONS[i],
-            false => window::ACTIONS[i - first],
-        };
-        i += 1;
+/// The action that a tool has.
+fn of_tool(shortcut: &'static Shortcut) -> ActionDef {
+    ActionDef {
+        id: shortcut.id,
+        group: match shortcut.when {
+            tools::When::Chosen => Group::Selection,
+            _ => Group::Tools,
+        },
+        title: shortcut.title,
+        when: match shortcut.when {
+            tools::When::Always => When::Always,
+            tools::When::OverSpace => When::Over3d,
+            tools::When::Chosen => When::Chosen,
+        },
+        keys: shortcut.keys,
+        repeats: false,
+        does: Does::Shortcut,
     }
-    all
-};
-
-/// Every action.
-pub const ACTIONS: &[ActionDef] = &ALL;
+}
 
 /// Nudges of the chosen box by the arrows, which no preset changes: direction in the ego frame, as the bird's-eye view
 /// shows it (forward is up).

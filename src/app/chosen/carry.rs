@@ -1,0 +1,190 @@
+//! Commands for what is chosen where things are among it: removed, copied, moved, turned, set to the kerb, together with
+//! the chosen boxes, as one undo step.
+
+use glam::DVec2;
+
+use crate::panes::id::PaneId;
+use crate::shell::app::SceneloomApp;
+use crate::tools::ToolCommand;
+use editor::arrange::{self, Clipboard};
+use editor::pick_things::{ground_in_world, way_in_world};
+use editor::tools::select::in_ego;
+use editor::{Edit, kerb};
+use scene::{BoxId, Form, Frame, Scene, ThingId};
+
+use crate::tools::things::words;
+
+/// How far a kerb may be from what is set to it, m.
+const KERB_REACH_M: f64 = 12.0;
+
+impl SceneloomApp {
+    /// Carries out a command of boxes for things too; false if it concerns no thing.
+    pub(crate) fn carry(&mut self, command: &ToolCommand, ctx: &egui::Context) -> bool {
+        let scene = self.document.settled_scene().clone();
+        if *command == ToolCommand::Paste && !self.state.tools.things.clipboard.is_empty() {
+            self.paste_things(&scene);
+            return true;
+        }
+        let forms: Vec<Form> = self
+            .state
+            .tools
+            .things
+            .chosen_in(&scene.background)
+            .map(|t| t.form.clone())
+            .collect();
+        if forms.is_empty() {
+            return false;
+        }
+        let ids: Vec<ThingId> = self.state.tools.things.chosen.iter().copied().collect();
+        let (frame, boxes) = (scene.frame(), self.state.chosen());
+        let world_from_ego = frame.world_from_ego;
+        let moved = |by_m: DVec2, turn_deg: f64| Edit::MoveThings {
+            ids: ids.clone(),
+            by_m,
+            turn_deg,
+        };
+        let (verb, mut edits, of_things) = match command {
+            ToolCommand::Delete => {
+                let edit = Edit::RemoveThings { ids: ids.clone() };
+                ("Remove", arrange::remove(frame, &boxes), edit)
+            }
+            ToolCommand::Nudge(step_m) if step_m.z != 0.0 => {
+                let edit = Edit::RaiseThings {
+                    ids: ids.clone(),
+                    by_m: step_m.z,
+                };
+                ("Raise", arrange::shift(frame, &boxes, *step_m), edit)
+            }
+            ToolCommand::Nudge(step_m) => {
+                let by_m = way_in_world(&world_from_ego, step_m.truncate());
+                ("Nudge", arrange::shift(frame, &boxes, *step_m), moved(by_m, 0.0))
+            }
+            ToolCommand::Turn(degrees) => {
+                let pivot = self.state.tools.pivot;
+                let turned = arrange::turn(frame, &boxes, *degrees, pivot);
+                ("Turn", turned, moved(DVec2::ZERO, *degrees))
+            }
+            ToolCommand::ToLane => {
+                let here = in_ego(&forms, frame);
+                let Some(way_m) = kerb::way_to_kerb(&frame.layout, &here, DVec2::ZERO, KERB_REACH_M) else {
+                    self.note("No kerb is near");
+                    return true;
+                };
+                let by_m = way_in_world(&world_from_ego, way_m);
+                (
+                    "Set to the kerb:",
+                    arrange::to_lane(frame, &boxes),
+                    moved(by_m, 0.0),
+                )
+            }
+            ToolCommand::Duplicate => {
+                self.duplicate(frame, &boxes, &forms);
+                return true;
+            }
+            ToolCommand::Copy | ToolCommand::Cut => {
+                self.copy_all(frame, &boxes, &forms, ctx);
+                if *command == ToolCommand::Copy {
+                    return true;
+                }
+                let edit = Edit::RemoveThings { ids: ids.clone() };
+                ("Cut", arrange::remove(frame, &boxes), edit)
+            }
+            _ => return false,
+        };
+        edits.push(of_things);
+        let named: Vec<&Form> = forms.iter().collect();
+        let label = match boxes.is_empty() {
+            true => format!("{verb} {}", words::count(&named)),
+            false => format!("{verb} {} boxes and things", boxes.len() + forms.len()),
+        };
+        self.apply(label, &edits);
+        true
+    }
+
+    /// Copies beside the originals.
+    fn duplicate(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form]) {
+        let by_m = way_in_world(&frame.world_from_ego, beside_m(&in_ego(forms, frame)));
+        let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
+        let added = arrange::duplicate(frame, boxes);
+        self.add_things("Duplicate", copies, added.edits);
+        self.state.choose(&added.ids, crate::tools::Choose::Add);
+    }
+
+    fn copy_all(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form], ctx: &egui::Context) {
+        let boxes = arrange::boxes_of(frame, boxes);
+        let mut edits: Vec<Edit> = boxes.iter().map(arrange::adding).collect();
+        edits.push(Edit::AddThings {
+            forms: forms.to_vec(),
+        });
+        // Without a text on its clipboard the window system would not tell of the chord that pastes.
+        ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
+        self.state.tools.clipboard = Clipboard { boxes };
+        self.state.tools.things.clipboard = forms.to_vec();
+    }
+
+    /// At the pointer over the bird's-eye view, else beside where they were; boxes come along.
+    fn paste_things(&mut self, scene: &Scene) {
+        let frame = scene.frame();
+        let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
+        let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
+        let forms = self.state.tools.things.clipboard.clone();
+        let middle = forms.iter().map(Form::middle_m).sum::<DVec2>() / forms.len() as f64;
+        let by_m = match at_m {
+            Some(at_m) => ground_in_world(&frame.world_from_ego, at_m) - middle,
+            None => way_in_world(&frame.world_from_ego, beside_m(&in_ego(&forms, frame))),
+        };
+        // Boxes and things keep their places to each other.
+        let to_ego = frame.world_from_ego.inverse();
+        let mut boxes = self.state.tools.clipboard.clone();
+        for b in &mut boxes.boxes {
+            b.center_m += way_in_world(&to_ego, by_m).extend(0.0);
+        }
+        let box_at_m = arrange::middle_m(&boxes.boxes).map(|m| m.truncate());
+        let added = arrange::paste(frame, &boxes, box_at_m);
+        let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
+        self.add_things("Paste", copies, added.edits);
+        self.state.choose(&added.ids, crate::tools::Choose::Add);
+    }
+}
+
+fn shifted(form: &Form, by_m: DVec2) -> Form {
+    let mut out = form.clone();
+    out.map_points(|p| p + by_m, 0.0);
+    out
+}
+
+/// The way to a free place beside forms, across their longer extent, m.
+fn beside_m(forms: &[Form]) -> DVec2 {
+    const GAP_M: f64 = 1.0;
+    const MOST_M: f64 = 20.0;
+    let (min, max) = forms
+        .iter()
+        .map(Form::bounds_m)
+        .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        .unwrap_or_default();
+    let size = (max - min + GAP_M).min(DVec2::splat(MOST_M));
+    match size.y <= size.x {
+        true => DVec2::new(0.0, -size.y),
+        false => DVec2::new(size.x, 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::background::Building;
+
+    #[test]
+    fn copies_come_beside_and_do_not_overlap() {
+        let house = Form::Building(Building::rectangle(
+            DVec2::new(10.0, 10.0),
+            DVec2::new(6.0, 3.0),
+            DVec2::X,
+            6.0,
+        ));
+        let by_m = beside_m(std::slice::from_ref(&house));
+        assert_eq!(by_m, DVec2::new(0.0, -7.0));
+        let copy = shifted(&house, by_m);
+        assert!(copy.bounds_m().1.y < house.bounds_m().0.y);
+    }
+}

@@ -1,0 +1,191 @@
+//! Carries out what is asked of the tools, and of what is chosen.
+
+mod carry;
+mod things;
+
+use egui::Context;
+
+use crate::command::Command;
+use crate::panes::id::PaneId;
+use crate::shell::actions::ACTIONS;
+use crate::shell::app::SceneloomApp;
+use crate::shell::toasts::Level;
+use crate::state::UiState;
+use crate::tools::{Choose, ToolCommand};
+use editor::Edit;
+use editor::arrange::{self, Added, Clipboard};
+use editor::tools::{Act, voxel};
+use scene::{Frame, GridSpec};
+
+impl SceneloomApp {
+    /// Carries out one command of the tools.
+    pub(crate) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
+        let ids = self.state.chosen();
+        let frame = self.document.settled_scene().frame().clone();
+        let of_voxels = command == ToolCommand::Delete && self.has_voxels();
+        if !of_voxels && self.carry(&command, ctx) {
+            return;
+        }
+        match command {
+            ToolCommand::Thing(command) => self.thing_command(command),
+            ToolCommand::Choose(ids, how) => self.state.choose(&ids, how),
+            ToolCommand::ChooseAll => {
+                let all: Vec<_> = frame.boxes.keys().copied().collect();
+                self.state.choose(&all, Choose::Only);
+            }
+            ToolCommand::ChooseNone => {
+                self.state.choose(&[], Choose::Only);
+                self.state.tools.voxels.clear();
+            }
+            ToolCommand::ChooseOthers => {
+                let others = frame.boxes.keys().copied().filter(|id| !ids.contains(id));
+                let others: Vec<_> = others.collect();
+                self.state.choose(&others, Choose::Only);
+            }
+            ToolCommand::Delete if self.has_voxels() => {
+                for act in self.state.paint_chosen_voxels(scene::Class::Free) {
+                    self.act(act, ctx);
+                }
+            }
+            ToolCommand::Delete => {
+                let label = of(&ids, "Delete box", "Delete boxes");
+                self.apply_some(label, arrange::remove(&frame, &ids));
+            }
+            ToolCommand::Duplicate => {
+                let label = of(&ids, "Duplicate box", "Duplicate boxes");
+                self.add_boxes(label, arrange::duplicate(&frame, &ids));
+            }
+            ToolCommand::Copy => self.copy(&frame, ctx),
+            ToolCommand::Cut => {
+                self.copy(&frame, ctx);
+                let label = of(&ids, "Cut box", "Cut boxes");
+                self.apply_some(label, arrange::remove(&frame, &ids));
+            }
+            ToolCommand::Paste => {
+                let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
+                let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
+                let added = arrange::paste(&frame, &self.state.tools.clipboard, at_m);
+                let label = of(&added.ids, "Paste box", "Paste boxes");
+                self.add_boxes(label, added);
+            }
+            ToolCommand::Nudge(step_m) => {
+                let label = of(&ids, "Nudge box", "Nudge boxes");
+                self.apply_some(label, arrange::shift(&frame, &ids, step_m));
+            }
+            ToolCommand::Turn(degrees) => {
+                let label = of(&ids, "Turn box", "Turn boxes");
+                let pivot = self.state.tools.pivot;
+                self.apply_some(label, arrange::turn(&frame, &ids, degrees, pivot));
+            }
+            ToolCommand::AskRow => match ids.is_empty() {
+                true => self.note("Choose the boxes to copy first"),
+                false => self.state.tools.row_open = true,
+            },
+            ToolCommand::Row(row) => self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row)),
+            ToolCommand::Mirror(copies) => {
+                let keep = self.state.tools.mirror_keeps_direction;
+                if copies {
+                    self.add_boxes("Mirrored copies", arrange::mirror_copy(&frame, &ids, keep));
+                } else {
+                    let label = of(&ids, "Mirror box", "Mirror boxes");
+                    self.apply_some(label, arrange::mirror(&frame, &ids, keep));
+                }
+            }
+            ToolCommand::DropToGround => {
+                self.apply_some("Drop to ground", arrange::drop_to_ground(&frame, &ids));
+            }
+            ToolCommand::ToLane => self.apply_some("Snap to lane", arrange::to_lane(&frame, &ids)),
+            ToolCommand::Act(act) => self.act(act, ctx),
+            ToolCommand::Shortcut(id) => {
+                let UiState { toolbox, tools, .. } = &mut self.state;
+                toolbox.shortcut(&mut tools.hand, id);
+            }
+        }
+    }
+
+    pub(crate) fn note(&mut self, text: &str) {
+        let now_s = self.now_s();
+        self.toasts.push(Level::Info, text, now_s);
+    }
+
+    fn has_voxels(&self) -> bool {
+        self.state.tool == voxel::ID && !self.state.tools.voxels.is_empty()
+    }
+
+    fn apply_some(&mut self, label: &'static str, edits: Vec<Edit>) {
+        if !edits.is_empty() {
+            self.apply(label, &edits);
+        }
+    }
+
+    /// Adds boxes and chooses them.
+    fn add_boxes(&mut self, label: &'static str, added: Added) {
+        if !added.ids.is_empty() {
+            self.apply(label, &added.edits);
+            self.state.choose(&added.ids, Choose::Only);
+            let outside = added.edits.iter().filter(|e| lies_outside(e)).count();
+            if outside > 0 {
+                let text = format!("{outside} of {} lie outside the map", added.ids.len());
+                let now_s = self.now_s();
+                self.toasts.push(Level::Info, text, now_s);
+            }
+        }
+    }
+
+    /// Keeps the chosen boxes, and gives the window system the edits that add them: without a text on its clipboard it
+    /// would not tell of the chord that pastes.
+    fn copy(&mut self, frame: &Frame, ctx: &egui::Context) {
+        let boxes = arrange::boxes_of(frame, &self.state.chosen());
+        if !boxes.is_empty() {
+            let edits: Vec<Edit> = boxes.iter().map(arrange::adding).collect();
+            ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
+            self.state.tools.clipboard = Clipboard { boxes };
+            self.state.tools.things.clipboard.clear();
+        }
+    }
+
+    /// Does what a tool made of an event.
+    fn act(&mut self, act: Act, ctx: &Context) {
+        match act {
+            Act::Preview(edits) => self.execute(Command::Preview(edits), ctx),
+            // What cannot be is said when the button comes up.
+            Act::Try(edits) => {
+                if self.document.preview_all(&edits).is_err() {
+                    self.document.cancel_drag();
+                }
+            }
+            Act::Commit(label) => {
+                self.document.commit_drag(label);
+                self.note_correction();
+            }
+            Act::Cancel => self.document.cancel_drag(),
+            Act::Apply(label, edits) => self.apply(label, &edits),
+            Act::AddBoxes(label, edits, ids) => {
+                self.apply(label, &edits);
+                self.state.choose(&ids, Choose::Only);
+            }
+            Act::AddThings(forms) => self.add_things("Add", forms, Vec::new()),
+            Act::Mark(area, on) => self.state.tools.mark(&area, on),
+            Act::Note(text) => self.note(&text),
+            Act::Ask(id) => {
+                let action = ACTIONS.iter().find(|a| a.id == id);
+                if let Some(command) = action.and_then(|a| a.run(&mut self.state)) {
+                    self.execute(command, ctx);
+                }
+            }
+        }
+    }
+}
+
+/// The name of a step for one box or for several.
+pub(crate) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'static str {
+    if ids.len() > 1 { several } else { one }
+}
+
+/// True if an edit adds a box whose middle is beside the grid.
+fn lies_outside(edit: &Edit) -> bool {
+    match edit {
+        Edit::AddBox { center_m, .. } => GridSpec::column_at(center_m.x, center_m.y).is_none(),
+        _ => false,
+    }
+}

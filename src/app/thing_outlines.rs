@@ -1,0 +1,183 @@
+//! What is drawn of things over both large views: outlines, what is chosen, what would come.
+
+use egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
+use glam::{DVec2, DVec3};
+
+use editor::tools::beside::ThingState;
+use scene::{Form, Pose, Scene, ThingId};
+
+use super::screen_map::ScreenMap;
+
+/// More outlines than this are drawn without those of trees and posts.
+const MANY: usize = 4000;
+const STEPS: usize = 28;
+
+fn color(form: &Form) -> Color32 {
+    let [r, g, b] = match form {
+        // Brighter than their class, which is a shade of the ground.
+        Form::Building(_) | Form::Bridge(_) => [232, 214, 188],
+        Form::Tree(_) | Form::Shrubs(_) => [126, 206, 120],
+        Form::Line(line) if line.kind.class() == scene::Class::Vegetation => [126, 206, 120],
+        Form::Line(_) => [226, 186, 140],
+        Form::Post(_) => [240, 220, 110],
+    };
+    Color32::from_rgb(r, g, b)
+}
+
+/// Points of a form on the screen, and whether they close.
+pub(super) fn trace(form: &Form, to_screen: &dyn Fn(DVec2) -> Option<Pos2>) -> (Vec<Pos2>, bool) {
+    let round = |middle: DVec2, radius: f64| {
+        let at =
+            |i: usize| middle + DVec2::from_angle(i as f64 / STEPS as f64 * std::f64::consts::TAU) * radius;
+        (0..STEPS).filter_map(|i| to_screen(at(i))).collect()
+    };
+    match form {
+        Form::Tree(t) => (round(t.position_m, t.crown_radius_m), true),
+        Form::Post(p) => (round(p.position_m, 0.4), true),
+        Form::Line(l) => (l.points_m.iter().filter_map(|p| to_screen(*p)).collect(), false),
+        Form::Bridge(b) => (b.points_m.iter().filter_map(|p| to_screen(*p)).collect(), false),
+        Form::Building(b) => (b.outline_m.iter().filter_map(|p| to_screen(*p)).collect(), true),
+        Form::Shrubs(s) => (s.outline_m.iter().filter_map(|p| to_screen(*p)).collect(), true),
+    }
+}
+
+/// How a form is drawn from above.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Look {
+    Plain,
+    Hovered,
+    Chosen,
+    Coming,
+}
+
+fn draw_form(painter: &Painter, map: &ScreenMap, form: &Form, look: Look) {
+    let color = color(form);
+    let (points, closed) = trace(form, &|p| Some(map.to_screen(p)));
+    let (width, edge, fill) = match look {
+        Look::Plain => (1.0, color.gamma_multiply(0.75), 0.16),
+        Look::Hovered => (1.8, color, 0.3),
+        Look::Chosen => (2.0, Color32::WHITE, 0.42),
+        Look::Coming => (1.5, color, 0.25),
+    };
+    if let Form::Line(line) = form {
+        let thick = (line.width_m * map.scale).max(1.6) as f32;
+        painter.line(points.clone(), Stroke::new(thick, color.gamma_multiply(0.85)));
+        if look != Look::Plain {
+            painter.line(points, Stroke::new(width, edge));
+        }
+        return;
+    }
+    if let Form::Bridge(bridge) = form {
+        let thick = (bridge.width_m * map.scale) as f32;
+        painter.line(points.clone(), Stroke::new(thick, color.gamma_multiply(fill)));
+    }
+    if closed && is_convex(&points) {
+        let fill = color.gamma_multiply(fill);
+        painter.add(Shape::convex_polygon(points.clone(), fill, Stroke::NONE));
+    }
+    let stroke = Stroke::new(width, edge);
+    painter.add(match closed {
+        true => Shape::closed_line(points, stroke),
+        false => Shape::line(points, stroke),
+    });
+    if let Form::Post(post) = form {
+        let (at, ahead) = (post.position_m, DVec2::from_angle(post.yaw_rad));
+        let ends = [map.to_screen(at), map.to_screen(at + ahead * 1.2)];
+        painter.line_segment(ends, Stroke::new(width, edge));
+    }
+}
+
+/// A thing that would come, from above.
+pub(super) fn coming(painter: &Painter, map: &ScreenMap, form: &Form) {
+    draw_form(painter, map, form, Look::Coming);
+}
+
+fn is_convex(points: &[Pos2]) -> bool {
+    let n = points.len();
+    let turn = |i: usize| {
+        let (a, b, c) = (points[i], points[(i + 1) % n], points[(i + 2) % n]);
+        let (u, v) = (b - a, c - b);
+        u.x * v.y - u.y * v.x
+    };
+    n >= 3 && ((0..n).all(|i| turn(i) <= 0.0) || (0..n).all(|i| turn(i) >= 0.0))
+}
+
+/// Outlines of all things over the map layers; `hovered_m` is where the pointer chooses.
+pub(crate) fn outlines(
+    painter: &Painter,
+    map: &ScreenMap,
+    scene: &Scene,
+    things: &ThingState,
+    hovered: Option<ThingId>,
+) {
+    if !things.shown || scene.background.is_empty() {
+        return;
+    }
+    let to_ego = scene.frame().world_from_ego.inverse();
+    let many = scene.background.len() > MANY;
+    for thing in scene.background.iter() {
+        let chosen = things.chosen.contains(&thing.id);
+        let small = matches!(thing.form, Form::Tree(_) | Form::Post(_));
+        if many && small && !chosen {
+            continue;
+        }
+        let form = in_frame(&thing.form, &to_ego);
+        let (min, max) = form.bounds_m();
+        if !map.rect_of(min, max).intersects(map.rect) {
+            continue;
+        }
+        let look = match () {
+            () if chosen => Look::Chosen,
+            () if hovered == Some(thing.id) => Look::Hovered,
+            () => Look::Plain,
+        };
+        draw_form(painter, map, &form, look);
+    }
+}
+
+fn in_frame<'a>(form: &'a Form, to_ego: &Pose) -> std::borrow::Cow<'a, Form> {
+    match *to_ego == Pose::IDENTITY {
+        true => std::borrow::Cow::Borrowed(form),
+        false => std::borrow::Cow::Owned(form.in_frame(to_ego)),
+    }
+}
+
+/// Chosen things, over the 3D view.
+pub(crate) fn in_3d(
+    painter: &Painter,
+    project: &dyn Fn(DVec3) -> Option<Pos2>,
+    scene: &Scene,
+    things: &ThingState,
+) {
+    let frame = scene.frame();
+    let to_ego = frame.world_from_ego.inverse();
+    let relief = |p: DVec2| frame.layout.relief.height_m(p);
+    for thing in things.chosen_in(&scene.background) {
+        let form = thing.form.in_frame(&to_ego);
+        let stroke = Stroke::new(1.6, Color32::WHITE);
+        let floor = |p: DVec2| project(p.extend(relief(p) + 0.1));
+        let middle = form.middle_m();
+        let top_z = relief(middle) + form.height_m();
+        let top = |p: DVec2| project(p.extend(top_z));
+        for part in [&floor as &dyn Fn(DVec2) -> Option<Pos2>, &top] {
+            let (points, closed) = trace(&form, part);
+            let whole = points.len() == trace(&form, &|_| Some(pos2(0.0, 0.0))).0.len();
+            if points.len() >= 2 {
+                painter.add(match closed && whole {
+                    true => Shape::closed_line(points, stroke),
+                    false => Shape::line(points, stroke),
+                });
+            }
+        }
+        let posts = match &form {
+            Form::Building(b) => b.outline_m.clone(),
+            Form::Line(l) => l.points_m.clone(),
+            _ => Vec::new(),
+        };
+        for p in posts {
+            if let (Some(a), Some(b)) = (floor(p), top(p)) {
+                painter.line_segment([a, b], stroke);
+            }
+        }
+    }
+}

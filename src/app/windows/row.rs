@@ -1,0 +1,94 @@
+//! The window of rows of copies: numbers, with what would come shown over the map, then one undo step.
+
+use egui::{DragValue, Ui};
+
+use crate::command::Command;
+use crate::state::UiState;
+use crate::theme;
+use crate::widgets::fields::{caption, number};
+use crate::widgets::icons;
+use editor::arrange::{self, MAX_COPIES, RowAlong};
+use scene::{Frame, SceneBox};
+
+use crate::tools::ToolCommand;
+
+/// The copies that the row of the dialog would add.
+pub(crate) fn coming(frame: &Frame, state: &UiState) -> Vec<SceneBox> {
+    arrange::row_boxes(frame, &state.chosen(), &state.tools.row)
+}
+
+/// Draws the windows of the tools that are open.
+pub fn show(ui: &Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+    if !state.tools.row_open {
+        return;
+    }
+    let mut done = None;
+    // Below the views, undimmed: they show what would come.
+    let id = egui::Id::unique("row of copies");
+    let area = egui::Modal::default_area(id).anchor(egui::Align2::CENTER_BOTTOM, egui::vec2(0.0, -60.0));
+    let modal = egui::Modal::new(id)
+        .area(area)
+        .backdrop_color(egui::Color32::TRANSPARENT)
+        .frame(theme::dialog_frame(ui.style()))
+        .show(ui.ctx(), |ui| {
+            ui.set_width(330.0);
+            ui.heading("Row of copies");
+            ui.add_space(theme::GAP);
+            let row = &mut state.tools.row;
+            ui.horizontal(|ui| {
+                caption(ui, "Copies");
+                let drag = DragValue::new(&mut row.copies).range(1..=MAX_COPIES);
+                ui.add_sized([86.0, theme::ROW], drag).accessible_name("Copies");
+            });
+            number(
+                ui,
+                "Spacing",
+                "Spacing",
+                &mut row.spacing_m,
+                -80.0..=80.0,
+                " m",
+                2,
+            );
+            ui.horizontal(|ui| {
+                caption(ui, "Along");
+                icons::segments(
+                    ui,
+                    &mut row.along,
+                    &[
+                        (RowAlong::Heading, "Heading", "straight ahead"),
+                        (RowAlong::Lane, "Lane", "the lane under each box"),
+                        (RowAlong::Side, "Left", "to the left of the heading"),
+                    ],
+                );
+            });
+            let (asked, come) = (
+                state.tools.row.copies * state.chosen().len(),
+                coming(frame, state).len(),
+            );
+            let text = match asked - come.min(asked) {
+                0 => format!("{come} boxes come"),
+                out => format!("{come} boxes come; {out} would lie outside the map and are left out"),
+            };
+            ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+            ui.add_space(theme::GAP);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let add = ui.add(egui::Button::new("Add copies").fill(theme::accent_fill()));
+                let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
+                if add.clicked() || enter {
+                    done = Some(true);
+                }
+                if ui.button("Cancel row").clicked() {
+                    done = Some(false);
+                }
+            });
+        });
+    if done.is_none() && modal.should_close() {
+        done = Some(false);
+    }
+    if let Some(add) = done {
+        state.tools.row_open = false;
+        if add {
+            commands.push(Command::Tools(ToolCommand::Row(state.tools.row)));
+        }
+    }
+}

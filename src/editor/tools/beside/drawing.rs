@@ -1,0 +1,327 @@
+//! The state machine of every tool for things: a press, a way and a release, or points one by one, become forms.
+
+use std::fmt::Debug;
+
+use glam::DVec2;
+
+use crate::Edit;
+use crate::pick;
+use crate::tools::setting::{Setting, Value};
+use crate::tools::{
+    Act, At, CLICK_SLACK, Context, Cursor, Event, FARTHEST_M, Hand, Hint, Key, Mark, Response, Role, Sight,
+    Tool, View, ViewKind, hint_of,
+};
+use scene::{Form, Frame, Scene};
+
+use super::{Outcome, Phase, Pointer, Site, ThingState};
+
+/// What one tool draws.
+pub(super) trait Draft: Clone + Debug + Default + Send + 'static {
+    /// Takes the pointer.
+    fn pointer(&mut self, p: &Pointer, site: &Site<'_>, options: &ThingState) -> Outcome;
+
+    /// Ends what is drawn point by point.
+    fn finish(&mut self, options: &ThingState) -> Outcome {
+        let _ = options;
+        Outcome::Nothing
+    }
+
+    /// Points set so far of what waits for more of them.
+    fn points_m(&self) -> &[DVec2] {
+        &[]
+    }
+
+    /// Takes the last point back.
+    fn drop_point(&mut self) {}
+
+    /// What the buttons do; `drawn`: points are set.
+    fn hint(drawn: bool) -> Vec<&'static str>;
+
+    /// What Alt does in the view from above.
+    fn alt() -> Option<&'static str> {
+        None
+    }
+
+    /// What would come where the pointer is; `drawing`: something is begun.
+    fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming;
+
+    /// The options of the tool.
+    fn options(hand: &Hand) -> Vec<Setting>;
+
+    /// The user set one.
+    fn set(hand: &mut Hand, id: &str, value: Value);
+}
+
+/// What would come of a tool where the pointer is, ego frame, m.
+#[derive(Default)]
+pub(super) struct Coming {
+    /// Forms.
+    pub forms: Vec<Form>,
+    /// The way that is drawn.
+    pub way_m: Vec<DVec2>,
+    /// What is said about it.
+    pub text: Option<String>,
+}
+
+/// Length of the last piece, and of all of them.
+pub(super) fn length(points_m: &[DVec2]) -> Option<String> {
+    let pieces: Vec<f64> = points_m.windows(2).map(|p| p[0].distance(p[1])).collect();
+    let last = pieces.last()?;
+    Some(match pieces.len() {
+        1 => format!("{last:.1} m"),
+        _ => format!("{last:.1} m  ·  {:.1} m in all", pieces.iter().sum::<f64>()),
+    })
+}
+
+/// A press that draws.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Press {
+    from_m: DVec2,
+    at_m: DVec2,
+    reach_m: f64,
+    free: bool,
+    moved: bool,
+}
+
+impl Press {
+    fn pointer(&self, phase: Phase) -> Pointer {
+        Pointer {
+            phase,
+            at_m: self.at_m,
+            reach_m: self.reach_m,
+            free: self.free,
+        }
+    }
+}
+
+/// A tool for things.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drawing<D> {
+    draft: Option<D>,
+    press: Option<Press>,
+}
+
+/// Where trees stand and houses are, ego frame, m.
+fn standing(scene: &Scene) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
+    let to_ego = scene.frame().world_from_ego.inverse();
+    let (mut trees_m, mut houses_m) = (Vec::new(), Vec::new());
+    for thing in scene.background.iter() {
+        match thing.form.in_frame(&to_ego) {
+            Form::Tree(tree) => trees_m.push(tree.position_m),
+            Form::Building(building) => houses_m.push(building.outline_m),
+            _ => {}
+        }
+    }
+    (trees_m, houses_m)
+}
+
+/// How far on the ground the pointer may move and still click, m.
+fn reach_m(view: &dyn View, at: DVec2, at_m: DVec2) -> f64 {
+    if view.kind() == ViewKind::Bev {
+        return CLICK_SLACK / view.scale();
+    }
+    let ground = |p| view.ray(p).and_then(|ray| pick::ray_ground(&ray, 0.0));
+    match (ground(at), ground(at + DVec2::X * CLICK_SLACK)) {
+        (Some(a), Some(b)) => a.distance(b).clamp(0.1, 2.0),
+        _ => (at_m.length() * 0.01).clamp(0.1, 2.0),
+    }
+}
+
+/// The ground under the pointer, as far as things are drawn, m.
+fn near_m(cx: &Context<'_>, at: DVec2) -> Option<DVec2> {
+    let from_above = cx.from_above();
+    cx.ground_m(at).filter(|p| from_above || p.length() < FARTHEST_M)
+}
+
+impl<D: Draft> Drawing<D> {
+    fn press(&mut self, cx: &Context<'_>, pointer: &crate::tools::Pointer) -> Response {
+        let Some(at_m) = near_m(cx, pointer.at) else {
+            return Response::none();
+        };
+        let things = &cx.hand.things;
+        if !things.is_open() {
+            let why = match things.locked {
+                true => "Background things are locked: their lock is in the list of layers",
+                false => "Background things are hidden: their eye is in the list of layers",
+            };
+            return Response::act(Act::Note(why.to_owned()));
+        }
+        let press = Press {
+            from_m: at_m,
+            at_m,
+            reach_m: reach_m(cx.view, pointer.at, at_m),
+            // In space Alt turns the camera.
+            free: pointer.held.alt && cx.from_above(),
+            moved: false,
+        };
+        self.press = Some(press);
+        self.draft.get_or_insert_default();
+        let mut response = self.tell(cx, press.pointer(Phase::Press));
+        response.holds = true;
+        response
+    }
+
+    fn drag(&mut self, cx: &Context<'_>, pointer: &crate::tools::Pointer) -> Response {
+        let (Some(press), Some(at_m)) = (&mut self.press, near_m(cx, pointer.at)) else {
+            return Response::none();
+        };
+        let was = press.at_m;
+        (press.at_m, press.free) = (at_m, pointer.held.alt && cx.from_above());
+        press.moved |= press.from_m.distance(at_m) > press.reach_m;
+        if !press.moved || was == at_m {
+            return Response::none();
+        }
+        let p = press.pointer(Phase::Drag);
+        self.tell(cx, p)
+    }
+
+    fn tell(&mut self, cx: &Context<'_>, p: Pointer) -> Response {
+        let (trees_m, houses_m) = standing(cx.settled);
+        let site = Site {
+            layout: &cx.frame().layout,
+            trees_m: &trees_m,
+            houses_m: &houses_m,
+            brush_m: cx.hand.brush_m,
+        };
+        let outcome = match &mut self.draft {
+            Some(draft) => draft.pointer(&p, &site, &cx.hand.things),
+            // What was let go of elsewhere is not for this tool.
+            None => Outcome::Nothing,
+        };
+        self.answer(cx.frame(), outcome)
+    }
+
+    fn finish(&mut self, cx: &Context<'_>) -> Response {
+        let outcome = match &mut self.draft {
+            Some(draft) => draft.finish(&cx.hand.things),
+            None => Outcome::Nothing,
+        };
+        let mut response = self.answer(cx.frame(), outcome);
+        response.taken = true;
+        response
+    }
+
+    /// Shows or adds what was drawn.
+    fn answer(&mut self, frame: &Frame, outcome: Outcome) -> Response {
+        let in_world = |forms: Vec<Form>| -> Vec<Form> {
+            forms.iter().map(|f| f.in_frame(&frame.world_from_ego)).collect()
+        };
+        match outcome {
+            Outcome::Nothing => Response::none(),
+            Outcome::Preview(forms) => Response::act(Act::Try(vec![Edit::AddThings {
+                forms: in_world(forms),
+            }])),
+            Outcome::Add(forms) => {
+                self.draft = None;
+                Response::act(Act::AddThings(in_world(forms)))
+            }
+            Outcome::Refused(text) => Response::act(Act::Cancel).and(Act::Note(text)),
+        }
+    }
+}
+
+impl<D: Draft> Tool for Drawing<D> {
+    fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match event {
+            Event::Press(pointer) => self.press(cx, pointer),
+            Event::Drag(pointer) => self.drag(cx, pointer),
+            Event::Release(_) => match self.press.take() {
+                Some(press) => self.tell(
+                    cx,
+                    press.pointer(Phase::Release {
+                        clicked: !press.moved,
+                    }),
+                ),
+                None => Response::none(),
+            },
+            Event::Cancel => {
+                self.press = None;
+                if self.points_m().is_empty() {
+                    self.draft = None;
+                }
+                Response::none()
+            }
+            Event::DoubleClick | Event::Key(Key::Enter, ..) => self.finish(cx),
+            Event::Key(Key::Escape, ..) => {
+                self.draft = None;
+                Response::taken()
+            }
+            Event::Key(Key::Backspace, ..) => {
+                if let Some(draft) = &mut self.draft {
+                    draft.drop_point();
+                }
+                Response::taken()
+            }
+            Event::Pick(_) | Event::Key(..) | Event::Scroll(_) => Response::none(),
+        }
+    }
+
+    fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
+        if !hand.things.is_open() {
+            return hint_of(&["Background things are locked or hidden: see the list of layers"]);
+        }
+        let mut parts = D::hint(!self.points_m().is_empty());
+        parts.extend(D::alt().filter(|_| view != Some(ViewKind::Space)));
+        hint_of(&parts)
+    }
+
+    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+        match sight.hand.things.is_open() {
+            true => Cursor::Crosshair,
+            false => Cursor::Forbidden,
+        }
+    }
+
+    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+        let from_above = sight.from_above();
+        let layout = &sight.scene.frame().layout;
+        let site = Site {
+            layout,
+            trees_m: &[],
+            houses_m: &[],
+            brush_m: sight.hand.brush_m,
+        };
+        let free = from_above && sight.pointer.is_some_and(|p| p.held.alt);
+        let at_m = sight.ground_m().filter(|p| from_above || p.length() < FARTHEST_M);
+        let pointer = at_m.map(|at_m| Pointer {
+            phase: Phase::Press,
+            at_m,
+            reach_m: 0.0,
+            free,
+        });
+        let none = D::default();
+        let draft = self.draft.as_ref().unwrap_or(&none);
+        let coming = draft.coming(self.draft.is_some(), pointer, &site, &sight.hand.things);
+        let floor = |p: &DVec2| At::Ego(p.extend(layout.relief.height_m(*p) + 0.1));
+        let mut out: Vec<Mark> = coming.forms.into_iter().map(Mark::Coming).collect();
+        out.push(Mark::Line(coming.way_m.iter().map(floor).collect(), Role::Hand));
+        if from_above {
+            out.extend(self.points_m().iter().map(|p| Mark::Dot(floor(p), Role::Choose)));
+        }
+        if let (Some(pointer), Some(text)) = (sight.pointer, coming.text) {
+            out.push(Mark::Tag(At::Screen(pointer.at), text));
+        }
+        out
+    }
+
+    fn options(&self, hand: &Hand) -> Vec<Setting> {
+        D::options(hand)
+    }
+
+    fn set(&mut self, hand: &mut Hand, _: &Frame, id: &str, value: Value) -> Vec<Act> {
+        D::set(hand, id, value);
+        Vec::new()
+    }
+
+    fn points_m(&self) -> &[DVec2] {
+        self.draft.as_ref().map_or(&[], D::points_m)
+    }
+
+    fn put_down(&mut self) {
+        self.draft = None;
+    }
+
+    fn restart(&mut self) {
+        self.draft = None;
+    }
+}

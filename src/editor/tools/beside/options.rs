@@ -1,0 +1,178 @@
+//! What the tools for things hold in hand between two frames: options, selection, what is being drawn.
+
+use std::collections::BTreeSet;
+
+use glam::DVec2;
+
+use crate::tools::{Choose, Hand};
+use scene::background::{Facade, Line, LineKind, PostKind, Roof, TreeKind};
+use scene::{Background, Form, ThingId};
+
+use super::{line, post, tree};
+
+/// A tool together with the kind that it puts down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ThingKind {
+    /// A tree.
+    Tree(TreeKind),
+    /// Along a line.
+    Line(LineKind),
+    /// A small upright one.
+    Post(PostKind),
+}
+
+/// What the tools for things hold.
+#[derive(Clone, Debug)]
+pub struct ThingState {
+    /// The chosen things.
+    pub chosen: BTreeSet<ThingId>,
+    /// Their outlines are drawn, and they can be chosen.
+    pub shown: bool,
+    /// They can neither be chosen nor changed.
+    pub locked: bool,
+    /// Moves of them snap to the kerb.
+    pub snap_kerb: bool,
+    /// Storeys of the next building.
+    pub storeys: u32,
+    /// Roof of the next building.
+    pub roof: Roof,
+    /// Facade of the next building.
+    pub facade: Facade,
+    /// Kind of the next tree.
+    pub tree: TreeKind,
+    /// Height of the next tree, m; scattered ones vary about it.
+    pub tree_m: f64,
+    /// Distance between scattered trees, m.
+    pub spacing_m: f64,
+    /// Kind of the next line.
+    pub line: LineKind,
+    /// Its height, m.
+    pub line_m: f64,
+    /// Height of the next shrubs, m.
+    pub shrubs_m: f64,
+    /// Kind of the next post.
+    pub post: PostKind,
+    /// What was copied, world frame.
+    pub clipboard: Vec<Form>,
+    /// Kinds whose things are listed one by one.
+    pub unfolded: BTreeSet<&'static str>,
+}
+
+impl Default for ThingState {
+    fn default() -> Self {
+        Self {
+            chosen: BTreeSet::new(),
+            shown: true,
+            locked: false,
+            snap_kerb: false,
+            storeys: 4,
+            roof: Roof::Flat,
+            facade: Facade::Plain,
+            tree: TreeKind::Broadleaf,
+            tree_m: 7.0,
+            spacing_m: 6.0,
+            line: LineKind::Hedge,
+            line_m: LineKind::Hedge.typical_m().0,
+            shrubs_m: 1.2,
+            post: PostKind::StreetLight,
+            clipboard: Vec::new(),
+            unfolded: BTreeSet::new(),
+        }
+    }
+}
+
+impl ThingState {
+    /// True if things can be chosen and changed.
+    pub fn is_open(&self) -> bool {
+        self.shown && !self.locked
+    }
+
+    /// Radius of the crown of a tree of that kind and height, m.
+    pub fn crown_m(kind: TreeKind, height_m: f64) -> f64 {
+        let share = match kind {
+            TreeKind::Broadleaf | TreeKind::Bare => 0.32,
+            TreeKind::Conifer => 0.24,
+            TreeKind::Columnar => 0.14,
+        };
+        (height_m * share).clamp(0.4, 8.0)
+    }
+
+    /// A line as the options say; its width is the usual one.
+    pub fn line_of(&self, points_m: Vec<DVec2>) -> Line {
+        Line {
+            height_m: self.line_m,
+            ..Line::typical(self.line, points_m)
+        }
+    }
+
+    /// Takes another kind of line, with its usual height.
+    pub fn take_line(&mut self, kind: LineKind) {
+        (self.line, self.line_m) = (kind, kind.typical_m().0);
+    }
+
+    /// Chosen things that are there, by id.
+    pub fn chosen_in<'a>(&'a self, all: &'a Background) -> impl Iterator<Item = &'a scene::Thing> {
+        self.chosen.iter().filter_map(|id| all.get(*id))
+    }
+}
+
+impl Hand {
+    /// Chooses things; alone they are if no box is chosen either.
+    pub fn choose_things(&mut self, ids: &[ThingId], how: Choose) {
+        if how == Choose::Only {
+            self.choose(&[], Choose::Only);
+        }
+        let chosen = &mut self.things.chosen;
+        for id in ids {
+            if !chosen.insert(*id) && how == Choose::Toggle {
+                chosen.remove(id);
+            }
+        }
+    }
+
+    /// True if a box or a thing is chosen.
+    pub fn any_chosen(&self) -> bool {
+        self.selected.is_some() || !self.things.chosen.is_empty()
+    }
+
+    /// Takes a tool for things with a kind.
+    pub fn take_thing(&mut self, kind: ThingKind) {
+        let things = &mut self.things;
+        let tool = match kind {
+            ThingKind::Tree(kind) => {
+                things.tree = kind;
+                tree::ID
+            }
+            ThingKind::Line(kind) => {
+                things.take_line(kind);
+                line::ID
+            }
+            ThingKind::Post(kind) => {
+                things.post = kind;
+                post::ID
+            }
+        };
+        self.tool = tool;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::BoxId;
+
+    #[test]
+    fn boxes_and_things_are_chosen_together_only_on_request() {
+        let mut ui = Hand::default();
+        ui.choose(&[BoxId(1)], Choose::Only);
+        ui.choose_things(&[ThingId(4)], Choose::Add);
+        assert!(ui.is_chosen(BoxId(1)) && ui.things.chosen.contains(&ThingId(4)));
+        ui.choose_things(&[ThingId(4), ThingId(5)], Choose::Toggle);
+        assert_eq!(ui.things.chosen, [ThingId(5)].into());
+        ui.choose_things(&[ThingId(6)], Choose::Only);
+        assert_eq!((ui.chosen(), ui.things.chosen.len()), (vec![], 1));
+        assert!(ui.any_chosen());
+        ui.choose(&[BoxId(1)], Choose::Only);
+        assert!(ui.things.chosen.is_empty());
+    }
+}

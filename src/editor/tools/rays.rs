@@ -1,0 +1,51 @@
+//! Where rays come near to axes and meet planes: how far a pointer pulls along them.
+
+use glam::DVec3;
+
+use crate::pick::Ray;
+
+use super::FARTHEST_M;
+
+/// Rays this near to parallel with an axis say nothing about it.
+const PARALLEL: f64 = 1e-6;
+
+/// Where along a line through `point` the ray comes nearest, m; `None` for a ray that runs along it.
+pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> {
+    let (d, w) = (ray.direction_in_ego, point_m - ray.origin_in_ego);
+    let b = axis.dot(d);
+    let denominator = 1.0 - b * b;
+    (denominator > PARALLEL).then(|| (b * d.dot(w) - axis.dot(w)) / denominator)
+}
+
+/// Where a ray meets the plane through a point across an axis of the grid.
+pub(super) fn on_plane(ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> {
+    let d = ray.direction_in_ego[axis];
+    if d.abs() < PARALLEL {
+        return None;
+    }
+    let t = (point_m[axis] - ray.origin_in_ego[axis]) / d;
+    // Not by distance: the rays of an orthographic view begin far away.
+    let p = ray.at(t);
+    (t >= 0.0 && p.abs().max_element() < FARTHEST_M).then_some(p)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_meet_axes_and_planes() {
+        let ray = Ray::new(DVec3::new(0.0, -10.0, 2.0), DVec3::Y).expect("a direction");
+        let at = along_axis(&ray, DVec3::new(-3.0, 0.0, 2.0), DVec3::X).expect("crosses");
+        assert!((at - 3.0).abs() < 1e-12);
+        let up = along_axis(&ray, DVec3::new(1.0, 5.0, 0.0), DVec3::Z).expect("passes by");
+        assert!((up - 2.0).abs() < 1e-12);
+        assert_eq!(along_axis(&ray, DVec3::ZERO, DVec3::Y), None);
+        assert_eq!(
+            on_plane(&ray, DVec3::new(0.0, 4.0, 0.0), 1),
+            Some(DVec3::new(0.0, 4.0, 2.0))
+        );
+        assert_eq!(on_plane(&ray, DVec3::ZERO, 2), None);
+        assert_eq!(on_plane(&ray, DVec3::new(0.0, -20.0, 0.0), 1), None);
+    }
+}

@@ -1,0 +1,209 @@
+//! The region tool: marks what is drawn anew, by rectangles, outlines or a brush.
+
+use glam::DVec2;
+
+use scene::{Frame, GridSpec};
+
+use super::setting::{self, Setting, Value};
+use super::{
+    Act, Area, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, RegionShape, Response, Role,
+    Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, When, hint_of,
+};
+
+/// Its name.
+pub const ID: ToolId = ToolId("region_tool");
+
+/// Its row of the table.
+pub static DEF: ToolDef = ToolDef {
+    id: ID,
+    title: "Region",
+    key: "N: draw anew",
+    icon: "region",
+    group: Group::Scene,
+    is_brush: true,
+    paints: false,
+    shortcuts: &[Shortcut {
+        id: ID.0,
+        title: "Region that is drawn anew",
+        keys: "N",
+        when: When::Always,
+        set: |hand| hand.tool = ID,
+    }],
+    make: || Box::new(Marker::default()),
+};
+
+/// Ways to mark.
+const WAYS: [(RegionShape, &str, &str); 3] = [
+    (RegionShape::Rectangle, "Rectangle", "drag from corner to corner"),
+    (RegionShape::Lasso, "Lasso", "draw around it"),
+    (
+        RegionShape::Brush,
+        "Brush",
+        "paint the mark; [ and ] change the size",
+    ),
+];
+
+/// What is being marked, ego frame, m.
+#[derive(Clone, Debug, PartialEq)]
+enum Drag {
+    Rectangle { from_m: DVec2, to_m: DVec2 },
+    Outline(Vec<DVec2>),
+    Stroke(DVec2),
+}
+
+/// The region tool.
+#[derive(Clone, Debug, Default)]
+pub struct Marker {
+    /// What is being marked, and whether it marks or takes the mark away.
+    drag: Option<(Drag, bool)>,
+}
+
+impl Marker {
+    fn drag(&mut self, cx: &Context<'_>, pointer: &Pointer) -> Response {
+        let (Some((drag, on)), Some(at_m)) = (&mut self.drag, cx.ground_m(pointer.at)) else {
+            return Response::none();
+        };
+        match drag {
+            Drag::Rectangle { to_m, .. } => *to_m = at_m,
+            Drag::Outline(points_m) => {
+                let apart_m = 2.0 / cx.view.scale();
+                if points_m.last().is_none_or(|p| p.distance(at_m) > apart_m) {
+                    points_m.push(at_m);
+                }
+            }
+            Drag::Stroke(from_m) => {
+                let area = Area::Stroke(*from_m, at_m, cx.hand.brush_m);
+                *from_m = at_m;
+                return Response::act(Act::Mark(area, *on));
+            }
+        }
+        Response::none()
+    }
+
+    fn release(&mut self) -> Response {
+        let Some((drag, on)) = self.drag.take() else {
+            return Response::none();
+        };
+        let area = match drag {
+            Drag::Rectangle { from_m, to_m } => {
+                // A click marks the cell under it.
+                let around = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+                Area::Rect(from_m.min(to_m) - around, from_m.max(to_m) + around)
+            }
+            Drag::Outline(points_m) => Area::Outline(points_m),
+            // A brush has marked on its way.
+            Drag::Stroke(_) => return Response::none(),
+        };
+        Response::act(Act::Mark(area, on))
+    }
+}
+
+impl Tool for Marker {
+    fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match event {
+            Event::Press(pointer) if cx.from_above() => {
+                let Some(at_m) = cx.ground_m(pointer.at) else {
+                    return Response::none();
+                };
+                let drag = match cx.hand.region_shape {
+                    RegionShape::Rectangle => Drag::Rectangle {
+                        from_m: at_m,
+                        to_m: at_m,
+                    },
+                    RegionShape::Lasso => Drag::Outline(vec![at_m]),
+                    RegionShape::Brush => Drag::Stroke(at_m),
+                };
+                self.drag = Some((drag, !pointer.held.shift));
+                Response::hold()
+            }
+            Event::Drag(pointer) => self.drag(cx, pointer),
+            Event::Release(_) => self.release(),
+            Event::Cancel => {
+                self.drag = None;
+                Response::none()
+            }
+            _ => Response::none(),
+        }
+    }
+
+    fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
+        if view == Some(ViewKind::Space) {
+            return hint_of(&["The region is marked in the bird's-eye view"]);
+        }
+        let drag = match hand.region_shape {
+            RegionShape::Brush => "Drag paints the mark",
+            RegionShape::Lasso => "Drag marks what it goes around",
+            RegionShape::Rectangle => "Drag marks a rectangle",
+        };
+        hint_of(&[drag, "Shift takes away"])
+    }
+
+    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+        match sight.from_above() {
+            true => Cursor::Crosshair,
+            false => Cursor::Forbidden,
+        }
+    }
+
+    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+        if !sight.from_above() {
+            return Vec::new();
+        }
+        let mut out = Vec::new();
+        match &self.drag {
+            Some((Drag::Rectangle { from_m, to_m }, _)) => {
+                out.push(Mark::Rect((*from_m).into(), (*to_m).into(), Role::Choose));
+            }
+            Some((Drag::Outline(points_m), _)) => {
+                let first = points_m.first();
+                let closed = points_m.iter().chain(first).map(|p| (*p).into());
+                out.push(Mark::Dashed(closed.collect(), Role::Choose));
+            }
+            _ => {}
+        }
+        if let (RegionShape::Brush, Some(at_m)) = (sight.hand.region_shape, sight.ground_m()) {
+            out.push(Mark::Disc(at_m, sight.hand.brush_m / 2.0, Role::Choose));
+        }
+        out
+    }
+
+    fn options(&self, hand: &Hand) -> Vec<Setting> {
+        let any = hand.region_m2 > 0.0;
+        let mut out = vec![
+            Setting::title("Region to draw anew"),
+            Setting::text(
+                "Mark it in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
+            ),
+            Setting::segments("way", hand.region_shape, &WAYS, 3),
+        ];
+        if hand.region_shape == RegionShape::Brush {
+            let range = [*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end()];
+            out.push(Setting::number("size", "Brush, m", hand.brush_m, range, 1));
+        }
+        out.extend([
+            Setting::text(format!("{:.0} m² marked", hand.region_m2)),
+            Setting::number("strength", "Strength", hand.region_strength, [0.05, 1.0], 1),
+            Setting::text("1: all of it new. Less is a variation of what is there."),
+            Setting::new(
+                "",
+                setting::Control::Line(vec![
+                    Setting::button("draw", "Draw anew", "each time from other noise", any),
+                    Setting::button("clear", "Clear region", "", any),
+                ]),
+            ),
+        ]);
+        out
+    }
+
+    fn set(&mut self, hand: &mut Hand, _: &Frame, id: &str, value: Value) -> Vec<Act> {
+        match id {
+            "way" => setting::take(&mut hand.region_shape, value, &WAYS),
+            "size" => setting::take_number(&mut hand.brush_m, value),
+            "strength" => setting::take_number(&mut hand.region_strength, value),
+            "draw" => return vec![Act::Ask("generate_edited")],
+            "clear" => return vec![Act::Mark(Area::All, false)],
+            _ => {}
+        }
+        Vec::new()
+    }
+}

@@ -1,0 +1,415 @@
+//! The select tool from above: boxes and things chosen, moved, turned and resized on the map.
+
+use glam::{DVec2, DVec3};
+
+use crate::pick::{self, Handle};
+use crate::tools::{
+    Act, At, CLICK_SLACK, Choose, Context, Cursor, Gizmo, HANDLE_REACH, Hand, Key, Mark, Modifiers, Part,
+    Pointer, Response, Role, Sight,
+};
+use crate::transform::{Axis, Kind, Pull, Transform};
+use crate::{Edit, choose};
+use scene::{Frame, SceneBox};
+
+use super::boxes::{self, Steered, step_name, transform};
+use super::things::{self, Pull as ThingPull, ThingDrag, thing_under};
+
+/// What the button held does. All points are of the ego frame, m.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Drag {
+    /// Moves, turns or scales boxes.
+    Boxes {
+        transform: Transform,
+        from_m: DVec2,
+        to_m: DVec2,
+        /// The pointer has left the place where it went down, or something was typed.
+        moved: bool,
+    },
+    /// Takes hold of the corner of a box.
+    Corner {
+        start: SceneBox,
+        corner: usize,
+        from_m: DVec2,
+        moved: bool,
+    },
+    /// Drags chosen things.
+    Things {
+        drag: ThingDrag,
+        from_m: DVec2,
+        moved: bool,
+    },
+    /// Chooses in a rectangle; `add`s to the selection.
+    Marquee { from_m: DVec2, to_m: DVec2, add: bool },
+    /// Chooses in an outline.
+    Lasso { points_m: Vec<DVec2>, add: bool },
+}
+
+fn held(transform: Transform, at_m: DVec2) -> Drag {
+    Drag::Boxes {
+        transform,
+        from_m: at_m,
+        to_m: at_m,
+        moved: false,
+    }
+}
+
+/// What a press takes hold of.
+pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
+    let at_m = cx.ground_m(pointer.at)?;
+    let frame = cx.settled.frame();
+    let reach_m = HANDLE_REACH / cx.view.scale();
+    let (shift, chosen) = (pointer.held.shift, cx.hand.chosen());
+    // The arrows light up under the pointer whatever chooses, so they can be pulled too.
+    let gizmo = Gizmo::new(frame, cx.hand, cx.view);
+    if let Some(Part::Axis(axis)) = gizmo.and_then(|g| g.at(pointer.at)) {
+        let mut transform = transform(frame, cx.hand, &chosen, cx.hand.gizmo);
+        transform.axis = Some(axis);
+        return Some(held(transform, at_m));
+    }
+    if !cx.hand.lasso {
+        let first = cx.hand.selected.and_then(|id| frame.boxes.get(&id));
+        let handle = first.and_then(|b| pick::handle_at(b, at_m, reach_m));
+        match (first, handle) {
+            (_, Some(Handle::Rotate)) => {
+                return Some(held(transform(frame, cx.hand, &chosen, Kind::Turn), at_m));
+            }
+            // A corner resizes one box.
+            (Some(b), Some(Handle::Corner(corner))) if chosen.len() == 1 && !shift => {
+                return Some(Drag::Corner {
+                    start: *b,
+                    corner,
+                    from_m: at_m,
+                    moved: false,
+                });
+            }
+            _ => {}
+        }
+        if let Some(id) = pick::box_at(frame, at_m) {
+            if shift && !(chosen.len() == 1 && cx.hand.is_chosen(id)) {
+                cx.hand.choose(&[id], Choose::Toggle);
+                // Letting go elsewhere than pressed moves nothing: the selection is what was meant.
+                return Some(Drag::Marquee {
+                    from_m: at_m,
+                    to_m: at_m,
+                    add: true,
+                });
+            }
+            let ids = boxes::with(cx.hand, id);
+            if !cx.hand.is_chosen(id) {
+                cx.hand.choose(&[id], Choose::Only);
+            }
+            return Some(held(transform(frame, cx.hand, &ids, Kind::Move), at_m));
+        }
+        // A thing is chosen by a click and moved once it is: a drag over a forest still marks.
+        if let Some(drag) = things::held(cx.settled, cx.hand, at_m, reach_m, shift) {
+            return Some(Drag::Things {
+                drag,
+                from_m: at_m,
+                moved: false,
+            });
+        }
+    }
+    Some(match cx.hand.lasso {
+        true => Drag::Lasso {
+            points_m: vec![at_m],
+            add: shift,
+        },
+        false => Drag::Marquee {
+            from_m: at_m,
+            to_m: at_m,
+            add: shift,
+        },
+    })
+}
+
+/// What a move of the pointer changes.
+pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Response {
+    let Some(at_m) = cx.ground_m(pointer.at) else {
+        return Response::none();
+    };
+    let (frame, scale) = (cx.frame(), cx.view.scale());
+    let left = |from_m: DVec2| from_m.distance(at_m) * scale > CLICK_SLACK;
+    match drag {
+        Drag::Boxes {
+            from_m, to_m, moved, ..
+        } => {
+            *to_m = at_m;
+            *moved |= left(*from_m);
+            show(drag, frame, cx.hand, pointer.held)
+        }
+        Drag::Corner {
+            start,
+            corner,
+            from_m,
+            moved,
+        } => {
+            *moved |= left(*from_m);
+            if !*moved {
+                return Response::none();
+            }
+            let (center_m, size_m) = pick::resized_by_corner(start, *corner, at_m);
+            Response::act(Act::Preview(vec![Edit::MoveBox {
+                id: start.id,
+                center_m: Some(center_m),
+                yaw_deg: None,
+                size_m: Some(size_m),
+            }]))
+        }
+        Drag::Things { drag, from_m, moved } => {
+            *moved |= left(*from_m);
+            let edits = match *moved {
+                true => drag.edits(frame, cx.hand, at_m - *from_m, 0.0, pointer.held),
+                false => Vec::new(),
+            };
+            preview(edits)
+        }
+        Drag::Marquee { to_m, .. } => {
+            *to_m = at_m;
+            Response::none()
+        }
+        Drag::Lasso { points_m, .. } => {
+            if points_m.last().is_none_or(|p| p.distance(at_m) > 2.0 / scale) {
+                points_m.push(at_m);
+            }
+            Response::none()
+        }
+    }
+}
+
+/// Shows edits, if there are any.
+pub(super) fn preview(edits: Vec<Edit>) -> Response {
+    match edits.is_empty() {
+        true => Response::none(),
+        false => Response::act(Act::Preview(edits)),
+    }
+}
+
+/// Shows boxes as far as they are pulled.
+fn show(drag: &Drag, frame: &Frame, hand: &Hand, held: Modifiers) -> Response {
+    let Drag::Boxes {
+        transform,
+        from_m,
+        to_m,
+        moved: true,
+    } = drag
+    else {
+        return Response::none();
+    };
+    let moves = transform.kind == Kind::Move;
+    let pull = pull(transform, *from_m, *to_m, held.shift && moves);
+    let grid = held.ctrl || transform.kind == Kind::Turn && held.shift;
+    preview(boxes::edits(transform, &pull, frame, hand, grid))
+}
+
+/// How far the pointer pulls a drag on this view.
+fn pull(transform: &Transform, from_m: DVec2, to_m: DVec2, keep_axis: bool) -> Pull {
+    let mut flat = to_m - from_m;
+    if keep_axis && transform.axis.is_none() {
+        // Shift keeps to the axis that was moved along most.
+        if flat.x.abs() > flat.y.abs() {
+            flat.y = 0.0;
+        } else {
+            flat.x = 0.0;
+        }
+    }
+    let middle_m = transform.middle_m().truncate();
+    let arm_m = from_m.distance(middle_m);
+    Pull {
+        delta_m: match transform.axis {
+            // From above, up on the screen is up.
+            Some(Axis::Z) => DVec3::Z * flat.x,
+            _ => flat.extend(0.0),
+        },
+        turn_deg: transform.turn_deg(from_m, to_m),
+        factor: match arm_m > 1e-3 {
+            true => to_m.distance(middle_m) / arm_m,
+            false => 1.0,
+        },
+    }
+}
+
+/// A key while something is dragged.
+pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, held: Modifiers) -> Response {
+    let Drag::Boxes { transform, moved, .. } = drag else {
+        return Response::none();
+    };
+    let steered = boxes::steer(transform, key, repeat, held);
+    let name = step_name(transform);
+    match steered {
+        Steered::Not => return Response::none(),
+        Steered::Same => return Response::taken(),
+        Steered::Changed | Steered::Done => *moved = true,
+    }
+    let mut response = show(drag, cx.frame(), cx.hand, held);
+    response.taken = true;
+    if steered == Steered::Done {
+        response.done = true;
+        return response.and(Act::Commit(name.into()));
+    }
+    response
+}
+
+/// What letting go does.
+pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
+    let (scene, scale) = (cx.settled, cx.view.scale());
+    let frame = scene.frame();
+    let reach_m = HANDLE_REACH / scale;
+    let click = |hand: &mut Hand, at_m, add| {
+        let hit = thing_under(scene, hand, at_m, reach_m);
+        things::choose(hand, hit, add);
+    };
+    match drag {
+        Drag::Boxes {
+            transform,
+            moved: true,
+            ..
+        } => return Response::act(Act::Commit(step_name(&transform).into())),
+        Drag::Boxes { transform, .. } => {
+            // A click on one of several chooses it alone.
+            let several = cx.hand.chosen().len() > 1 || !cx.hand.things.chosen.is_empty();
+            if transform.kind == Kind::Move
+                && transform.axis.is_none()
+                && several
+                && let Some(b) = transform.start.first()
+            {
+                cx.hand.choose(&[b.id], Choose::Only);
+            }
+        }
+        Drag::Corner { moved: true, .. } => return Response::act(Act::Commit("Resize box".into())),
+        Drag::Corner { .. } => {}
+        Drag::Things {
+            drag, moved: true, ..
+        } => return Response::act(Act::Commit(drag.label().into())),
+        Drag::Things { drag, from_m, .. } => {
+            // A click on one of several chooses it alone.
+            if drag.pull() == ThingPull::Place {
+                click(cx.hand, from_m, false);
+            }
+        }
+        Drag::Marquee { from_m, to_m, add } => {
+            if from_m.distance(to_m) * scale > CLICK_SLACK {
+                cx.hand.choose(&choose::in_rect(frame, from_m, to_m), how(add));
+                let (min, max) = (from_m.min(to_m), from_m.max(to_m));
+                things::choose_in(scene, cx.hand, |p| p.cmpge(min).all() && p.cmple(max).all());
+            } else if pick::box_at(frame, from_m).is_none() || !add {
+                click(cx.hand, from_m, add);
+            }
+        }
+        Drag::Lasso { points_m, add } => {
+            if points_m.len() >= 3 {
+                cx.hand.choose(&choose::in_outline(frame, &points_m), how(add));
+                things::choose_in(scene, cx.hand, |p| choose::is_inside(&points_m, p));
+            } else if let Some(id) = points_m.first().and_then(|p| pick::box_at(frame, *p)) {
+                let how = if add { Choose::Toggle } else { Choose::Only };
+                cx.hand.choose(&[id], how);
+            } else if let Some(at_m) = points_m.first() {
+                click(cx.hand, *at_m, add);
+            }
+        }
+    }
+    Response::none()
+}
+
+/// How what a rectangle or lasso took joins the selection.
+pub(super) fn how(add: bool) -> Choose {
+    if add { Choose::Add } else { Choose::Only }
+}
+
+/// What the pointer looks like where it could take hold of something.
+pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
+    let Some(at_m) = sight.ground_m() else {
+        return Cursor::Default;
+    };
+    let (hand, frame) = (sight.hand, sight.scene.frame());
+    let reach_m = HANDLE_REACH / sight.view.scale();
+    let selected = hand.selected.and_then(|id| frame.boxes.get(&id));
+    match selected.and_then(|b| pick::handle_at(b, at_m, reach_m)) {
+        Some(Handle::Rotate) => Cursor::Turn,
+        Some(Handle::Corner(_)) => Cursor::Crosshair,
+        Some(Handle::Body) => Cursor::Move,
+        None if pick::box_at(frame, at_m).is_some() => Cursor::Pointing,
+        None => match thing_under(sight.scene, hand, at_m, reach_m) {
+            Some(id) if hand.things.chosen.contains(&id) => Cursor::Move,
+            Some(_) => Cursor::Pointing,
+            None => Cursor::Default,
+        },
+    }
+}
+
+/// What is drawn over the map.
+pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
+    let mut out = Vec::new();
+    if let None | Some(Drag::Corner { .. }) = drag
+        && let Some(gizmo) = Gizmo::new(sight.scene.frame(), sight.hand, sight.view)
+    {
+        out.extend(gizmo.marks(sight.pointer.and_then(|p| gizmo.at(p.at))));
+    }
+    match drag {
+        Some(Drag::Marquee { from_m, to_m, .. }) => {
+            out.push(Mark::Rect((*from_m).into(), (*to_m).into(), Role::Choose));
+        }
+        Some(Drag::Lasso { points_m, .. }) => {
+            let closed = points_m.iter().chain(points_m.first()).map(|p| (*p).into());
+            out.push(Mark::Dashed(closed.collect(), Role::Choose));
+        }
+        Some(Drag::Boxes {
+            transform,
+            from_m,
+            to_m,
+            moved: true,
+        }) => {
+            if let Some(axis) = transform.axis {
+                let (middle_m, along_m) = (transform.middle_m(), transform.axis_in_ego(axis) * 200.0);
+                let ends = [middle_m - along_m, middle_m + along_m].map(At::Ego);
+                out.push(Mark::Line(ends.to_vec(), Role::Axis(axis as usize)));
+            }
+            let held = sight.pointer.map(|p| p.held).unwrap_or_default();
+            let pull = pull(
+                transform,
+                *from_m,
+                *to_m,
+                held.shift && transform.kind == Kind::Move,
+            );
+            let text = transform.text(&pull, &sight.hand.snap(held.ctrl));
+            out.push(Mark::Tag((*to_m).into(), text));
+        }
+        Some(Drag::Things {
+            drag,
+            from_m,
+            moved: true,
+        }) if drag.pull() == ThingPull::Place => {
+            if let Some(at_m) = sight.ground_m() {
+                let text = format!("{:.1} m", (at_m - *from_m).length());
+                out.push(Mark::Tag(at_m.into(), text));
+            }
+        }
+        _ => {}
+    }
+    let corners_m = things::handles_m(sight.scene, sight.hand);
+    out.extend(corners_m.into_iter().map(|p| Mark::Handle(p.into())));
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use scene::{BevLayout, VoxelGrid};
+
+    #[test]
+    fn shift_keeps_to_an_axis() {
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
+        let t = transform(&frame, &Hand::default(), &[], Kind::Move);
+        let p = pull(&t, DVec2::ZERO, DVec2::new(3.0, 1.0), true);
+        assert_eq!(p.delta_m, DVec3::new(3.0, 0.0, 0.0));
+        let up = Transform {
+            axis: Some(Axis::Z),
+            ..t
+        };
+        assert_eq!(
+            pull(&up, DVec2::ZERO, DVec2::new(2.0, 9.0), true).delta_m,
+            DVec3::Z * 2.0
+        );
+    }
+}

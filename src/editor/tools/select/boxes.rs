@@ -1,0 +1,88 @@
+//! Chosen boxes that are dragged: what a drag holds, the keys that steer it, the step that it makes.
+
+use crate::Edit;
+use crate::arrange::{Pivot, boxes_of};
+use crate::tools::{Hand, Key, Modifiers};
+use crate::transform::{Axis, Kind, Pull, Transform};
+use scene::{BoxId, Frame, SceneBox};
+
+use super::things::along_with;
+
+/// A drag of boxes that has not begun to move.
+pub(in crate::tools) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Kind) -> Transform {
+    Transform {
+        kind,
+        start: boxes_of(frame, ids),
+        axis: None,
+        orientation: hand.orientation,
+        pivot: match kind {
+            // The ring goes about the middle of what it is drawn around.
+            Kind::Turn => Pivot::Middle,
+            _ => hand.pivot,
+        },
+        typed: String::new(),
+    }
+}
+
+/// Edits of the boxes as far as the pointer pulls them; chosen things go along.
+pub(super) fn edits(transform: &Transform, pull: &Pull, frame: &Frame, hand: &Hand, grid: bool) -> Vec<Edit> {
+    let edits = transform.edits(frame, pull, &hand.snap(grid));
+    along_with(edits, &transform.start, frame, hand)
+}
+
+/// The name of the undo step that a drag makes.
+pub(super) fn step_name(transform: &Transform) -> &'static str {
+    let boxes: &[SceneBox] = &transform.start;
+    let several = boxes.len() > 1;
+    match (transform.kind, several) {
+        (Kind::Move, false) => "Move box",
+        (Kind::Move, true) => "Move boxes",
+        (Kind::Turn, false) => "Turn box",
+        (Kind::Turn, true) => "Turn boxes",
+        (Kind::Scale, false) => "Resize box",
+        (Kind::Scale, true) => "Resize boxes",
+    }
+}
+
+/// What a key does to a drag of boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Steered {
+    /// It is not for the drag.
+    Not,
+    /// It is, and changes nothing.
+    Same,
+    /// Something changed: show it.
+    Changed,
+    /// That is it.
+    Done,
+}
+
+/// Takes a key that steers a drag: X, Y, Z, digits, Backspace, Enter.
+pub(super) fn steer(transform: &mut Transform, key: Key, repeat: bool, held: Modifiers) -> Steered {
+    if held.ctrl {
+        return Steered::Not;
+    }
+    match key {
+        Key::Axis(_) if repeat => return Steered::Same,
+        Key::Axis(axis) => match Axis::ALL.get(axis) {
+            Some(axis) => transform.toggle_axis(*axis),
+            None => return Steered::Not,
+        },
+        Key::Digit(c) => transform.type_char(c),
+        Key::Backspace => drop(transform.typed.pop()),
+        Key::Enter => return Steered::Done,
+        Key::Escape => return Steered::Not,
+    }
+    Steered::Changed
+}
+
+/// The boxes that a press on one of them moves: all that are chosen with it first, or it alone.
+pub(super) fn with(hand: &Hand, id: BoxId) -> Vec<BoxId> {
+    match hand.is_chosen(id) {
+        true => {
+            let others = hand.chosen().into_iter().filter(|c| *c != id);
+            std::iter::once(id).chain(others).collect()
+        }
+        false => vec![id],
+    }
+}

@@ -1,0 +1,312 @@
+//! The select tool: chooses, moves, turns and resizes boxes and things.
+
+mod above;
+mod boxes;
+mod space;
+mod things;
+
+use crate::arrange::Pivot;
+use crate::transform::{Kind, Orientation};
+use scene::Frame;
+
+use super::setting::{self, Control, Setting, Value};
+use super::{
+    Act, Context, Cursor, Event, Group, Hand, Hint, Mark, Response, Shortcut, Sight, Tool, ToolDef, ToolId,
+    ViewKind, Wants, When, hint_of,
+};
+
+pub(super) use boxes::transform;
+pub use things::{in_ego, thing_under};
+
+/// Its name.
+pub const ID: ToolId = ToolId("select_tool");
+
+const fn shortcut(
+    id: &'static str,
+    title: &'static str,
+    keys: &'static str,
+    when: When,
+    set: fn(&mut Hand),
+) -> Shortcut {
+    Shortcut {
+        id,
+        title,
+        keys,
+        when,
+        set,
+    }
+}
+
+fn lasso(hand: &mut Hand, lasso: bool) {
+    (hand.tool, hand.lasso) = (ID, lasso);
+}
+
+fn gizmo(hand: &mut Hand, kind: Kind) {
+    (hand.tool, hand.gizmo) = (ID, kind);
+}
+
+/// Its row of the table.
+pub static DEF: ToolDef = ToolDef {
+    id: ID,
+    title: "Select",
+    key: "V",
+    icon: "cursor",
+    group: Group::Scene,
+    is_brush: false,
+    paints: false,
+    shortcuts: &[
+        shortcut(ID.0, "Select", "V", When::Always, |h| lasso(h, false)),
+        shortcut("lasso", "Select by lasso", "O", When::Always, |h| lasso(h, true)),
+        shortcut(
+            "rectangle_select",
+            "Select by rectangle",
+            "Shift+V",
+            When::Always,
+            |h| lasso(h, false),
+        ),
+        shortcut("gizmo_move", "Dragging moves", "W", When::Chosen, |h| {
+            gizmo(h, Kind::Move)
+        }),
+        shortcut("gizmo_turn", "Dragging turns", "E", When::Chosen, |h| {
+            gizmo(h, Kind::Turn)
+        }),
+        shortcut("gizmo_scale", "Dragging scales", "R", When::Chosen, |h| {
+            gizmo(h, Kind::Scale)
+        }),
+    ],
+    make: || Box::new(Select::default()),
+};
+
+/// What the button held does, by the view in which it went down.
+#[derive(Clone, Debug, PartialEq)]
+enum Drag {
+    Above(above::Drag),
+    Space(space::Drag),
+}
+
+/// The select tool.
+#[derive(Clone, Debug, Default)]
+pub struct Select {
+    drag: Option<Drag>,
+}
+
+impl Tool for Select {
+    fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match event {
+            Event::Press(pointer) => {
+                self.drag = match cx.from_above() {
+                    true => above::press(cx, pointer).map(Drag::Above),
+                    false => space::press(cx, pointer).map(Drag::Space),
+                };
+                match self.drag {
+                    Some(_) => Response::hold(),
+                    None => Response::none(),
+                }
+            }
+            Event::Drag(pointer) => match &mut self.drag {
+                Some(Drag::Above(drag)) => above::drag(drag, cx, pointer),
+                Some(Drag::Space(drag)) => space::drag(drag, cx, pointer),
+                None => Response::none(),
+            },
+            Event::Release(pointer) => match self.drag.take() {
+                Some(Drag::Above(drag)) => above::release(drag, cx),
+                Some(Drag::Space(drag)) => space::release(drag, cx, pointer.at),
+                None => Response::none(),
+            },
+            Event::Key(key, repeat, held) => {
+                let response = match &mut self.drag {
+                    Some(Drag::Above(drag)) => above::key(drag, cx, *key, *repeat, *held),
+                    Some(Drag::Space(drag)) => space::key(drag, cx, *key, *repeat, *held),
+                    None => Response::none(),
+                };
+                if response.done {
+                    self.drag = None;
+                }
+                response
+            }
+            Event::Cancel => {
+                self.drag = None;
+                Response::none()
+            }
+            Event::Pick(_) | Event::Scroll(_) | Event::DoubleClick => Response::none(),
+        }
+    }
+
+    fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
+        let over_space = view == Some(ViewKind::Space);
+        let mut parts = match hand.lasso {
+            true => vec!["Drag draws around boxes", "Shift adds"],
+            false => vec!["Click chooses", "Shift adds", "drag over ground marks"],
+        };
+        if hand.selected.is_none() && !hand.things.chosen.is_empty() {
+            parts.push("Drag moves");
+            parts.push(if over_space {
+                "the knob raises"
+            } else {
+                "[ ] raise"
+            });
+            parts.push("D to the kerb");
+        }
+        if hand.selected.is_some() {
+            parts.push(match hand.gizmo {
+                Kind::Move => "Drag moves, X Y Z keep an axis, digits type",
+                Kind::Turn => "Drag turns, Shift in steps",
+                Kind::Scale => "Drag scales",
+            });
+            if !over_space {
+                parts.push("Ctrl snaps to the grid");
+            }
+        }
+        hint_of(&parts)
+    }
+
+    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+        match sight.from_above() {
+            true => above::cursor(sight),
+            false => Cursor::Default,
+        }
+    }
+
+    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+        let (above, space) = match &self.drag {
+            Some(Drag::Above(drag)) => (Some(drag), None),
+            Some(Drag::Space(drag)) => (None, Some(drag)),
+            None => (None, None),
+        };
+        match sight.from_above() {
+            true => above::overlay(above, sight),
+            false => space::overlay(space, sight),
+        }
+    }
+
+    fn options(&self, hand: &Hand) -> Vec<Setting> {
+        let any = hand.selected.is_some();
+        let snaps = vec![
+            Setting::toggle(
+                "snap_grid",
+                hand.snap_grid,
+                "Grid",
+                "Moves snap to this step; hold Ctrl for the same",
+            ),
+            Setting::segments("grid", hand.grid_m, &GRIDS, 3),
+        ];
+        let more_snaps = vec![
+            Setting::toggle(
+                "snap_lane",
+                hand.snap_lane,
+                "Lanes",
+                "Moves snap to lane centre and heading",
+            ),
+            Setting::toggle(
+                "snap_ground",
+                hand.snap_ground,
+                "Ground",
+                "Moves set boxes on the ground",
+            ),
+            Setting::toggle(
+                "snap_kerb",
+                hand.things.snap_kerb,
+                "Kerb",
+                "Moves set things beside the kerb",
+            ),
+        ];
+        let to_lane = match !hand.things.chosen.is_empty() && !any {
+            true => Setting::button("to_lane", "To kerb", "D: beside the nearest kerb", true),
+            false => Setting::button("to_lane", "To lane", "D: lane centre, heading and ground", any),
+        };
+        let buttons = vec![
+            to_lane,
+            Setting::button("to_ground", "To ground", "Shift+D", any),
+            Setting::button("row", "Row…", "Ctrl+Shift+D: copies at a spacing", any),
+            Setting::button("mirror", "Mirror", "Ctrl+M: about the ego x axis", any),
+            Setting::button("mirror_copies", "Mirrored copy", "", any),
+        ];
+        vec![
+            Setting::title("Select"),
+            Setting::segments("lasso", hand.lasso, &WAYS, 2),
+            Setting::gap(),
+            Setting::segments("gizmo", hand.gizmo, &KINDS, 3),
+            Setting::gap(),
+            Setting::segments("orientation", hand.orientation, &ORIENTATIONS, 2),
+            Setting::gap(),
+            Setting::segments("pivot", hand.pivot, &PIVOTS, 2),
+            Setting::gap(),
+            Setting::new("", Control::Line(snaps)),
+            Setting::new("", Control::Line(more_snaps)),
+            Setting::gap(),
+            Setting::new("", Control::Row(buttons)),
+            Setting::toggle(
+                "keep_direction",
+                hand.mirror_keeps_direction,
+                "Mirrored ones keep to traffic",
+                "A box that changes sides is turned by 180°",
+            ),
+        ]
+    }
+
+    fn set(&mut self, hand: &mut Hand, _: &Frame, id: &str, value: Value) -> Vec<Act> {
+        match id {
+            "lasso" => setting::take(&mut hand.lasso, value, &WAYS),
+            "gizmo" => setting::take(&mut hand.gizmo, value, &KINDS),
+            "orientation" => setting::take(&mut hand.orientation, value, &ORIENTATIONS),
+            "pivot" => setting::take(&mut hand.pivot, value, &PIVOTS),
+            "grid" => setting::take(&mut hand.grid_m, value, &GRIDS),
+            "snap_grid" => setting::take_on(&mut hand.snap_grid, value),
+            "snap_lane" => setting::take_on(&mut hand.snap_lane, value),
+            "snap_ground" => setting::take_on(&mut hand.snap_ground, value),
+            "snap_kerb" => setting::take_on(&mut hand.things.snap_kerb, value),
+            "keep_direction" => setting::take_on(&mut hand.mirror_keeps_direction, value),
+            "to_lane" => return vec![Act::Ask("to_lane")],
+            "to_ground" => return vec![Act::Ask("to_ground")],
+            "row" => return vec![Act::Ask("row")],
+            "mirror" => return vec![Act::Ask("mirror")],
+            "mirror_copies" => return vec![Act::Ask("mirror_copies")],
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn wants(&self) -> Wants {
+        match &self.drag {
+            Some(Drag::Above(above::Drag::Boxes { .. }) | Drag::Space(space::Drag::Boxes { .. })) => {
+                Wants::Drag
+            }
+            _ => Wants::Nothing,
+        }
+    }
+}
+
+const WAYS: [(bool, &str, &str); 2] = [
+    (
+        false,
+        "Marquee",
+        "V: click, or drag over empty ground; Shift adds and removes",
+    ),
+    (true, "Lasso", "O: drag around boxes"),
+];
+
+const KINDS: [(Kind, &str, &str); 3] = [
+    (
+        Kind::Move,
+        "Move",
+        "W; X, Y, Z keep to an axis, digits set the way",
+    ),
+    (Kind::Turn, "Turn", "E; digits set the angle"),
+    (Kind::Scale, "Scale", "R; digits set the factor"),
+];
+
+const ORIENTATIONS: [(Orientation, &str, &str); 2] = [
+    (Orientation::World, "World", "axes of the ego vehicle"),
+    (Orientation::Local, "Local", "axes of the box chosen last"),
+];
+
+const PIVOTS: [(Pivot, &str, &str); 2] = [
+    (Pivot::Own, "Own centres", "the keys turn each box about itself"),
+    (
+        Pivot::Middle,
+        "Middle",
+        "the keys turn all about the middle between them",
+    ),
+];
+
+const GRIDS: [(f64, &str, &str); 3] = [(0.1, "0.1", "m"), (0.4, "0.4", "m, a voxel"), (1.0, "1 m", "")];

@@ -1,0 +1,397 @@
+//! The select tool in space: boxes and things chosen by a ray, moved on their level, pulled by the gizmo, raised.
+
+use glam::{DVec2, DVec3};
+
+use crate::choose;
+use crate::pick::{self, Hit};
+use crate::pick_things;
+use crate::tools::rays::along_axis;
+use crate::tools::{
+    Act, At, CLICK_SLACK, Choose, Context, FARTHEST_M, Gizmo, Hand, Key, Mark, Modifiers, Part, Pointer,
+    Response, Role, Sight, View, point_of,
+};
+use crate::transform::{Axis, Kind, Orientation, Pull, Transform};
+use scene::{BoxId, Frame, Scene, ThingId};
+
+use super::above::{how, preview};
+use super::boxes::{self, Steered, step_name, transform};
+use super::things::{self, Pull as ThingPull, ThingDrag};
+
+/// How near the pointer takes hold of the knob, points.
+const KNOB_REACH: f64 = 9.0;
+/// Points of a way on the screen are this far apart, points.
+const APART: f64 = 2.0;
+/// Things are raised by this much at most in one drag, m.
+const MOST_UP_M: f64 = 100.0;
+
+/// What the button held does. Places are of the screen, points.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Drag {
+    /// Moves, turns or scales boxes.
+    Boxes {
+        transform: Transform,
+        /// Point that was taken hold of, m.
+        grabbed_m: DVec3,
+        from: DVec2,
+        to: DVec2,
+        /// The pointer has left the place where it went down, or something was typed.
+        moved: bool,
+        /// The box under the pointer.
+        hit: Option<BoxId>,
+    },
+    /// Drags chosen things.
+    Things {
+        drag: ThingDrag,
+        grabbed_m: DVec3,
+        from: DVec2,
+        moved: bool,
+        hit: Option<ThingId>,
+    },
+    /// Chooses in a rectangle or an outline.
+    Area {
+        points: Vec<DVec2>,
+        lasso: bool,
+        add: bool,
+    },
+}
+
+/// The thing that was hit, if things can be chosen.
+fn thing_of(scene: &Scene, hand: &Hand, hit: &Hit) -> Option<ThingId> {
+    let Hit::Voxel(voxel) = hit else { return None };
+    let open = hand.things.is_open();
+    open.then(|| pick_things::thing_of_voxel(scene.frame(), &scene.background, voxel.cell))?
+}
+
+/// What a press takes hold of among things.
+fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
+    let drag = |pull, grabbed_m, hit| {
+        Some(Drag::Things {
+            drag: ThingDrag::new(cx.settled, cx.hand, pull)?,
+            grabbed_m,
+            from: pointer.at,
+            moved: false,
+            hit,
+        })
+    };
+    let knob_m = things::knob_m(cx.settled, cx.hand);
+    if let Some(knob_m) = knob_m
+        && cx
+            .view
+            .project(knob_m)
+            .is_some_and(|p| p.distance(pointer.at) < KNOB_REACH)
+    {
+        return drag(ThingPull::Height, knob_m, None);
+    }
+    if pointer.held.shift || cx.hand.lasso {
+        return None;
+    }
+    let ray = cx.view.ray(pointer.at)?;
+    let hit = pick::pick(cx.frame(), &ray)?;
+    let id = thing_of(cx.settled, cx.hand, &hit).filter(|id| cx.hand.things.chosen.contains(id))?;
+    drag(ThingPull::Place, point_of(&hit, &ray), Some(id))
+}
+
+/// What a press takes hold of.
+pub(super) fn press(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
+    if let Some(drag) = press_things(cx, pointer) {
+        return Some(drag);
+    }
+    let (frame, at) = (cx.frame(), pointer.at);
+    let gizmo = Gizmo::new(frame, cx.hand, cx.view);
+    if let Some(part) = gizmo.and_then(|g| g.at(at)) {
+        let mut transform = transform(frame, cx.hand, &cx.hand.chosen(), cx.hand.gizmo);
+        if transform.kind == Kind::Scale {
+            transform.orientation = Orientation::Local;
+        }
+        transform.axis = match part {
+            Part::Axis(axis) => Some(axis),
+            Part::Ring => None,
+        };
+        return Some(Drag::Boxes {
+            grabbed_m: transform.middle_m(),
+            transform,
+            from: at,
+            to: at,
+            moved: false,
+            hit: None,
+        });
+    }
+    let ray = cx.view.ray(at)?;
+    match pick::pick(frame, &ray) {
+        Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.lasso => Some(Drag::Boxes {
+            transform: transform(frame, cx.hand, &boxes::with(cx.hand, id), Kind::Move),
+            grabbed_m: point_of(&hit, &ray),
+            from: at,
+            to: at,
+            moved: false,
+            hit: Some(id),
+        }),
+        _ => Some(Drag::Area {
+            points: vec![at],
+            lasso: cx.hand.lasso,
+            add: pointer.held.shift,
+        }),
+    }
+}
+
+/// What a move of the pointer changes.
+pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Response {
+    let at = pointer.at;
+    match drag {
+        Drag::Boxes { from, to, moved, .. } => {
+            *to = at;
+            *moved |= from.distance(at) > CLICK_SLACK;
+            show(drag, cx.view, cx.frame(), cx.hand, pointer.held)
+        }
+        Drag::Things {
+            drag,
+            grabbed_m,
+            from,
+            moved,
+            ..
+        } => {
+            *moved |= from.distance(at) > CLICK_SLACK;
+            let way_m = way_m(cx.view, drag.pull(), *grabbed_m, *from, at).filter(|_| *moved);
+            let Some(way_m) = way_m else {
+                return Response::none();
+            };
+            // In space Alt turns the camera.
+            let held = Modifiers {
+                alt: false,
+                ..pointer.held
+            };
+            preview(drag.edits(cx.frame(), cx.hand, way_m.truncate(), way_m.z, held))
+        }
+        Drag::Area { points, lasso, .. } => {
+            if !*lasso {
+                points.truncate(1);
+            }
+            if points.last().is_none_or(|p| p.distance(at) > APART) {
+                points.push(at);
+            }
+            Response::none()
+        }
+    }
+}
+
+/// How far the pointer went on the level of what it holds, or up, m.
+fn way_m(view: &dyn View, pull: ThingPull, grabbed_m: DVec3, from: DVec2, to: DVec2) -> Option<DVec3> {
+    let (start, now) = (view.ray(from)?, view.ray(to)?);
+    if pull == ThingPull::Height {
+        let up = along_axis(&now, grabbed_m, DVec3::Z)? - along_axis(&start, grabbed_m, DVec3::Z)?;
+        return Some(DVec3::Z * up.clamp(-MOST_UP_M, MOST_UP_M));
+    }
+    let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < FARTHEST_M)?;
+    Some((to_m - pick::ray_ground(&start, grabbed_m.z)?).with_z(0.0))
+}
+
+/// How far the pointer pulls a drag of boxes.
+fn pull(transform: &Transform, view: &dyn View, grabbed_m: DVec3, from: DVec2, to: DVec2) -> Option<Pull> {
+    let (start, now) = (view.ray(from)?, view.ray(to)?);
+    let mut pull = Pull::default();
+    let middle_m = transform.middle_m();
+    match (transform.kind, transform.axis) {
+        (Kind::Move, Some(axis)) => {
+            let axis = transform.axis_in_ego(axis);
+            let way_m = along_axis(&now, grabbed_m, axis)? - along_axis(&start, grabbed_m, axis)?;
+            pull.delta_m = axis * way_m.clamp(-FARTHEST_M, FARTHEST_M);
+        }
+        (Kind::Move, None) => {
+            let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < FARTHEST_M)?;
+            pull.delta_m = (to_m - pick::ray_ground(&start, grabbed_m.z)?).with_z(0.0);
+        }
+        (Kind::Turn, _) => {
+            let on_ground = |ray| Some(pick::ray_ground(ray, middle_m.z)?.truncate());
+            pull.turn_deg = transform.turn_deg(on_ground(&start)?, on_ground(&now)?);
+        }
+        (Kind::Scale, Some(axis)) => {
+            let axis = transform.axis_in_ego(axis);
+            let from_m = along_axis(&start, middle_m, axis)?;
+            pull.factor = along_axis(&now, middle_m, axis)? / from_m;
+        }
+        (Kind::Scale, None) => {
+            let middle = view.project(middle_m)?;
+            pull.factor = to.distance(middle) / from.distance(middle).max(1.0);
+        }
+    }
+    Some(pull)
+}
+
+fn show(drag: &Drag, view: &dyn View, frame: &Frame, hand: &Hand, held: Modifiers) -> Response {
+    if let Drag::Boxes {
+        transform,
+        grabbed_m,
+        from,
+        to,
+        moved: true,
+        ..
+    } = drag
+        && let Some(pull) = pull(transform, view, *grabbed_m, *from, *to)
+    {
+        return preview(boxes::edits(transform, &pull, frame, hand, held.ctrl));
+    }
+    Response::none()
+}
+
+/// A key while something is dragged.
+pub(super) fn key(drag: &mut Drag, cx: &Context<'_>, key: Key, repeat: bool, held: Modifiers) -> Response {
+    let Drag::Boxes { transform, moved, .. } = drag else {
+        return Response::none();
+    };
+    let steered = boxes::steer(transform, key, repeat, held);
+    let name = step_name(transform);
+    match steered {
+        Steered::Not => return Response::none(),
+        Steered::Same => return Response::taken(),
+        Steered::Changed | Steered::Done => *moved = true,
+    }
+    let mut response = show(drag, cx.view, cx.frame(), cx.hand, held);
+    response.taken = true;
+    if steered == Steered::Done {
+        response.done = true;
+        return response.and(Act::Commit(name.into()));
+    }
+    response
+}
+
+/// What letting go does.
+pub(super) fn release(drag: Drag, cx: &mut Context<'_>, at: DVec2) -> Response {
+    match drag {
+        Drag::Boxes {
+            transform,
+            moved,
+            hit,
+            ..
+        } => {
+            // A box that was not chosen is, once it was moved; a click chooses it alone.
+            if let Some(id) = hit.filter(|_| !moved || transform.start.len() == 1) {
+                cx.hand.choose(&[id], Choose::Only);
+            }
+            match moved {
+                true => Response::act(Act::Commit(step_name(&transform).into())),
+                false => Response::none(),
+            }
+        }
+        Drag::Things {
+            drag, moved: true, ..
+        } => Response::act(Act::Commit(drag.label().into())),
+        Drag::Things { hit, .. } => {
+            // A click on one of several chooses it alone; one on the knob changes nothing.
+            let there = hit.filter(|id| cx.settled.background.get(*id).is_some());
+            if there.is_some() && cx.hand.things.is_open() {
+                things::choose(cx.hand, there, false);
+            }
+            Response::none()
+        }
+        Drag::Area { points, lasso, add } => {
+            match points.iter().all(|p| p.distance(at) <= CLICK_SLACK) {
+                true => click(cx, at, add),
+                false => area(cx, &points, at, lasso, add),
+            }
+            Response::none()
+        }
+    }
+}
+
+fn click(cx: &mut Context<'_>, at: DVec2, add: bool) {
+    let scene = cx.settled;
+    let hit = cx.view.ray(at).and_then(|ray| pick::pick(scene.frame(), &ray));
+    match (hit, add) {
+        (Some(Hit::Box { id, .. }), true) => cx.hand.choose(&[id], Choose::Toggle),
+        (Some(Hit::Box { id, .. }), false) => cx.hand.choose(&[id], Choose::Only),
+        (hit, add) => {
+            let thing = hit.and_then(|hit| thing_of(scene, cx.hand, &hit));
+            things::choose(cx.hand, thing, add);
+        }
+    }
+}
+
+fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, add: bool) {
+    let (scene, view) = (cx.settled, cx.view);
+    let frame = scene.frame();
+    let outline: Vec<DVec2> = match (lasso, points.first()) {
+        (false, Some(from)) => {
+            let (min, max) = (from.min(at), from.max(at));
+            vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+        }
+        _ => points.to_vec(),
+    };
+    let inside = |p_m: DVec3| view.project(p_m).is_some_and(|p| choose::is_inside(&outline, p));
+    let taken = frame.boxes.values().filter(|b| inside(b.center_m));
+    let ids: Vec<BoxId> = taken.map(|b| b.id).collect();
+    cx.hand.choose(&ids, how(add));
+    let on_screen = |p: DVec2| inside(p.extend(frame.layout.relief.height_m(p)));
+    things::choose_in(scene, cx.hand, on_screen);
+}
+
+/// The part of the gizmo that a drag holds.
+fn held_part(axis: Option<Axis>, kind: Kind) -> Option<Part> {
+    match (kind, axis) {
+        (Kind::Turn, _) => Some(Part::Ring),
+        (_, axis) => axis.map(Part::Axis),
+    }
+}
+
+/// What is drawn over the view.
+pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
+    let mut out = Vec::new();
+    let gizmo = Gizmo::new(sight.scene.frame(), sight.hand, sight.view);
+    let pointer = sight.pointer.map(|p| p.at);
+    match drag {
+        None => {
+            if let Some(gizmo) = gizmo {
+                out.extend(gizmo.marks(pointer.and_then(|p| gizmo.at(p))));
+            }
+        }
+        Some(Drag::Boxes {
+            transform,
+            grabbed_m,
+            from,
+            to,
+            moved,
+            ..
+        }) => {
+            if let Some(gizmo) = gizmo {
+                out.extend(gizmo.marks(held_part(transform.axis, transform.kind)));
+            }
+            if let (true, Some(pull)) = (*moved, pull(transform, sight.view, *grabbed_m, *from, *to)) {
+                let grid = sight.pointer.is_some_and(|p| p.held.ctrl);
+                let text = transform.text(&pull, &sight.hand.snap(grid));
+                out.push(Mark::Tag(At::Screen(*to), text));
+            }
+        }
+        Some(Drag::Area { points, lasso, .. }) => match (lasso, points.first(), points.last()) {
+            (false, Some(a), Some(b)) => {
+                out.push(Mark::Rect(At::Screen(*a), At::Screen(*b), Role::Choose));
+            }
+            _ => {
+                let closed = points.iter().chain(points.first()).map(|p| At::Screen(*p));
+                out.push(Mark::Dashed(closed.collect(), Role::Choose));
+            }
+        },
+        Some(Drag::Things {
+            drag,
+            grabbed_m,
+            from,
+            moved: true,
+            ..
+        }) => {
+            if let Some(to) = pointer
+                && let Some(way_m) = way_m(sight.view, drag.pull(), *grabbed_m, *from, to)
+            {
+                let text = match drag.pull() {
+                    ThingPull::Height => format!("{:+.1} m", way_m.z),
+                    _ => format!("{:.1} m", way_m.length()),
+                };
+                out.push(Mark::Tag(At::Screen(to), text));
+            }
+        }
+        Some(Drag::Things { .. }) => {}
+    }
+    if let Some(knob_m) = things::knob_m(sight.scene, sight.hand) {
+        let knob = sight.view.project(knob_m);
+        let hot = pointer.zip(knob).is_some_and(|(p, k)| p.distance(k) < KNOB_REACH);
+        out.push(Mark::Knob(knob_m, hot));
+    }
+    out
+}

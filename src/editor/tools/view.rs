@@ -1,0 +1,169 @@
+//! What a tool is told and what it sees: the view under the pointer, the scene, and plain events of pointer and keys.
+
+use glam::{DVec2, DVec3};
+
+use crate::pick::{self, Hit, Ray};
+use scene::{Frame, Scene};
+
+use super::Hand;
+
+/// Farther points of the ground mean nothing to a tool, m.
+pub const FARTHEST_M: f64 = 400.0;
+/// Points that the pointer may move and still click.
+pub const CLICK_SLACK: f64 = 4.0;
+/// Size of handles under the pointer, points.
+pub const HANDLE_REACH: f64 = 8.0;
+
+/// Which of the large views.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewKind {
+    /// From above.
+    Bev,
+    /// In perspective, or any other way.
+    Space,
+}
+
+/// Where ego frame and screen meet. Points of the screen are in the window's points, y down.
+pub trait View {
+    /// Which view it is.
+    fn kind(&self) -> ViewKind;
+    /// Where a point of the ego frame (m) appears; `None` behind the eye.
+    fn project(&self, p_m: DVec3) -> Option<DVec2>;
+    /// The ray under a point of the screen; from above it falls straight down.
+    fn ray(&self, at: DVec2) -> Option<Ray>;
+    /// The direction to the right on the screen, ego frame.
+    fn right(&self) -> DVec3;
+    /// Points per metre; only from above it is the same everywhere, elsewhere it is 1.
+    fn scale(&self) -> f64;
+}
+
+/// What a tool reads, and the options and selection that it changes.
+pub struct Context<'a> {
+    /// The scene shown, a drag in progress included.
+    pub scene: &'a Scene,
+    /// The scene without the drag in progress: what a stroke picks against.
+    pub settled: &'a Scene,
+    /// The view under the pointer.
+    pub view: &'a dyn View,
+    /// What the user holds.
+    pub hand: &'a mut Hand,
+}
+
+/// The same to look at only, for what is drawn.
+#[derive(Clone, Copy)]
+pub struct Sight<'a> {
+    /// The scene shown, a drag in progress included.
+    pub scene: &'a Scene,
+    /// The scene without the drag in progress.
+    pub settled: &'a Scene,
+    /// The view that is drawn.
+    pub view: &'a dyn View,
+    /// What the user holds.
+    pub hand: &'a Hand,
+    /// The pointer, if it is over the view.
+    pub pointer: Option<Pointer>,
+}
+
+impl Context<'_> {
+    /// True in the view from above.
+    pub fn from_above(&self) -> bool {
+        self.view.kind() == ViewKind::Bev
+    }
+
+    /// The frame without the drag in progress.
+    pub fn frame(&self) -> &Frame {
+        self.settled.frame()
+    }
+
+    /// The point of the ground under a point of the screen, ego frame, m; in space where the ray meets anything.
+    pub fn ground_m(&self, at: DVec2) -> Option<DVec2> {
+        ground_m(self.view, self.settled, at)
+    }
+}
+
+impl Sight<'_> {
+    /// True in the view from above.
+    pub fn from_above(&self) -> bool {
+        self.view.kind() == ViewKind::Bev
+    }
+
+    /// The point of the ground under the pointer, ego frame, m.
+    pub fn ground_m(&self) -> Option<DVec2> {
+        ground_m(self.view, self.settled, self.pointer?.at)
+    }
+}
+
+/// Where the ray under a point of the screen meets ground, voxels or boxes, ego frame, m.
+fn ground_m(view: &dyn View, scene: &Scene, at: DVec2) -> Option<DVec2> {
+    let ray = view.ray(at)?;
+    if view.kind() == ViewKind::Bev {
+        return Some(ray.origin_in_ego.truncate());
+    }
+    let hit = pick::pick(scene.frame(), &ray)?;
+    Some(point_of(&hit, &ray).truncate())
+}
+
+/// The point that was hit, ego frame, m.
+pub fn point_of(hit: &Hit, ray: &Ray) -> DVec3 {
+    match hit {
+        Hit::Box { distance_m, .. } => ray.at(*distance_m),
+        Hit::Voxel(v) => ray.at(v.distance_m),
+        Hit::Ground { point_in_ego } => *point_in_ego,
+    }
+}
+
+/// Keys that are held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Modifiers {
+    /// Shift.
+    pub shift: bool,
+    /// Ctrl, or the command key of a Mac.
+    pub ctrl: bool,
+    /// Alt.
+    pub alt: bool,
+}
+
+/// The pointer over a view.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pointer {
+    /// Where, points of the window.
+    pub at: DVec2,
+    /// Keys that are held.
+    pub held: Modifiers,
+}
+
+/// Keys that a tool may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// Drops what is drawn point by point.
+    Escape,
+    /// That is it.
+    Enter,
+    /// Takes the last point or digit back.
+    Backspace,
+    /// X, Y or Z: an axis, 0 to 2.
+    Axis(usize),
+    /// A digit, a point or a minus.
+    Digit(char),
+}
+
+/// What the user did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The primary button went down.
+    Press(Pointer),
+    /// It went down in space with Alt held, which turns the camera: what is there can be taken over.
+    Pick(Pointer),
+    /// The pointer moved with the button down.
+    Drag(Pointer),
+    /// The button came up.
+    Release(Pointer),
+    /// The drag is off: what was pressed or shown is forgotten.
+    Cancel,
+    /// A key went down; true for the repetition of one that is held.
+    Key(Key, bool, Modifiers),
+    /// The wheel turned by so many steps, up positive.
+    Scroll(i32),
+    /// The second click of two at one place.
+    DoubleClick,
+}

@@ -1,0 +1,572 @@
+//! The voxel tool: dabs, blocks, rows, floods, chosen voxels and pulled faces, in space.
+
+mod target;
+
+use std::collections::BTreeSet;
+
+use glam::{DVec2, DVec3};
+
+use crate::Edit;
+use crate::pick::{self, Ray, VoxelHit};
+use crate::voxel_ops::{self, Cell};
+use scene::{Class, Frame, GridSpec};
+
+use super::rays::{along_axis, on_plane};
+use super::setting::{self, Control, Number, Setting, Value};
+use super::{
+    Act, At, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, Response, Shortcut, Sight, Tool,
+    ToolDef, ToolId, ViewKind, VoxelMode, VoxelVerb, Wants, When, brush, hint_of,
+};
+use target::target;
+
+/// Its name.
+pub const ID: ToolId = ToolId("voxel_brush");
+
+/// Colour of what would go.
+pub(super) const REMOVED: [u8; 3] = [238, 112, 104];
+/// Colour of chosen voxels: no class has it.
+const CHOSEN: [u8; 3] = [255, 70, 255];
+/// Distance between two samples of a quick stroke, points.
+const SAMPLE_EVERY: f64 = 3.0;
+
+const fn shortcut(
+    id: &'static str,
+    title: &'static str,
+    keys: &'static str,
+    when: When,
+    set: fn(&mut Hand),
+) -> Shortcut {
+    Shortcut {
+        id,
+        title,
+        keys,
+        when,
+        set,
+    }
+}
+
+fn mode(hand: &mut Hand, mode: VoxelMode) {
+    (hand.tool, hand.voxel_mode) = (ID, mode);
+}
+
+fn verb(hand: &mut Hand, verb: VoxelVerb) {
+    (hand.tool, hand.verb) = (ID, verb);
+}
+
+/// Its row of the table.
+pub static DEF: ToolDef = ToolDef {
+    id: ID,
+    title: "Voxels",
+    key: "B in 3D",
+    icon: "voxel",
+    group: Group::Scene,
+    is_brush: true,
+    paints: true,
+    shortcuts: &[
+        shortcut(
+            ID.0,
+            "Voxel brush (over the 3D view)",
+            "B",
+            When::OverSpace,
+            |h| {
+                h.tool = if h.tool == ID { brush::ID } else { ID };
+            },
+        ),
+        shortcut("voxel_attach", "Attach voxels", "T", When::Always, |h| {
+            verb(h, VoxelVerb::Attach)
+        }),
+        shortcut("voxel_remove", "Remove voxels", "R", When::Always, |h| {
+            verb(h, VoxelVerb::Remove)
+        }),
+        shortcut("voxel_recolour", "Recolour voxels", "Y", When::Always, |h| {
+            verb(h, VoxelVerb::Recolour)
+        }),
+        shortcut("voxel_block", "Voxels: block", "U", When::OverSpace, |h| {
+            mode(h, VoxelMode::Block)
+        }),
+        shortcut("voxel_row", "Voxels: row", "L", When::OverSpace, |h| {
+            mode(h, VoxelMode::Row)
+        }),
+        shortcut("voxel_fill", "Voxels: flood", "K", When::OverSpace, |h| {
+            mode(h, VoxelMode::Fill)
+        }),
+        shortcut("voxel_pull", "Voxels: pull a face", "P", When::OverSpace, |h| {
+            mode(h, VoxelMode::Extrude)
+        }),
+        shortcut("voxel_wand", "Voxels: magic wand", "Shift+O", When::Always, |h| {
+            mode(h, VoxelMode::Wand)
+        }),
+        shortcut(
+            "symmetry",
+            "Symmetry about the ego axis",
+            "S",
+            When::Always,
+            |h| {
+                h.symmetry = !h.symmetry;
+            },
+        ),
+    ],
+    make: || Box::new(Voxels::default()),
+};
+
+/// What the button held does.
+#[derive(Clone, Debug, PartialEq)]
+enum Drag {
+    /// Follows the pointer.
+    Dab {
+        cells: BTreeSet<Cell>,
+        verb: VoxelVerb,
+        last: DVec2,
+    },
+    /// A block from the face that was pressed to the corner under the pointer, so many layers high.
+    Block {
+        first: VoxelHit,
+        last: Cell,
+        height: i32,
+        verb: VoxelVerb,
+    },
+    /// A straight row.
+    Row { first: Cell, verb: VoxelVerb },
+    /// A face pulled out or pushed in.
+    Pull { first: VoxelHit, face: Vec<Cell> },
+}
+
+/// The voxel tool.
+#[derive(Clone, Debug, Default)]
+pub struct Voxels {
+    drag: Option<Drag>,
+}
+
+fn class_of(hand: &Hand, verb: VoxelVerb) -> Class {
+    match verb {
+        VoxelVerb::Remove => Class::Free,
+        _ => hand.voxel_class,
+    }
+}
+
+fn step_of(verb: VoxelVerb) -> &'static str {
+    match verb {
+        VoxelVerb::Attach => "Attach voxels",
+        VoxelVerb::Remove => "Remove voxels",
+        VoxelVerb::Recolour => "Recolour voxels",
+    }
+}
+
+/// Edge of the brush across the face, and its height along the normal, voxels.
+fn size(hand: &Hand) -> [usize; 2] {
+    [hand.voxel_size, hand.voxel_size.max(hand.voxel_height)]
+}
+
+fn normal_axis(hit: &VoxelHit) -> usize {
+    (0..3).find(|a| hit.normal[*a] != 0).unwrap_or(2)
+}
+
+/// Shows voxels painted, on both sides where that is asked for, as far as the verb changes them.
+fn show(cells: Vec<Cell>, frame: &Frame, hand: &Hand, verb: VoxelVerb) -> Response {
+    let both = hand.both_sides(cells);
+    let cells = voxel_ops::only(&frame.occupancy, both, verb == VoxelVerb::Attach);
+    match cells.is_empty() {
+        true => Response::none(),
+        false => {
+            let class = class_of(hand, verb);
+            Response::act(Act::Preview(vec![Edit::PaintVoxels { cells, class }]))
+        }
+    }
+}
+
+impl Voxels {
+    fn press(&mut self, cx: &mut Context<'_>, pointer: &Pointer) -> Response {
+        let shift = pointer.held.shift;
+        let mode = cx.hand.voxel_mode;
+        let verb = match shift && mode != VoxelMode::Wand {
+            true => VoxelVerb::Remove,
+            false => cx.hand.verb,
+        };
+        if mode == VoxelMode::Brush {
+            self.drag = Some(Drag::Dab {
+                cells: BTreeSet::new(),
+                verb,
+                last: pointer.at,
+            });
+            return Response::hold();
+        }
+        let Some(ray) = cx.view.ray(pointer.at) else {
+            return Response::none();
+        };
+        let frame = cx.frame();
+        let hit = pick::ray_voxels(&ray, &frame.occupancy, |_, _| true);
+        let first = target(frame, verb, [1, 1], &ray).first().copied();
+        self.drag = match mode {
+            VoxelMode::Block | VoxelMode::Brush => first.map(|cell| Drag::Block {
+                first: VoxelHit {
+                    cell,
+                    normal: hit.map_or([0, 0, 1], |h| h.normal),
+                    label: Class::FREE,
+                    distance_m: 0.0,
+                },
+                last: cell,
+                height: cx.hand.voxel_height as i32,
+                verb,
+            }),
+            VoxelMode::Row => first.map(|first| Drag::Row { first, verb }),
+            VoxelMode::Extrude => hit.map(|first| Drag::Pull {
+                face: voxel_ops::face(&frame.occupancy, first.cell, first.normal),
+                first,
+            }),
+            VoxelMode::Fill | VoxelMode::Wand => {
+                let cells = hit.map_or_else(Vec::new, |h| voxel_ops::connected(&frame.occupancy, h.cell));
+                let cells = voxel_ops::only(&frame.occupancy, cx.hand.both_sides(cells), false);
+                if mode == VoxelMode::Wand {
+                    cx.hand.choose_voxels(cells, shift);
+                    return Response::none();
+                }
+                return flood(cells, class_of(cx.hand, verb));
+            }
+        };
+        match self.drag {
+            Some(_) => Response::hold(),
+            None => Response::none(),
+        }
+    }
+
+    fn drag(&mut self, cx: &Context<'_>, pointer: &Pointer) -> Response {
+        let (frame, hand, at) = (cx.frame(), &*cx.hand, pointer.at);
+        match &mut self.drag {
+            None => Response::none(),
+            Some(Drag::Dab { cells, verb, last }) => {
+                let before = cells.len();
+                let samples = (last.distance(at) / SAMPLE_EVERY).ceil().max(1.0) as usize;
+                for i in 1..=samples {
+                    let between = last.lerp(at, i as f64 / samples as f64);
+                    if let Some(ray) = cx.view.ray(between) {
+                        cells.extend(target(frame, *verb, size(hand), &ray));
+                    }
+                }
+                *last = at;
+                match cells.len() > before {
+                    true => show(cells.iter().copied().collect(), frame, hand, *verb),
+                    false => Response::none(),
+                }
+            }
+            Some(Drag::Block { first, last, .. }) => {
+                let axis = normal_axis(first);
+                let [x, y, z] = first.cell;
+                let middle_m = GridSpec::center(x, y, z);
+                if let Some(p) = cx.view.ray(at).and_then(|ray| on_plane(&ray, middle_m, axis)) {
+                    let limit = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+                    let units = GridSpec::to_voxel_units(p);
+                    for a in (0..3).filter(|a| *a != axis) {
+                        last[a] = units[a].clamp(0.0, limit[a] as f64 - 1.0) as usize;
+                    }
+                    last[axis] = first.cell[axis];
+                }
+                self.show_block(frame, hand)
+            }
+            Some(Drag::Row { first, verb }) => {
+                let Some(ray) = cx.view.ray(at) else {
+                    return Response::none();
+                };
+                match target(frame, *verb, [1, 1], &ray).first() {
+                    Some(last) => {
+                        let cells = voxel_ops::line(*first, *last, hand.voxel_size);
+                        show(cells, frame, hand, *verb)
+                    }
+                    None => Response::none(),
+                }
+            }
+            Some(Drag::Pull { first, face }) => {
+                let ray = cx.view.ray(at);
+                match ray.and_then(|ray| pulled(&ray, frame, hand, first, face)) {
+                    Some(edit) => Response::act(Act::Preview(vec![edit])),
+                    None => Response::act(Act::Cancel),
+                }
+            }
+        }
+    }
+
+    fn show_block(&self, frame: &Frame, hand: &Hand) -> Response {
+        let Some(Drag::Block {
+            first,
+            last,
+            height,
+            verb,
+        }) = &self.drag
+        else {
+            return Response::none();
+        };
+        let axis = normal_axis(first);
+        // Attached blocks grow out of the face, others into it.
+        let outward = if *verb == VoxelVerb::Attach { 1 } else { -1 };
+        let mut far = *last;
+        let end = first.cell[axis] as i32 + outward * first.normal[axis] * (height - 1);
+        far[axis] = end.max(0) as usize;
+        show(voxel_ops::between(first.cell, far), frame, hand, *verb)
+    }
+
+    fn scroll(&mut self, cx: &Context<'_>, notches: i32) -> Response {
+        let Some(Drag::Block { height, .. }) = &mut self.drag else {
+            return Response::none();
+        };
+        *height = (*height + notches).clamp(1, GridSpec::NZ as i32);
+        let mut response = self.show_block(cx.frame(), cx.hand);
+        response.taken = true;
+        response
+    }
+
+    fn release(&mut self) -> Response {
+        let label = match self.drag.take() {
+            None => return Response::none(),
+            Some(Drag::Dab { verb, .. } | Drag::Block { verb, .. } | Drag::Row { verb, .. }) => step_of(verb),
+            Some(Drag::Pull { .. }) => "Pull voxels",
+        };
+        Response::act(Act::Commit(label.into()))
+    }
+}
+
+fn flood(cells: Vec<Cell>, class: Class) -> Response {
+    if cells.is_empty() {
+        return Response::none();
+    }
+    let label = match class {
+        Class::Free => "Remove voxels",
+        _ => "Fill voxels",
+    };
+    Response::act(Act::Apply(label.into(), vec![Edit::PaintVoxels { cells, class }]))
+}
+
+/// The edit of a face pulled as far as the pointer is.
+fn pulled(ray: &Ray, frame: &Frame, hand: &Hand, first: &VoxelHit, face: &[Cell]) -> Option<Edit> {
+    let [x, y, z] = first.cell;
+    let normal = DVec3::from_array(first.normal.map(f64::from));
+    let surface_m = GridSpec::center(x, y, z) + normal * (GridSpec::VOXEL_M / 2.0);
+    let way_m = along_axis(ray, surface_m, normal)?;
+    let layers = (way_m / GridSpec::VOXEL_M).round().clamp(-200.0, 200.0) as i32;
+    let cells = voxel_ops::extrude(&frame.occupancy, face, first.normal, layers);
+    let cells = voxel_ops::only(&frame.occupancy, hand.both_sides(cells), layers > 0);
+    let class = match layers > 0 {
+        true => Class::from_id(first.label)?,
+        false => Class::Free,
+    };
+    (!cells.is_empty()).then_some(Edit::PaintVoxels { cells, class })
+}
+
+impl Tool for Voxels {
+    fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match event {
+            _ if cx.from_above() => Response::none(),
+            Event::Press(pointer) => self.press(cx, pointer),
+            Event::Pick(pointer) => {
+                let ray = cx.view.ray(pointer.at);
+                let grid = &cx.frame().occupancy;
+                let hit = ray.and_then(|ray| pick::ray_voxels(&ray, grid, |_, _| true));
+                if let Some(class) = hit.and_then(|h| Class::from_id(h.label)) {
+                    cx.hand.voxel_class = class;
+                }
+                Response::none()
+            }
+            Event::Drag(pointer) => self.drag(cx, pointer),
+            Event::Release(_) => self.release(),
+            Event::Scroll(notches) => self.scroll(cx, *notches),
+            Event::Cancel => {
+                self.drag = None;
+                Response::none()
+            }
+            Event::Key(..) | Event::DoubleClick => Response::none(),
+        }
+    }
+
+    fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
+        if view != Some(ViewKind::Space) {
+            return hint_of(&["The voxel tool works in the 3D view"]);
+        }
+        let verb = match hand.verb {
+            VoxelVerb::Attach => "Drag attaches",
+            VoxelVerb::Remove => "Drag removes",
+            VoxelVerb::Recolour => "Drag recolours",
+        };
+        hint_of(&match hand.voxel_mode {
+            VoxelMode::Brush => vec![verb, "Shift removes", "Alt picks", "[ ] size"],
+            VoxelMode::Block => vec![verb, "wheel sets the height"],
+            VoxelMode::Row => vec![verb, "Shift removes"],
+            VoxelMode::Fill => vec!["Click floods one class", "Shift removes"],
+            VoxelMode::Wand => vec!["Click chooses what is connected", "Shift adds", "Del removes"],
+            VoxelMode::Extrude => vec!["Drag pulls a face out or in"],
+        })
+    }
+
+    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+        match sight.from_above() {
+            true => Cursor::Forbidden,
+            false => Cursor::Crosshair,
+        }
+    }
+
+    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+        let hand = sight.hand;
+        if sight.from_above() {
+            return Vec::new();
+        }
+        if hand.voxel_mode == VoxelMode::Wand {
+            return vec![Mark::Voxels(hand.voxels.clone(), CHOSEN)];
+        }
+        let Some(pointer) = sight.pointer else {
+            return Vec::new();
+        };
+        let mut out = Vec::new();
+        if let Some(ray) = sight.view.ray(pointer.at) {
+            let color = match hand.verb {
+                VoxelVerb::Remove => REMOVED,
+                _ if hand.voxel_class == Class::Free => [200; 3],
+                _ => hand.voxel_class.color(),
+            };
+            let cells = target(sight.settled.frame(), hand.verb, size(hand), &ray);
+            out.push(Mark::Voxels(hand.both_sides(cells), color));
+        }
+        if let Some(Drag::Block {
+            first, last, height, ..
+        }) = &self.drag
+        {
+            let flat = (0..3).filter(|a| first.normal[*a] == 0);
+            let across: Vec<usize> = flat.map(|a| first.cell[a].abs_diff(last[a]) + 1).collect();
+            if let [a, b] = across[..] {
+                out.push(Mark::Tag(
+                    At::Screen(pointer.at),
+                    format!("{a} × {b} × {height} voxels"),
+                ));
+            }
+        }
+        out
+    }
+
+    fn options(&self, hand: &Hand) -> Vec<Setting> {
+        let mut out = vec![
+            Setting::title("Voxel brush"),
+            Setting::segments("mode", hand.voxel_mode, &VoxelMode::ALL, 3),
+        ];
+        if matches!(hand.voxel_mode, VoxelMode::Brush | VoxelMode::Block) {
+            let height = hand.voxel_height as f64;
+            out.push(Setting::number("height", "Height, vx", height, [1.0, 16.0], 0));
+        }
+        out.push(Setting::toggle(
+            "symmetry",
+            hand.symmetry,
+            "Symmetry about the ego axis",
+            "S",
+        ));
+        if hand.voxel_mode == VoxelMode::Wand {
+            out.extend(chosen(hand));
+        }
+        out.extend([
+            Setting::segments("verb", hand.verb, &VoxelVerb::ALL, 3),
+            Setting::gap(),
+            Setting::new(
+                "size",
+                Control::Number(Number {
+                    title: "Size",
+                    label: "Voxel brush size",
+                    hint: "[ and ]",
+                    value: hand.voxel_size as f64,
+                    range: [1.0, Hand::MAX_VOXEL_SIZE as f64],
+                    unit: " vx",
+                    decimals: 0,
+                    logarithmic: false,
+                    wide: true,
+                }),
+            ),
+            Setting::gap(),
+        ]);
+        out.push(match hand.verb {
+            VoxelVerb::Remove => Setting::text(
+                "Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.",
+            ),
+            _ => Setting::new(
+                "class",
+                Control::Class {
+                    chosen: hand.voxel_class,
+                    classes: Class::ALL.into_iter().filter(|c| *c != Class::Free).collect(),
+                    verb: "Voxel",
+                },
+            ),
+        });
+        out
+    }
+
+    fn set(&mut self, hand: &mut Hand, frame: &Frame, id: &str, value: Value) -> Vec<Act> {
+        let number = value.number().map_or(1, |n| n.round().max(1.0) as usize);
+        match (id, value) {
+            ("mode", _) => setting::take(&mut hand.voxel_mode, value, &VoxelMode::ALL),
+            ("height", _) => hand.voxel_height = number.min(16),
+            ("symmetry", _) => setting::take_on(&mut hand.symmetry, value),
+            ("verb", _) => setting::take(&mut hand.verb, value, &VoxelVerb::ALL),
+            ("size", _) => hand.voxel_size = number.min(Hand::MAX_VOXEL_SIZE),
+            ("class", Value::Class(class)) => hand.voxel_class = class,
+            ("remove", _) => return hand.paint_chosen_voxels(Class::Free),
+            ("recolour", _) => return hand.paint_chosen_voxels(hand.voxel_class),
+            ("lock", _) => {
+                let edits = voxel_ops::lock(frame, &hand.voxels);
+                return match edits.is_empty() {
+                    true => Vec::new(),
+                    false => vec![Act::Apply("Lock voxels".into(), edits)],
+                };
+            }
+            ("unlock", _) if !hand.voxels.is_empty() => {
+                let cells = hand.voxels.clone();
+                return vec![Act::Apply(
+                    "Unlock voxels".into(),
+                    vec![Edit::UnlockVoxels { cells }],
+                )];
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn wants(&self) -> Wants {
+        match self.drag {
+            Some(Drag::Block { .. }) => Wants::Wheel,
+            _ => Wants::Nothing,
+        }
+    }
+}
+
+/// What can be done with the chosen voxels.
+fn chosen(hand: &Hand) -> [Setting; 2] {
+    let n = hand.voxels.len();
+    let text = match n {
+        0 => "Click voxels to choose what is connected; Shift adds.".to_owned(),
+        1 => "1 voxel chosen".to_owned(),
+        n => format!("{n} voxels chosen"),
+    };
+    let buttons = vec![
+        Setting::button("remove", "Remove them", "Del", n > 0),
+        Setting::button("recolour", "Recolour them", "in the class below", n > 0),
+        Setting::button("lock", "Lock them", "generation keeps them", n > 0),
+        Setting::button("unlock", "Unlock them", "", n > 0),
+    ];
+    [Setting::text(text), Setting::new("", Control::Row(buttons))]
+}
+
+impl Hand {
+    /// Chooses voxels; `add` to those chosen.
+    pub fn choose_voxels(&mut self, cells: Vec<Cell>, add: bool) {
+        if !add {
+            self.voxels.clear();
+        }
+        self.voxels.extend(cells);
+        self.voxels.sort_unstable();
+        self.voxels.dedup();
+    }
+
+    /// Gives the chosen voxels a class, and lets go of them; `free` removes them.
+    pub fn paint_chosen_voxels(&mut self, class: Class) -> Vec<Act> {
+        let cells = std::mem::take(&mut self.voxels);
+        if cells.is_empty() {
+            return Vec::new();
+        }
+        let label = match class {
+            Class::Free => "Remove voxels",
+            _ => "Recolour voxels",
+        };
+        vec![Act::Apply(label.into(), vec![Edit::PaintVoxels { cells, class }])]
+    }
+}

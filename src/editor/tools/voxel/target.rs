@@ -1,0 +1,129 @@
+//! Which voxels a brush would change: a block in front of the face under the ray, or behind it.
+
+use crate::pick::{self, Ray, VoxelHit};
+use crate::tools::VoxelVerb;
+use scene::{Class, Frame, GridSpec};
+
+/// Voxels of the first face along the ray that the brush covers: free ones in front of it to attach,
+/// others behind it to remove or recolour.
+pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray) -> Vec<[usize; 3]> {
+    let Some(hit) = pick::ray_voxels(ray, &frame.occupancy, |_, _| true) else {
+        // On empty ground voxels are attached to the floor of the grid.
+        if verb != VoxelVerb::Attach {
+            return Vec::new();
+        }
+        let floor_m = GridSpec::MIN_M[2] + GridSpec::VOXEL_M / 2.0;
+        let ground = pick::ray_ground(ray, floor_m).and_then(GridSpec::voxel_at);
+        let floor = ground.map(|[x, y, _]| VoxelHit {
+            cell: [x, y, 0],
+            label: Class::FREE,
+            normal: [0, 0, 1],
+            distance_m: 0.0,
+        });
+        return floor.map_or_else(Vec::new, |hit| cube(frame, hit.cell, hit.normal, size, true));
+    };
+    match verb {
+        VoxelVerb::Attach => hit
+            .neighbour()
+            .map_or_else(Vec::new, |cell| cube(frame, cell, hit.normal, size, true)),
+        _ => cube(frame, hit.cell, hit.normal.map(|n| -n), size, false),
+    }
+}
+
+/// A block of voxels that begins at `cell` and reaches along `direction`, centred across it; only the
+/// voxels that are free, or only those that are not.
+fn cube(
+    frame: &Frame,
+    cell: [usize; 3],
+    direction: [i32; 3],
+    [across, height]: [usize; 2],
+    free: bool,
+) -> Vec<[usize; 3]> {
+    let limit = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    let range = |axis: usize| {
+        let at = cell[axis] as i64;
+        let size = if direction[axis] == 0 { across } else { height } as i64;
+        let low = match direction[axis] {
+            0 => at - (size - 1) / 2,
+            d if d > 0 => at,
+            _ => at - size + 1,
+        };
+        low.max(0)..(low + size).min(limit[axis] as i64)
+    };
+    let mut cells = Vec::new();
+    for x in range(0) {
+        for y in range(1) {
+            for z in range(2) {
+                let [x, y, z] = [x, y, z].map(|v| v as usize);
+                if (frame.occupancy.get(x, y, z) == Class::FREE) == free {
+                    cells.push([x, y, z]);
+                }
+            }
+        }
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use glam::DVec3;
+
+    use super::*;
+    use scene::{BevLayout, VoxelGrid};
+
+    fn frame() -> Frame {
+        let mut grid = VoxelGrid::new();
+        for x in 90..110 {
+            for y in 90..110 {
+                grid.set(x, y, 0, Class::Terrain.id());
+            }
+        }
+        grid.set(100, 100, 1, Class::Manmade.id());
+        Frame::new(BevLayout::default(), BTreeMap::new(), grid)
+    }
+
+    fn down(x: usize, y: usize) -> Ray {
+        let p = GridSpec::center(x, y, 15);
+        Ray::new(p + DVec3::Z * 5.0, -DVec3::Z).expect("a direction")
+    }
+
+    #[test]
+    fn attaching_builds_up_and_removing_digs_down() {
+        let frame = frame();
+        let at = |verb, size, x, y| target(&frame, verb, [size; 2], &down(x, y));
+        assert_eq!(at(VoxelVerb::Attach, 1, 100, 100), vec![[100, 100, 2]]);
+        assert_eq!(at(VoxelVerb::Remove, 1, 100, 100), vec![[100, 100, 1]]);
+        assert_eq!(at(VoxelVerb::Recolour, 1, 95, 95), vec![[95, 95, 0]]);
+        // Three cells on a side stand on the face; a voxel that is there already stays.
+        assert_eq!(at(VoxelVerb::Attach, 3, 99, 99).len(), 27 - 1);
+        assert!(
+            at(VoxelVerb::Attach, 3, 99, 99)
+                .iter()
+                .all(|c| (1..=3).contains(&c[2]))
+        );
+        // Digging below the floor is not possible.
+        assert_eq!(at(VoxelVerb::Remove, 3, 95, 95).len(), 9);
+        // Where nothing was seen voxels are put on the floor, and nothing can be removed.
+        assert_eq!(at(VoxelVerb::Attach, 1, 10, 10), vec![[10, 10, 0]]);
+        assert!(at(VoxelVerb::Remove, 1, 10, 10).is_empty());
+    }
+
+    #[test]
+    fn faces_from_the_side() {
+        let frame = frame();
+        let from = GridSpec::center(80, 100, 1);
+        let ray = Ray::new(from, DVec3::X).expect("a direction");
+        assert_eq!(
+            target(&frame, VoxelVerb::Attach, [1, 1], &ray),
+            vec![[99, 100, 1]]
+        );
+        assert_eq!(target(&frame, VoxelVerb::Attach, [1, 3], &ray).len(), 3);
+        assert_eq!(target(&frame, VoxelVerb::Remove, [2, 2], &ray).len(), 1);
+        // The top of the grid is a limit, not an error.
+        let mut tall = frame.clone();
+        tall.occupancy.set(50, 50, 15, 1);
+        assert!(target(&tall, VoxelVerb::Attach, [1, 1], &down(50, 50)).is_empty());
+    }
+}
