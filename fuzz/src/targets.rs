@@ -4,7 +4,6 @@
 
 use std::sync::OnceLock;
 
-use app::cli;
 use app::dock::Dock;
 use app::keymap::{Chord, Keymap};
 use app::panes::{self, id::PaneId};

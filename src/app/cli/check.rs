@@ -7,9 +7,9 @@ use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
 use super::{Common, Outcome, Stop, output};
-use crate::open;
-use crate::panes;
-use crate::shell::checking;
+use app::open;
+use app::panes;
+use app::shell::checking;
 use editor::checks::{self, Finding, Severity, waive};
 use formats::project;
 use scene::Scene;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 
 use super::{Common, Outcome, output};
-use crate::open;
-use crate::picture::{Picture, layout_top, lidar_top, occupancy_top};
+use app::open;
+use app::picture::{Picture, layout_top, lidar_top, occupancy_top};
 use editor::columns_between;
 use job::GenParams;
 use job::region::Region;

@@ -58,7 +58,7 @@ impl Doctor {
             "adapter": adapter,
             "threads": threads,
             "simd": simd(),
-            "log": crate::shell::logging::file(),
+            "log": app::shell::logging::file(),
             "weights": weights,
         });
         output::report(&self.common, &report, || {

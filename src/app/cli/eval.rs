@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use anyhow::Context;
 use serde_json::{Value, json};
 
-use crate::cli::progress::Progress;
-use crate::cli::{Common, Gen, Outcome, Stop, output};
+use crate::progress::Progress;
+use crate::{Common, Gen, Outcome, Stop, output};
 use job::GenParams;
 use judge::markdown::{Table, markdown, measure_all};
 use judge::options::Options;

@@ -8,10 +8,10 @@ use serde_json::json;
 
 use super::render::{size, source};
 use super::{Common, Outcome, output};
-use crate::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
-use crate::open;
-use crate::picture::ShotOptions;
-use crate::state::LidarModel;
+use app::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
+use app::open;
+use app::picture::ShotOptions;
+use app::state::LidarModel;
 use sensors::cameras::SourceId;
 
 /// Arguments.

@@ -7,8 +7,8 @@ use serde_json::json;
 
 use super::progress::Progress;
 use super::{Common, Gen, Outcome, output};
-use crate::open;
-use crate::scenery::SceneryWish;
+use app::open;
+use app::scenery::SceneryWish;
 use editor::Document;
 use formats::project;
 use job::pipeline::OccPipeline;

@@ -8,7 +8,7 @@ use glam::DVec2;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::open::{self, Imported, Placement};
+use app::open::{self, Imported, Placement};
 use formats::import::{self, Content, Importer, Loaded};
 use formats::project;
 use scene::{BevLayer, Scene};

@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::open;
+use app::open;
 use formats::project;
 use scene::{Class, Scene};
 use world::scenery::Setting;

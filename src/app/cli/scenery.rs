@@ -7,8 +7,8 @@ use serde_json::json;
 
 use super::region_arg::RegionArg;
 use super::{Common, Outcome, output};
-use crate::open;
-use crate::scenery::{Drawer, SceneryWish};
+use app::open;
+use app::scenery::{Drawer, SceneryWish};
 use editor::Document;
 use formats::project;
 use job::redraw::RedrawMask;

@@ -8,8 +8,8 @@ use serde_json::json;
 
 use super::render::size;
 use super::{Common, Outcome, output};
-use crate::export::view_camera;
-use crate::{open, picture};
+use app::export::view_camera;
+use app::{open, picture};
 use sensors::cameras::bounds;
 
 /// Arguments.

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::progress::Progress;
 use super::{Common, Outcome, Stop, output};
-use crate::trade_plot;
+use app::trade_plot;
 use judge::held_out::TEST_SEED;
 use judge::machine::{Load, machine};
 use judge::stops::measure::{Raw, add_times};

@@ -126,8 +126,8 @@ fn short(text: &str) -> String {
 mod tests {
     use clap::{Command, CommandFactory, Parser};
 
-    use super::super::Cli;
     use super::*;
+    use crate::Cli;
 
     /// The message for a command line that must be refused.
     fn refused(words: &[String]) -> String {

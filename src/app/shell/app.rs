@@ -308,7 +308,10 @@ fn waker(ctx: &egui::Context, every_s: f64) -> impl Fn() + Clone + Send + Sync +
     }
 }
 
-pub(crate) use crate::cli::output::one_line;
+/// An error with its causes on one line.
+pub(crate) fn one_line(error: &anyhow::Error) -> String {
+    scene::message::of_error(error.as_ref())
+}
 
 impl eframe::App for SceneloomApp {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {

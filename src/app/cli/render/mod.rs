@@ -11,9 +11,9 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::{Common, Outcome, output};
-use crate::camera_views::camera_input;
-use crate::graphics::Graphics;
-use crate::{open, picture};
+use app::camera_views::camera_input;
+use app::graphics::Graphics;
+use app::{open, picture};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
 use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderContext, RenderOptions, SourceId};

@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 
 use super::Render;
 use super::write::sheet_bytes;
-use crate::picture::View3d;
+use app::picture::View3d;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
 use sensors::cameras::{self, CameraSource, View, bounds};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use crate::cli::output;
-use crate::picture::{self, Picture, SHEET_COLOR};
+use crate::output;
+use app::picture::{self, Picture, SHEET_COLOR};
 use formats::export::ply;
 use formats::multi_plane;
 use formats::npz::{self, Array, Values};

@@ -1,4 +1,4 @@
-//! The command line: one subcommand per file. See README for the rules that all of them follow.
+//! The command line: one subcommand per file. docs/command_line.md has the rules that all of them follow.
 
 mod check;
 mod common;
@@ -8,6 +8,7 @@ mod demo;
 mod diff;
 mod doctor;
 mod edit;
+mod endpoint;
 mod eval;
 mod export;
 pub(crate) mod generate;
@@ -31,7 +32,7 @@ use clap::{Parser, Subcommand};
 pub(crate) use common::Common;
 use common::{Gen, Outcome, Stop};
 
-use crate::open;
+use app::open;
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
 #[derive(Parser)]
@@ -155,6 +156,6 @@ fn editor(path: Option<PathBuf>, trace: Option<PathBuf>) -> Outcome {
         eprintln!("no display: running the demo without a window");
         return demo::Demo::default().run();
     }
-    crate::run_window(scene, path, trace)?;
+    app::run_window(scene, path, trace)?;
     Ok(())
 }

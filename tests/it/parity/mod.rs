@@ -1,6 +1,9 @@
 //! The Rust networks against the Python ones that trained the shipped weights: goldens written by
 //! training/export.py (PyTorch, f32) for exactly these files.
 
+mod folders;
+mod local;
+
 use std::sync::Arc;
 
 use app::open;
@@ -304,124 +307,6 @@ fn row_33_decode() {
     ));
 }
 
-/// Decoding some cells gives the labels of decoding all of them, also at the map's edge.
-#[test]
-fn decode_cells_is_a_part_of_decode() {
-    let models = models();
-    let latent = uniform(LATENT, 9);
-    let all = models.vae.decode(&latent).expect("a finite latent");
-    for (xs, ys) in [(0..1, 0..1), (20..24, 30..41), (47..50, 0..50), (12..13, 49..50)] {
-        let wanted: Vec<bool> = (0..CELLS)
-            .map(|c| xs.contains(&(c / 50)) && ys.contains(&(c % 50)))
-            .collect();
-        let some = models
-            .vae
-            .decode_cells(&latent, &wanted)
-            .expect("a finite latent");
-        for x in 0..200 {
-            for y in 0..200 {
-                if wanted[x / 4 * 50 + y / 4] {
-                    assert_eq!(some.column(x, y), all.column(x, y), "column ({x}, {y})");
-                } else {
-                    assert_eq!(some.column(x, y), &[17; 16], "column ({x}, {y})");
-                }
-            }
-        }
-    }
-    assert_eq!(
-        models
-            .vae
-            .decode_cells(&latent, &[false; CELLS])
-            .expect("nothing to do")
-            .count_set(),
-        0
-    );
-}
-
-/// Renewing the cells around an edit gives what encoding everything gives, bit for bit.
-#[test]
-fn encode_cells_is_a_part_of_encode() {
-    let models = models();
-    let mut grid = scene(&Golden::open("parity_vae.safetensors"));
-    let before = models.vae.encode(&grid).expect("labels");
-    let reach = models.vae.encoder_reach();
-    for (x, y) in [(120, 101), (0, 0), (199, 120)] {
-        (0..5).for_each(|z| grid.set(x, y, z, 4));
-        let near = |c: usize| (c / 50).abs_diff(x / 4) <= reach && (c % 50).abs_diff(y / 4) <= reach;
-        let cells: Vec<bool> = (0..CELLS).map(near).collect();
-        let mut renewed = models.vae.encode(&grid).expect("labels");
-        let all = renewed.clone();
-        // Spoil what is to be renewed.
-        for (c, values) in renewed.chunks_exact_mut(CHANNELS).enumerate() {
-            if cells[c] {
-                values.fill(9.0);
-            }
-        }
-        models
-            .vae
-            .encode_cells(&grid, &cells, &mut renewed)
-            .expect("labels");
-        assert!(renewed == all && all != before);
-    }
-    let mut same = before.clone();
-    models
-        .vae
-        .encode_cells(&grid, &[false; CELLS], &mut same)
-        .expect("nothing to do");
-    assert_eq!(same, before);
-}
-
-/// An edit changes latents only within the encoder's reach, bit for bit.
-#[test]
-fn encoding_is_local() {
-    let models = models();
-    let mut grid = scene(&Golden::open("parity_vae.safetensors"));
-    let before = models.vae.encode(&grid).expect("labels");
-    for z in 0..5 {
-        grid.set(120, 101, z, 4);
-    }
-    let after = models.vae.encode(&grid).expect("labels");
-    let reach = models.vae.encoder_reach();
-    let mut changed = 0;
-    for i in 0..LATENT {
-        let (x, y) = (i / CHANNELS / 50, i / CHANNELS % 50);
-        if before[i] != after[i] {
-            assert!(
-                x.abs_diff(30) <= reach && y.abs_diff(25) <= reach,
-                "cell ({x}, {y}) changed"
-            );
-            changed += 1;
-        }
-    }
-    assert!(changed > 0);
-}
-
-/// Row 17: the number of threads changes no bit.
-#[test]
-fn row_17_same_bits_on_any_number_of_threads() {
-    let models = models();
-    let grid = scene(&Golden::open("parity_vae.safetensors"));
-    let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("a pool");
-        pool.install(|| {
-            let latent = models.vae.encode(&grid).expect("labels");
-            let prepared = models.dit.prepare(&condition()).expect("a condition");
-            let v = models
-                .dit
-                .forward(&uniform(LATENT, 1), 321.0, &prepared)
-                .expect("a finite state");
-            let bits = |values: Vec<f32>| values.into_iter().map(f32::to_bits).collect::<Vec<u32>>();
-            let labels = models.vae.decode(&latent).expect("a finite latent").to_dense();
-            (bits(latent), bits(v), labels)
-        })
-    };
-    let one = run(1);
-    assert!(one == run(2) && one == run(5));
-}
-
 /// Row 30 of the extremes table: no token, one, some and all of them; all is dense bit for bit, some agree
 /// with dense as long as the others' keys and values are those of the same state.
 #[test]
@@ -514,82 +399,6 @@ fn conditions_are_checked() {
             z: 5,
             found: 18
         })
-    );
-}
-
-#[test]
-fn weights_from_a_folder() {
-    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/weights");
-    let read = OccModels::from_dir(&shipped).expect("the shipped weights");
-    assert_eq!(read.card, models().card);
-    let folder = tempfile::tempdir().expect("a folder");
-    let refusal = || {
-        OccModels::from_dir(folder.path())
-            .map(|_| ())
-            .expect_err("refused")
-            .to_string()
-    };
-    assert!(refusal().contains("occ_vae.safetensors: "));
-    let vae = std::fs::read(shipped.join("occ_vae.safetensors")).expect("the file");
-    std::fs::write(folder.path().join("occ_vae.safetensors"), &vae).expect("written");
-    assert!(refusal().contains("occ_dit.safetensors: "));
-    std::fs::write(folder.path().join("occ_dit.safetensors"), &vae).expect("written");
-    assert!(
-        refusal().starts_with("occ_dit.safetensors: metadata"),
-        "{}",
-        refusal()
-    );
-    std::fs::write(folder.path().join("occ_vae.safetensors"), &vae[..vae.len() / 2]).expect("written");
-    assert!(refusal().starts_with("occ_vae.safetensors: not a usable safetensors file"));
-}
-
-/// A folder may lack the fine stage, which is said; one with a refiner of another fine VAE is refused.
-#[test]
-fn the_fine_stage_of_a_folder() {
-    let shipped = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/weights");
-    let folder = tempfile::tempdir().expect("a folder");
-    let copy = |name: &str| std::fs::copy(shipped.join(name), folder.path().join(name)).expect("copied");
-    copy("occ_vae.safetensors");
-    copy("occ_dit.safetensors");
-    let models = OccModels::from_dir(folder.path()).expect("two networks");
-    assert!(models.refiner.is_none() && models.card != self::models().card);
-    let (latent, cells) = (uniform(LATENT, 9), [true; CELLS]);
-    let refined = decode_refined(&models, &latent, &cells, Heard::default(), (2, 1));
-    assert_eq!(
-        refined.expect("no stage"),
-        models.vae.decode(&latent).expect("a finite latent")
-    );
-    let params = GenParams {
-        steps: 1,
-        region: RegionMode::Full,
-        ..GenParams::default()
-    };
-    let scene = Arc::new(open::from_template("straight", 3).expect("a template"));
-    let result = OccPipeline::new(models).run(&Job { scene, params }, &JobCtx::detached());
-    let notes = result.expect("a result").report.notes;
-    assert!(notes.iter().any(|n| n.contains("no fine stage")), "{notes:?}");
-
-    copy("refiner.safetensors");
-    copy("occ_vae_fine.safetensors");
-    let whole = OccModels::from_dir(folder.path()).expect("all networks");
-    assert_eq!(whole.card, self::models().card);
-    let fine = folder.path().join("occ_vae_fine.safetensors");
-    let mut bytes = std::fs::read(&fine).expect("the file");
-    let name = b"09844dff0a03";
-    let at = bytes
-        .windows(name.len())
-        .position(|w| w == name)
-        .expect("its name");
-    bytes[at] = b'1';
-    std::fs::write(&fine, bytes).expect("written");
-    let error = OccModels::from_dir(folder.path())
-        .map(|_| ())
-        .expect_err("another fine VAE");
-    assert!(
-        error
-            .to_string()
-            .starts_with("refiner.safetensors: metadata \"fine\""),
-        "{error}"
     );
 }
 
