@@ -15,7 +15,7 @@ use crate::flood::FillBounds;
 use crate::lane_strip::LaneStrip;
 
 /// Its name.
-pub const ID: ToolId = ToolId("brush_tool");
+pub const ID: ToolId = ToolId::BRUSH;
 
 fn shape(hand: &mut Hand, shape: PaintShape) {
     (hand.tool, hand.shape) = (ID, shape);

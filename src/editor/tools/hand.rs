@@ -13,8 +13,8 @@ use crate::transform::{Kind, Orientation, Snap};
 use crate::voxel_ops::{self, Cell};
 use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
+use super::ToolId;
 use super::beside::ThingState;
-use super::{ToolId, select, voxel};
 
 /// States of the scene whose selection is kept.
 const REMEMBERED_SELECTIONS: usize = 512;
@@ -225,7 +225,7 @@ pub struct Hand {
 impl Default for Hand {
     fn default() -> Self {
         Self {
-            tool: select::ID,
+            tool: ToolId::SELECT,
             selected: None,
             selection: BTreeSet::new(),
             layer: BevLayer::DrivableArea,
@@ -281,7 +281,7 @@ impl Hand {
 
     /// The brush in hand one step larger or smaller.
     pub fn step_brush(&mut self, step: i32) {
-        if self.tool == voxel::ID {
+        if self.tool == ToolId::VOXEL {
             let size = self.voxel_size as i32 + step;
             self.voxel_size = size.clamp(1, Self::MAX_VOXEL_SIZE as i32) as usize;
             return;
@@ -499,7 +499,7 @@ mod tests {
         assert_eq!(ui.brush_m, 0.4);
         ui.step_brush(1);
         assert_eq!(ui.brush_m, 0.8);
-        ui.tool = voxel::ID;
+        ui.tool = ToolId::VOXEL;
         for (step, size) in [(-1, 1), (1, 2), (1, 3), (1, 4), (1, 5), (1, 5)] {
             ui.step_brush(step);
             assert_eq!(ui.voxel_size, size);

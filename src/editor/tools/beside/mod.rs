@@ -4,6 +4,7 @@
 pub mod building;
 mod draft;
 mod drawing;
+mod in_hand;
 pub mod line;
 mod options;
 pub mod post;

@@ -4,14 +4,15 @@ use glam::{DVec2, DVec3};
 
 use crate::pick::{self, Handle};
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, Context, Cursor, Gizmo, HANDLE_REACH, Hand, Key, Mark, Modifiers, Part,
-    Pointer, Response, Role, Sight,
+    Act, At, CLICK_SLACK, Choose, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers, Pointer,
+    Response, Role, Sight,
 };
 use crate::transform::{Axis, Kind, Pull, Transform};
 use crate::{Edit, choose};
 use scene::{Frame, SceneBox};
 
 use super::boxes::{self, Steered, step_name, transform};
+use super::gizmo::{Gizmo, Part};
 use super::things::{self, Pull as ThingPull, ThingDrag, thing_under};
 
 /// What the button held does. All points are of the ego frame, m.

@@ -9,7 +9,7 @@ use scene::{BoxId, Frame, SceneBox};
 use super::things::along_with;
 
 /// A drag of boxes that has not begun to move.
-pub(in crate::tools) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Kind) -> Transform {
+pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Kind) -> Transform {
     Transform {
         kind,
         start: boxes_of(frame, ids),

@@ -2,6 +2,7 @@
 
 mod above;
 mod boxes;
+mod gizmo;
 mod space;
 mod things;
 
@@ -15,11 +16,10 @@ use super::{
     ViewKind, Wants, When, hint_of,
 };
 
-pub(super) use boxes::transform;
 pub use things::{in_ego, thing_under};
 
 /// Its name.
-pub const ID: ToolId = ToolId("select_tool");
+pub const ID: ToolId = ToolId::SELECT;
 
 const fn shortcut(
     id: &'static str,

@@ -7,14 +7,15 @@ use crate::pick::{self, Hit};
 use crate::pick_things;
 use crate::tools::rays::along_axis;
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, Context, FARTHEST_M, Gizmo, Hand, Key, Mark, Modifiers, Part, Pointer,
-    Response, Role, Sight, View, point_of,
+    Act, At, CLICK_SLACK, Choose, Context, FARTHEST_M, Hand, Key, Mark, Modifiers, Pointer, Response, Role,
+    Sight, View, point_of,
 };
 use crate::transform::{Axis, Kind, Orientation, Pull, Transform};
 use scene::{BoxId, Frame, Scene, ThingId};
 
 use super::above::{how, preview};
 use super::boxes::{self, Steered, step_name, transform};
+use super::gizmo::{Gizmo, Part};
 use super::things::{self, Pull as ThingPull, ThingDrag};
 
 /// How near the pointer takes hold of the knob, points.

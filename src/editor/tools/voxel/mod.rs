@@ -15,12 +15,12 @@ use super::rays::{along_axis, on_plane};
 use super::setting::{self, Control, Number, Setting, Value};
 use super::{
     Act, At, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, Response, Shortcut, Sight, Tool,
-    ToolDef, ToolId, ViewKind, VoxelMode, VoxelVerb, Wants, When, brush, hint_of,
+    ToolDef, ToolId, ViewKind, VoxelMode, VoxelVerb, Wants, When, hint_of,
 };
 use target::target;
 
 /// Its name.
-pub const ID: ToolId = ToolId("voxel_brush");
+pub const ID: ToolId = ToolId::VOXEL;
 
 /// Colour of what would go.
 pub(super) const REMOVED: [u8; 3] = [238, 112, 104];
@@ -69,7 +69,7 @@ pub static DEF: ToolDef = ToolDef {
             "B",
             When::OverSpace,
             |h| {
-                h.tool = if h.tool == ID { brush::ID } else { ID };
+                h.tool = if h.tool == ID { ToolId::BRUSH } else { ID };
             },
         ),
         shortcut("voxel_attach", "Attach voxels", "T", When::Always, |h| {

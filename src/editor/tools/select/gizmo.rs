@@ -6,8 +6,9 @@ use crate::arrange::{boxes_of, middle_m};
 use crate::transform::{Axis, Kind, Orientation, Transform};
 use scene::Frame;
 
-use super::select::{self, transform};
-use super::{At, Hand, Mark, Role, View, ViewKind};
+use super::ID;
+use super::boxes::transform;
+use crate::tools::{At, Hand, Mark, Role, View, ViewKind};
 
 /// Length of an arrow, radius of the ring, points.
 const LENGTH: f64 = 62.0;
@@ -38,7 +39,7 @@ impl<'a> Gizmo<'a> {
     /// `None` if no box is chosen, the middle is not in view, or the knob of the box turns it there.
     pub fn new(frame: &Frame, hand: &Hand, view: &'a dyn View) -> Option<Self> {
         let from_above = view.kind() == ViewKind::Bev;
-        if hand.tool != select::ID || from_above && hand.gizmo == Kind::Turn {
+        if hand.tool != ID || from_above && hand.gizmo == Kind::Turn {
             return None;
         }
         let chosen = hand.chosen();

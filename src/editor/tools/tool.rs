@@ -1,0 +1,173 @@
+//! What a tool is: its name, its row of the table, and the state machine that each of them is.
+
+use std::borrow::Cow;
+use std::fmt::Debug;
+
+use glam::DVec2;
+
+use scene::Frame;
+
+use super::{Act, Context, Event, Hand, Mark, Response, Setting, Sight, Value, ViewKind};
+
+/// The name of a tool: that of the action that takes it, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ToolId(pub &'static str);
+
+impl ToolId {
+    /// The tool in hand at first.
+    pub const SELECT: Self = Self("select_tool");
+    /// The one that paints the map.
+    pub const BRUSH: Self = Self("brush_tool");
+    /// The one whose brush is as wide as so many voxels.
+    pub const VOXEL: Self = Self("voxel_brush");
+}
+
+/// A row of the table.
+#[derive(Debug)]
+pub struct ToolDef {
+    /// Its name.
+    pub id: ToolId,
+    /// For a person.
+    pub title: &'static str,
+    /// What the bar says of its key.
+    pub key: &'static str,
+    /// Name of its icon.
+    pub icon: &'static str,
+    /// Where it stands.
+    pub group: Group,
+    /// It is a brush: the keys of its size do not raise things.
+    pub is_brush: bool,
+    /// It paints the map or voxels: its letters count even if something is chosen.
+    pub paints: bool,
+    /// Actions that take it, one for each way of using it.
+    pub shortcuts: &'static [Shortcut],
+    /// Makes one with nothing in hand.
+    pub make: fn() -> Box<dyn Tool>,
+}
+
+/// A part of the bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// For the map, boxes and voxels.
+    Scene,
+    /// For things beside the road.
+    Beside,
+}
+
+/// An action that takes a tool, or changes how it is used.
+#[derive(Debug)]
+pub struct Shortcut {
+    /// Its name in key files.
+    pub id: &'static str,
+    /// For a person.
+    pub title: &'static str,
+    /// Default chords, separated by blanks.
+    pub keys: &'static str,
+    /// When its chords count.
+    pub when: When,
+    /// What it changes: mostly it takes the tool.
+    pub set: fn(&mut Hand),
+}
+
+/// When the chords of a shortcut count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// Always.
+    Always,
+    /// With the pointer over the 3D view.
+    OverSpace,
+    /// While something is chosen and no brush is in hand.
+    Chosen,
+}
+
+/// What the pointer looks like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cursor {
+    /// An arrow.
+    #[default]
+    Default,
+    /// A cross.
+    Crosshair,
+    /// Not at all: what is drawn shows where it is.
+    Hidden,
+    /// Nothing can be done here.
+    Forbidden,
+    /// Something is chosen here.
+    Pointing,
+    /// Something is moved here.
+    Move,
+    /// Something is turned here.
+    Turn,
+}
+
+/// What the buttons do, in a few parts.
+pub type Hint = Vec<Cow<'static, str>>;
+
+/// Parts of a hint that do not change.
+pub fn hint_of(parts: &[&'static str]) -> Hint {
+    parts.iter().map(|p| Cow::Borrowed(*p)).collect()
+}
+
+/// A state machine: what the pointer does with a tool in hand.
+pub trait Tool: Debug + Send {
+    /// Takes an event.
+    fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response;
+
+    /// What buttons and held keys do, as they count in the view under the pointer.
+    fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint;
+
+    /// What the pointer looks like over a view.
+    fn cursor(&self, sight: &Sight<'_>) -> Cursor;
+
+    /// What is drawn over a view. It is asked of the tool in hand, and of those that say so when others are.
+    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+        let _ = sight;
+        Vec::new()
+    }
+
+    /// Its options, as they are.
+    fn options(&self, hand: &Hand) -> Vec<Setting> {
+        let _ = hand;
+        Vec::new()
+    }
+
+    /// The user set an option.
+    fn set(&mut self, hand: &mut Hand, frame: &Frame, id: &str, value: Value) -> Vec<Act> {
+        let _ = (hand, frame, id, value);
+        Vec::new()
+    }
+
+    /// Points set so far, ego frame, m, of what is drawn or measured point by point.
+    fn points_m(&self) -> &[DVec2] {
+        &[]
+    }
+
+    /// The keys that it wants now.
+    fn wants(&self) -> Wants {
+        match self.points_m().is_empty() {
+            true => Wants::Nothing,
+            false => Wants::Points,
+        }
+    }
+
+    /// Another tool comes to hand, or this one anew.
+    fn put_down(&mut self) {}
+
+    /// It is to be used another way: what was drawn point by point is dropped.
+    fn restart(&mut self) {}
+}
+
+/// What a tool wants to hear beside the pointer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wants {
+    /// Nothing.
+    Nothing,
+    /// Escape alone.
+    Escape,
+    /// Escape, Enter, Backspace and the double click.
+    Points,
+    /// Axes, digits, Enter and Backspace.
+    Drag,
+    /// The wheel.
+    Wheel,
+}
