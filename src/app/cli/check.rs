@@ -64,7 +64,7 @@ impl Check {
         if let Some(path) = &self.output {
             let before = findings.len();
             let mut apply = || -> anyhow::Result<()> {
-                let edits = checks::fix_all(&scene, &findings);
+                let edits = editor::fix::fix_all(&scene, &findings);
                 editor::apply_all(&edits, &mut scene).context("a fix does not apply")
             };
             apply()?;

@@ -12,8 +12,9 @@ use job::GenParams;
 use judge::markdown::{Table, markdown, measure_all};
 use judge::options::Options;
 use judge::origin::Origin;
-use judge::suite::{self, SUITES, Suite};
+use judge::suite::Suite;
 use judge::suites::layout::Who;
+use judge::table::{SUITES, named};
 
 /// What runs every suite.
 const ALL: &str = "all";
@@ -131,7 +132,7 @@ impl Eval {
             progress.done();
             return self.tell(&tables);
         }
-        let suite = suite::named(&self.suite).context("no such suite")?;
+        let suite = named(&self.suite).context("no such suite")?;
         let report = suite.measure(&of(suite), &progress)?;
         progress.done();
         output::report(&self.common, &report.json, || suite.text(&report.json));

@@ -112,9 +112,9 @@ impl SceneloomApp {
     ) {
         let (send, scene) = bounded(1);
         let wake = ctx.clone();
-        let thread = std::thread::Builder::new().name("open".into()).spawn(move || {
+        let thread = job::guard::spawn("open", make, move |scene| {
             // Nobody listens if something else was opened meanwhile.
-            let _ = send.send(make());
+            let _ = send.send(scene.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();
         });
         match thread {

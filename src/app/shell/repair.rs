@@ -4,7 +4,6 @@ use glam::{DVec2, DVec3};
 
 use super::app::SceneloomApp;
 use crate::command::Command;
-use editor::checks;
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
 impl SceneloomApp {
@@ -35,7 +34,7 @@ impl SceneloomApp {
         else {
             return;
         };
-        let edits = checks::fix_all(scene, findings);
+        let edits = editor::fix::fix_all(scene, findings);
         if !edits.is_empty() {
             self.execute(Command::Apply("Fix all findings", edits), ctx);
         }

@@ -156,7 +156,7 @@ fn many_floating_groups_are_one_line_more() {
     let findings = run_checks(&scene, None);
     assert_eq!(findings.len(), 41);
     assert_eq!(findings[40].text, "10 smaller groups float, 10 voxels");
-    let edits = fix_all(&scene, &findings);
+    let edits = crate::fix::fix_all(&scene, &findings);
     edits.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
     assert_eq!(run_checks(&scene, None), []);
 }
@@ -247,7 +247,7 @@ fn three_in_one_place_are_fixed_at_once() {
     let mut scene = street(&objects);
     let findings = run_checks(&scene, None);
     assert_eq!(checks(&findings), ["overlapping_boxes"; 3]);
-    let edits = fix_all(&scene, &findings);
+    let edits = crate::fix::fix_all(&scene, &findings);
     assert!(
         edits.iter().all(|e| matches!(e, Edit::MoveBox { .. })),
         "nothing is taken away unasked: {edits:?}"
@@ -427,7 +427,7 @@ fn what_is_not_sound_is_named_and_stops_no_other_check() {
     ]) {
         assert!(finding.text.starts_with(text), "{} is not {text}", finding.text);
     }
-    let fixed = fix_all(&scene, &findings);
+    let fixed = crate::fix::fix_all(&scene, &findings);
     fixed.iter().for_each(|e| e.apply(&mut scene).expect("sound"));
     let boxes: Vec<u32> = scene.frame().boxes.keys().map(|id| id.0).collect();
     assert_eq!(
@@ -467,7 +467,7 @@ fn waived_findings_stay_until_they_are_taken_back() {
     let findings = run_checks(&scene, None);
     let open = |scene: &Scene| waive::open(scene.frame(), &run_checks(scene, None)).count();
     assert!(!findings.is_empty() && open(&scene) == findings.len());
-    assert!(!fix_all(&scene, &findings).is_empty());
+    assert!(!crate::fix::fix_all(&scene, &findings).is_empty());
     let waive_edit = |f: &Finding, reason: &str| Edit::Waive {
         check: f.check.into(),
         box_id: f.box_id,
@@ -479,7 +479,7 @@ fn waived_findings_stay_until_they_are_taken_back() {
     }
     assert_eq!((open(&scene), scene.frame().waivers.len()), (0, findings.len()));
     assert!(
-        fix_all(&scene, &findings).is_empty(),
+        crate::fix::fix_all(&scene, &findings).is_empty(),
         "what is waived is not repaired"
     );
     // A new reason takes the place of the old one.

@@ -67,10 +67,10 @@ fn noise_is_checked_and_repaired_in_bounds() {
             "{cells} cells in findings"
         );
         let start = Instant::now();
-        let edits = fix_all(&scene, &findings);
+        let edits = crate::fix::fix_all(&scene, &findings);
         let fixed_in = start.elapsed();
         assert!(!edits.is_empty());
-        let most = MOST * names().count() * 64 + MOST * MOST_ROUNDS;
+        let most = MOST * names().count() * 64 + MOST * crate::fix::MOST_ROUNDS;
         assert!(edits.len() <= most, "{} edits", edits.len());
         crate::apply_all(&edits, &mut scene).expect("fixes apply");
         println!(

@@ -20,6 +20,7 @@ mod error;
 mod header;
 mod manifest;
 pub mod migrate;
+mod names;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -32,18 +33,9 @@ use scene::Scene;
 
 use super::{atomic, input};
 pub use error::ProjectError;
+use names::{FORMAT, MANIFEST, SCENE};
+pub use names::{LARGEST_FILE, MAX_FRAMES, VERSION};
 pub use write::to_bytes;
-
-/// Version written.
-pub const VERSION: u32 = 3;
-/// Frames a project may hold.
-pub const MAX_FRAMES: usize = 10_000;
-/// Largest project file that is written and read, bytes.
-pub const LARGEST_FILE: u64 = 512 << 20;
-
-const FORMAT: &str = "sceneloom";
-const MANIFEST: &str = "manifest.json";
-const SCENE: &str = "scene.json";
 
 /// Writes the scene to `path`, whole or not at all; the number of bytes written.
 pub fn save(path: &Path, scene: &Scene) -> Result<u64, ProjectError> {

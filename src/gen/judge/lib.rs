@@ -9,6 +9,7 @@ pub mod origin;
 pub mod stops;
 pub mod suite;
 pub mod suites;
+pub mod table;
 pub mod trials;
 
 /// Who is told how far a measurement has come.

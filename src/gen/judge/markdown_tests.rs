@@ -1,7 +1,7 @@
 //! Tests of the table of suites: every suite has its section, what cannot be measured says so, commands name their options.
 
 use super::*;
-use crate::suite::SUITES;
+use crate::table::SUITES;
 
 /// Suites that answer at once, through the same path as the real ones.
 static QUICK: [Suite; 2] = [

@@ -4,6 +4,8 @@
 
 pub mod column_heights;
 pub mod encoder;
+mod error;
+mod latent;
 pub mod layout;
 pub mod lidar;
 pub mod occ_dit;
@@ -20,74 +22,22 @@ mod golden;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use thiserror::Error;
-
 pub use column_heights::{ColumnHeights, GROUPS, column_heights};
+pub use error::ModelError;
+pub(crate) use error::{check_finite, check_length};
+pub use latent::{CELLS, CHANNELS, LATENT, SIDE};
 pub use nn::map::Window;
 pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
 pub use occ_vae::{Heard, OccVae, VaeConfig};
 pub use refiner::Refiner;
 
-use nn::ops::OpsError;
 use nn::weights::{self, WeightFile, WeightsError};
-
-/// Latent cells along x and along y.
-pub const SIDE: usize = 50;
-/// Latent cells in all.
-pub const CELLS: usize = SIDE * SIDE;
-/// Numbers per latent cell.
-pub const CHANNELS: usize = 8;
-/// Numbers in a latent: `[x][y][channel]`.
-pub const LATENT: usize = CELLS * CHANNELS;
 
 /// File names of the two networks.
 pub const FILES: [&str; 2] = ["occ_vae.safetensors", "occ_dit.safetensors"];
 
 /// File name of the fine VAE.
 const FINE: &str = "occ_vae_fine.safetensors";
-
-/// What a network refuses, or cannot promise any more.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum ModelError {
-    /// An input of the wrong size.
-    #[error("{what} has {found} values, expected {expected}")]
-    Length {
-        /// Which input.
-        what: &'static str,
-        /// Its length.
-        found: usize,
-        /// The length it must have.
-        expected: usize,
-    },
-    /// NaN, infinity, or so large that the network would overflow.
-    #[error("{what}: value {index} is {value}, expected finite numbers below 1e30")]
-    NotFinite {
-        /// Which input or output.
-        what: &'static str,
-        /// Index of the first such value.
-        index: usize,
-        /// That value.
-        value: f32,
-    },
-    /// A label that is no class.
-    #[error("voxel ({x}, {y}, {z}) has label {found}, expected 0 to 17")]
-    Label {
-        /// Index of the voxel.
-        x: usize,
-        /// Index of the voxel.
-        y: usize,
-        /// Index of the voxel.
-        z: usize,
-        /// The label.
-        found: u8,
-    },
-    /// The backend could not compute.
-    #[error(transparent)]
-    Backend(#[from] OpsError),
-    /// A time outside the schedule.
-    #[error("timestep is {0}, expected 0 to 999")]
-    Timestep(f32),
-}
 
 /// The VAE of 100x100x16 latents that ships with the program: it keeps nearly every label. [`refiner`] generates its latents.
 pub fn fine_vae() -> Result<OccVae, WeightsError> {
@@ -96,29 +46,6 @@ pub fn fine_vae() -> Result<OccVae, WeightsError> {
 
 fn fine_file() -> Result<WeightFile<'static>, WeightsError> {
     WeightFile::parse(FINE, assets::weights::OCC_VAE_FINE)
-}
-
-fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), ModelError> {
-    if found == expected {
-        Ok(())
-    } else {
-        Err(ModelError::Length {
-            what,
-            found,
-            expected,
-        })
-    }
-}
-
-fn check_finite(what: &'static str, values: &[f32]) -> Result<(), ModelError> {
-    match values.iter().position(|v| v.is_nan() || v.abs() >= 1e30) {
-        None => Ok(()),
-        Some(index) => Err(ModelError::NotFinite {
-            what,
-            index,
-            value: values[index],
-        }),
-    }
 }
 
 /// Names the weights in reports.

@@ -1,0 +1,196 @@
+//! The table of suites.
+
+use crate::suite::{Found, Options, Suite};
+use job::pipeline::OccPipeline;
+use nets::OccModels;
+
+/// All suites, in the order of `eval all`.
+pub static SUITES: [Suite; 7] = [
+    Suite {
+        name: "world",
+        title: "Procedural worlds beside what is known of real drives",
+        figures: &[
+            ("figures inside the range of real data", "/inside"),
+            ("of so many", "/of"),
+            (
+                "findings of the checks per world",
+                "/complete_worlds/findings_per_world",
+            ),
+            (
+                "share of worlds with an error",
+                "/complete_worlds/share_with_errors",
+            ),
+            ("lost echoes told by class, range, angle (AUC)", "/lidar/lost_auc"),
+        ],
+        quick: |options| options.frames = 16,
+        run: |options, progress| options.world(progress),
+    },
+    Suite {
+        name: "vae",
+        title: "What encoding and decoding keep",
+        figures: &[
+            ("complete worlds, mIoU", "/complete/mean/miou_per_frame"),
+            ("complete worlds, IoU", "/complete/mean/iou_per_frame"),
+            ("labels, mIoU", "/labels/mean/miou_per_frame"),
+            (
+                "labels, mIoU, told the draft and what was observed",
+                "/labels/told/miou_per_frame",
+            ),
+            ("labels, mIoU, fine latents", "/labels/fine/miou_per_frame"),
+            (
+                "mIoU that slopes cost at most",
+                "/labels_on_slopes/worst_loss_of_miou",
+            ),
+        ],
+        quick: |options| options.frames = 3,
+        run: |options, progress| {
+            with_pipeline(options, |pipeline| match &options.data {
+                Some(dir) => options.vae_on_files(dir, pipeline, progress),
+                None => options.vae(pipeline, progress),
+            })
+        },
+    },
+    Suite {
+        name: "generation",
+        title: "Scenes from their layout alone",
+        figures: &[
+            (
+                "drivable agreement",
+                "/rows/generated/layout_agreement/drivable_per_frame",
+            ),
+            (
+                "vehicle agreement",
+                "/rows/generated/layout_agreement/vehicles_per_frame",
+            ),
+            (
+                "told from worlds, by scene (.5: not at all)",
+                "/rows/scenery_drawn/told_apart/occupancy/scene",
+            ),
+            (
+                "the same of as many worlds",
+                "/rows/worlds/told_apart/occupancy/scene",
+            ),
+            (
+                "cells Fréchet, scenery drawn",
+                "/rows/scenery_drawn/distances/cells/frechet",
+            ),
+            (
+                "cells Fréchet, as many worlds",
+                "/rows/worlds/distances/cells/frechet",
+            ),
+            (
+                "findings per scene, scenery drawn",
+                "/rows/scenery_drawn/findings/all",
+            ),
+            (
+                "given manmade background, footprint IoU",
+                "/background_given/manmade/footprint_iou",
+            ),
+            ("diversity across seeds (1 - IoU)", "/diversity_across_seeds"),
+            ("time of a scene, s (median)", "/wall_s_median"),
+        ],
+        quick: |options| (options.frames, options.rows_only) = (4, true),
+        run: |options, progress| with_pipeline(options, |pipeline| options.generation(pipeline, progress)),
+    },
+    Suite {
+        name: "editing",
+        title: "Edits do what they say, and nothing else",
+        figures: &[
+            ("removals that succeed", "/kinds/remove/success"),
+            ("additions that succeed", "/kinds/add/success"),
+            ("moves that succeed", "/kinds/move/success"),
+            ("changes of class that succeed", "/kinds/class/success"),
+            ("roads that are widened", "/kinds/road/success"),
+            ("crossings that are painted", "/kinds/crossing/success"),
+            ("untouched voxels changed", "/untouched_voxels_changed"),
+            ("round trip error of inversion", "/round_trip_error"),
+            (
+                "two edits in either order differ (share of voxels)",
+                "/two_edits_in_either_order_differ",
+            ),
+            ("time of a removal, s (median)", "/kinds/remove/wall_s_median"),
+            ("time of inverting a scene, s (median)", "/inversion_s_median"),
+        ],
+        quick: |options| {
+            (options.frames, options.vehicles, options.band_worlds) = (2, 1, 2);
+            options.presets = vec!["balanced".into()];
+        },
+        run: |options, progress| with_pipeline(options, |pipeline| options.editing(pipeline, progress)),
+    },
+    Suite {
+        name: "lidar",
+        title: "LiDAR sweeps against the analytic surfaces of worlds",
+        figures: &[
+            (
+                "range error, learned, m (median)",
+                "/complete/learned/range_error_m/p50",
+            ),
+            (
+                "range error, lifted voxel cast, m (median)",
+                "/complete/voxel_cast_lifted/range_error_m/p50",
+            ),
+            (
+                "range error, learned, m (mean)",
+                "/complete/learned/range_error_m/mean",
+            ),
+            ("JSD of bird's-eye maps, learned", "/complete/learned/jsd"),
+            ("MMD, learned (1e-4)", "/complete/learned/mmd_1e-4"),
+            ("lost echoes, AUC", "/complete/echoes/drop_auc"),
+            ("time of a sweep, s (median)", "/complete/learned/wall_s"),
+        ],
+        quick: |options| options.frames = 3,
+        run: |options, progress| options.lidar(progress),
+    },
+    Suite {
+        name: "splat",
+        title: "Camera maps beside those of the analytic worlds",
+        figures: &[
+            ("labels agree, marched with boxes", "/march_boxes/label_agreement"),
+            ("labels agree, splats", "/splat/label_agreement"),
+            (
+                "depth error, marched with boxes, m (median)",
+                "/march_boxes/depth_error_median_m",
+            ),
+            ("depth error, splats, m (median)", "/splat/depth_error_median_m"),
+            (
+                "time of six maps, marched with boxes, ms (median)",
+                "/march_boxes/ms_median",
+            ),
+            ("time of six maps, splats, ms (median)", "/splat/ms_median"),
+        ],
+        quick: |options| options.frames = 3,
+        run: |options, progress| options.splat(progress),
+    },
+    Suite {
+        name: "layout",
+        title: "Sentences become scenes and edits",
+        figures: &[
+            ("prompts wholly right", "/made/wholly_right"),
+            ("edits wholly right", "/edited/wholly_right"),
+            ("prompts silently wrong", "/made/silently_wrong"),
+            ("edits silently wrong", "/edited/silently_wrong"),
+            ("counts exact, prompts", "/made/counts_exact"),
+            ("relations satisfied, prompts", "/made/relations_satisfied"),
+            ("time of a prompt, s (median)", "/made/wall_s_median"),
+            ("time of an edit, s (median)", "/edited/wall_s_median"),
+        ],
+        quick: |options| (options.sentences, options.placer_prompts) = (Some(240), 2),
+        run: |options, progress| options.layout(progress),
+    },
+];
+
+/// The suite of that name.
+pub fn named(name: &str) -> Option<&'static Suite> {
+    SUITES.iter().find(|s| s.name == name)
+}
+
+/// Runs `with` on the networks of the options; the report names them.
+fn with_pipeline(
+    options: &Options,
+    with: impl FnOnce(&mut OccPipeline) -> anyhow::Result<Found>,
+) -> anyhow::Result<Found> {
+    let mut pipeline = OccPipeline::new(OccModels::of(options.weights.as_deref())?);
+    let (mut report, bars) = with(&mut pipeline)?;
+    report["model"] = pipeline.models().card.name.clone().into();
+    Ok((report, bars))
+}
