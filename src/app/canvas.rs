@@ -26,10 +26,10 @@ use super::marks::{self, Board};
 use super::pointer::{self, Held, Step};
 pub use super::screen_map::ScreenMap;
 use super::state::{UiState, Underlay};
-use super::theme;
 use super::thing_outlines;
 use crate::shell::live::Bounds;
 use crate::windows::row;
+use widgets::theme;
 
 /// The bird's-eye view's own state.
 pub struct Canvas {

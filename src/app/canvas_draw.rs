@@ -9,8 +9,8 @@ use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, Senso
 
 use super::screen_map::ScreenMap;
 use super::state::UiState;
-use super::theme;
 use crate::shell::live::Bounds;
+use widgets::theme;
 
 /// What of `outer` is not covered by `inner`.
 pub(super) fn around(inner: Rect, outer: Rect) -> [Rect; 4] {

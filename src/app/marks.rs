@@ -8,8 +8,8 @@ use scene::{BevLayer, GridSpec};
 
 use super::canvas_draw::{BoxLook, draw_box};
 use super::screen_map::{ScreenMap, pos};
-use super::theme;
 use super::thing_outlines;
+use widgets::theme;
 
 /// Colours of x, y and z, as everywhere in the field.
 const AXES: [Color32; 3] = [

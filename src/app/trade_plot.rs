@@ -4,9 +4,9 @@ use egui::{Align2, RichText, Ui, Vec2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Text, VLine};
 
 use crate::picture::Picture;
-use crate::theme;
 use judge::stops::figures::{percent, seconds};
 use judge::stops::plan::Mark;
+use widgets::theme;
 
 /// Published wall times to be seen beside ours, s: all on graphics cards.
 pub const ANCHORS: [(f64, &str); 1] = [(3.25, "X-Scene, 20 steps\non an A6000: 3.25 s")];

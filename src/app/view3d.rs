@@ -22,9 +22,9 @@ use super::marks::Board;
 use super::pointer::{self, Held, Step};
 use super::screen_map::{point, pos};
 use super::state::{UiState, position_text};
-use super::theme;
 use super::thing_outlines;
-use crate::shell::software_ui;
+use widgets::software_ui;
+use widgets::theme;
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;

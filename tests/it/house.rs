@@ -171,7 +171,7 @@ const TEN: [(&str, &str); 10] = [
     ("pub enum Edit {", "src/scene/"),
     ("pub fn commit_drag(", "src/editor/"),
     ("pub struct DdimStep", "src/gen/diffusion/"),
-    ("pub struct GenWorker", "src/gen/job/"),
+    ("pub type GenWorker", "src/gen/job/"),
     ("pub struct Int8Matrix", "src/gen/nn/"),
     ("pub struct OccVae ", "src/gen/nets/"),
     ("pub trait CameraSource", "src/gen/sensors/"),

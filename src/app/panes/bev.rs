@@ -9,7 +9,7 @@ use super::pane::{Pane, PaneContext};
 use crate::canvas::CanvasInput;
 use crate::command::Command;
 use crate::state::Underlay;
-use crate::widgets::icons::{self, Icon};
+use widgets::icons::{self, Icon};
 
 /// The bird's-eye view.
 pub struct Bev;

@@ -9,11 +9,11 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
-use crate::theme;
-use crate::widgets::icons::Icon;
 use editor::Edit;
 use scene::{Class, GridSpec, LidarSweep, Scene, SceneBox};
 use viewport::GROUND_TOP_M;
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// What is shown around the box, m.
 const MARGIN_M: f64 = 1.6;

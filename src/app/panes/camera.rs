@@ -9,7 +9,7 @@ use super::cameras::compared;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
-use crate::widgets::icons::Icon;
+use widgets::icons::Icon;
 
 /// The camera of this index.
 pub struct Camera(pub u8);

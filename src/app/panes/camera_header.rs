@@ -4,9 +4,9 @@ use egui::Ui;
 
 use crate::command::{Command, Window};
 use crate::state::UiState;
-use crate::theme;
-use crate::widgets::icons;
 use sensors::cameras::{self, Knob};
+use widgets::icons;
+use widgets::theme;
 
 use super::camera_strip::{CamerasInput, thousands};
 use super::conditions::conditions;

@@ -15,10 +15,10 @@ use crate::camera_views::{CameraView, march};
 use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
 use crate::state::UiState;
-use crate::theme;
 use scene::{Camera, Class, Scene, SceneRev};
 use sensors::cameras::ViewId;
 use sensors::march::{MarchHit, MarchScene};
+use widgets::theme;
 
 /// Textures of the pictures.
 #[derive(Default)]

@@ -9,7 +9,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
-use crate::widgets::icons::Icon;
+use widgets::icons::Icon;
 
 /// All cameras.
 pub struct Cameras;

@@ -9,11 +9,11 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::{Command, ViewCommand};
 use crate::meant::Meant;
-use crate::theme;
-use crate::widgets::icons::Icon;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
 use scene::{BoxId, Frame};
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// What the quality checks found.
 pub struct Checks;
@@ -109,7 +109,7 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
         ui.horizontal(|ui| {
             let (dot, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
             ui.painter()
-                .circle_filled(dot.center(), 4.0, crate::theme::good());
+                .circle_filled(dot.center(), 4.0, widgets::theme::good());
             ui.label(match waived.len() {
                 0 => "All is well: no check found anything.",
                 _ => "All is well, but for what was waived.",

@@ -15,9 +15,9 @@ use crate::canvas::Canvas;
 use crate::sensing::Sensing;
 pub use crate::state::CompareMode;
 use crate::state::UiState;
-use crate::theme;
 use crate::view3d::View3d;
 use viewport::BrushCells;
+use widgets::theme;
 
 /// What differs between two grids.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,10 +3,10 @@
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
-use crate::theme;
-use crate::widgets::fields::{fields, number};
+use crate::fields::{fields, number};
 use editor::Edit;
 use scene::{Conditions, Scene, Sun, TimeOfDay, Weather};
+use widgets::theme;
 
 /// Name of the undo step.
 const STEP: &str = "Change weather";
@@ -98,7 +98,7 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     }
     response |= ui
         .horizontal(|ui| {
-            crate::widgets::fields::caption(ui, "Seed");
+            crate::fields::caption(ui, "Seed");
             let seed = DragValue::new(&mut new.seed).speed(0.05);
             ui.add_sized([86.0, theme::ROW], seed)
                 .accessible_name("Seed of the pictures")

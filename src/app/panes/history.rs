@@ -5,9 +5,9 @@ use egui::Ui;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
-use crate::theme;
-use crate::widgets::icons::Icon;
 use editor::Document;
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// Height of a line, with the gap.
 const HISTORY_ROW: f32 = theme::ROW - 3.0;

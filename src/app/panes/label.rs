@@ -3,11 +3,11 @@
 use egui::{Color32, Ui};
 
 use crate::command::Command;
-use crate::theme;
-use crate::widgets::fields::caption;
-use crate::widgets::icons;
+use crate::fields::caption;
 use editor::Edit;
 use scene::{BoxLabel, BoxName, Paint, SceneBox};
+use widgets::icons;
+use widgets::theme;
 
 /// A field for the name and a list of paints; what is set holds for all of the boxes.
 pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {

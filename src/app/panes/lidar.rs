@@ -12,10 +12,10 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
-use crate::theme;
-use crate::widgets::icons::Icon;
 use scene::{LidarSweep, Scene};
 use viewport::{LidarColorMode, lidar_colors};
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// Columns of the picture.
 const COLUMNS: usize = 1080;

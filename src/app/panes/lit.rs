@@ -4,11 +4,11 @@ use egui::{Color32, Painter, Pos2, Rect, Stroke, pos2};
 use glam::DVec3;
 
 use crate::state::UiState;
-use crate::theme;
 use scene::{Camera, Scene, SceneBox};
 use sensors::march::GroundHeight;
 use sensors::perspective::clip_near;
 use viewport::GROUND_TOP_M;
+use widgets::theme;
 
 /// Pairs of corners; bits of a corner are its signs along x, y and z.
 const EDGES: [[usize; 2]; 12] = [

@@ -7,16 +7,16 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::command::{Command, ViewCommand};
+use crate::fields::{caption, field, fields, number, numbers};
 use crate::panes::label::label_ui;
 use crate::state::UiState;
-use crate::theme;
 use crate::tools::{Choose, ToolCommand};
-use crate::widgets::fields::{caption, field, fields, number, numbers};
-use crate::widgets::icons::Icon;
-use crate::widgets::icons::{self, section};
 use editor::transform::Orientation;
 use editor::{Document, Edit, arrange};
 use scene::{BoxId, Class, Frame, SceneBox, Thing};
+use widgets::icons::Icon;
+use widgets::icons::{self, section};
+use widgets::theme;
 
 /// The chosen box in numbers, all boxes.
 pub struct Objects;

@@ -21,7 +21,7 @@ use crate::shell::tuning::Tuning;
 use crate::shell::versions::Versions;
 use crate::state::UiState;
 use crate::view3d::View3d;
-use crate::widgets::icons::Icon;
+use widgets::icons::Icon;
 
 /// Where a pane opens that is nowhere yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,8 +13,8 @@ use egui::Ui;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
-use crate::theme;
-use crate::widgets::icons::Icon;
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// Words that become a scene, or change it.
 pub struct Prompt;

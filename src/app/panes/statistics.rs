@@ -12,8 +12,8 @@ use super::camera_strip::thousands;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
-use crate::theme;
-use crate::widgets::icons::{Icon, section};
+use widgets::icons::{Icon, section};
+use widgets::theme;
 
 /// Width of the names of classes, and of the numbers behind the bars, points.
 const NAME_POINTS: f32 = 116.0;

@@ -6,12 +6,12 @@ use egui::Ui;
 
 use crate::command::{Command, ViewCommand};
 use crate::state::UiState;
-use crate::theme;
 use crate::tools::things::{ThingCommand, words};
 use crate::tools::{Choose, ToolCommand};
-use crate::widgets::icons;
 use editor::tools::Act;
 use scene::{Background, Frame, Thing, ThingId};
+use widgets::icons;
+use widgets::theme;
 
 /// A row.
 pub enum ThingRow<'a> {

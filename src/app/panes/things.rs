@@ -3,17 +3,17 @@
 use egui::{Response, Ui};
 
 use crate::command::{Command, ViewCommand};
-use crate::theme;
+use crate::fields::{caption, number};
 use crate::tools::ToolCommand;
 use crate::tools::panel::list;
 use crate::tools::things::building::{FACADES, ROOFS};
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, words};
-use crate::widgets::fields::{caption, number};
-use crate::widgets::icons::{self, Icon};
 use editor::Edit;
 use scene::background::{LineKind, PostKind, STOREY_M};
 use scene::{Background, Form, Thing};
+use widgets::icons::{self, Icon};
+use widgets::theme;
 
 fn send(command: ThingCommand, commands: &mut Vec<Command>) {
     commands.push(Command::Tools(ToolCommand::Thing(command)));

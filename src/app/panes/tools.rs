@@ -10,14 +10,14 @@ use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::{UiState, Underlay};
-use crate::theme;
 use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, panel};
-use crate::widgets::hint::caption;
-use crate::widgets::icons::Icon;
-use crate::widgets::icons::{self, section};
 use editor::tools::brush;
 use scene::{BevLayer, BevLayout, Frame, GridSpec};
+use widgets::hint::caption;
+use widgets::icons::Icon;
+use widgets::icons::{self, section};
+use widgets::theme;
 
 /// Area of a cell that is drawn anew, m².
 const REGION_CELL_M2: f64 = 2.56;

@@ -7,14 +7,14 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::{Command, GenerationCommand};
 use crate::shell::tuning::{LastEdit, Measuring, Tuning, foretold};
-use crate::theme;
 use crate::trade_plot::front_plot;
-use crate::widgets::icons::Icon;
 use job::GenParams;
 use judge::machine::{Load, machine};
 use judge::stops::figures::{percent, seconds};
 use judge::stops::plan::Mark;
 use trade::Stop;
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// The quality slider, its measurements, the receipt of the last edit.
 pub struct Trade;

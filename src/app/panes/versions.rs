@@ -10,10 +10,10 @@ use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::compare::CompareMode;
 use crate::shell::versions::Versions;
 use crate::state::UiState;
-use crate::theme;
-use crate::widgets::icons;
-use crate::widgets::icons::Icon;
 use scene::SceneRev;
+use widgets::icons;
+use widgets::icons::Icon;
+use widgets::theme;
 
 /// What was generated so far.
 pub struct VersionsPane;

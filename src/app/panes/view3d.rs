@@ -8,10 +8,10 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::{LidarModel, UiState};
-use crate::theme;
 use crate::view3d::{View3d, View3dInput};
-use crate::widgets::icons::{self, Icon};
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
+use widgets::icons::{self, Icon};
+use widgets::theme;
 
 /// The 3D view.
 pub struct View3dPane;

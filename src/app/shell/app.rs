@@ -28,10 +28,10 @@ use super::versions::Versions;
 use super::views::Views;
 use crate::sensing::Sensing;
 use crate::state::UiState;
-use crate::theme;
 use crate::view3d::View3d;
 use crate::windows::palette::Palette;
 use crate::windows::shortcuts::Shortcuts;
+use widgets::theme;
 
 /// Makes the pipeline, on the worker's thread.
 pub type BuildPipeline = Box<dyn FnMut() -> Result<Box<dyn Pipeline>, GenError> + Send>;

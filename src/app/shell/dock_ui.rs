@@ -15,8 +15,8 @@ use crate::panes;
 use crate::panes::compare::tag;
 use crate::panes::id::PaneId;
 use crate::panes::pane::{Pane, PaneContext};
-use crate::theme;
-use crate::widgets::icons::{self, Icon};
+use widgets::icons::{self, Icon};
+use widgets::theme;
 
 /// Height of a pane's header, points.
 pub const HEADER: f32 = 30.0;

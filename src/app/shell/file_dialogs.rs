@@ -7,7 +7,7 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo};
 
-use crate::theme;
+use widgets::theme;
 
 /// What a file is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,10 +8,10 @@ use crate::command::{Command, FileCommand, GenerationCommand, ViewCommand, Windo
 use crate::panes;
 use crate::panes::id::PaneId;
 use crate::state::UiState;
-use crate::theme;
 use crate::tools::ToolCommand;
 use crate::tools::things::ThingCommand;
 use viewport::ViewPreset;
+use widgets::theme;
 
 /// Takes a command if its entry was clicked.
 type On<'a> = dyn FnMut(bool, Command) + 'a;

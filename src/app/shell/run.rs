@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::app::{AppConfig, SceneloomApp};
-use super::{priority, settings, software_ui};
+use super::{priority, settings};
 use crate::{open, pipeline};
 use formats::project;
 use job::GenParams;
 use scene::Scene;
+use widgets::software_ui;
 
 /// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
 /// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].

@@ -12,9 +12,9 @@ use super::bookmarks::Bookmark;
 use super::keymap::Chords;
 use super::workspace::Workspace;
 use crate::panes::id::PaneId;
-use crate::theme::Look;
 use editor::Document;
 use scene::classes::Palette;
+use widgets::theme::Look;
 
 /// Files that are remembered.
 const RECENT: usize = 12;

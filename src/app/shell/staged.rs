@@ -11,7 +11,6 @@ use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::UiState;
-use crate::theme;
 use editor::Edit;
 use editor::part::{Part, changed_by_class};
 use job::redraw::RedrawMask;
@@ -20,6 +19,7 @@ use job::{GenParams, RegionMode};
 use scene::background::in_grid;
 use scene::raster::box_cells;
 use scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
+use widgets::theme;
 
 /// Classes that the menu of parts lists.
 const MOST_CLASSES: usize = 8;

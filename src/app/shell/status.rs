@@ -9,8 +9,8 @@ use crate::panes::id::PaneId;
 use crate::shell::guard::Pause;
 use crate::shell::live::{Purpose, Running};
 use crate::state::UiState;
-use crate::theme;
 use job::{GenReport, Stage};
+use widgets::theme;
 
 /// How often the time that a job runs is shown anew.
 const REPAINT: std::time::Duration = std::time::Duration::from_millis(250);

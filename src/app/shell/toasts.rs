@@ -2,8 +2,8 @@
 
 use egui::{Align2, Color32, Frame, Id, Margin, Order, Rect, Stroke, Ui, vec2};
 
-use crate::theme;
-use crate::widgets::icons::{self, Icon};
+use widgets::icons::{self, Icon};
+use widgets::theme;
 
 /// How serious a message is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,11 +10,11 @@ use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::id::PaneId;
 use crate::shell::workspace::Workspace;
 use crate::state::UiState;
-use crate::theme;
 use crate::tools::ToolId;
-use crate::widgets::icons::{self, Icon};
 use editor::tools::beside::building;
 use editor::tools::{Group, ToolDef, all};
+use widgets::icons::{self, Icon};
+use widgets::theme;
 
 /// What the bar shows of the document and the worker.
 pub struct ToolbarInput<'a> {

@@ -16,7 +16,6 @@ use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
 use crate::state::CompareMode;
-use crate::theme;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
@@ -24,6 +23,7 @@ use crate::windows::start::start_ui;
 use crate::windows::unsaved::{self, Unsaved};
 use editor::checks::{Severity, waive};
 use scene::Scene;
+use widgets::theme;
 
 impl SceneloomApp {
     /// Draws the window and carries out what the user asked for.

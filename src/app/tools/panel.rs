@@ -3,13 +3,13 @@
 use egui::Ui;
 use egui::accesskit::Role;
 
-use crate::theme;
-use crate::widgets::fields::label;
-use crate::widgets::hint::caption;
-use crate::widgets::icons::{self, section};
+use crate::fields::label;
 use editor::tools::setting::{Control, Number};
 use editor::tools::{Setting, Value};
 use scene::Class;
+use widgets::hint::caption;
+use widgets::icons::{self, section};
+use widgets::theme;
 
 /// Draws options; what the user set, by name.
 pub fn show(ui: &mut Ui, settings: &[Setting]) -> Vec<(&'static str, Value)> {

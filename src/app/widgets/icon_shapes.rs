@@ -1,10 +1,10 @@
 //! The shapes of the icons, in points of a square of 16 by 16.
 
 /// `(x, y)`, from the upper left.
-pub(super) type Point = (f32, f32);
+pub(crate) type Point = (f32, f32);
 
 /// One stroke of an icon.
-pub(super) enum Part {
+pub(crate) enum Part {
     /// A line from point to point.
     Line(&'static [Point]),
     /// The same, back to its beginning.
@@ -21,13 +21,13 @@ pub(super) enum Part {
     Dot(Point, f32),
 }
 
-pub(super) const CURSOR: &[Part] = &[Part::Closed(&[
+pub(crate) const CURSOR: &[Part] = &[Part::Closed(&[
     (4.0, 2.0),
     (4.0, 13.0),
     (7.0, 10.3),
     (11.5, 10.3),
 ])];
-pub(super) const BRUSH: &[Part] = &[
+pub(crate) const BRUSH: &[Part] = &[
     Part::Line(&[(13.5, 2.5), (7.5, 8.5)]),
     Part::Closed(&[
         (7.6, 8.4),
@@ -39,13 +39,13 @@ pub(super) const BRUSH: &[Part] = &[
         (8.6, 9.5),
     ]),
 ];
-pub(super) const ADD_BOX: &[Part] = &[
+pub(crate) const ADD_BOX: &[Part] = &[
     Part::Closed(&[(2.5, 5.0), (10.5, 5.0), (10.5, 13.0), (2.5, 13.0)]),
     Part::Line(&[(6.5, 7.0), (6.5, 11.0)]),
     Part::Line(&[(4.5, 9.0), (8.5, 9.0)]),
     Part::Line(&[(6.0, 2.5), (13.0, 2.5), (13.0, 9.5)]),
 ];
-pub(super) const VOXEL: &[Part] = &[
+pub(crate) const VOXEL: &[Part] = &[
     Part::Closed(&[
         (8.0, 1.8),
         (13.5, 4.8),
@@ -57,21 +57,21 @@ pub(super) const VOXEL: &[Part] = &[
     Part::Line(&[(2.5, 4.8), (8.0, 7.9), (13.5, 4.8)]),
     Part::Line(&[(8.0, 7.9), (8.0, 14.2)]),
 ];
-pub(super) const UNDO: &[Part] = &[
+pub(crate) const UNDO: &[Part] = &[
     Part::Line(&[(6.2, 2.6), (3.0, 5.8), (6.2, 9.0)]),
     Part::Line(&[(3.0, 5.8), (9.5, 5.8)]),
     Part::Arc((9.5, 9.5), 3.7, -90.0, 90.0),
     Part::Line(&[(9.5, 13.2), (6.0, 13.2)]),
 ];
-pub(super) const REDO: &[Part] = &[
+pub(crate) const REDO: &[Part] = &[
     Part::Line(&[(9.8, 2.6), (13.0, 5.8), (9.8, 9.0)]),
     Part::Line(&[(13.0, 5.8), (6.5, 5.8)]),
     Part::Arc((6.5, 9.5), 3.7, 90.0, 270.0),
     Part::Line(&[(6.5, 13.2), (10.0, 13.2)]),
 ];
-pub(super) const PLAY: &[Part] = &[Part::Solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)])];
-pub(super) const STOP: &[Part] = &[Part::Solid(&[(3.5, 3.5), (12.5, 3.5), (12.5, 12.5), (3.5, 12.5)])];
-pub(super) const LIVE: &[Part] = &[Part::Closed(&[
+pub(crate) const PLAY: &[Part] = &[Part::Solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)])];
+pub(crate) const STOP: &[Part] = &[Part::Solid(&[(3.5, 3.5), (12.5, 3.5), (12.5, 12.5), (3.5, 12.5)])];
+pub(crate) const LIVE: &[Part] = &[Part::Closed(&[
     (9.2, 1.8),
     (3.6, 9.0),
     (7.4, 9.0),
@@ -79,35 +79,35 @@ pub(super) const LIVE: &[Part] = &[Part::Closed(&[
     (12.4, 6.8),
     (8.4, 6.8),
 ])];
-pub(super) const EYE: &[Part] = &[Part::Lid(1.0), Part::Lid(-1.0), Part::Dot((8.0, 8.0), 2.2)];
-pub(super) const EYE_OFF: &[Part] = &[
+pub(crate) const EYE: &[Part] = &[Part::Lid(1.0), Part::Lid(-1.0), Part::Dot((8.0, 8.0), 2.2)];
+pub(crate) const EYE_OFF: &[Part] = &[
     Part::Lid(1.0),
     Part::Lid(-1.0),
     Part::Line(&[(3.0, 13.2), (13.0, 2.8)]),
 ];
-pub(super) const TRASH: &[Part] = &[
+pub(crate) const TRASH: &[Part] = &[
     Part::Line(&[(2.8, 4.4), (13.2, 4.4)]),
     Part::Line(&[(6.0, 4.2), (6.4, 2.4), (9.6, 2.4), (10.0, 4.2)]),
     Part::Line(&[(4.0, 4.6), (4.8, 13.6), (11.2, 13.6), (12.0, 4.6)]),
     Part::Line(&[(6.8, 7.0), (6.9, 11.2)]),
     Part::Line(&[(9.2, 7.0), (9.1, 11.2)]),
 ];
-pub(super) const COPY: &[Part] = &[
+pub(crate) const COPY: &[Part] = &[
     Part::Closed(&[(2.5, 5.5), (9.5, 5.5), (9.5, 13.5), (2.5, 13.5)]),
     Part::Line(&[(6.0, 3.6), (6.0, 2.5), (13.5, 2.5), (13.5, 10.5), (11.4, 10.5)]),
 ];
-pub(super) const FOCUS: &[Part] = &[
+pub(crate) const FOCUS: &[Part] = &[
     Part::Line(&[(10.6, 13.6), (13.6, 13.6), (13.6, 10.6)]),
     Part::Line(&[(5.4, 13.6), (2.4, 13.6), (2.4, 10.6)]),
     Part::Line(&[(10.6, 2.4), (13.6, 2.4), (13.6, 5.4)]),
     Part::Line(&[(5.4, 2.4), (2.4, 2.4), (2.4, 5.4)]),
     Part::Dot((8.0, 8.0), 1.6),
 ];
-pub(super) const CLOSE: &[Part] = &[
+pub(crate) const CLOSE: &[Part] = &[
     Part::Line(&[(4.0, 4.0), (12.0, 12.0)]),
     Part::Line(&[(12.0, 4.0), (4.0, 12.0)]),
 ];
-pub(super) const CAMERA: &[Part] = &[
+pub(crate) const CAMERA: &[Part] = &[
     Part::Closed(&[
         (2.0, 5.0),
         (5.0, 5.0),
@@ -120,13 +120,13 @@ pub(super) const CAMERA: &[Part] = &[
     ]),
     Part::Circle((8.0, 8.8), 2.4),
 ];
-pub(super) const MEASURE: &[Part] = &[
+pub(crate) const MEASURE: &[Part] = &[
     Part::Closed(&[(1.8, 10.6), (10.6, 1.8), (14.2, 5.4), (5.4, 14.2)]),
     Part::Line(&[(4.4, 8.0), (6.0, 9.6)]),
     Part::Line(&[(6.6, 5.8), (8.2, 7.4)]),
     Part::Line(&[(8.8, 3.6), (10.4, 5.2)]),
 ];
-pub(super) const REGION: &[Part] = &[
+pub(crate) const REGION: &[Part] = &[
     Part::Line(&[(2.0, 5.0), (2.0, 2.0)]),
     Part::Line(&[(11.0, 2.0), (14.0, 2.0)]),
     Part::Line(&[(14.0, 11.0), (14.0, 14.0)]),
@@ -137,38 +137,38 @@ pub(super) const REGION: &[Part] = &[
     Part::Line(&[(8.0, 4.8), (8.0, 11.2)]),
     Part::Line(&[(4.8, 8.0), (11.2, 8.0)]),
 ];
-pub(super) const BUILDING: &[Part] = &[
+pub(crate) const BUILDING: &[Part] = &[
     Part::Closed(&[(2.5, 6.6), (8.0, 2.2), (13.5, 6.6), (13.5, 13.8), (2.5, 13.8)]),
     Part::Line(&[(6.6, 13.8), (6.6, 9.6), (9.4, 9.6), (9.4, 13.8)]),
 ];
-pub(super) const TREE: &[Part] = &[
+pub(crate) const TREE: &[Part] = &[
     Part::Circle((8.0, 6.0), 4.2),
     Part::Line(&[(8.0, 14.2), (8.0, 7.4)]),
     Part::Line(&[(8.0, 9.6), (9.9, 7.6)]),
 ];
-pub(super) const FENCE: &[Part] = &[
+pub(crate) const FENCE: &[Part] = &[
     Part::Line(&[(3.0, 14.0), (3.0, 3.6)]),
     Part::Line(&[(8.0, 14.0), (8.0, 3.6)]),
     Part::Line(&[(13.0, 14.0), (13.0, 3.6)]),
     Part::Line(&[(1.4, 6.4), (14.6, 6.4)]),
     Part::Line(&[(1.4, 10.6), (14.6, 10.6)]),
 ];
-pub(super) const SHRUBS: &[Part] = &[
+pub(crate) const SHRUBS: &[Part] = &[
     Part::Arc((4.8, 12.6), 3.2, 180.0, 360.0),
     Part::Arc((11.2, 12.6), 3.2, 180.0, 360.0),
     Part::Arc((8.0, 9.2), 3.4, 190.0, 350.0),
     Part::Line(&[(1.6, 12.6), (14.4, 12.6)]),
 ];
-pub(super) const LAMP: &[Part] = &[
+pub(crate) const LAMP: &[Part] = &[
     Part::Line(&[(5.0, 14.2), (5.0, 2.6), (12.2, 2.6)]),
     Part::Line(&[(10.2, 2.6), (10.2, 5.0), (13.6, 5.0), (13.6, 2.6)]),
     Part::Line(&[(3.2, 14.2), (6.8, 14.2)]),
 ];
-pub(super) const LOCK: &[Part] = &[
+pub(crate) const LOCK: &[Part] = &[
     Part::Closed(&[(3.5, 7.2), (12.5, 7.2), (12.5, 13.6), (3.5, 13.6)]),
     Part::Arc((8.0, 6.8), 3.1, 180.0, 360.0),
 ];
-pub(super) const MAP: &[Part] = &[
+pub(crate) const MAP: &[Part] = &[
     Part::Closed(&[
         (2.0, 3.5),
         (6.0, 2.2),
@@ -182,17 +182,17 @@ pub(super) const MAP: &[Part] = &[
     Part::Line(&[(6.0, 2.2), (6.0, 12.2)]),
     Part::Line(&[(10.0, 3.8), (10.0, 13.8)]),
 ];
-pub(super) const SWEEP: &[Part] = &[
+pub(crate) const SWEEP: &[Part] = &[
     Part::Dot((8.0, 12.6), 1.4),
     Part::Arc((8.0, 12.6), 4.4, 205.0, 335.0),
     Part::Arc((8.0, 12.6), 8.0, 210.0, 330.0),
 ];
-pub(super) const SIDES: &[Part] = &[
+pub(crate) const SIDES: &[Part] = &[
     Part::Closed(&[(2.0, 2.5), (7.0, 2.5), (7.0, 7.0), (2.0, 7.0)]),
     Part::Closed(&[(9.0, 2.5), (14.0, 2.5), (14.0, 7.0), (9.0, 7.0)]),
     Part::Closed(&[(2.0, 9.0), (7.0, 9.0), (7.0, 13.5), (2.0, 13.5)]),
 ];
-pub(super) const WORDS: &[Part] = &[
+pub(crate) const WORDS: &[Part] = &[
     Part::Closed(&[
         (2.0, 3.0),
         (14.0, 3.0),
@@ -205,12 +205,12 @@ pub(super) const WORDS: &[Part] = &[
     Part::Line(&[(4.6, 6.0), (11.4, 6.0)]),
     Part::Line(&[(4.6, 8.4), (9.0, 8.4)]),
 ];
-pub(super) const STACK: &[Part] = &[
+pub(crate) const STACK: &[Part] = &[
     Part::Closed(&[(8.0, 2.2), (14.0, 5.2), (8.0, 8.2), (2.0, 5.2)]),
     Part::Line(&[(2.0, 8.2), (8.0, 11.2), (14.0, 8.2)]),
     Part::Line(&[(2.0, 11.0), (8.0, 14.0), (14.0, 11.0)]),
 ];
-pub(super) const LIST: &[Part] = &[
+pub(crate) const LIST: &[Part] = &[
     Part::Dot((3.0, 4.0), 1.1),
     Part::Dot((3.0, 8.0), 1.1),
     Part::Dot((3.0, 12.0), 1.1),
@@ -218,14 +218,14 @@ pub(super) const LIST: &[Part] = &[
     Part::Line(&[(6.0, 8.0), (14.0, 8.0)]),
     Part::Line(&[(6.0, 12.0), (14.0, 12.0)]),
 ];
-pub(super) const TICK: &[Part] = &[
+pub(crate) const TICK: &[Part] = &[
     Part::Closed(&[(2.5, 2.5), (13.5, 2.5), (13.5, 13.5), (2.5, 13.5)]),
     Part::Line(&[(5.0, 8.2), (7.2, 10.6), (11.2, 5.4)]),
 ];
-pub(super) const BARS: &[Part] = &[
+pub(crate) const BARS: &[Part] = &[
     Part::Line(&[(2.2, 13.8), (13.8, 13.8)]),
     Part::Closed(&[(3.0, 8.6), (5.4, 8.6), (5.4, 13.8), (3.0, 13.8)]),
     Part::Closed(&[(6.8, 3.0), (9.2, 3.0), (9.2, 13.8), (6.8, 13.8)]),
     Part::Closed(&[(10.6, 6.0), (13.0, 6.0), (13.0, 13.8), (10.6, 13.8)]),
 ];
-pub(super) const CIRCLE: &[Part] = &[Part::Circle((8.0, 8.0), 6.0), Part::Circle((8.0, 8.0), 0.9)];
+pub(crate) const CIRCLE: &[Part] = &[Part::Circle((8.0, 8.0), 6.0), Part::Circle((8.0, 8.0), 0.9)];

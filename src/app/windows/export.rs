@@ -6,9 +6,9 @@ use egui::{DragValue, Ui};
 
 use crate::export::{ExportOptions, ExportProgress, Format};
 use crate::state::LidarModel;
-use crate::theme;
 use formats::export::Product;
 use sensors::cameras::{self, ViewId};
+use widgets::theme;
 
 /// What the dialog shows of the application.
 pub struct ExportInput<'a> {

@@ -9,12 +9,12 @@ use crate::panes;
 use crate::shell::actions::ACTIONS;
 use crate::shell::keymap::Keymap;
 use crate::state::UiState;
-use crate::theme;
 use crate::tools::ToolCommand;
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, ThingKind};
 use scene::Class;
 use scene::background::{LineKind, PostKind};
+use widgets::theme;
 
 /// Lines that are shown at most.
 const SHOWN: usize = 12;

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Align2, Color32, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::shell::perf::{BLOCKED_S, Perf, Quantiles, SHOWN};
-use crate::theme;
+use widgets::theme;
 
 /// Draws it into the upper right corner of `over` while it is open.
 pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {

@@ -3,7 +3,7 @@
 use egui::{Id, Modal, Ui};
 
 use crate::shell::recovery::{Stale, ago};
-use crate::theme;
+use widgets::theme;
 
 /// What the user wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,12 +3,12 @@
 use egui::{DragValue, Ui};
 
 use crate::command::Command;
+use crate::fields::{caption, number};
 use crate::state::UiState;
-use crate::theme;
-use crate::widgets::fields::{caption, number};
-use crate::widgets::icons;
 use editor::arrange::{self, MAX_COPIES, RowAlong};
 use scene::{Frame, SceneBox};
+use widgets::icons;
+use widgets::theme;
 
 use crate::tools::ToolCommand;
 

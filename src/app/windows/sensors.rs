@@ -4,15 +4,15 @@ use egui::Ui;
 use glam::DVec3;
 
 use crate::command::{Command, FileCommand};
+use crate::fields::{caption, field, number, numbers};
 use crate::panes::camera_strip::camera_label;
 use crate::state::{SensorChoice, UiState};
-use crate::theme;
-use crate::widgets::fields::{caption, field, number, numbers};
-use crate::widgets::icons::{self, Icon, section};
 use editor::Edit;
 use scene::rig::Aim;
 use scene::rig_presets::{LIDARS, RIGS};
 use scene::{Camera, LidarPattern, SensorRig};
+use widgets::icons::{self, Icon, section};
+use widgets::theme;
 
 /// Sensors of a kind that a rig may have; a strip of more cameras could not be read.
 const MAX_CAMERAS: usize = 12;

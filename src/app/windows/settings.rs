@@ -3,8 +3,8 @@
 use egui::{Ui, Window};
 
 use crate::shell::settings::Settings;
-use crate::theme::{self, Look};
 use scene::classes::Palette;
+use widgets::theme::{self, Look};
 
 /// Draws the window while it is open.
 pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {

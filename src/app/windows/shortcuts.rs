@@ -5,7 +5,7 @@ use egui::{Id, Key, Modal, Ui, WidgetInfo, vec2};
 
 use crate::shell::actions::{ACTIONS, ActionDef, Group, When};
 use crate::shell::keymap::{Chord, Chords, Keymap, PRESETS};
-use crate::theme;
+use widgets::theme;
 
 /// What no preset changes: the pointer, and keys that go with it.
 const FIXED: [(&str, &str); 9] = [
@@ -122,7 +122,7 @@ impl Shortcuts {
         if actions.is_empty() {
             return;
         }
-        crate::widgets::icons::section(ui, title);
+        widgets::icons::section(ui, title);
         for action in actions {
             ui.horizontal(|ui| {
                 let chords = keymap.text(action.id);
@@ -171,7 +171,7 @@ impl Shortcuts {
         if rows.is_empty() {
             return;
         }
-        crate::widgets::icons::section(ui, "Pointer");
+        widgets::icons::section(ui, "Pointer");
         for (keys, what) in rows {
             ui.horizontal(|ui| {
                 ui.scope(|ui| {

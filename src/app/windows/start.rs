@@ -8,9 +8,9 @@ use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, FileCommand};
 use crate::shell::settings::Settings;
-use crate::theme;
-use crate::widgets::thumbnail;
 use scene::BevLayout;
+use widgets::theme;
+use widgets::thumbnail;
 use world::template::{TEMPLATES, layout};
 
 /// Draws the start screen while it is open.
@@ -34,7 +34,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
         ui.label(egui::RichText::new(text).color(theme::text_weak()));
         ui.add_space(2.0 * theme::GAP);
         ui.columns_const(|[left, right]: &mut [Ui; 2]| {
-            crate::widgets::icons::section(left, "Begin");
+            widgets::icons::section(left, "Begin");
             if wide(left, "Go on with this scene", "Esc").clicked() {
                 *open = false;
             }
@@ -45,7 +45,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 choose(open, Command::File(FileCommand::New));
             }
             left.add_space(theme::GAP);
-            crate::widgets::icons::section(left, "Recent");
+            widgets::icons::section(left, "Recent");
             if settings.recent.is_empty() {
                 let text = format!(
                     "Scenes that you open or save appear here. Files can also be dropped on the window: {}.",
@@ -61,7 +61,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                     choose(open, Command::File(FileCommand::OpenPath(path.to_owned())));
                 }
             }
-            crate::widgets::icons::section(right, "Roads to begin with");
+            widgets::icons::section(right, "Roads to begin with");
             for pair in TEMPLATES.chunks(2) {
                 right.columns(2, |cells| {
                     for (ui, name) in cells.iter_mut().zip(pair) {
@@ -125,7 +125,7 @@ fn road(ui: &mut Ui, name: &'static str) -> egui::Response {
     let font = egui::TextStyle::Small.resolve(ui.style());
     ui.painter()
         .text(below.center(), egui::Align2::CENTER_CENTER, label, font, color);
-    crate::widgets::icons::focus_ring(ui, &response, rect);
+    widgets::icons::focus_ring(ui, &response, rect);
     response
 }
 

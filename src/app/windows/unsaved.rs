@@ -2,7 +2,7 @@
 
 use egui::{Id, Modal, Ui};
 
-use crate::theme;
+use widgets::theme;
 
 /// What the user wants to become of unsaved changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,11 +4,11 @@ use app::compare::CompareMode;
 use app::dock::Workspace;
 use app::panes::id::PaneId;
 use app::settings::Settings;
-use app::theme::Look;
 use editor::tools::{add_box, measure, select};
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use scene::{BoxId, Class};
+use widgets::theme::Look;
 
 use super::bench::{Bench, Do};
 

@@ -10,9 +10,9 @@ use super::heard::Both;
 use super::plan::{Plan, Told};
 use crate::command::{Command, FileCommand};
 use crate::text::doubts;
-use crate::theme;
-use crate::widgets::icons::section;
 use scene::Scene;
+use widgets::icons::section;
+use widgets::theme;
 
 /// Prompts kept.
 const HISTORY: usize = 50;

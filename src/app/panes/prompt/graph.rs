@@ -3,11 +3,11 @@
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
-use crate::theme;
-use crate::widgets::icons::section;
 use place::to_graph::Graphed;
 use scene::Class;
 use scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
+use widgets::icons::section;
+use widgets::theme;
 
 /// Height of a line of the picture, points.
 const LINE: f32 = 19.0;

@@ -12,12 +12,12 @@ use super::graph;
 use super::recalled::{Recall, Recalled};
 use crate::command::Command;
 use crate::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
-use crate::theme;
-use crate::widgets::thumbnail;
 use editor::Edit;
 use job::guard::Panicked;
 use place::description::Description;
 use place::to_graph::{Graphed, to_graph};
+use widgets::theme;
+use widgets::thumbnail;
 
 use scene::{BoxId, Scene, SceneBox};
 
@@ -256,7 +256,7 @@ impl Plan {
             shown = format!("{shown} (locked)");
         }
         let here = self.made.as_ref().is_some_and(|(of, _)| *of == prompt);
-        let response = crate::widgets::chip::menu(ui, &shown, |ui| {
+        let response = widgets::chip::menu(ui, &shown, |ui| {
             ui.horizontal(|ui| {
                 ui.label("Number");
                 let mut n = count;
@@ -465,7 +465,7 @@ impl Plan {
                         egui::FontId::proportional(10.0),
                         theme::text_weak(),
                     );
-                    crate::widgets::icons::focus_ring(ui, &response, rect);
+                    widgets::icons::focus_ring(ui, &response, rect);
                     if let Some(laid) = variants.found.get(&seed) {
                         let boxes = &laid.placement.boxes;
                         thumbnail::enlarged(&response, &laid.road.layout, boxes, "A click makes this scene");

@@ -6,10 +6,10 @@ use egui::{Sense, Ui, vec2};
 
 use crate::memory::layout_of;
 use crate::prompting::{Ask, Remembered, recall};
-use crate::theme;
-use crate::widgets::thumbnail;
 use job::guard::Panicked;
 use scene::{BevLayout, SceneBox};
+use widgets::theme;
+use widgets::thumbnail;
 
 /// Side of the map, points.
 const SIDE: f32 = 84.0;

@@ -4,8 +4,8 @@ use egui::{DragValue, Ui};
 use glam::DVec3;
 
 use crate::command::Command;
-use crate::theme;
 use editor::Edit;
+use widgets::theme;
 
 /// What the fields to its right are.
 pub fn caption(ui: &mut Ui, text: &str) {
