@@ -5,7 +5,7 @@ use std::path::Path;
 
 use editor::{Document, Edit};
 use formats::project;
-use scene::{Class, LidarSweep, SceneBox};
+use scene::{Class, LidarSweep, Scene, SceneBox};
 use sensors::caster::Caster;
 use viewport::{
     LayoutPlane, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewScene, Viewport, headless_device,
@@ -111,15 +111,34 @@ fn main() {
     };
     draw("all, four samples a pixel", smooth, PANE);
 
-    // A car that is nudged to and fro: only what that touches is drawn again.
-    let car = boxes
-        .iter()
-        .copied()
+    nudged(
+        &scene,
+        (&sweep, &colors),
+        &all,
+        (&device, &queue),
+        &mut viewport,
+        &camera,
+    );
+}
+
+/// A car that is nudged to and fro: only what that touches is drawn again.
+fn nudged(
+    scene: &Scene,
+    (sweep, colors): (&LidarSweep, &[[u8; 4]]),
+    all: &ViewOptions,
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    viewport: &mut Viewport,
+    camera: &ViewCamera,
+) {
+    let car = scene
+        .frame()
+        .boxes
+        .values()
         .find(|b| b.class == Class::Car)
         .copied()
         .expect("a car");
     let moved = |along_m: f64| {
-        let mut document = Document::new(scene.clone());
+        let mut document = Document::new(Scene::clone(scene));
         let edit = Edit::MoveBox {
             id: car.id,
             center_m: Some(car.center_m + glam::DVec3::X * along_m),
@@ -145,14 +164,11 @@ fn main() {
                 selected: &[car.id],
                 hovered: None,
                 brush: &[],
-                lidar: Some(LidarView {
-                    sweep: &sweep,
-                    colors: &colors,
-                }),
+                lidar: Some(LidarView { sweep, colors }),
                 rig: &scene.rig,
-                options: &all,
+                options: all,
             };
-            viewport.render(&device, &queue, &camera, &view, PANE[0], PANE[1]);
+            viewport.render(device, queue, camera, &view, PANE[0], PANE[1]);
             device
                 .poll(wgpu::PollType::wait_indefinitely())
                 .expect("the device answers");

@@ -249,6 +249,55 @@ fn env(name: &str, default: u64) -> u64 {
         .unwrap_or(default)
 }
 
+/// Some previews, then let go or given up.
+fn drag(document: &mut Document, model: &mut Model, random: &mut Random, before: &Scene) {
+    for _ in 0..1 + random.below(5) {
+        let edit = edit(random, before);
+        let was = document.scene().rev;
+        if document.preview(&edit).is_err() {
+            assert_eq!(document.scene().rev, was, "a refused preview shows");
+        }
+        assert_eq!(document.settled_scene().rev, before.rev, "a preview is no step");
+        sweep(document.scene());
+    }
+    match random.below(4) {
+        0 => document.cancel_drag(),
+        1 => {
+            let dragging = document.is_dragging();
+            let label = document.undo();
+            assert!(
+                !dragging || label.is_none(),
+                "undo ends the drag and nothing else"
+            );
+            if !dragging && label.is_some() {
+                model.at -= 1;
+            }
+        }
+        _ => document.commit_drag("Drag"),
+    }
+    document.cancel_drag();
+    model.note(document);
+}
+
+/// The invariants, after command `i`.
+fn check(document: &Document, model: &Model, i: u64) {
+    assert!(!document.is_dragging());
+    assert_eq!(document.history().len(), model.states.len(), "command {i}");
+    assert!(document.history().len() <= Document::MAX_STEPS);
+    assert_eq!(document.position(), model.at, "command {i}");
+    let deep = i.is_multiple_of(DEEP_EVERY);
+    let (shown, expected) = (document.scene(), &model.states[model.at]);
+    assert_eq!(shown.rev, expected.rev, "command {i}");
+    assert!(
+        same(shown, expected, deep),
+        "command {i}: not the state that was there"
+    );
+    sweep(shown);
+    if deep {
+        shown.frames.iter().for_each(|f| grids_are_sound(f));
+    }
+}
+
 #[test]
 fn random_commands_break_nothing() {
     let (commands, seed) = (
@@ -289,33 +338,7 @@ fn random_commands_break_nothing() {
                 model.note(&document);
             }
             9..=12 => {
-                // A drag: some previews, then let go or given up.
-                for _ in 0..1 + random.below(5) {
-                    let edit = edit(&mut random, &before);
-                    let was = document.scene().rev;
-                    if document.preview(&edit).is_err() {
-                        assert_eq!(document.scene().rev, was, "a refused preview shows");
-                    }
-                    assert_eq!(document.settled_scene().rev, before.rev, "a preview is no step");
-                    sweep(document.scene());
-                }
-                match random.below(4) {
-                    0 => document.cancel_drag(),
-                    1 => {
-                        let dragging = document.is_dragging();
-                        let label = document.undo();
-                        assert!(
-                            !dragging || label.is_none(),
-                            "undo ends the drag and nothing else"
-                        );
-                        if !dragging && label.is_some() {
-                            model.at -= 1;
-                        }
-                    }
-                    _ => document.commit_drag("Drag"),
-                }
-                document.cancel_drag();
-                model.note(&document);
+                drag(&mut document, &mut model, &mut random, &before);
             }
             13..=15 => {
                 for _ in 0..1 + random.below(6) {
@@ -366,22 +389,7 @@ fn random_commands_break_nothing() {
                 }
             },
         }
-        // The invariants, after every command.
-        assert!(!document.is_dragging());
-        assert_eq!(document.history().len(), model.states.len(), "command {i}");
-        assert!(document.history().len() <= Document::MAX_STEPS);
-        assert_eq!(document.position(), model.at, "command {i}");
-        let deep = i % DEEP_EVERY == 0;
-        let (shown, expected) = (document.scene(), &model.states[model.at]);
-        assert_eq!(shown.rev, expected.rev, "command {i}");
-        assert!(
-            same(shown, expected, deep),
-            "command {i}: not the state that was there"
-        );
-        sweep(shown);
-        if deep {
-            shown.frames.iter().for_each(|f| grids_are_sound(f));
-        }
+        check(&document, &model, i);
     }
     println!("{commands} commands: {applied} applied, {refused} refused, {undone} undone");
     assert!(commands < 500 || (applied > commands / 10 && refused > commands / 50 && undone > commands / 10));

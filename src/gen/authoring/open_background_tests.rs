@@ -55,6 +55,37 @@ fn covered(things: &Background, class: Class) -> BTreeSet<usize> {
     out
 }
 
+/// Manmade voxels that come when all trees go and that were not seen there: none may.
+fn invented_by_felling(scene: &Scene, grid: &VoxelGrid) -> usize {
+    let is_tree = |t: &&scene::Thing| matches!(t.form, Form::Tree(_));
+    let tree_ids: Vec<_> = scene.background.iter().filter(is_tree).map(|t| t.id).collect();
+    let mut felled = Document::new(scene.clone());
+    let fell = Edit::RemoveThings { ids: tree_ids };
+    felled.apply("Fell", &fell).expect("there are trees");
+    let left = standing(&felled.scene().frame().occupancy, Class::Manmade);
+    left.iter()
+        .filter(|[x, y, z]| grid.get(*x, *y, *z) != Class::Manmade.id())
+        .count()
+}
+
+/// Columns of each building.
+fn outlines(b: &Background) -> Vec<BTreeSet<usize>> {
+    let list = b.iter().filter_map(|t| match &t.form {
+        Form::Building(b) => Some(cells(&b.outline_m)),
+        _ => None,
+    });
+    list.collect()
+}
+
+/// Place and crown radius of each tree, m.
+fn places(b: &Background) -> Vec<(DVec2, f64)> {
+    let list = b.iter().filter_map(|t| match &t.form {
+        Form::Tree(t) => Some((t.position_m, t.crown_radius_m)),
+        _ => None,
+    });
+    list.collect()
+}
+
 /// Known buildings are found (IoU above .3), known trees are near a found one, and taking all things away takes nearly
 /// all voxels of what stands beside the road. Prints the figures.
 #[test]
@@ -76,13 +107,6 @@ fn things_are_found_in_simulated_labels() {
         assert_eq!(found, infer::background(&grid, &layout));
         assert_eq!(found.problem(), None);
         things += found.len();
-        let outlines = |b: &Background| -> Vec<BTreeSet<usize>> {
-            let list = b.iter().filter_map(|t| match &t.form {
-                Form::Building(b) => Some(cells(&b.outline_m)),
-                _ => None,
-            });
-            list.collect()
-        };
         let at = |c: &usize| grid.column(c / GridSpec::NY, c % GridSpec::NY);
         let seen = |c: &usize, class: Class| at(c)[1..].iter().filter(|l| **l == class.id()).count();
         let (known, guessed) = (outlines(&world.background), outlines(&found));
@@ -113,13 +137,6 @@ fn things_are_found_in_simulated_labels() {
             let inside: usize = known.iter().map(|k| k.intersection(g).count()).sum();
             sound_buildings.0 += usize::from(2 * inside > g.len());
         }
-        let places = |b: &Background| -> Vec<(DVec2, f64)> {
-            let list = b.iter().filter_map(|t| match &t.form {
-                Form::Tree(t) => Some((t.position_m, t.crown_radius_m)),
-                _ => None,
-            });
-            list.collect()
-        };
         let (known, guessed) = (places(&world.background), places(&found));
         let near = |list: &[(DVec2, f64)], p: DVec2| list.iter().any(|(q, _)| q.distance(p) < 1.5);
         for (p, radius) in &known {
@@ -142,17 +159,7 @@ fn things_are_found_in_simulated_labels() {
         let ids: Vec<_> = found.iter().map(|t| t.id).collect();
         scene.background = Arc::new(found);
         let before = scene.background.clone();
-        // Trees that go leave nothing of a building that was not seen there.
-        let is_tree = |t: &&scene::Thing| matches!(t.form, Form::Tree(_));
-        let tree_ids: Vec<_> = before.iter().filter(is_tree).map(|t| t.id).collect();
-        let mut felled = Document::new(scene.clone());
-        let fell = Edit::RemoveThings { ids: tree_ids };
-        felled.apply("Fell", &fell).expect("there are trees");
-        let left = standing(&felled.scene().frame().occupancy, Class::Manmade);
-        invented += left
-            .iter()
-            .filter(|[x, y, z]| grid.get(*x, *y, *z) != Class::Manmade.id())
-            .count();
+        invented += invented_by_felling(&scene, &grid);
         let mut document = Document::new(scene);
         document
             .apply("Remove", &Edit::RemoveThings { ids })
