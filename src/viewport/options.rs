@@ -114,7 +114,7 @@ impl Default for ViewOptions {
 pub struct LidarView<'a> {
     /// The returns.
     pub sweep: &'a LidarSweep,
-    /// sRGB, one per return; see [`lidar_colors`].
+    /// sRGB, one per return; see `lidar_colors`.
     pub colors: &'a [[u8; 4]],
 }
 

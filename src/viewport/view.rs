@@ -99,7 +99,7 @@ impl Viewport {
         self.drawn_rect
     }
 
-    /// The picture drawn last, [`COLOR_FORMAT`]: sRGB-encoded, premultiplied alpha, not converted on
+    /// The picture drawn last, `COLOR_FORMAT`: sRGB-encoded, premultiplied alpha, not converted on
     /// sampling, which is what egui expects of a native texture. 1 x 1 before the first picture.
     pub fn color_view(&self) -> &wgpu::TextureView {
         &self.target.color_view

@@ -90,7 +90,7 @@ pub struct Stop {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stops {
-    /// Which weights they were measured with: [`ModelCard::hashes`](nets::ModelCard).
+    /// Which weights they were measured with: `hashes` of the `ModelCard` in `nets`.
     pub weights: [u64; 3],
     /// The machine on which the times were taken.
     pub machine: String,

@@ -1,5 +1,5 @@
 //! The tools for things beside the road: buildings, trees, lines, shrubs, posts. Each file holds its draft and its row of
-//! the table; [`drawing`] is the state machine that they share.
+//! the table; `drawing` is the state machine that they share.
 
 pub mod building;
 mod draft;
