@@ -497,7 +497,7 @@ proptest! {
     }
 }
 
-/// Files from before the conditions are drawn as their prompts were; newer ones must have them.
+/// Old files are drawn as their prompts were; newer ones have conditions.
 #[test]
 fn old_files_take_their_conditions_from_the_prompt() {
     let opened = |prompt: &str, version: u32| {
@@ -527,11 +527,8 @@ fn old_files_take_their_conditions_from_the_prompt() {
     ] {
         for version in [1, 2] {
             let scene = opened(prompt, version).expect("an old file");
-            assert_eq!(
-                scene.conditions,
-                Conditions::usual(time, weather, scene.seed),
-                "{prompt}"
-            );
+            let usual = Conditions::usual(time, weather, scene.seed);
+            assert_eq!(scene.conditions, usual, "{prompt}");
             assert_eq!(&*scene.prompt, prompt);
         }
     }

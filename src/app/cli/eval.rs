@@ -11,9 +11,9 @@ use crate::{Common, Gen, Outcome, Stop, output};
 use job::GenParams;
 use judge::markdown::{Table, markdown, measure_all};
 use judge::options::Options;
+use judge::options::Who;
 use judge::origin::Origin;
 use judge::suite::Suite;
-use judge::suites::layout::Who;
 use judge::table::{SUITES, named};
 
 /// What runs every suite.

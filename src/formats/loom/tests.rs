@@ -162,7 +162,7 @@ fn of_version_0() -> Vec<u8> {
             text.replace(from, to).into_bytes()
         };
         match name.as_str() {
-            "manifest.json" => *content = text(content, "\"version\":2", "\"version\":0"),
+            "manifest.json" => *content = text(content, "\"version\":3", "\"version\":0"),
             "scene.json" => *content = text(content, "\"prompt\":", "\"style\":"),
             "frames/00000/occupancy.u8" => {
                 "frames/00000/grid.u8".clone_into(name);
@@ -228,14 +228,14 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 2; open it with the sceneloom that wrote it"
+        "manifest.json: version is 0, expected 3; open it with the sceneloom that wrote it"
     );
-    for version in ["3", "4294967298", "18446744073709551615"] {
+    for version in ["4", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
         let bytes = pack(&[("manifest.json".to_owned(), manifest.into_bytes())]);
         let line = from_bytes(&bytes).expect_err("newer").to_string();
         assert!(
-            line.starts_with(&format!("manifest.json: version is {version}, expected 2;")),
+            line.starts_with(&format!("manifest.json: version is {version}, expected 3;")),
             "{line}"
         );
     }

@@ -152,7 +152,7 @@ mod tests {
     fn own_scenes_are_remembered() {
         let folder = tempfile::tempdir().expect("a folder");
         assert_eq!(own_scenes(folder.path()).0.len(), 0);
-        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/scenes/first_light.loom");
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../assets/scenes/first_light.loom");
         std::fs::copy(from, folder.path().join("mine.loom")).expect("copied");
         std::fs::write(folder.path().join("bad.loom"), "nothing").expect("written");
         let (entries, problems) = own_scenes(folder.path());

@@ -15,6 +15,7 @@ static QUICK: [Suite; 2] = [
             ("nothing", "/absent"),
         ],
         quick: |options| options.frames = 3,
+        table: None,
         run: |options, progress| {
             progress.at("one", 0, options.frames);
             let report = json!({
@@ -37,6 +38,7 @@ static QUICK: [Suite; 2] = [
         title: "One that cannot run",
         figures: &[],
         quick: |_| {},
+        table: None,
         run: |_, _| anyhow::bail!("no files\nthere"),
     },
 ];

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use crate::suites::layout::Who;
 use job::GenParams;
 
 /// Sizes and choices of a run. Suites read what concerns them.
@@ -63,4 +62,18 @@ impl Default for Options {
             weights: None,
         }
     }
+}
+
+/// Who reads the sentences.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Who {
+    /// Both readers, as in the program.
+    #[default]
+    Both,
+    /// Nobody: the readings that stand beside the sentences are carried out.
+    Given,
+    /// The learned reader alone.
+    Learned,
+    /// The grammar alone: what it does not read to the last word it does not read.
+    Grammar,
 }

@@ -6,7 +6,6 @@ pub use crate::options::Options;
 
 use crate::Progress;
 use crate::held_out::TEST_SEED;
-use crate::suites::generation;
 use metrics::stats::mean_ci95;
 
 /// One bar: name, figure, the least it should be.
@@ -33,6 +32,8 @@ pub struct Suite {
     pub figures: &'static [(&'static str, &'static str)],
     /// Makes options small, so that all suites together take about five minutes on two cores.
     pub quick: fn(&mut Options),
+    /// The report as a table for a person, where JSON is hard to read.
+    pub(crate) table: Option<fn(&Value) -> String>,
     /// Measures.
     pub(crate) run: fn(&Options, &dyn Progress) -> anyhow::Result<Found>,
 }
@@ -76,9 +77,9 @@ impl Suite {
 
     /// The report for a person.
     pub fn text(&self, report: &Value) -> String {
-        match self.name {
-            "generation" => generation::table(report),
-            _ => serde_json::to_string_pretty(report).unwrap_or_default(),
+        match self.table {
+            Some(table) => table(report),
+            None => serde_json::to_string_pretty(report).unwrap_or_default(),
         }
     }
 }

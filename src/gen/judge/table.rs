@@ -23,6 +23,7 @@ pub static SUITES: [Suite; 7] = [
             ("lost echoes told by class, range, angle (AUC)", "/lidar/lost_auc"),
         ],
         quick: |options| options.frames = 16,
+        table: None,
         run: |options, progress| options.world(progress),
     },
     Suite {
@@ -43,6 +44,7 @@ pub static SUITES: [Suite; 7] = [
             ),
         ],
         quick: |options| options.frames = 3,
+        table: None,
         run: |options, progress| {
             with_pipeline(options, |pipeline| match &options.data {
                 Some(dir) => options.vae_on_files(dir, pipeline, progress),
@@ -90,6 +92,7 @@ pub static SUITES: [Suite; 7] = [
             ("time of a scene, s (median)", "/wall_s_median"),
         ],
         quick: |options| (options.frames, options.rows_only) = (4, true),
+        table: Some(crate::suites::generation::table),
         run: |options, progress| with_pipeline(options, |pipeline| options.generation(pipeline, progress)),
     },
     Suite {
@@ -115,6 +118,7 @@ pub static SUITES: [Suite; 7] = [
             (options.frames, options.vehicles, options.band_worlds) = (2, 1, 2);
             options.presets = vec!["balanced".into()];
         },
+        table: None,
         run: |options, progress| with_pipeline(options, |pipeline| options.editing(pipeline, progress)),
     },
     Suite {
@@ -139,6 +143,7 @@ pub static SUITES: [Suite; 7] = [
             ("time of a sweep, s (median)", "/complete/learned/wall_s"),
         ],
         quick: |options| options.frames = 3,
+        table: None,
         run: |options, progress| options.lidar(progress),
     },
     Suite {
@@ -159,6 +164,7 @@ pub static SUITES: [Suite; 7] = [
             ("time of six maps, splats, ms (median)", "/splat/ms_median"),
         ],
         quick: |options| options.frames = 3,
+        table: None,
         run: |options, progress| options.splat(progress),
     },
     Suite {
@@ -175,6 +181,7 @@ pub static SUITES: [Suite; 7] = [
             ("time of an edit, s (median)", "/edited/wall_s_median"),
         ],
         quick: |options| (options.sentences, options.placer_prompts) = (Some(240), 2),
+        table: None,
         run: |options, progress| options.layout(progress),
     },
 ];

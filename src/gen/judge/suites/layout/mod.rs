@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 
 use crate::Progress;
 use crate::held_out::TEST_SEED;
+use crate::options::Who;
 use crate::suite::{Bar, Found, Options, with_interval};
 use authoring::prompting::{How, Laid, lay_out};
 use authoring::text;
@@ -329,20 +330,6 @@ impl Tally {
             "needless": self.needless,
         })
     }
-}
-
-/// Who reads the sentences.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Who {
-    /// Both readers, as in the program.
-    #[default]
-    Both,
-    /// Nobody: the readings that stand beside the sentences are carried out.
-    Given,
-    /// The learned reader alone.
-    Learned,
-    /// The grammar alone: what it does not read to the last word it does not read.
-    Grammar,
 }
 
 /// A reading with whether anything is said about how it was read.
