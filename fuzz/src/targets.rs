@@ -11,7 +11,7 @@ use app::settings::Settings;
 use app::{open, text as app_text};
 use diffusion::solver::SolverKind;
 use editor::{Document, Edit, Shape};
-use formats::{box_list, occ3d, opendrive, project};
+use formats::{box_list, occ3d, opendrive, loom};
 use glam::{DVec2, DVec3};
 use graph_layout::memory::{Bank, RoadRef};
 use job::GenParams;
@@ -94,7 +94,7 @@ fn frame_is_sound(frame: &Frame) {
 
 /// `.loom`: what is read can be written and read again, and everything that walks lanes comes to an end.
 pub fn project_file(bytes: &[u8]) {
-    match project::from_bytes(bytes) {
+    match loom::from_bytes(bytes) {
         Err(error) => one_line(error),
         Ok(scene) => {
             assert_eq!(scene.rig.problem(), None);
@@ -106,9 +106,9 @@ pub fn project_file(bytes: &[u8]) {
                 LaneMap::new(&frame.layout);
                 traffic::place(&frame.layout, 1, &traffic::TrafficSpec::NORMAL);
             }
-            let again = project::to_bytes(&scene).expect("what was read can be written");
-            let twice = project::from_bytes(&again).expect("what was written can be read");
-            assert_eq!(project::to_bytes(&twice).expect("sound"), again);
+            let again = loom::to_bytes(&scene).expect("what was read can be written");
+            let twice = loom::from_bytes(&again).expect("what was written can be read");
+            assert_eq!(loom::to_bytes(&twice).expect("sound"), again);
         }
     }
 }

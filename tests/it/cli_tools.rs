@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use app::open;
 use editor::Edit;
-use formats::project;
+use formats::loom;
 use scene::{BoxId, Class, Form, GridSpec, Scene};
 use sensors::lidar;
 
@@ -53,7 +53,7 @@ impl Folder {
     }
     fn save(&self, name: &str, scene: &Scene) -> String {
         let path = self.path(name);
-        project::save(Path::new(&path), scene).expect("saved");
+        loom::save(Path::new(&path), scene).expect("saved");
         path
     }
 }
@@ -127,7 +127,7 @@ fn checks_tell_by_exit_code_and_fix() {
     let (report, _) = run(&["check", &path, "--fix", "-o", &fixed]);
     assert!(report["fixed"].as_u64() >= Some(2), "{report:#}");
     assert_eq!(std::fs::read(&path).expect("there"), before);
-    let repaired = project::load(Path::new(&fixed)).expect("a scene");
+    let repaired = loom::load(Path::new(&fixed)).expect("a scene");
     assert!(!repaired.frame().boxes.contains_key(&BoxId(900)));
     refused(&["check", &dir.path("none.loom")], "none.loom");
     refused(&["check", &path, "-o", &fixed], "--fix");

@@ -10,7 +10,7 @@ use super::{Common, Outcome, output};
 use app::open;
 use app::scenery::{Drawer, SceneryWish};
 use editor::Document;
-use formats::project;
+use formats::loom;
 use job::redraw::RedrawMask;
 use world::scenery::Setting;
 
@@ -88,7 +88,7 @@ impl Scenery {
         let mut document = Document::new(scene);
         document.apply_all("Draw scenery", &edits)?;
         let scene = document.scene();
-        project::save(&self.output, scene)?;
+        loom::save(&self.output, scene)?;
         let (things, changed) = (
             scene.background.len(),
             before.count_different(&scene.frame().occupancy),
