@@ -298,7 +298,7 @@ impl View3d {
 
     fn fly(&mut self, ui: &Ui, dx: f64, dy: f64) {
         use egui::Key;
-        self.camera.look(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
+        self.camera.turn_head(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
         let (step, modifiers, dt) = ui.input(|i| {
             let axis =
                 |plus: Key, minus: Key| f64::from(i8::from(i.key_down(plus)) - i8::from(i.key_down(minus)));

@@ -4,7 +4,7 @@
 use std::io::{Cursor, Write};
 
 use editor::{Document, Edit, Shape};
-use formats::{box_list, occ3d, opendrive, loom};
+use formats::{box_list, loom, occ3d, opendrive};
 use glam::DVec2;
 use nets::occ_dit::OccDit;
 use nn::weights::WeightFile;

@@ -369,7 +369,7 @@ fn doctor_reports_and_no_display_means_demo() {
 /// A folder as Occ3D lays it out, made from procedural worlds: import, training data, evaluation.
 #[test]
 fn occ3d_frames_are_scenes_and_training_data() {
-    use formats::{occ3d, loom};
+    use formats::{loom, occ3d};
     let dir = Folder::new();
     let scene = loom::load(Path::new(&dir.scene())).expect("a scene");
     let frame = scene.frame();

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use app::open;
 use dataset::occupancy_frame;
 use editor::{Document, Edit, Shape};
-use formats::{occ3d, loom};
+use formats::{loom, occ3d};
 use job::region::Region;
 use scene::{BevLayer, BoxId, Class, GridSpec, Scene, Unobserved};
 

@@ -183,7 +183,7 @@ fn what_is_saved_comes_back() {
     assert_same(&scene, &loaded);
     assert_ne!(scene.rev, loaded.rev);
     println!("three frames: {written} bytes");
-    // What was one memory is one memory again: a fresh project redraws nothing.
+    // What was one memory is one memory again: a fresh project inpaints nothing.
     let settled = &loaded.frames[0];
     assert!(
         settled
@@ -452,9 +452,7 @@ fn errors_name_the_file_and_an_old_file_survives() {
     );
     let mut broken = clip();
     broken.frame_mut().occupancy.set(1, 2, 3, 40);
-    let text = loom::save(&path, &broken)
-        .expect_err("no such label")
-        .to_string();
+    let text = loom::save(&path, &broken).expect_err("no such label").to_string();
     assert!(text.contains("voxel [1, 2, 3] holds 40"), "{text}");
     let mut broken = clip();
     broken.frames.clear();

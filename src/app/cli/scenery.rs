@@ -1,4 +1,4 @@
-//! `sceneloom scenery`: what stands beside the roads, drawn anew.
+//! `sceneloom scenery`: what stands beside the roads, regenerated.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use app::open;
 use app::scenery::{Drawer, SceneryWish};
 use editor::Document;
 use formats::loom;
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
 use world::scenery::Setting;
 
 /// What draws scenery.
@@ -60,7 +60,7 @@ impl Scenery {
             }
         }
         let region = match self.region {
-            None | Some(RegionArg::Full) => RedrawMask::default(),
+            None | Some(RegionArg::Full) => InpaintMask::default(),
             Some(RegionArg::Rect(mask)) => mask,
             Some(RegionArg::Auto) => bail!("--region is auto, expected full or four numbers X0,Y0,X1,Y1"),
         };

@@ -130,7 +130,7 @@ impl SceneloomApp {
             Some(Err(error)) => (Settings::default(), Some(one_line(&error))),
             None => (Settings::default(), None),
         };
-        theme::apply(ctx, settings.look);
+        theme::apply(ctx, settings.theme);
         settings.classes.make_current();
         if settings.ui_scale != 1.0 {
             ctx.set_zoom_factor(settings.ui_scale);
@@ -157,10 +157,10 @@ impl SceneloomApp {
         let tuning = Tuning::new(config.settings_file.as_deref());
         // Whoever starts the window without settings names its parameters.
         let quality = tuning
-            .stops
+            .presets
             .named(&settings.quality)
             .filter(|_| config.settings_file.is_some());
-        let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
+        let params = quality.map_or(config.params, |preset| preset.knobs.on(config.params));
         let dock = settings.dock.clone().and_then(Dock::from_kept);
         let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
         let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));
@@ -263,7 +263,7 @@ impl SceneloomApp {
     /// Puts changed settings to use, and writes them two seconds later at most.
     fn keep_settings(&mut self, ctx: &egui::Context) {
         if self.preferences.looks_changed() {
-            theme::apply(ctx, self.preferences.settings.look);
+            theme::apply(ctx, self.preferences.settings.theme);
             self.preferences.settings.classes.make_current();
             self.views.forget_pictures();
         }

@@ -12,7 +12,7 @@ use crate::{AppConfig, SceneloomApp, open};
 use editor::Edit;
 use job::guard::panic_next;
 use job::{GenError, GenParams};
-use judge::stops::calibrate::{Background, News, Task};
+use judge::presets::calibrate::{Background, News, Task};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -146,7 +146,7 @@ fn measuring() {
             std::thread::sleep(Duration::from_millis(2));
         }
     };
-    let start = || Background::start(Task::Calibrate(trade::Stops::bundled()), || {}).expect("a thread");
+    let start = || Background::start(Task::Calibrate(trade::Presets::bundled()), || {}).expect("a thread");
     panic_next("measure");
     let News::Failed(line) = next(&start()) else {
         panic!("it goes on");

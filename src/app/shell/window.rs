@@ -116,8 +116,8 @@ impl SceneloomApp {
                 .filter(|id| self.views.dock.is_shown(*id))
                 .collect(),
             cameras: scene.rig.cameras.len(),
-            stops: self.generation.tuning.foretold(),
-            stop: self.generation.tuning.current(&self.generation.live.params),
+            presets: self.generation.tuning.predicted(),
+            preset: self.generation.tuning.current(&self.generation.live.params),
         };
         egui::Panel::top("toolbar")
             .exact_size(42.0)
@@ -126,7 +126,7 @@ impl SceneloomApp {
             .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
-        let touched = self.generation.live.look(&settled, now_s);
+        let touched = self.generation.live.touched_by(&settled, now_s);
         self.generation.unsettled = self.generation.live.parts();
         let unsettled = !touched.is_empty;
         let findings = self.background.checking.findings().map(|all| {

@@ -204,9 +204,9 @@ pub struct Hand {
     pub voxels: Vec<Cell>,
     /// How a region is marked.
     pub region_shape: RegionShape,
-    /// How far what is drawn anew leaves what is there, 0 to 1.
+    /// How far what is inpainted leaves what is there, 0 to 1.
     pub region_strength: f64,
-    /// What is marked to be drawn anew, m²; the window counts it.
+    /// What is marked to be inpainted, m²; the window counts it.
     pub region_m2: f64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
     pub variants: BTreeMap<Class, usize>,

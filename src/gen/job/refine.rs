@@ -1,4 +1,4 @@
-//! The second, local stage: what the coarse latent decodes to is redrawn in the fine one, where a voxel has room, by diffusion in a few
+//! The second, local stage: what the coarse latent decodes to is inpainted in the fine one, where a voxel has room, by diffusion in a few
 //! steps. Noise stays with its cell, so the same surroundings are refined alike in a source and in an edit of it.
 
 use crate::contract::GenError;

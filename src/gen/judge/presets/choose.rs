@@ -1,4 +1,4 @@
-//! The stops of the quality slider, chosen from what was measured.
+//! The presets of the quality slider, chosen from what was measured.
 
 use std::path::Path;
 
@@ -13,25 +13,25 @@ use job::GenParams;
 use metrics::stats::mean_ci95;
 use nets::OccModels;
 use numeric::quantile::{median, quantile};
-use trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
+use trade::{Cost, Interval, Placed, Preset, PresetKnobs, Presets, front, knee};
 
-/// Stops from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
-pub fn stops_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Stops {
+/// Presets from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
+pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Presets {
     let placed: Vec<Placed> = rows.iter().map(|r| r.placed()).collect();
     let kept = well_apart(rows, &placed);
     let names = names(&kept.iter().map(|i| placed[*i]).collect::<Vec<_>>());
-    let mut stops: Vec<Stop> = Vec::new();
+    let mut presets: Vec<Preset> = Vec::new();
     for (i, name) in kept.iter().zip(names) {
-        stops.extend(stop(name, rows[*i], placed[*i]));
+        presets.extend(preset(name, rows[*i], placed[*i]));
     }
-    stops.extend(reference_stop(rows, reference));
-    Stops {
+    presets.extend(reference_preset(rows, reference));
+    Presets {
         weights: models.card.hashes,
         machine: machine(),
         build: String::new(),
         load_per_core: Load::now().per_core,
         reference: format!("{} steps, every token, f32", reference.steps),
-        stops,
+        all: presets,
     }
 }
 
@@ -83,13 +83,13 @@ fn names(kept: &[Placed]) -> Vec<String> {
     (0..kept.len()).map(name).collect()
 }
 
-/// A row as a stop; `None` if nothing can be foretold of its time.
-fn stop(name: String, row: &Row, placed: Placed) -> Option<Stop> {
+/// A row as a preset; `None` if nothing can be predicted of its time.
+fn preset(name: String, row: &Row, placed: Placed) -> Option<Preset> {
     let errors = row.all(|o| o.error);
     let probe = row.outcomes.iter().take(cases::KINDS.len());
-    Some(Stop {
+    Some(Preset {
         name,
-        knobs: StopKnobs::of(&row.setting.params),
+        knobs: PresetKnobs::of(&row.setting.params),
         error: placed.error,
         error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
         invented: Some(mean_ci95(&row.all(|o| o.invented)).0),
@@ -99,9 +99,9 @@ fn stop(name: String, row: &Row, placed: Placed) -> Option<Stop> {
     })
 }
 
-/// The reference as a stop. One step of all tokens, from the dense setting, gives what it takes; `None` if that was not
+/// The reference as a preset. One step of all tokens, from the dense setting, gives what it takes; `None` if that was not
 /// measured.
-fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
+fn reference_preset(rows: &[&Row], reference: GenParams) -> Option<Preset> {
     let dense = rows.iter().find(|r| {
         let p = &r.setting.params;
         !p.local && p.steps == 10 && p.reuse_steps == 1
@@ -118,9 +118,9 @@ fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
         n: dense.outcomes.len(),
     };
     let steps = f64::from(reference.steps);
-    Some(Stop {
+    Some(Preset {
         name: "reference".into(),
-        knobs: StopKnobs::of(&reference),
+        knobs: PresetKnobs::of(&reference),
         error: none,
         error_of_one: [0.0, 0.0],
         invented: None,
@@ -133,8 +133,8 @@ fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
     })
 }
 
-/// Writes stops where they are to be read by [`Stops::parse`]. Errors name the file.
-pub fn write_stops(path: &Path, stops: &Stops) -> anyhow::Result<()> {
-    let text = serde_json::to_string_pretty(stops).context("write stops")?;
+/// Writes presets where they are to be read by [`Presets::parse`]. Errors name the file.
+pub fn write_presets(path: &Path, presets: &Presets) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(presets).context("write presets")?;
     atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
 }

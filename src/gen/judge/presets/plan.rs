@@ -7,8 +7,8 @@ use anyhow::bail;
 use serde_json::{Value, json};
 
 use super::cases::{self, Case};
-use super::choose::stops_of;
-pub use super::choose::write_stops;
+use super::choose::presets_of;
+pub use super::choose::write_presets;
 use super::edits::{Bench, Outcome, reference_params};
 use super::measure::Raw;
 use super::report::{Row, sensor_json, untouched_the_same};
@@ -19,7 +19,7 @@ use crate::held_out::bare_scene;
 use job::{GenParams, JobCtx};
 use nets::OccModels;
 use scene::Scene;
-use trade::{Placed, StopKnobs, Stops, front, hypervolume};
+use trade::{Placed, PresetKnobs, Presets, front, hypervolume};
 
 /// What can be measured.
 pub const PARTS: [&str; 5] = ["edit", "scene", "lidar", "splat", "vae"];
@@ -60,8 +60,8 @@ pub struct Mark {
     pub error: [f64; 3],
     /// Nothing beats it.
     pub on_front: bool,
-    /// It is a stop of the slider, and this one is called so.
-    pub stop: Option<String>,
+    /// It is a preset of the slider, and this one is called so.
+    pub preset: Option<String>,
 }
 
 /// What a run found.
@@ -71,8 +71,8 @@ pub struct Found {
     pub points: Vec<Value>,
     /// The settings of edits, to be plotted.
     pub marks: Vec<Mark>,
-    /// The stops of the slider, if edits were measured.
-    pub stops: Option<Stops>,
+    /// The presets of the slider, if edits were measured.
+    pub presets: Option<Presets>,
     /// Figures over all settings of a part.
     pub figures: Value,
     /// How far half of the reference's steps lie from the reference; null if edits were not measured.
@@ -161,18 +161,18 @@ impl Plan {
             self.add_part(part, cases, models, &mut found);
         }
         self.sensors(models, &mut found)?;
-        if let Some(stops) = &found.stops {
-            let usual = StopKnobs::of(&GenParams::default());
+        if let Some(presets) = &found.presets {
+            let usual = PresetKnobs::of(&GenParams::default());
             for mark in &mut found.marks {
-                let named = |s: &&trade::Stop| settings::name_of(&s.knobs, &usual) == mark.name;
-                mark.stop = stops.stops.iter().find(named).map(|s| s.name.clone());
+                let named = |s: &&trade::Preset| settings::name_of(&s.knobs, &usual) == mark.name;
+                mark.preset = presets.all.iter().find(named).map(|s| s.name.clone());
             }
         }
         found.self_check = self.self_check(models, progress)?;
         Ok(found)
     }
 
-    /// Edits or scenes: points, marks, stops, figures.
+    /// Edits or scenes: points, marks, presets, figures.
     fn add_part(&self, part: &str, cases: &[(String, Vec<Outcome>)], models: &OccModels, found: &mut Found) {
         let (base, settings) = self.settings(part);
         let of_setting = |i: usize| cases.iter().filter_map(move |(_, o)| o.get(i)).cloned().collect();
@@ -194,7 +194,7 @@ impl Plan {
                     wall_s: [p.wall_s.median, p.wall_s.low, p.wall_s.high],
                     error: [p.error.median, p.error.low, p.error.high],
                     on_front,
-                    stop: None,
+                    preset: None,
                 });
             }
         }
@@ -203,7 +203,7 @@ impl Plan {
         found.figures[format!("untouched_identical_{part}")] = same.into();
         if part == "edit" {
             let reference = reference_params(base, self.reference_steps);
-            found.stops = Some(stops_of(&same_target, reference, models));
+            found.presets = Some(presets_of(&same_target, reference, models));
         }
     }
 
