@@ -285,9 +285,9 @@ impl Canvas {
             draw_boxes(ui, map, response, input.scene, state);
         }
         draw_unsettled(ui, map, &input.unsettled, input.generating);
-        if let Some(meant) = &state.meant {
+        if let Some(marks) = &state.finding_marks {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
-            meant.draw(&inside, map, scene.frame());
+            marks.draw(&inside, map, scene.frame());
         }
         draw_scale_bar(ui, map);
         self.draw_tool(ui, response, map, input, state);

@@ -1,5 +1,6 @@
 //! The command line: one subcommand per file. docs/command_line.md has the rules that all of them follow.
 
+mod argument_errors;
 mod check;
 mod common;
 mod dataset;
@@ -22,7 +23,6 @@ mod render;
 mod scenery;
 mod shot;
 mod trade;
-mod wrong;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -86,7 +86,7 @@ enum Command {
 /// Whether a command line can be parsed, program name first; the message that a user would see if not. Runs nothing.
 pub fn accepts(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<(), String> {
     let parsed = Cli::try_parse_from(arguments);
-    parsed.map(|_| ()).map_err(|e| wrong::message(&e))
+    parsed.map(|_| ()).map_err(|e| argument_errors::message(&e))
 }
 
 /// What reads our output may end early (`| head`): then the program ends too, as others do, and says nothing.
@@ -109,7 +109,7 @@ pub fn main() -> ExitCode {
         Err(error) => {
             // --help and --version come this way too, with exit 0; bad arguments with 2.
             match error.use_stderr() {
-                true => eprint!("{}", wrong::message(&error)),
+                true => eprint!("{}", argument_errors::message(&error)),
                 false => drop(error.print()),
             }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));

@@ -335,7 +335,7 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
         Part::Columns(columns) => {
             let to_ego = after.frame().world_from_ego.inverse();
             let mut inside = true;
-            authoring::around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
+            authoring::scenery_around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
                 inside &= columns[x * GridSpec::NY + y];
             });
             inside
@@ -367,7 +367,7 @@ fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
     let things = state.tools.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
     for thing in in_grid(things, &frame.world_from_ego) {
-        authoring::around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
+        authoring::scenery_around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
     }
     columns
 }

@@ -10,7 +10,7 @@ use job::inpaint;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
 use judge::machine::machine;
-use judge::presets::calibrate::{Background, News, Refine, Task, build};
+use judge::presets::calibrate::{Measurement, News, Refine, Task, build};
 use judge::presets::figures::{percent, seconds};
 use nets::{OccModels, tokens_of};
 use numeric::quantile::median;
@@ -103,7 +103,7 @@ pub struct Tuning {
     pub message: Option<String>,
     /// How many times longer than in quiet the last edits took: the window draws on the same cores.
     slower: VecDeque<f64>,
-    running: Option<(Measuring, Background, (usize, usize))>,
+    running: Option<(Measuring, Measurement, (usize, usize))>,
     file: Option<PathBuf>,
 }
 
@@ -160,7 +160,7 @@ impl Tuning {
 
     fn start(&mut self, what: Measuring, task: Task, wake: impl Fn() + Send + Sync + 'static) {
         self.message = None;
-        match Background::start(task, wake) {
+        match Measurement::start(task, wake) {
             Ok(background) => self.running = Some((what, background, (0, 0))),
             Err(error) => self.message = Some(format!("Nothing can be measured: {error}")),
         }

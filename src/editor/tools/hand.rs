@@ -9,7 +9,7 @@ use crate::arrange::{Clipboard, LANE_REACH_M, Pivot, Row};
 use crate::flood::FillBounds;
 use crate::lane_strip::LaneStrip;
 use crate::lanes::nearest_lane;
-use crate::transform::{Kind, Orientation, Snap};
+use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, Cell};
 use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
@@ -173,7 +173,7 @@ pub struct Hand {
     /// Selecting draws lassos instead of rectangles.
     pub lasso: bool,
     /// What dragging a chosen box changes.
-    pub gizmo: Kind,
+    pub gizmo: TransformKind,
     /// Whose axes gizmo and number fields use.
     pub orientation: Orientation,
     /// About what several boxes turn.
@@ -238,7 +238,7 @@ impl Default for Hand {
             layers_shown: 0xff,
             clipboard: Clipboard::default(),
             lasso: false,
-            gizmo: Kind::default(),
+            gizmo: TransformKind::default(),
             orientation: Orientation::default(),
             pivot: Pivot::default(),
             snap_grid: false,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use super::around;
+use super::scenery_around;
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
 use formats::{atomic, input, loom};
@@ -143,7 +143,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         let background = match things_of_file < ENOUGH_THINGS {
             true => {
                 let drawn = scenery::background(&import.layout, &boxes, seed);
-                around::merged(import.background, &drawn)
+                scenery_around::merged(import.background, &drawn)
             }
             false => import.background,
         };

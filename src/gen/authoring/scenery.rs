@@ -3,15 +3,15 @@
 
 use editor::{Edit, Shape};
 use job::GenError;
-use job::drawn_scenery::drawn_scenery;
 use job::inpaint::InpaintMask;
+use job::network_scenery::drawn_scenery;
 use job::region::COLUMNS_PER_CELL;
 use nets::scenery::SceneryNet;
 use scene::raster::box_cells;
 use scene::{Background, BevLayer, Class, Form, GridSpec, Scene, ThingId};
 use world::scenery::{self, Setting, Side, Style};
 
-use super::around;
+use super::scenery_around;
 
 /// Share of vegetation (`Density`) that is usual.
 pub const TYPICAL_VEGETATION: f64 = 0.5;
@@ -79,7 +79,7 @@ impl SceneryWish {
         let columns = self.columns();
         let whole = |form: &Form| {
             let mut inside = true;
-            around::columns(form, GridSpec::VOXEL_M, |x, y| {
+            scenery_around::columns(form, GridSpec::VOXEL_M, |x, y| {
                 inside &= columns[x * GridSpec::NY + y];
             });
             inside
@@ -101,7 +101,7 @@ impl SceneryWish {
         };
         let drawn: Background = drawn.iter().filter(|t| whole(&t.form)).cloned().collect();
         let known = stays.len();
-        let merged = around::merged(stays, &drawn);
+        let merged = scenery_around::merged(stays, &drawn);
         let come = merged.iter().skip(known);
         let forms: Vec<Form> = come.map(|t| t.form.in_frame(&frame.world_from_ego)).collect();
         let cells = (0..GridSpec::COLUMNS).filter(|c| columns[*c]);
@@ -209,7 +209,7 @@ impl Paved {
             return GridSpec::column_at(at.x, at.y).is_none_or(|[x, y]| !taken[x * GridSpec::NY + y]);
         }
         let (mut on, mut columns) = (0, 0);
-        around::columns(form, 0.0, |x, y| {
+        scenery_around::columns(form, 0.0, |x, y| {
             on += usize::from(taken[x * GridSpec::NY + y]);
             columns += 1;
         });

@@ -82,7 +82,7 @@ pub fn keep_unobserved(
     count
 }
 
-/// What is known to be observed after an edit, as the decoder hears it (`Unobserved::observed`): nothing of columns that the
+/// What is known to be observed after an edit, as the decoder gets it (`Unobserved::observed`): nothing of columns that the
 /// user edited and of cells of `inpaint`. `None` where the frame has no masks.
 pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &Request<'_>) -> Option<Vec<u32>> {
     let mut observed = frame.inferred.unobserved.as_ref()?.observed();

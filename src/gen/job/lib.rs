@@ -3,7 +3,6 @@
 pub mod close_holes;
 pub mod composite;
 mod contract;
-pub mod drawn_scenery;
 pub mod guard;
 pub mod inpaint;
 pub mod invented;
@@ -11,6 +10,7 @@ pub mod keep_clear;
 pub mod keep_grounded;
 pub mod keep_objects;
 pub mod keep_unchanged;
+pub mod network_scenery;
 pub mod params;
 pub mod pipeline;
 pub mod product;

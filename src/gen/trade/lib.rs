@@ -7,7 +7,7 @@ mod interval;
 mod predict;
 mod presets;
 
-pub use front::{Placed, front, hypervolume, knee};
+pub use front::{TradePoint, front, hypervolume, knee};
 pub use interval::{Interval, bootstrap_median};
 pub use predict::{Cost, SizedTime};
 pub use presets::{Preset, PresetKnobs, Presets};

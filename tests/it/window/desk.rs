@@ -30,7 +30,7 @@ impl Bench {
     fn checked(&mut self) {
         self.wait_until("the checks", |b| {
             let rev = b.app().document.scene().rev;
-            !b.app().background.checking.is_stale(rev)
+            !b.app().threads.checking.is_stale(rev)
         });
         self.steps(3);
     }

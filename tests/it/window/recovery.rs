@@ -56,7 +56,7 @@ fn findings_lead_to_their_place_and_are_fixed() {
         .execute(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)), &ctx);
     let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
-        !b.app().background.checking.is_stale(rev)
+        !b.app().threads.checking.is_stale(rev)
     };
     bench.wait_until("the checks", checked);
     bench.steps(3);

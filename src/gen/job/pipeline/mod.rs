@@ -27,7 +27,7 @@ use crate::request::Request;
 use diffusion::inversion::Trajectory;
 use diffusion::replay::edit_with_replay;
 use diffusion::solver::Sampler;
-use nets::{DitCondition, GROUPS, Heard, OccModels, tokens_of};
+use nets::{DecoderInput, DitCondition, GROUPS, OccModels, tokens_of};
 use network::{Condition, Network, density_of_source};
 use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
@@ -257,7 +257,13 @@ impl OccPipeline {
         let latent = trajectory.latent_f32();
         let mut generated = report.timed(Stage::Decode, |_| {
             let refine = (params.fine_steps, params.seed);
-            decode_refined(&self.models, &latent, &region.cells, condition.told(), refine)
+            decode_refined(
+                &self.models,
+                &latent,
+                &region.cells,
+                condition.decoder_input(),
+                refine,
+            )
         })?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
@@ -296,7 +302,7 @@ impl OccPipeline {
     ) -> Result<(), GenError> {
         let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
         let (vae, region) = (&self.models.vae, Region::full());
-        let grid = vae.decode_told(&latent, &region.cells, condition.told());
+        let grid = vae.decode_with(&latent, &region.cells, condition.decoder_input());
         let grid = grid.map_err(GenError::failed)?;
         let frame = job.scene.frame();
         ctx.preview(GenResult {
@@ -391,7 +397,7 @@ impl OccPipeline {
                         let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
                         let grid = models
                             .vae
-                            .decode_told(&clean, &region.cells, condition.told())
+                            .decode_with(&clean, &region.cells, condition.decoder_input())
                             .map_err(GenError::failed)?;
                         let occupancy = composite(before, &grid, &region, &frame.painted);
                         ctx.preview(GenResult {
@@ -414,11 +420,11 @@ impl OccPipeline {
         let mut generated = report.timed(Stage::Decode, |report| {
             let refine = (params.fine_steps, params.seed);
             let decoded = |latent: &[f32], condition: &Condition| {
-                let heard = Heard {
+                let input = DecoderInput {
                     observed: observed.as_deref(),
-                    ..condition.told()
+                    ..condition.decoder_input()
                 };
-                decode_refined(&self.models, latent, &region.cells, heard, refine)
+                decode_refined(&self.models, latent, &region.cells, input, refine)
             };
             let (generated, source) = rayon::join(
                 || decoded(&edited.latent, &condition),

@@ -57,12 +57,12 @@ pub enum News {
 }
 
 /// A task on its way. Dropping it stops the thread soon.
-pub struct Background {
+pub struct Measurement {
     news: Receiver<News>,
     stop: Arc<AtomicBool>,
 }
 
-impl Background {
+impl Measurement {
     /// Starts the thread; `wake` is called after each piece of news. Errors if the system gives no thread.
     pub fn start(task: Task, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         let (out, news) = unbounded();
@@ -98,7 +98,7 @@ impl Background {
     }
 }
 
-impl Drop for Background {
+impl Drop for Measurement {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
     }

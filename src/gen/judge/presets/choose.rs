@@ -13,16 +13,16 @@ use job::GenParams;
 use metrics::stats::mean_ci95;
 use nets::OccModels;
 use numeric::quantile::{median, quantile};
-use trade::{Cost, Interval, Placed, Preset, PresetKnobs, Presets, front, knee};
+use trade::{Cost, Interval, Preset, PresetKnobs, Presets, TradePoint, front, knee};
 
 /// Presets from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
 pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Presets {
-    let placed: Vec<Placed> = rows.iter().map(|r| r.placed()).collect();
-    let kept = well_apart(rows, &placed);
-    let names = names(&kept.iter().map(|i| placed[*i]).collect::<Vec<_>>());
+    let points: Vec<TradePoint> = rows.iter().map(|r| r.point()).collect();
+    let kept = well_apart(rows, &points);
+    let names = names(&kept.iter().map(|i| points[*i]).collect::<Vec<_>>());
     let mut presets: Vec<Preset> = Vec::new();
     for (i, name) in kept.iter().zip(names) {
-        presets.extend(preset(name, rows[*i], placed[*i]));
+        presets.extend(preset(name, rows[*i], points[*i]));
     }
     presets.extend(reference_preset(rows, reference));
     Presets {
@@ -36,15 +36,15 @@ pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Pr
 }
 
 /// Rows of the front in the order of their times, only those whose time rises and whose error falls by enough to be felt.
-fn well_apart(rows: &[&Row], placed: &[Placed]) -> Vec<usize> {
-    let on_front = front(placed);
+fn well_apart(rows: &[&Row], points: &[TradePoint]) -> Vec<usize> {
+    let on_front = front(points);
     let mut order: Vec<usize> = (0..rows.len())
         .filter(|i| on_front[*i] && rows[*i].cost().is_some())
         .collect();
-    order.sort_by(|a, b| placed[*a].wall_s.median.total_cmp(&placed[*b].wall_s.median));
+    order.sort_by(|a, b| points[*a].wall_s.median.total_cmp(&points[*b].wall_s.median));
     let mut kept: Vec<usize> = Vec::new();
     for i in order {
-        let of = |k: usize| (placed[k].wall_s.median, placed[k].error.median);
+        let of = |k: usize| (points[k].wall_s.median, points[k].error.median);
         match kept.last().map(|k| of(*k)) {
             Some((_, error)) if of(i).1 >= 0.85 * error => {}
             // Nearly as fast and much nearer: nobody would choose the other.
@@ -61,7 +61,7 @@ fn well_apart(rows: &[&Row], placed: &[Placed]) -> Vec<usize> {
 }
 
 /// What the kept ones are called, from the fastest to the most exact.
-fn names(kept: &[Placed]) -> Vec<String> {
+fn names(kept: &[TradePoint]) -> Vec<String> {
     let last = kept.len().saturating_sub(1);
     let middle = knee(kept).unwrap_or(0);
     let middle = if last >= 2 {
@@ -84,13 +84,13 @@ fn names(kept: &[Placed]) -> Vec<String> {
 }
 
 /// A row as a preset; `None` if nothing can be predicted of its time.
-fn preset(name: String, row: &Row, placed: Placed) -> Option<Preset> {
+fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
     let errors = row.all(|o| o.error);
     let probe = row.outcomes.iter().take(cases::KINDS.len());
     Some(Preset {
         name,
         knobs: PresetKnobs::of(&row.setting.params),
-        error: placed.error,
+        error: point.error,
         error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
         invented: Some(mean_ci95(&row.all(|o| o.invented)).0),
         cost: row.cost()?,

@@ -19,7 +19,7 @@ use crate::held_out::bare_scene;
 use job::{GenParams, JobCtx};
 use nets::OccModels;
 use scene::Scene;
-use trade::{Placed, PresetKnobs, Presets, front, hypervolume};
+use trade::{PresetKnobs, Presets, TradePoint, front, hypervolume};
 
 /// What can be measured.
 pub const PARTS: [&str; 5] = ["edit", "scene", "lidar", "splat", "vae"];
@@ -182,13 +182,13 @@ impl Plan {
         });
         let rows: Vec<Row> = rows.collect();
         let same_target: Vec<&Row> = rows.iter().filter(|r| !r.setting.other_target).collect();
-        let placed: Vec<Placed> = same_target.iter().map(|r| r.placed()).collect();
-        let mut on_front = front(&placed).into_iter();
+        let points: Vec<TradePoint> = same_target.iter().map(|r| r.point()).collect();
+        let mut on_front = front(&points).into_iter();
         for row in &rows {
             let on_front = !row.setting.other_target && on_front.next().unwrap_or(false);
             found.points.push(row.json(part, on_front));
             if part == "edit" && !row.setting.other_target {
-                let p = row.placed();
+                let p = row.point();
                 found.marks.push(Mark {
                     name: row.setting.name.clone(),
                     wall_s: [p.wall_s.median, p.wall_s.low, p.wall_s.high],
@@ -198,7 +198,7 @@ impl Plan {
                 });
             }
         }
-        found.figures[format!("hypervolume_{part}")] = hypervolume(&placed, 30.0, 0.2).into();
+        found.figures[format!("hypervolume_{part}")] = hypervolume(&points, 30.0, 0.2).into();
         let same = cases.iter().all(|(_, o)| untouched_the_same(o, &rows));
         found.figures[format!("untouched_identical_{part}")] = same.into();
         if part == "edit" {

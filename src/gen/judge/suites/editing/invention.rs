@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::fit::{Bands, Fit};
 use super::materials::Material;
 use super::tally::{MUCH, Tally};
-use super::tried::{STATES, try_edit};
+use super::trial_run::{STATES, try_edit};
 use crate::Progress;
 use crate::suite::Options;
 use crate::trials::{Trial, vehicles};
@@ -209,7 +209,7 @@ fn contradictions(presets: &[Preset], found: &[OfPreset]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::suites::editing::tried::Tried;
+    use crate::suites::editing::trial_run::Tried;
     use job::invented::Invented;
 
     #[test]

@@ -4,11 +4,11 @@
 mod agreement;
 mod distribution;
 mod follow;
-mod given;
+mod given_background;
 mod inpainted;
 mod row;
 mod table;
-mod told_apart;
+mod two_sample;
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use agreement::Agreement;
 use authoring::scenery::{Drawer, SceneryWish};
 use editor::Document;
 use follow::Follow;
-use given::Given;
+use given_background::Given;
 use inpainted::Inpainted;
 use job::pipeline::{Ablation, OccPipeline};
 use job::{GenParams, Job, JobCtx, Pipeline};

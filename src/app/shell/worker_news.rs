@@ -39,7 +39,7 @@ impl SceneloomApp {
         // Small pictures while they will not last; the large ones cost as much as the generation itself.
         let for_a_moment = self.document.is_dragging() || self.generation.live.running.is_some();
         let wanted = Wanted::of(&self.state);
-        self.background
+        self.threads
             .sensing
             .ask(self.document.scene(), wanted, for_a_moment);
     }
