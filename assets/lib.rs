@@ -56,8 +56,8 @@ pub mod statistics {
 
 /// Files of `assets/trade`.
 pub mod trade {
-    /// `stops.json`.
-    pub static STOPS: &str = include_str!("trade/stops.json");
+    /// `presets.json`.
+    pub static PRESETS: &str = include_str!("trade/presets.json");
 }
 
 /// Files of `assets/weights`.

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use editor::{Document, Edit};
-use formats::project;
+use formats::loom;
 use scene::{Class, LidarSweep, Scene, SceneBox};
 use sensors::caster::Caster;
 use viewport::{
@@ -25,7 +25,7 @@ fn main() {
     };
     println!("{} ({:?}, {:?})", info.name, info.device_type, info.backend);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/first_light.loom");
-    let scene = project::load(&path).expect("the bundled scene");
+    let scene = loom::load(&path).expect("the bundled scene");
     let frame = scene.frame();
     let sweep: LidarSweep = scene
         .rig

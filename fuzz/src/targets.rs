@@ -11,7 +11,7 @@ use app::settings::Settings;
 use app::{open, text as app_text};
 use diffusion::solver::SolverKind;
 use editor::{Document, Edit, Shape};
-use formats::{box_list, occ3d, opendrive, project};
+use formats::{box_list, loom, occ3d, opendrive};
 use glam::{DVec2, DVec3};
 use graph_layout::memory::{Bank, RoadRef};
 use job::GenParams;
@@ -31,7 +31,7 @@ use scene::road_map::RoadMap;
 use scene::{BevLayer, BevLayout, BoxId, Class, Frame, Relief, Scene, SensorRig, TimeOfDay, Weather, infer};
 use sensors::lidar::Rays;
 use sensors::project::View;
-use trade::Stops;
+use trade::Presets;
 use words::describe::describe;
 use words::hear::hear;
 use words::reader::Mode;
@@ -58,7 +58,7 @@ pub const ALL: [(&str, Target); 17] = [
     ("arguments", arguments),
     ("words", words),
     ("params", params),
-    ("stops", stops),
+    ("presets", presets),
 ];
 
 /// An error is for people: something, in one line.
@@ -94,7 +94,7 @@ fn frame_is_sound(frame: &Frame) {
 
 /// `.loom`: what is read can be written and read again, and everything that walks lanes comes to an end.
 pub fn project_file(bytes: &[u8]) {
-    match project::from_bytes(bytes) {
+    match loom::from_bytes(bytes) {
         Err(error) => one_line(error),
         Ok(scene) => {
             assert_eq!(scene.rig.problem(), None);
@@ -106,9 +106,9 @@ pub fn project_file(bytes: &[u8]) {
                 LaneMap::new(&frame.layout);
                 traffic::place(&frame.layout, 1, &traffic::TrafficSpec::NORMAL);
             }
-            let again = project::to_bytes(&scene).expect("what was read can be written");
-            let twice = project::from_bytes(&again).expect("what was written can be read");
-            assert_eq!(project::to_bytes(&twice).expect("sound"), again);
+            let again = loom::to_bytes(&scene).expect("what was read can be written");
+            let twice = loom::from_bytes(&again).expect("what was written can be read");
+            assert_eq!(loom::to_bytes(&twice).expect("sound"), again);
         }
     }
 }
@@ -554,18 +554,18 @@ pub fn params(bytes: &[u8]) {
     }
 }
 
-/// Measured stops of the quality slider.
-pub fn stops(bytes: &[u8]) {
-    let weights = Stops::bundled().weights;
-    match Stops::parse(&String::from_utf8_lossy(bytes), weights) {
+/// Measured presets of the quality slider.
+pub fn presets(bytes: &[u8]) {
+    let weights = Presets::bundled().weights;
+    match Presets::parse(&String::from_utf8_lossy(bytes), weights) {
         Err(error) => one_line(error),
-        Ok(stops) => {
-            for stop in &stops.stops {
-                let params = stop.knobs.on(GenParams::default());
+        Ok(presets) => {
+            for preset in &presets.all {
+                let params = preset.knobs.on(GenParams::default());
                 assert_eq!(params.check(), Ok(()));
-                assert!(stops.index_of(&params).is_some());
+                assert!(presets.index_of(&params).is_some());
                 for tokens in [0.0, 1.0, 625.0] {
-                    assert!(stop.cost.wall_s(tokens) >= 0.0);
+                    assert!(preset.cost.wall_s(tokens) >= 0.0);
                 }
             }
         }

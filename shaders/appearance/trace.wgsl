@@ -1,5 +1,5 @@
 // The first surface along a ray.
-// ---- look.rs
+// ---- prepared.rs
 
 // Beginning and end of the things near a point of the ground.
 fn things_near(p: vec2f) -> vec2u {

@@ -18,7 +18,7 @@ pub(super) fn column_of(pixel: usize) -> (usize, usize) {
 
 /// Which map layers are drawn, and how much each hides of what lies below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LayerLook {
+pub struct LayerStyle {
     /// Bits of the layers that are shown.
     pub shown: u32,
     /// 0 to 255 for each layer of [`DRAW_ORDER`].
@@ -28,8 +28,8 @@ pub struct LayerLook {
 }
 
 /// The map layers of each column, drawn over one another; `behind` where there is none.
-pub fn layers(layout: &BevLayout, look: &LayerLook, behind: Color32) -> ColorImage {
-    let solid = look.opacity == [255; DRAW_ORDER.len()];
+pub fn layers(layout: &BevLayout, style: &LayerStyle, behind: Color32) -> ColorImage {
+    let solid = style.opacity == [255; DRAW_ORDER.len()];
     let colors = DRAW_ORDER.map(|layer| {
         let mut color = layer.color();
         if is_divider(layer) {
@@ -45,12 +45,12 @@ pub fn layers(layout: &BevLayout, look: &LayerLook, behind: Color32) -> ColorIma
     };
     let pixel = |i: usize| {
         let (x, y) = column_of(i);
-        let cell = layout.cell(x, y) & look.shown;
+        let cell = layout.cell(x, y) & style.shown;
         let mut here = (0..DRAW_ORDER.len()).filter(|k| cell & DRAW_ORDER[*k].bit() != 0);
         match solid {
-            true => here.next_back().map_or(behind, |k| of(k, look.veil)),
+            true => here.next_back().map_or(behind, |k| of(k, style.veil)),
             false => {
-                let veiled = |k: usize| (u16::from(look.opacity[k]) * u16::from(look.veil) / 255) as u8;
+                let veiled = |k: usize| (u16::from(style.opacity[k]) * u16::from(style.veil) / 255) as u8;
                 here.fold(behind, |below, k| below.blend(of(k, veiled(k))))
             }
         }
@@ -152,8 +152,8 @@ mod tests {
         );
     }
 
-    fn solid(shown: u32) -> LayerLook {
-        LayerLook {
+    fn solid(shown: u32) -> LayerStyle {
+        LayerStyle {
             shown,
             opacity: [255; DRAW_ORDER.len()],
             veil: 255,
@@ -169,14 +169,14 @@ mod tests {
         let [r, g, b] = BevLayer::Walkway.color();
         assert_eq!(image.pixels[0], Color32::from_rgb(r, g, b));
         assert_eq!(image.pixels[1], Color32::TRANSPARENT);
-        let look = solid(!BevLayer::Walkway.bit());
-        let without = layers(&layout, &look, Color32::TRANSPARENT);
+        let style = solid(!BevLayer::Walkway.bit());
+        let without = layers(&layout, &style, Color32::TRANSPARENT);
         let [r, g, b] = BevLayer::DrivableArea.color();
         assert_eq!(without.pixels[0], Color32::from_rgb(r, g, b));
         // Half a walkway over the road is between both.
-        let mut look = solid(0xff);
-        look.opacity[2] = 128;
-        let half = layers(&layout, &look, Color32::TRANSPARENT).pixels[0];
+        let mut style = solid(0xff);
+        style.opacity[2] = 128;
+        let half = layers(&layout, &style, Color32::TRANSPARENT).pixels[0];
         let between = |i: usize| {
             let (a, b) = (BevLayer::Walkway.color()[i], BevLayer::DrivableArea.color()[i]);
             (i32::from(half.to_array()[i]) - (i32::from(a) + i32::from(b)) / 2).abs() < 4

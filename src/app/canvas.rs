@@ -15,9 +15,9 @@ use editor::pick_things;
 use editor::tools::{Hand, region, select};
 use scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
-use super::bev_image::{self, LayerLook};
+use super::bev_image::{self, LayerStyle};
 use super::canvas_draw::{
-    BoxLook, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
+    BoxStyle, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
     draw_unsettled,
 };
 use super::canvas_tools::{Driver, Seen};
@@ -45,7 +45,7 @@ pub struct Canvas {
     unobserved: Option<Shown<SceneRev>>,
 }
 
-type LayersKey = (SceneRev, LayerLook, Color32);
+type LayersKey = (SceneRev, LayerStyle, Color32);
 
 /// A picture on the device: what it was made from, and what it holds.
 struct Shown<K> {
@@ -285,9 +285,9 @@ impl Canvas {
             draw_boxes(ui, map, response, input.scene, state);
         }
         draw_unsettled(ui, map, &input.unsettled, input.generating);
-        if let Some(meant) = &state.meant {
+        if let Some(marks) = &state.finding_marks {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
-            meant.draw(&inside, map, scene.frame());
+            marks.draw(&inside, map, scene.frame());
         }
         draw_scale_bar(ui, map);
         self.draw_tool(ui, response, map, input, state);
@@ -300,13 +300,13 @@ impl Canvas {
             false => (1.0, GROUND),
         };
         let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0).round() as u8;
-        let look = LayerLook {
+        let style = LayerStyle {
             shown: state.layers_shown,
             opacity: state.tools.layer_opacity.map(byte),
             veil: byte(veil),
         };
-        let key = (scene.rev, look, behind);
-        let make = || bev_image::layers(&scene.frame().layout, &look, behind);
+        let key = (scene.rev, style, behind);
+        let make = || bev_image::layers(&scene.frame().layout, &style, behind);
         texture(ui, &mut self.layers, key, "layers", make)
     }
 
@@ -330,7 +330,7 @@ impl Canvas {
         }
         if state.tools.row_open {
             for b in row::coming(input.scene.frame(), state) {
-                draw_box(ui, map, &b, BoxLook::Ghost);
+                draw_box(ui, map, &b, BoxStyle::Ghost);
             }
         }
         let (marks, cursor) = self

@@ -135,7 +135,7 @@ pub(super) fn draw_ego(ui: &Ui, map: &ScreenMap, rig: &SensorRig) {
 
 /// How a box is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum BoxLook {
+pub(super) enum BoxStyle {
     Plain,
     Hovered,
     Selected,
@@ -151,37 +151,37 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
         .and_then(|p| pick::box_at(frame, map.to_ego(p)));
     for b in frame.boxes.values() {
         if Some(b.id) != state.selected {
-            let look = if state.is_chosen(b.id) {
-                BoxLook::Chosen
+            let style = if state.is_chosen(b.id) {
+                BoxStyle::Chosen
             } else if Some(b.id) == hovered {
-                BoxLook::Hovered
+                BoxStyle::Hovered
             } else {
-                BoxLook::Plain
+                BoxStyle::Plain
             };
-            draw_box(ui, map, b, look);
+            draw_box(ui, map, b, style);
         }
     }
     if let Some(b) = state.selected.and_then(|id| frame.boxes.get(&id)) {
-        draw_box(ui, map, b, BoxLook::Selected);
+        draw_box(ui, map, b, BoxStyle::Selected);
         if state.tool == select::ID {
             draw_handles(ui, map, b);
         }
     }
 }
 
-pub(super) fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, look: BoxLook) {
+pub(super) fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, style: BoxStyle) {
     let painter = ui.painter();
     let color = b.class.color();
     let corners: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
-    let (opacity, edge) = match look {
-        BoxLook::Plain => (0.42, Stroke::new(1.3, theme::rgb(color))),
-        BoxLook::Hovered => (
+    let (opacity, edge) = match style {
+        BoxStyle::Plain => (0.42, Stroke::new(1.3, theme::rgb(color))),
+        BoxStyle::Hovered => (
             0.62,
             Stroke::new(1.8, theme::rgb(color.map(|c| c.saturating_add(40)))),
         ),
-        BoxLook::Selected => (0.62, Stroke::new(2.0, Color32::WHITE)),
-        BoxLook::Chosen => (0.8, Stroke::new(2.0, Color32::WHITE)),
-        BoxLook::Ghost => (0.28, Stroke::new(1.3, theme::rgba(color, 0.8))),
+        BoxStyle::Selected => (0.62, Stroke::new(2.0, Color32::WHITE)),
+        BoxStyle::Chosen => (0.8, Stroke::new(2.0, Color32::WHITE)),
+        BoxStyle::Ghost => (0.28, Stroke::new(1.3, theme::rgba(color, 0.8))),
     };
     painter.add(Shape::convex_polygon(corners, theme::rgba(color, opacity), edge));
     // The heading: from the middle to the front.

@@ -108,7 +108,7 @@ pub enum GenerationCommand {
         /// True: everything, from fresh noise.
         full: bool,
     },
-    /// Draws what stands beside the roads anew, by what is chosen in the list.
+    /// Regenerates what stands beside the roads, by what is chosen in the list.
     DrawScenery,
     /// What becomes of a result that waits.
     Decide(Verdict),
@@ -127,9 +127,9 @@ pub enum GenerationCommand {
     StepVersion(i32),
     /// Switches generation after each edit on or off.
     ToggleLive,
-    /// Generates with the settings of a stop of the quality slider, by index.
+    /// Generates with the settings of a preset of the quality slider, by index.
     Quality(usize),
-    /// Times the stops on this machine.
+    /// Times the presets on this machine.
     Calibrate,
     /// Measures how far the last edit lies from the reference.
     Refine,

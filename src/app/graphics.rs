@@ -3,11 +3,11 @@
 //! processor draws.
 
 use scene::{Camera, CameraMaps};
-use sensors::appearance::{CameraImage, Look, Quality};
+use sensors::appearance::{Appearance, CameraImage, Quality};
 use sensors::cameras::Card;
 use sensors::cloud::GaussianCloud;
 use sensors::splat::SplatOptions;
-use viewport::{LookRenderer, SplatRenderer, headless_device};
+use viewport::{AppearanceRenderer, SplatRenderer, headless_device};
 
 /// Set to 1, software drivers are used too, for tests; set to 0, no card is.
 const SWITCH: &str = "SCENELOOM_GPU_VIEWS";
@@ -16,7 +16,7 @@ const SWITCH: &str = "SCENELOOM_GPU_VIEWS";
 pub struct Graphics {
     adapter: String,
     splats: Option<SplatRenderer>,
-    looks: Option<LookRenderer>,
+    appearance: Option<AppearanceRenderer>,
 }
 
 /// Whether an adapter is to be used, from the switch and what it is.
@@ -53,7 +53,7 @@ impl Graphics {
         Some(Self {
             adapter: info.name,
             splats: SplatRenderer::new(&device, &queue).ok(),
-            looks: LookRenderer::new(&device, &queue).ok(),
+            appearance: AppearanceRenderer::new(&device, &queue).ok(),
         })
     }
 
@@ -84,24 +84,27 @@ impl Card for Graphics {
         Some(maps.into_camera_maps(&camera.name, &options))
     }
 
-    fn set_look(&mut self, look: &Look) -> bool {
-        let set = self.looks.as_mut().map(|l| l.set_look(&look.data()));
-        self.looks = self.looks.take().filter(|_| matches!(set, Some(Ok(()))));
-        self.looks.is_some()
+    fn set_appearance(&mut self, appearance: &Appearance) -> bool {
+        let set = self
+            .appearance
+            .as_mut()
+            .map(|l| l.set_appearance(&appearance.data()));
+        self.appearance = self.appearance.take().filter(|_| matches!(set, Some(Ok(()))));
+        self.appearance.is_some()
     }
 
     fn picture(
         &mut self,
-        look: &Look,
+        appearance: &Appearance,
         camera: &Camera,
         [width, height]: [u32; 2],
         quality: Quality,
     ) -> Option<CameraImage> {
         let edges = quality == Quality::Full;
-        match self.looks.as_mut()?.light(camera, [width, height], edges) {
-            Ok(light) => Some(look.picture(camera, width, height, &light)),
+        match self.appearance.as_mut()?.light(camera, [width, height], edges) {
+            Ok(light) => Some(appearance.picture(camera, width, height, &light)),
             Err(_) => {
-                self.looks = None;
+                self.appearance = None;
                 None
             }
         }
@@ -158,7 +161,10 @@ mod tests {
             }
         }
         assert_eq!(drawn_by_card, ["splats", "pictures"]);
-        assert!(card.splats.is_some() && card.looks.is_some(), "nothing failed");
+        assert!(
+            card.splats.is_some() && card.appearance.is_some(),
+            "nothing failed"
+        );
     }
 
     #[test]

@@ -6,7 +6,7 @@ use glam::DVec2;
 use editor::tools::{At, Mark, Role, View};
 use scene::{BevLayer, GridSpec};
 
-use super::canvas_draw::{BoxLook, draw_box};
+use super::canvas_draw::{BoxStyle, draw_box};
 use super::screen_map::{ScreenMap, pos};
 use super::thing_outlines;
 use widgets::theme;
@@ -118,7 +118,7 @@ impl Board<'_> {
             }
             Mark::Ghost(b) => {
                 if let Some(map) = self.map {
-                    draw_box(ui, map, b, BoxLook::Ghost);
+                    draw_box(ui, map, b, BoxStyle::Ghost);
                 }
             }
             Mark::Coming(form) => match self.map {
@@ -229,7 +229,7 @@ fn arrow(painter: &Painter, [from, to]: [Pos2; 2], color: Color32, hot: bool, sq
     }
 }
 
-/// The cells that are to be drawn anew.
+/// The cells to inpaint.
 pub(super) fn region(painter: &Painter, map: &ScreenMap, cells: impl Iterator<Item = [usize; 2]>) {
     const CELL_M: f64 = 1.6;
     for [i, j] in cells {

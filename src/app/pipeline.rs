@@ -1,7 +1,7 @@
 //! The generation that the window runs: the bundled networks, warmed up while nobody waits.
 
+use job::inpaint;
 use job::pipeline::OccPipeline;
-use job::redraw;
 use job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
 
 /// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
@@ -19,7 +19,7 @@ impl Pipeline for WarmPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let frame = job.scene.frame();
         let nothing_edited =
-            job.params.region == RegionMode::Auto && redraw::region_of(frame, &job.params).is_empty();
+            job.params.region == RegionMode::Auto && inpaint::region_of(frame, &job.params).is_empty();
         if !nothing_edited {
             return self.0.run(job, ctx);
         }

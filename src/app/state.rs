@@ -116,7 +116,7 @@ pub struct UiState {
     /// Where the line of the wipe stands, 0 to 1.
     pub wipe_at: f32,
     /// What the finding means that is pointed at or chosen among the checks; shown in both large views.
-    pub meant: Option<std::sync::Arc<super::meant::Meant>>,
+    pub finding_marks: Option<std::sync::Arc<super::finding_marks::FindingMarks>>,
     /// The sensors' window is open.
     pub sensors_open: bool,
     /// The sensor chosen in it.
@@ -211,7 +211,7 @@ impl Default for UiState {
             compare: CompareMode::Off,
             holding_before: false,
             wipe_at: 0.5,
-            meant: None,
+            finding_marks: None,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
             inspected: None,

@@ -43,26 +43,26 @@ pub(super) fn trace(form: &Form, to_screen: &dyn Fn(DVec2) -> Option<Pos2>) -> (
 
 /// How a form is drawn from above.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Look {
+enum Style {
     Plain,
     Hovered,
     Chosen,
     Coming,
 }
 
-fn draw_form(painter: &Painter, map: &ScreenMap, form: &Form, look: Look) {
+fn draw_form(painter: &Painter, map: &ScreenMap, form: &Form, style: Style) {
     let color = color(form);
     let (points, closed) = trace(form, &|p| Some(map.to_screen(p)));
-    let (width, edge, fill) = match look {
-        Look::Plain => (1.0, color.gamma_multiply(0.75), 0.16),
-        Look::Hovered => (1.8, color, 0.3),
-        Look::Chosen => (2.0, Color32::WHITE, 0.42),
-        Look::Coming => (1.5, color, 0.25),
+    let (width, edge, fill) = match style {
+        Style::Plain => (1.0, color.gamma_multiply(0.75), 0.16),
+        Style::Hovered => (1.8, color, 0.3),
+        Style::Chosen => (2.0, Color32::WHITE, 0.42),
+        Style::Coming => (1.5, color, 0.25),
     };
     if let Form::Line(line) = form {
         let thick = (line.width_m * map.scale).max(1.6) as f32;
         painter.line(points.clone(), Stroke::new(thick, color.gamma_multiply(0.85)));
-        if look != Look::Plain {
+        if style != Style::Plain {
             painter.line(points, Stroke::new(width, edge));
         }
         return;
@@ -89,7 +89,7 @@ fn draw_form(painter: &Painter, map: &ScreenMap, form: &Form, look: Look) {
 
 /// A thing that would come, from above.
 pub(super) fn coming(painter: &Painter, map: &ScreenMap, form: &Form) {
-    draw_form(painter, map, form, Look::Coming);
+    draw_form(painter, map, form, Style::Coming);
 }
 
 fn is_convex(points: &[Pos2]) -> bool {
@@ -126,12 +126,12 @@ pub(crate) fn outlines(
         if !map.rect_of(min, max).intersects(map.rect) {
             continue;
         }
-        let look = match () {
-            () if chosen => Look::Chosen,
-            () if hovered == Some(thing.id) => Look::Hovered,
-            () => Look::Plain,
+        let style = match () {
+            () if chosen => Style::Chosen,
+            () if hovered == Some(thing.id) => Style::Hovered,
+            () => Style::Plain,
         };
-        draw_form(painter, map, &form, look);
+        draw_form(painter, map, &form, style);
     }
 }
 

@@ -4,8 +4,8 @@ use egui::{Align2, RichText, Ui, Vec2, vec2};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Text, VLine};
 
 use crate::picture::Picture;
-use judge::stops::figures::{percent, seconds};
-use judge::stops::plan::Mark;
+use judge::presets::figures::{percent, seconds};
+use judge::presets::plan::Mark;
 use widgets::theme;
 
 /// Published wall times to be seen beside ours, s: all on graphics cards.
@@ -34,12 +34,12 @@ fn decades(low: f64, high: f64) -> Vec<GridMark> {
     marks
 }
 
-/// Width of the plot from which on names of stops carry their numbers, points.
+/// Width of the plot from which on names of presets carry their numbers, points.
 const ROOM_FOR_NUMBERS: f32 = 520.0;
 /// Height of such a name in decades of the error.
 const LABEL_DECADES: f64 = 0.14;
 
-/// Draws the plot; `current` is the stop in use, `last` what the last edit took and, if it was measured, its error.
+/// Draws the plot; `current` is the preset in use, `last` what the last edit took and, if it was measured, its error.
 pub fn front_plot(
     ui: &mut Ui,
     marks: &[Mark],
@@ -91,19 +91,19 @@ pub fn front_plot(
             .iter()
             .map(|m| log(m.wall_s[0]))
             .fold(ANCHORS[0].0.log10(), f64::max);
-        // Names of stops stand above and below the line by turns.
+        // Names of presets stand above and below the line by turns.
         let mut nth = 0u32;
         for mark in marks.iter().filter(|m| m.error[0].is_finite()) {
             draw_point(plot, mark, current);
-            if let Some(stop) = &mark.stop {
-                let here = current == Some(stop.as_str());
-                draw_name(plot, mark, stop, here, size.x >= ROOM_FOR_NUMBERS, right, nth);
+            if let Some(preset) = &mark.preset {
+                let here = current == Some(preset.as_str());
+                draw_name(plot, mark, preset, here, size.x >= ROOM_FOR_NUMBERS, right, nth);
                 nth += 1;
             }
         }
         let mut front: Vec<[f64; 2]> = marks
             .iter()
-            .filter(|m| m.stop.is_some())
+            .filter(|m| m.preset.is_some())
             .map(|m| [log(m.wall_s[0]), log(m.error[0])])
             .collect();
         front.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -126,7 +126,7 @@ pub fn front_plot(
     });
 }
 
-/// One setting: its middle and its intervals, and a ring around the stop that is in use.
+/// One setting: its middle and its intervals, and a ring around the preset that is in use.
 fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
     let color = if mark.on_front {
         theme::accent()
@@ -144,14 +144,18 @@ fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
                 .allow_hover(false),
         );
     }
-    let radius = if mark.stop.is_some() { 5.0 } else { 2.5 };
+    let radius = if mark.preset.is_some() { 5.0 } else { 2.5 };
     plot.points(
         Points::new(mark.name.clone(), vec![[s, e]])
             .color(color)
             .radius(radius),
     );
-    if let Some(stop) = mark.stop.as_ref().filter(|stop| current == Some(stop.as_str())) {
-        let ring = Points::new(stop.clone(), vec![[s, e]])
+    if let Some(preset) = mark
+        .preset
+        .as_ref()
+        .filter(|preset| current == Some(preset.as_str()))
+    {
+        let ring = Points::new(preset.clone(), vec![[s, e]])
             .filled(false)
             .color(theme::text_strong())
             .radius(8.0);
@@ -159,11 +163,11 @@ fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
     }
 }
 
-/// The name of a stop beside its point, with its numbers where there is room for them; the list of stops tells them too.
+/// The name of a preset beside its point, with its numbers where there is room for them; the list of presets tells them too.
 fn draw_name(
     plot: &mut PlotUi<'_>,
     mark: &Mark,
-    stop: &str,
+    preset: &str,
     here: bool,
     with_numbers: bool,
     right: f64,
@@ -171,8 +175,12 @@ fn draw_name(
 ) {
     let (s, e) = (log(mark.wall_s[0]), log(mark.error[0]));
     let text = RichText::new(match with_numbers {
-        false => stop.to_owned(),
-        true => format!("{stop}\n{}, {}", seconds(mark.wall_s[0]), percent(mark.error[0])),
+        false => preset.to_owned(),
+        true => format!(
+            "{preset}\n{}, {}",
+            seconds(mark.wall_s[0]),
+            percent(mark.error[0])
+        ),
     });
     let text = if here { text.small().strong() } else { text.small() };
     // Where the name has room: to the left of the last ones.
@@ -186,13 +194,13 @@ fn draw_name(
     };
     let color = if here { theme::text_strong() } else { theme::text() };
     let at = PlotPoint::new(s + dx, e + dy);
-    plot.text(Text::new(stop.to_owned(), at, text).color(color).anchor(anchor));
+    plot.text(Text::new(preset.to_owned(), at, text).color(color).anchor(anchor));
 }
 
 /// The same as a picture of `points` size, twice as many pixels.
 pub fn picture(marks: &[Mark], points: [f32; 2]) -> Picture {
     let ctx = egui::Context::default();
-    theme::apply(&ctx, theme::Look::Light);
+    theme::apply(&ctx, theme::Theme::Light);
     crate::paint::picture(&ctx, points, 2.0, |ui| {
         let frame = egui::Frame::new().fill(theme::panel()).inner_margin(10.0);
         frame.show(ui, |ui| {

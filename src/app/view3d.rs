@@ -298,7 +298,7 @@ impl View3d {
 
     fn fly(&mut self, ui: &Ui, dx: f64, dy: f64) {
         use egui::Key;
-        self.camera.look(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
+        self.camera.turn_head(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
         let (step, modifiers, dt) = ui.input(|i| {
             let axis =
                 |plus: Key, minus: Key| f64::from(i8::from(i.key_down(plus)) - i8::from(i.key_down(minus)));
@@ -351,13 +351,13 @@ impl View3d {
             _ => None,
         });
         let (cells, color) = brushed.unwrap_or((&[], [0; 3]));
-        let meant = state.meant.as_deref();
+        let finding = state.finding_marks.as_deref();
         let mut brush = vec![BrushCells { cells, color }];
         if cells.is_empty() {
             brush.extend_from_slice(input.marked);
         }
-        if let Some(meant) = meant {
-            let (cells, color) = (&meant.cells[..], super::meant::COLOR);
+        if let Some(finding) = finding {
+            let (cells, color) = (&finding.cells[..], super::finding_marks::COLOR);
             brush.push(BrushCells { cells, color });
         }
         for part in &mut brush {
@@ -371,7 +371,7 @@ impl View3d {
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
             Some(Hit::Box { id, .. }) if state.tool == select::ID => Some(*id),
-            _ => meant.and_then(|m| m.box_id),
+            _ => finding.and_then(|m| m.box_id),
         };
         let Some(gpu) = &mut self.gpu else { return };
         let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);

@@ -219,7 +219,7 @@ impl Document {
         Ok(rev)
     }
 
-    /// The same as an undo step of its own: for what the user asked to be drawn anew.
+    /// The same as an undo step of its own: for a region that the user asked to inpaint.
     pub fn adopt_as_step(
         &mut self,
         label: impl Into<Label>,

@@ -485,7 +485,7 @@ fn the_history_is_bounded_by_bytes() {
 }
 
 #[test]
-fn what_was_drawn_anew_can_be_undone() {
+fn what_was_inpainted_can_be_undone() {
     let mut document = Document::new(start());
     let before = document.scene().clone();
     let mut occupancy = before.frame().occupancy.clone();

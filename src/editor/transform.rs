@@ -10,7 +10,7 @@ use super::lanes::nearest_lane;
 
 /// What a drag changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum TransformKind {
     /// The place.
     #[default]
     Move,
@@ -69,7 +69,7 @@ const CATCH_M: f64 = 2.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transform {
     /// What it changes.
-    pub kind: Kind,
+    pub kind: TransformKind,
     /// The boxes as they were; the one that was taken hold of first.
     pub start: Vec<SceneBox>,
     /// Axis it keeps to.
@@ -153,15 +153,15 @@ impl Transform {
     /// The edits that the drag asks for so far.
     pub fn edits(&self, frame: &Frame, pull: &Pull, snap: &Snap) -> Vec<Edit> {
         match self.kind {
-            Kind::Move => self.moved(frame, pull.delta_m, snap),
-            Kind::Turn => {
+            TransformKind::Move => self.moved(frame, pull.delta_m, snap),
+            TransformKind::Turn => {
                 let free = match snap.grid_m {
                     Some(_) => (pull.turn_deg / 15.0).round() * 15.0,
                     None => pull.turn_deg,
                 };
                 turned(&self.start, self.typed_value().unwrap_or(free), self.pivot)
             }
-            Kind::Scale => self.scaled(pull.factor, snap),
+            TransformKind::Scale => self.scaled(pull.factor, snap),
         }
     }
 
@@ -257,7 +257,7 @@ impl Transform {
             return format!("{axis}{} {unit}", self.typed);
         }
         match self.kind {
-            Kind::Move => {
+            TransformKind::Move => {
                 let d = self.delta_m(pull.delta_m, snap);
                 format!(
                     "{axis}{:.2} m  ({:.2}, {:.2}, {:.2})",
@@ -267,8 +267,8 @@ impl Transform {
                     d.z + 0.0
                 )
             }
-            Kind::Turn => format!("{:.1}°", wrapped_deg(pull.turn_deg)),
-            Kind::Scale => format!("{axis}× {:.2}", pull.factor),
+            TransformKind::Turn => format!("{:.1}°", wrapped_deg(pull.turn_deg)),
+            TransformKind::Scale => format!("{axis}× {:.2}", pull.factor),
         }
     }
 
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
     use scene::{BevLayout, BoxId, Class, Polyline, PolylineKind, VoxelGrid};
 
-    fn start(kind: Kind) -> Transform {
+    fn start(kind: TransformKind) -> Transform {
         let car = |id, x, yaw_rad| SceneBox {
             id: BoxId(id),
             class: Class::Car,
@@ -345,7 +345,7 @@ mod tests {
         };
         let at = |t: &Transform, snap: &Snap| first(&t.edits(&frame(), &pull, snap)).0;
         let free = Snap::default();
-        let mut t = start(Kind::Move);
+        let mut t = start(TransformKind::Move);
         assert_eq!(t.edits(&frame(), &pull, &free).len(), 2);
         assert!(at(&t, &free).distance(DVec3::new(3.07, 3.03, 1.85)) < 1e-9);
         let grid = Snap {
@@ -375,7 +375,7 @@ mod tests {
             lane: true,
             ground: true,
         };
-        let mut t = start(Kind::Move);
+        let mut t = start(TransformKind::Move);
         let (at, yaw, _) = first(&t.edits(&frame(), &pull, &both));
         assert!(
             at.distance(DVec3::new(0.07, 3.0, 0.85)) < 1e-9 && yaw == Some(0.0),
@@ -400,7 +400,7 @@ mod tests {
             grid_m: Some(1.0),
             ..Snap::default()
         };
-        let t = start(Kind::Turn);
+        let t = start(TransformKind::Turn);
         let yaw = first(&t.edits(&frame(), &pull, &grid)).1.expect("turned");
         assert!((yaw - 135.0).abs() < 1e-9, "{yaw}");
         let quarter = t.turn_deg(
@@ -409,7 +409,7 @@ mod tests {
         );
         assert!((quarter - 90.0).abs() < 1e-9);
         assert_eq!(t.turn_deg(t.middle_m().truncate(), DVec2::X), 0.0);
-        let mut t = start(Kind::Scale);
+        let mut t = start(TransformKind::Scale);
         t.axis = Some(Axis::Z);
         let (center, _, size) = first(&t.edits(&frame(), &pull, &grid));
         assert!(size.expect("scaled").distance(DVec3::new(4.0, 2.0, 2.55)) < 1e-9);

@@ -16,7 +16,6 @@ pub mod png;
 mod table_tests;
 
 pub use error::FormatError;
-pub use loom as project; // the name that callers use
 
 /// What a file of a format holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

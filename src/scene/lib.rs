@@ -1,5 +1,6 @@
 //! What a scene is: plain data. No window, GPU, network, thread or file is known here.
 
+pub mod appearance;
 pub mod background;
 pub mod box_label;
 pub mod boxes;
@@ -15,7 +16,6 @@ pub mod grid;
 pub mod infer;
 pub mod inferred;
 pub mod layout;
-pub mod look;
 pub mod message;
 pub mod pose;
 pub mod raster;
@@ -70,7 +70,7 @@ impl SceneRev {
 }
 
 /// The state that a frame's occupancy was last generated, imported or accepted in. What differs
-/// between it and the frame is what the next generation must redraw; all else stays bit-identical.
+/// between it and the frame is what the next generation must inpaint; all else stays bit-identical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceFrame {
     /// Map layers and polylines the occupancy belongs to.

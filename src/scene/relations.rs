@@ -42,7 +42,7 @@ pub fn ego_box() -> SceneBox {
 }
 
 /// A graph with the places of its objects on a map.
-pub struct Placed<'a> {
+pub struct PlacedGraph<'a> {
     /// What was said.
     pub graph: &'a SceneGraph,
     /// Boxes by node id.
@@ -60,7 +60,7 @@ enum Anchor<'a> {
     Junction(DVec2),
 }
 
-impl Placed<'_> {
+impl PlacedGraph<'_> {
     /// True if the statement holds. With `distance_m`, the distance must be met too: within the larger of
     /// [`DISTANCE_SLACK_M`] and [`DISTANCE_SHARE`] of it.
     ///

@@ -65,7 +65,7 @@ fn holds(road: &RoadMap, b: SceneBox, relation: RelationKind, to: NodeKind, dist
         distance_m,
         ..Edge::new(from, relation, to)
     };
-    Placed {
+    PlacedGraph {
         graph: &graph,
         boxes: &boxes,
         road,
@@ -240,7 +240,7 @@ fn between_needs_both() {
         .collect();
     let at = |x| boxed(Class::Car, x, 0.0, 0.0, 0.0);
     let boxes = BTreeMap::from([(ids[0], at(20.0)), (ids[1], at(10.0)), (ids[2], at(30.0))]);
-    let placed = Placed {
+    let placed = PlacedGraph {
         graph: &graph,
         boxes: &boxes,
         road: &road,

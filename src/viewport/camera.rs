@@ -177,8 +177,8 @@ impl ViewCamera {
         *self = self.sane();
     }
 
-    /// Turns about the eye, as a head does: angles in rad, `dx` to the right, `dy` down.
-    pub fn look(&mut self, dx: f64, dy: f64) {
+    /// Turns about the eye, as a head does. Angles in rad, `dx` to the right, `dy` down.
+    pub fn turn_head(&mut self, dx: f64, dy: f64) {
         let eye = self.eye_m();
         self.orbit(dx, dy);
         self.target_m = eye + self.axes()[2] * self.distance_m;
@@ -394,7 +394,7 @@ mod tests {
             }
             let mut moved = ViewCamera::default();
             moved.orbit(v, v);
-            moved.look(v, v);
+            moved.turn_head(v, v);
             moved.zoom(v, Some(DVec3::splat(v)));
             moved.fly(DVec3::splat(v));
             moved.pan(DVec2::splat(v), [0, 0]);

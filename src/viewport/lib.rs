@@ -31,7 +31,7 @@ pub mod ui_mesh;
 mod view;
 mod voxels;
 
-pub use appearance::{APPEARANCE_UNIFORM_BYTES, LookError, LookRenderer};
+pub use appearance::{APPEARANCE_UNIFORM_BYTES, AppearanceError, AppearanceRenderer};
 pub use camera::{ViewCamera, ViewPreset};
 pub use device::headless_device;
 pub use error::ViewportError;

@@ -4,22 +4,22 @@
 use std::collections::HashSet;
 use std::sync::{Mutex, MutexGuard, OnceLock};
 
-use scene::look::LookData;
+use scene::appearance::AppearanceData;
 use scene::{Camera, Conditions, Frame, SensorRig, TimeOfDay, VoxelGrid, Weather};
-use sensors::appearance::{CameraImage, Look, Quality};
-use viewport::{LookRenderer, headless_device};
+use sensors::appearance::{Appearance, CameraImage, Quality};
+use viewport::{AppearanceRenderer, headless_device};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
 const SIZE: [u32; 2] = [120, 68];
 
 /// One renderer for all tests of this file.
-fn gpu() -> MutexGuard<'static, LookRenderer> {
-    static RENDERER: OnceLock<Mutex<LookRenderer>> = OnceLock::new();
+fn gpu() -> MutexGuard<'static, AppearanceRenderer> {
+    static RENDERER: OnceLock<Mutex<AppearanceRenderer>> = OnceLock::new();
     let renderer = RENDERER.get_or_init(|| {
         let (info, device, queue) = headless_device().expect("a graphics adapter, software or not");
         println!("{} ({:?}, {:?})", info.name, info.device_type, info.backend);
-        Mutex::new(LookRenderer::new(&device, &queue).expect("an adapter that can compute"))
+        Mutex::new(AppearanceRenderer::new(&device, &queue).expect("an adapter that can compute"))
     });
     renderer.lock().unwrap_or_else(|e| e.into_inner())
 }
@@ -73,13 +73,13 @@ fn pictures_agree_with_the_processor() {
         ("sandstorm", TimeOfDay::Day, Weather::Sandstorm),
     ] {
         let conditions = Conditions::usual(time, weather, 3);
-        let look = Look::new(&frame, &rig, &conditions);
+        let appearance = Appearance::new(&frame, &rig, &conditions);
         let mut gpu = gpu();
-        gpu.set_look(&look.data()).expect("room");
+        gpu.set_appearance(&appearance.data()).expect("room");
         for camera in [&rig.cameras[0], &rig.cameras[4]] {
             let light = gpu.light(camera, SIZE, true).expect("a picture");
-            let here = look.picture(camera, SIZE[0], SIZE[1], &light);
-            let there = look.render(camera, SIZE[0], SIZE[1], Quality::Full);
+            let here = appearance.picture(camera, SIZE[0], SIZE[1], &light);
+            let there = appearance.render(camera, SIZE[0], SIZE[1], Quality::Full);
             let colours: HashSet<&[u8]> = there.rgba.chunks_exact(4).collect();
             assert!(colours.len() > 50, "{name}: there is something to compare");
             let (mean, near) = agreement(&here, &there);
@@ -99,16 +99,19 @@ fn pictures_agree_with_the_processor() {
     assert!(far.is_empty(), "{far:?}");
 }
 
-/// An empty scene, no look, sizes of nothing, cameras without a place: pictures or errors, and the renderer goes on.
+/// An empty scene, no appearance, sizes of nothing, cameras without a place: pictures or errors, and the renderer goes on.
 #[test]
 fn extremes_are_survived() {
     let rig = SensorRig::default();
     let mut gpu = gpu();
-    assert!(gpu.set_look(&LookData::default()).is_ok(), "words may be empty");
+    assert!(
+        gpu.set_appearance(&AppearanceData::default()).is_ok(),
+        "words may be empty"
+    );
     let world = World::random(5);
     let frame = Frame::new(world.layout, Default::default(), VoxelGrid::new());
-    let look = Look::new(&frame, &rig, &Conditions::default());
-    gpu.set_look(&look.data()).expect("room");
+    let appearance = Appearance::new(&frame, &rig, &Conditions::default());
+    gpu.set_appearance(&appearance.data()).expect("room");
     for size in [[0, 0], [0, 5], [1, 1], [7, 3]] {
         let light = gpu.light(&rig.cameras[0], size, true).expect("a picture");
         assert_eq!(light.len(), (size[0] * size[1]) as usize);

@@ -4,7 +4,7 @@
 use std::io::{Cursor, Write};
 
 use editor::{Document, Edit, Shape};
-use formats::{box_list, occ3d, opendrive, project};
+use formats::{box_list, loom, occ3d, opendrive};
 use glam::DVec2;
 use nets::occ_dit::OccDit;
 use nn::weights::WeightFile;
@@ -89,7 +89,7 @@ fn row_62_memory_alone() {
         );
     };
     check("project", 2 * MIB, &|| {
-        drop(project::from_bytes(&scene).expect("sound"))
+        drop(loom::from_bytes(&scene).expect("sound"))
     });
     let blanks = vec![b' '; 60 * MIB];
     let bomb = zipped(&[
@@ -101,7 +101,7 @@ fn row_62_memory_alone() {
     ]);
     assert!(bomb.len() < MIB);
     check("project of blanks", blanks.len(), &|| {
-        drop(project::from_bytes(&bomb).expect_err("blanks"))
+        drop(loom::from_bytes(&bomb).expect_err("blanks"))
     });
     let shape = "{'descr': '|u1', 'fortran_order': False, 'shape': (200, 200, 16), }\n";
     let huge = zipped(&[("semantics.npy", &npy(shape, 800 * MIB))]);
@@ -150,7 +150,7 @@ fn row_62_memory_alone() {
         value: true,
     };
     check("a wide stroke", 3000 * 16, &|| {
-        let mut document = Document::new(project::from_bytes(&scene).expect("sound"));
+        let mut document = Document::new(loom::from_bytes(&scene).expect("sound"));
         document.apply("Paint", &stroke).expect("sound");
     });
 }

@@ -5,7 +5,7 @@ use dataset::occupancy_frame;
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::{
-    CELLS, ColumnHeights, DitCondition, Heard, KeysValues, Middle, OccDit, OccModels, OccVae, Window,
+    CELLS, ColumnHeights, DecoderInput, DitCondition, KeysValues, Middle, OccDit, OccModels, OccVae, Window,
     tokens_of,
 };
 use nn::weights::WeightFile;
@@ -131,25 +131,28 @@ fn vae_agrees_with_candle() {
     let observed: Vec<u32> = (0..GridSpec::COLUMNS as u32)
         .map(|c| c * 7919 % (1 << 17))
         .collect();
-    let told = Heard {
+    let informed = DecoderInput {
         draft: Some(&frame.draft),
         observed: Some(&observed),
     };
-    for heard in [Heard::default(), told] {
+    for input in [DecoderInput::default(), informed] {
         let cells = vec![true; CELLS];
         let ours = models
             .vae
-            .decode_told(&theirs, &cells, heard)
+            .decode_with(&theirs, &cells, input)
             .expect("a sound latent");
         let theirs = candle
-            .decode_told(&theirs, &cells, heard)
+            .decode_with(&theirs, &cells, input)
             .expect("a sound latent");
         let differ = ours.count_different(&theirs);
         assert!(differ <= GridSpec::VOXELS / 10_000, "{differ} labels differ");
     }
     let [a, b] = [
-        models.vae.logits(&theirs, 1234, told).expect("a sound latent"),
-        candle.logits(&theirs, 1234, told).expect("a sound latent"),
+        models
+            .vae
+            .logits(&theirs, 1234, informed)
+            .expect("a sound latent"),
+        candle.logits(&theirs, 1234, informed).expect("a sound latent"),
     ];
     agree(&a, &b, "logits");
 }

@@ -369,9 +369,9 @@ fn doctor_reports_and_no_display_means_demo() {
 /// A folder as Occ3D lays it out, made from procedural worlds: import, training data, evaluation.
 #[test]
 fn occ3d_frames_are_scenes_and_training_data() {
-    use formats::{occ3d, project};
+    use formats::{loom, occ3d};
     let dir = Folder::new();
-    let scene = project::load(Path::new(&dir.scene())).expect("a scene");
+    let scene = loom::load(Path::new(&dir.scene())).expect("a scene");
     let frame = scene.frame();
     let data = dir.path("gts");
     for token in ["a1", "b2"] {
@@ -386,7 +386,7 @@ fn occ3d_frames_are_scenes_and_training_data() {
         (&report["format"], &report["inferred"][1]),
         (&"occ3d".into(), &"boxes".into())
     );
-    let found = project::load(Path::new(&imported)).expect("a scene");
+    let found = loom::load(Path::new(&imported)).expect("a scene");
     assert_eq!((&*found.name, &found.frame().occupancy), ("a1", &frame.occupancy));
     // Most cars of the scene have a box of their class near their centre.
     let cars: Vec<_> = frame.boxes.values().filter(|b| b.class.name() == "car").collect();

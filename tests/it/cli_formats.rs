@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use formats::{box_list, export, import, project};
+use formats::{box_list, export, import, loom};
 use scene::{Class, GridSpec};
 use serde_json::Value;
 
@@ -54,7 +54,7 @@ fn a_point_cloud_becomes_a_scene() {
         (&"pcd".into(), &serde_json::json!({}))
     );
     assert_eq!(report["occupied_voxels"], occupancy.count_set());
-    let found = project::load(Path::new(&path("street.loom"))).expect("a scene");
+    let found = loom::load(Path::new(&path("street.loom"))).expect("a scene");
     assert!(found.frame().occupancy == *occupancy && &*found.name == "street");
     // The classes are enough to infer roads and boxes from, as with any labels.
     let cars = found
@@ -78,7 +78,7 @@ fn a_list_of_boxes_becomes_a_scene() {
     std::fs::write(path("boxes.json"), bytes).expect("written");
     let report = import(&path("boxes.json"), &path("boxes.loom"));
     assert_eq!(report["boxes"], scene.frame().boxes.len());
-    let found = project::load(Path::new(&path("boxes.loom"))).expect("a scene");
+    let found = loom::load(Path::new(&path("boxes.loom"))).expect("a scene");
     assert_eq!(found.frame().boxes, scene.frame().boxes);
 }
 

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use app::open;
 use editor::Edit;
-use formats::project;
+use formats::loom;
 use scene::{BoxId, Class, Form, GridSpec, Scene};
 use sensors::lidar;
 
@@ -53,7 +53,7 @@ impl Folder {
     }
     fn save(&self, name: &str, scene: &Scene) -> String {
         let path = self.path(name);
-        project::save(Path::new(&path), scene).expect("saved");
+        loom::save(Path::new(&path), scene).expect("saved");
         path
     }
 }
@@ -127,7 +127,7 @@ fn checks_tell_by_exit_code_and_fix() {
     let (report, _) = run(&["check", &path, "--fix", "-o", &fixed]);
     assert!(report["fixed"].as_u64() >= Some(2), "{report:#}");
     assert_eq!(std::fs::read(&path).expect("there"), before);
-    let repaired = project::load(Path::new(&fixed)).expect("a scene");
+    let repaired = loom::load(Path::new(&fixed)).expect("a scene");
     assert!(!repaired.frame().boxes.contains_key(&BoxId(900)));
     refused(&["check", &dir.path("none.loom")], "none.loom");
     refused(&["check", &path, "-o", &fixed], "--fix");
@@ -336,7 +336,7 @@ fn differences_are_counted() {
     let id = *a.frame().boxes.keys().next().expect("traffic");
     apply(&mut b, Edit::RemoveBox { id });
     let removed_voxels = a.frame().occupancy.count_different(&b.frame().occupancy);
-    // Far from the box and outside of what the edit redraws.
+    // Far from the box and outside of what the edit inpaints.
     let cells = vec![[3, 3, 9], [3, 3, 10]];
     let changed = cells
         .iter()
@@ -397,11 +397,11 @@ fn differences_are_counted() {
     assert!(report["voxels_changed"].as_u64() > Some(0));
 }
 
-/// Two settings on one world against a tiny reference: points, front, stops and the promise about untouched voxels.
+/// Two settings on one world against a tiny reference: points, front, presets and the promise about untouched voxels.
 #[test]
 fn trade_measures_settings_and_refuses_bad_arguments() {
     let folder = Folder::new();
-    let [out, plot, stops] = ["t.json", "t.png", "stops.json"].map(|n| folder.path(n));
+    let [out, plot, presets] = ["t.json", "t.png", "presets.json"].map(|n| folder.path(n));
     let common = ["trade", "--frames", "2", "--repeats", "1", "-o", &out];
     let only = [
         "--parts",
@@ -411,7 +411,7 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
         "--reference-steps",
         "4",
     ];
-    let files = ["--processes", "2", "--plot", &plot, "--stops", &stops];
+    let files = ["--processes", "2", "--plot", &plot, "--presets", &presets];
     let (report, code) = run(&[&common[..], &only, &files].concat());
     assert_eq!(code, 0);
     let points = report["points"].as_array().expect("points");
@@ -437,7 +437,7 @@ fn trade_measures_settings_and_refuses_bad_arguments() {
     assert_eq!(report["figures"]["untouched_identical_edit"], true);
     assert_eq!(points.iter().filter(|p| p["part"] == "vae").count(), 2);
     assert!(std::fs::read(&plot).expect("a picture").starts_with(b"\x89PNG"));
-    let found: Value = serde_json::from_slice(&std::fs::read(&stops).expect("stops")).expect("json");
+    let found: Value = serde_json::from_slice(&std::fs::read(&presets).expect("presets")).expect("json");
     assert_eq!(found["stops"][0]["name"], "draft");
     for (bad, says) in [
         (["--frames", "0"], "expected 1 to 1000"),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use app::open;
 use dataset::occupancy_frame;
 use editor::{Document, Edit, Shape};
-use formats::{occ3d, project};
+use formats::{loom, occ3d};
 use job::region::Region;
 use scene::{BevLayer, BoxId, Class, GridSpec, Scene, Unobserved};
 
@@ -32,15 +32,15 @@ fn an_imported_frame_is_marked_and_survives_saving() {
     );
     assert!(frame.boxes.len() > 3, "{} boxes", frame.boxes.len());
     assert!(frame.inferred.background && scene.background.len() > 10);
-    let bytes = project::to_bytes(&scene).expect("sound");
-    let again = project::from_bytes(&bytes).expect("readable");
+    let bytes = loom::to_bytes(&scene).expect("sound");
+    let again = loom::from_bytes(&bytes).expect("readable");
     assert_eq!(again.frame(), frame);
     assert_eq!(again.background, scene.background);
 
     // A guess about no box is refused.
     scene.frame_mut().inferred.boxes.insert(BoxId(9_999));
-    let bytes = project::to_bytes(&scene).expect("written as it is");
-    let error = project::from_bytes(&bytes).expect_err("no such box").to_string();
+    let bytes = loom::to_bytes(&scene).expect("written as it is");
+    let error = loom::from_bytes(&bytes).expect_err("no such box").to_string();
     assert!(error.contains("box 9999 is marked as inferred"), "{error}");
 }
 

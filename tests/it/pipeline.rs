@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use editor::{Document, Edit};
 use glam::{DVec2, DVec3};
+use job::inpaint::InpaintMask;
 use job::pipeline::OccPipeline;
-use job::redraw::RedrawMask;
 use job::{GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
 use nets::OccModels;
 use scene::raster::box_cells;
@@ -162,13 +162,13 @@ fn results_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn a_region_is_drawn_anew_and_nothing_outside_it() {
+fn a_region_is_inpainted_and_nothing_outside_it() {
     let document = Document::new(scene());
     let source = document.scene().frame().source.occupancy.clone();
-    let redraw = RedrawMask::of_rect(DVec2::new(-12.0, 8.0), DVec2::new(4.0, 24.0));
+    let inpaint = InpaintMask::of_rect(DVec2::new(-12.0, 8.0), DVec2::new(4.0, 24.0));
     let draw = |seed: u64| {
         let params = GenParams {
-            redraw,
+            inpaint,
             strength: 0.9,
             seed,
             ..params()
@@ -190,7 +190,7 @@ fn a_region_is_drawn_anew_and_nothing_outside_it() {
     for x in 0..GridSpec::NX {
         for y in 0..GridSpec::NY {
             let differs = result.occupancy.column(x, y) != source.column(x, y);
-            assert!(!differs || redraw.has(x / 4, y / 4), "column ({x}, {y})");
+            assert!(!differs || inpaint.has(x / 4, y / 4), "column ({x}, {y})");
             changed += usize::from(differs);
         }
     }

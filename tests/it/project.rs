@@ -6,7 +6,7 @@ use std::io::{Cursor, Read, Write};
 use std::sync::Arc;
 
 use editor::{Document, Edit, Shape};
-use formats::project::{self, ProjectError};
+use formats::loom::{self, ProjectError};
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use scene::draft::draft;
@@ -114,7 +114,7 @@ fn assert_same(a: &Scene, b: &Scene) {
 }
 
 fn bytes() -> Vec<u8> {
-    project::to_bytes(&clip()).expect("sound")
+    loom::to_bytes(&clip()).expect("sound")
 }
 
 /// The entries of a project, to be changed and packed again.
@@ -151,7 +151,7 @@ fn refusal(entry: &str, change: impl FnOnce(Vec<u8>) -> Option<Vec<u8>>) -> Stri
     if let Some(content) = change(content) {
         entries.insert(at, (name, content));
     }
-    text_of(project::from_bytes(&pack(&entries)))
+    text_of(loom::from_bytes(&pack(&entries)))
 }
 
 fn text_of(result: Result<Scene, ProjectError>) -> String {
@@ -177,13 +177,13 @@ fn what_is_saved_comes_back() {
     let scene = clip();
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("clip.loom");
-    let written = project::save(&path, &scene).expect("saved");
+    let written = loom::save(&path, &scene).expect("saved");
     assert_eq!(written, std::fs::metadata(&path).expect("there").len());
-    let loaded = project::load(&path).expect("loaded");
+    let loaded = loom::load(&path).expect("loaded");
     assert_same(&scene, &loaded);
     assert_ne!(scene.rev, loaded.rev);
     println!("three frames: {written} bytes");
-    // What was one memory is one memory again: a fresh project redraws nothing.
+    // What was one memory is one memory again: a fresh project inpaints nothing.
     let settled = &loaded.frames[0];
     assert!(
         settled
@@ -204,8 +204,8 @@ fn what_is_saved_comes_back() {
 fn equal_scenes_give_equal_bytes() {
     let first = bytes();
     assert_eq!(first, bytes());
-    let loaded = project::from_bytes(&first).expect("sound");
-    assert_eq!(first, project::to_bytes(&loaded).expect("sound"));
+    let loaded = loom::from_bytes(&first).expect("sound");
+    assert_eq!(first, loom::to_bytes(&loaded).expect("sound"));
     // And after a detour of edits that are undone.
     let mut document = Document::new(loaded);
     document
@@ -214,7 +214,7 @@ fn equal_scenes_give_equal_bytes() {
     document.apply("Clear", &Edit::ClearPaint {}).expect("sound");
     document.undo();
     document.undo();
-    assert_eq!(first, project::to_bytes(document.scene()).expect("sound"));
+    assert_eq!(first, loom::to_bytes(document.scene()).expect("sound"));
 }
 
 #[test]
@@ -240,7 +240,7 @@ fn only_what_differs_is_stored() {
     // Packing by another tool, in another order, is as good.
     let mut entries = unpack(&bytes());
     entries.reverse();
-    assert_same(&project::from_bytes(&pack(&entries)).expect("sound"), &clip());
+    assert_same(&loom::from_bytes(&pack(&entries)).expect("sound"), &clip());
 }
 
 /// Row 62 of the extremes table: a file cut short anywhere.
@@ -251,14 +251,14 @@ fn row_62_truncated() {
         .chain((64..whole.len()).step_by(97))
         .chain(whole.len().saturating_sub(600)..whole.len());
     for length in lengths {
-        text_of(project::from_bytes(&whole[..length]));
+        text_of(loom::from_bytes(&whole[..length]));
     }
     assert_eq!(
-        text_of(project::from_bytes(b"")).split(" (").next(),
+        text_of(loom::from_bytes(b"")).split(" (").next(),
         Some("not a .loom project, or cut short")
     );
-    text_of(project::from_bytes(b"{\"format\": \"sceneloom\"}"));
-    text_of(project::from_bytes(&[0xff; 4096]));
+    text_of(loom::from_bytes(b"{\"format\": \"sceneloom\"}"));
+    text_of(loom::from_bytes(&[0xff; 4096]));
 }
 
 /// Row 62: any flipped bit is noticed, or lies where it means nothing (a time stamp, say).
@@ -267,7 +267,7 @@ fn row_62_flipped_bits() {
     let mut scene = clip();
     scene.frames.truncate(1);
     scene.current = 0;
-    let whole = project::to_bytes(&scene).expect("sound");
+    let whole = loom::to_bytes(&scene).expect("sound");
     let (mut noticed, mut harmless) = (0, 0);
     // The ends are the zip's own records, with the largest share of bytes that say nothing.
     let tail = whole.len() - 400;
@@ -275,7 +275,7 @@ fn row_62_flipped_bits() {
     for (i, at) in places.enumerate() {
         let mut bad = whole.clone();
         bad[at] ^= 1 << (i % 8);
-        match project::from_bytes(&bad) {
+        match loom::from_bytes(&bad) {
             Ok(loaded) => {
                 assert_same(&loaded, &scene);
                 harmless += 1;
@@ -319,7 +319,7 @@ fn row_62_bombs() {
         lied[at..at + 4].copy_from_slice(&600_000u32.to_le_bytes());
         at += 4;
     }
-    assert!(text_of(project::from_bytes(&lied)).contains("occupancy.u8"));
+    assert!(text_of(loom::from_bytes(&lied)).contains("occupancy.u8"));
     // More frames than allowed, said in 60 bytes.
     let many = json_refusal("manifest.json", "\"frames\":3", "\"frames\":10001");
     assert_eq!(many, "the number of frames is 10001, expected at most 10000");
@@ -400,7 +400,7 @@ fn what_is_missing_or_unknown_is_named() {
     let mut entries = unpack(&bytes());
     entries.push(("frames/00003/layout.u32".into(), vec![]));
     assert_eq!(
-        text_of(project::from_bytes(&pack(&entries))),
+        text_of(loom::from_bytes(&pack(&entries))),
         "entry \"frames/00003/layout.u32\" is not known"
     );
     let key = json_refusal("scene.json", "\"seed\":", "\"sead\":1,\"seed\":");
@@ -426,7 +426,7 @@ fn what_is_missing_or_unknown_is_named() {
     // A zip of another kind.
     let other = pack(&[("word/document.xml".into(), vec![1, 2, 3])]);
     assert_eq!(
-        text_of(project::from_bytes(&other)),
+        text_of(loom::from_bytes(&other)),
         "entry \"manifest.json\" is missing"
     );
 }
@@ -435,30 +435,28 @@ fn what_is_missing_or_unknown_is_named() {
 fn errors_name_the_file_and_an_old_file_survives() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("a.loom");
-    let text = text_of(project::load(&path));
+    let text = text_of(loom::load(&path));
     assert!(text.starts_with(&path.display().to_string()), "{text}");
     std::fs::write(&path, b"not a zip").expect("written");
-    let text = text_of(project::load(&path));
+    let text = text_of(loom::load(&path));
     assert!(text.contains("a.loom: not a .loom project"), "{text}");
-    project::save(&path, &clip()).expect("saved");
+    loom::save(&path, &clip()).expect("saved");
     let good = std::fs::read(&path).expect("there");
     // A scene that cannot be stored is refused before the file is touched.
     let mut broken = clip();
     broken.frame_mut().time_s = f64::NAN;
-    let text = project::save(&path, &broken).expect_err("NaN").to_string();
+    let text = loom::save(&path, &broken).expect_err("NaN").to_string();
     assert!(
         text.contains("frame 2: time_s is NaN, expected a finite number"),
         "{text}"
     );
     let mut broken = clip();
     broken.frame_mut().occupancy.set(1, 2, 3, 40);
-    let text = project::save(&path, &broken)
-        .expect_err("no such label")
-        .to_string();
+    let text = loom::save(&path, &broken).expect_err("no such label").to_string();
     assert!(text.contains("voxel [1, 2, 3] holds 40"), "{text}");
     let mut broken = clip();
     broken.frames.clear();
-    project::to_bytes(&broken).expect_err("no frame");
+    loom::to_bytes(&broken).expect_err("no frame");
     assert_eq!(std::fs::read(&path).expect("there"), good);
     assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 1);
 }
@@ -492,8 +490,8 @@ proptest! {
         frame.time_s = numbers[8];
         frame.world_from_ego = Pose::planar(numbers[0] * 1e3, numbers[1], numbers[2]);
         let scene = Scene::single(&name, frame, Arc::new(SensorRig::default()), seed);
-        let bytes = project::to_bytes(&scene).expect("sound");
-        assert_same(&project::from_bytes(&bytes).expect("sound"), &scene);
+        let bytes = loom::to_bytes(&scene).expect("sound");
+        assert_same(&loom::from_bytes(&bytes).expect("sound"), &scene);
     }
 }
 
@@ -503,7 +501,7 @@ fn old_files_take_their_conditions_from_the_prompt() {
     let opened = |prompt: &str, version: u32| {
         let mut scene = clip();
         scene.prompt = prompt.into();
-        let mut entries = unpack(&project::to_bytes(&scene).expect("sound"));
+        let mut entries = unpack(&loom::to_bytes(&scene).expect("sound"));
         for (name, content) in &mut entries {
             let text = || String::from_utf8(content.clone()).expect("JSON");
             if name == "manifest.json" {
@@ -517,7 +515,7 @@ fn old_files_take_their_conditions_from_the_prompt() {
                 *content = json.to_string().into_bytes();
             }
         }
-        project::from_bytes(&pack(&entries))
+        loom::from_bytes(&pack(&entries))
     };
     for (prompt, time, weather) in [
         ("", TimeOfDay::Day, Weather::Clear),
@@ -567,13 +565,13 @@ fn background_and_relief_come_back_and_version_1_opens() {
     frame.layout.relief = Relief::from_fn(|p| 0.031 * p.x - 0.4);
     let frame = Arc::make_mut(&mut scene.frames[2]);
     Arc::make_mut(&mut frame.source).layout.relief = Relief::from_fn(|p| 0.01 * p.y);
-    let bytes = project::to_bytes(&scene).expect("sound");
-    let back = project::from_bytes(&bytes).expect("its own");
+    let bytes = loom::to_bytes(&scene).expect("sound");
+    let back = loom::from_bytes(&bytes).expect("its own");
     assert_eq!(back.background, scene.background);
     assert_eq!(back.frames, scene.frames);
-    assert_eq!(project::to_bytes(&back).expect("sound"), bytes);
+    assert_eq!(loom::to_bytes(&back).expect("sound"), bytes);
 
-    let mut entries = unpack(&project::to_bytes(&clip()).expect("sound"));
+    let mut entries = unpack(&loom::to_bytes(&clip()).expect("sound"));
     let manifest = &mut entries
         .iter_mut()
         .find(|e| e.0 == "manifest.json")
@@ -582,7 +580,7 @@ fn background_and_relief_come_back_and_version_1_opens() {
     let text = String::from_utf8(manifest.clone()).expect("JSON");
     assert!(text.contains("\"version\":3"), "{text}");
     *manifest = text.replace("\"version\":3", "\"version\":1").into_bytes();
-    let old = project::from_bytes(&pack(&entries)).expect("version 1 opens");
+    let old = loom::from_bytes(&pack(&entries)).expect("version 1 opens");
     assert!(old.background.is_empty() && old.frames[0].layout.relief.is_flat());
 
     // What is not sound is one line.
@@ -590,7 +588,7 @@ fn background_and_relief_come_back_and_version_1_opens() {
         let mut entries = unpack(&bytes);
         let relief = entries.iter_mut().find(|e| e.0.ends_with("00001/relief.f32"));
         change(&mut relief.expect("there").1);
-        text_of(project::from_bytes(&pack(&entries)))
+        text_of(loom::from_bytes(&pack(&entries)))
     };
     assert!(with(&|b| b.truncate(7)).contains("relief.f32"));
     assert!(with(&|b| b[..4].copy_from_slice(&f32::NAN.to_le_bytes())).contains("relief: height NaN"));

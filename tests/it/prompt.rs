@@ -67,7 +67,7 @@ fn scenes_and_edits_from_words() {
         String::from_utf8_lossy(&edited.stderr)
     );
     assert_eq!(report(&edited)["boxes"], 7);
-    let kept = formats::project::load(std::path::Path::new(&c)).expect("a scene");
+    let kept = formats::loom::load(std::path::Path::new(&c)).expect("a scene");
     assert_eq!(*kept.words, [text.to_owned(), one]);
 }
 

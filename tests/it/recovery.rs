@@ -10,7 +10,7 @@ use std::time::Duration;
 use app::open;
 use app::recovery::{Recovery, stale};
 use editor::{Document, Edit};
-use formats::project;
+use formats::loom;
 use scene::{Class, Scene};
 
 const FOLDER: &str = "SCENELOOM_TEST_FOLDER";
@@ -59,7 +59,7 @@ fn child() {
         recovery.wait();
         println!("edit {i}");
         if i % EDITS_PER_SAVE == 0 {
-            project::save(&user_file, document.scene()).expect("saved");
+            loom::save(&user_file, document.scene()).expect("saved");
             println!("saved {i}");
         }
     }
@@ -116,7 +116,7 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
         lines.extend(rest.lines().map(String::from));
         let (edited, saved) = (last(&lines, "edit"), last(&lines, "saved"));
 
-        let found = project::load(&user_file).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
+        let found = loom::load(&user_file).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
         let of = number(&found);
         assert!(
             of == saved || of == saved + EDITS_PER_SAVE,
@@ -131,7 +131,7 @@ fn a_killed_process_leaves_whole_files_and_loses_one_interval_at_most() {
         assert_eq!(offers.len(), 1, "kill {kill}");
         let offer = offers.remove(0);
         assert_eq!(offer.original.as_deref(), Some(&*user_file));
-        let found = project::load(&offer.file()).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
+        let found = loom::load(&offer.file()).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
         let of = number(&found);
         assert!(
             of + EDITS_PER_COPY > edited,

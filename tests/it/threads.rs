@@ -13,7 +13,7 @@ use job::region::Region;
 use job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
 use nets::layout::net::LayoutNet;
 use nets::lidar::LidarNet;
-use nets::{Heard, OccModels, fine_vae};
+use nets::{DecoderInput, OccModels, fine_vae};
 use nn::Precision;
 use numeric::hash::Fnv1a;
 use place::to_graph::to_graph;
@@ -133,7 +133,7 @@ fn refined() {
     let latent = models.vae.encode(&occupancy_frame(3, 0, |_| None).dense);
     let (latent, all) = (latent.expect("labels"), Region::full().cells);
     same_bits("refined", || {
-        let grid = decode_refined(&models, &latent, &all, Heard::default(), (2, 5));
+        let grid = decode_refined(&models, &latent, &all, DecoderInput::default(), (2, 5));
         Hash::new().bytes(grid.expect("a finite latent").to_dense())
     });
 }

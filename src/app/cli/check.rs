@@ -11,7 +11,7 @@ use app::open;
 use app::panes;
 use app::shell::checking;
 use editor::checks::{self, Finding, Severity, waive};
-use formats::project;
+use formats::loom;
 use scene::Scene;
 
 /// Arguments.
@@ -70,7 +70,7 @@ impl Check {
             apply()?;
             findings = self.findings(&scene);
             fixed = before.saturating_sub(findings.len());
-            project::save(path, &scene)?;
+            loom::save(path, &scene)?;
             files.push(path);
         }
         let wall_s = start.elapsed().as_secs_f64();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::region_arg::RegionArg;
-use ::trade::Stops;
+use ::trade::Presets;
 use diffusion::solver::SolverKind;
 use job::{GenParams, Named, Precision, RegionMode};
 
@@ -60,16 +60,16 @@ pub(super) struct Gen {
     /// Number of fixed-point updates per inversion step.
     #[arg(long, value_name = "N")]
     pub(super) inversion_iterations: Option<u32>,
-    /// Draw the region anew, from fresh noise at this share of the steps, 0 to 1: 1 keeps nothing of what was there; 0, the
+    /// Inpaint the region from fresh noise at this share of the steps, 0 to 1: 1 keeps nothing of what was there; 0, the
     /// default, starts from the noise that its source comes from.
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     pub(super) strength: f64,
     /// Compute every token, not only those around an edit.
     #[arg(long)]
     pub(super) dense: bool,
-    /// A stop of the measured trade: `draft`, `balanced`, `accurate` or another that `sceneloom trade` names; the
+    /// A preset of the measured trade: `draft`, `balanced`, `accurate` or another that `sceneloom trade` names; the
     /// options beside it go first.
-    #[arg(long, value_name = "STOP")]
+    #[arg(long, value_name = "PRESET")]
     pub(super) quality: Option<String>,
     /// In what the network's products are computed: f32, or int8, which is faster where the machine has AVX-512 VNNI.
     #[arg(long, value_parser = ["f32", "int8"])]
@@ -86,12 +86,12 @@ impl Gen {
     pub(super) fn params(&self, default: GenParams) -> anyhow::Result<GenParams> {
         let default = match &self.quality {
             Some(name) => {
-                let stops = Stops::bundled();
-                let Some(stop) = stops.named(name) else {
-                    let names: Vec<&str> = stops.stops.iter().map(|s| s.name.as_str()).collect();
+                let presets = Presets::bundled();
+                let Some(preset) = presets.named(name) else {
+                    let names: Vec<&str> = presets.all.iter().map(|s| s.name.as_str()).collect();
                     anyhow::bail!("--quality {name}: expected one of {}", names.join(", "));
                 };
-                stop.knobs.on(default)
+                preset.knobs.on(default)
             }
             None => default,
         };
@@ -113,9 +113,9 @@ impl Gen {
                 Some(_) => RegionMode::Auto,
                 None => default.region,
             },
-            redraw: match self.region {
+            inpaint: match self.region {
                 Some(RegionArg::Rect(mask)) => mask,
-                _ => default.redraw,
+                _ => default.inpaint,
             },
             inversion_iterations: self.inversion_iterations.unwrap_or(default.inversion_iterations),
             fine_steps: self.fine_steps.unwrap_or(default.fine_steps),

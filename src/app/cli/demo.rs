@@ -15,7 +15,7 @@ use app::open;
 use app::picture::{self, Picture, View3d};
 use app::text::with_conditions;
 use editor::{Document, Edit, Shape};
-use formats::project;
+use formats::loom;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use nets::OccModels;
@@ -178,7 +178,7 @@ impl Demo {
             // The demo's pictures from above and of the cameras need no graphics adapter.
             Err(error) => eprintln!("no 3D pictures: {}", output::one_line(&error)),
         }
-        project::save(&dir.join("0_scene.loom"), document.scene())?;
+        loom::save(&dir.join("0_scene.loom"), document.scene())?;
         sink.files.push("0_scene.loom".into());
         sink.png("0_cameras.png", &camera_sheet(document.scene()))?;
         let params = GenParams::default();
@@ -205,7 +205,7 @@ impl Demo {
                 &Picture::sheet(&[before, after], 8),
             )?;
             sink.png(&format!("{stem}_cameras.png"), &camera_sheet(document.scene()))?;
-            project::save(&dir.join(format!("{stem}.loom")), document.scene())?;
+            loom::save(&dir.join(format!("{stem}.loom")), document.scene())?;
             sink.files.push(format!("{stem}.loom"));
             let r = &result.report;
             rows.push(json!({

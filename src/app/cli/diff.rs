@@ -41,7 +41,7 @@ impl Diff {
         report.insert("boxes".into(), boxes(before, after));
         report.insert("layout".into(), layout(before, after));
         report.insert("things".into(), things(&a.background, &b.background));
-        // Where B's voxels may differ: what an edit from A to B would redraw, and around things that differ.
+        // Where B's voxels may differ: what an edit from A to B would inpaint, and around things that differ.
         let of_things = columns_between(&a.background, &b.background, after);
         let region = Region::of_edit(&edited(before, after), GenParams::default().halo_columns as usize);
         let changed = changed_voxels(before, after);

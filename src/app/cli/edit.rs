@@ -11,7 +11,7 @@ use super::{Common, Gen, Outcome, Stop, output};
 use app::open;
 use app::text::with_conditions;
 use editor::{Document, Edit};
-use formats::{input, project};
+use formats::{input, loom};
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use metrics::agreement::layout_agreement;
@@ -69,7 +69,7 @@ impl EditCommand {
         };
         let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
         let scene = document.scene();
-        project::save(&self.output, scene)?;
+        loom::save(&self.output, scene)?;
         let r = &result.report;
         let agreement = layout_agreement(scene.frame());
         let report = json!({

@@ -42,8 +42,8 @@ pub struct Eval {
     /// Worlds whose objects say how many voxels a class has, at least (editing) [default: 40, quick: 2].
     #[arg(long, value_name = "N")]
     band_worlds: Option<usize>,
-    /// Stops of the quality slider to judge, comma-separated; all but the reference if none is named (editing).
-    #[arg(long, value_name = "STOPS", value_delimiter = ',')]
+    /// Presets of the quality slider to judge, comma-separated; all but the reference if none is named (editing).
+    #[arg(long, value_name = "PRESETS", value_delimiter = ',')]
     presets: Vec<String>,
     /// Random edits, one after another, that must change nothing outside their regions (editing).
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -66,7 +66,7 @@ pub struct Eval {
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out [default: 60, quick: 2].
     #[arg(long, value_name = "N")]
     placer_prompts: Option<usize>,
-    /// Only the table of worlds, generated scenes and drafts: no ablations of layout and boxes, no redrawn squares (generation).
+    /// Only the table of worlds, generated scenes and drafts: no ablations of layout and boxes, no inpainted squares (generation).
     #[arg(long)]
     rows_only: bool,
     /// Fail (exit 1) if a bar of the suite is missed.

@@ -10,7 +10,7 @@ use super::{Common, Gen, Outcome, output};
 use app::open;
 use app::scenery::SceneryWish;
 use editor::Document;
-use formats::project;
+use formats::loom;
 use job::pipeline::OccPipeline;
 use job::{GenParams, GenResult, Job, Pipeline, RegionMode};
 use metrics::agreement::layout_agreement;
@@ -87,7 +87,7 @@ impl Generate {
         let drawn = !self.bare && draw_scenery(&mut document, &params)?;
         let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
         let scene = document.scene();
-        project::save(&self.output, scene)?;
+        loom::save(&self.output, scene)?;
         let (lidar_s, cameras_s) = sense(scene);
         let agreement = layout_agreement(scene.frame());
         let occupied = scene.frame().occupancy.count_set();

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::{Common, Outcome, output};
 use app::open::{self, Imported, Placement};
 use formats::import::{self, Content, Importer, Loaded};
-use formats::project;
+use formats::loom;
 use scene::{BevLayer, Scene};
 
 /// Arguments.
@@ -81,7 +81,7 @@ impl Import {
             let file = self.file.display();
             return Err(anyhow!("{file}: no road within 40 m of --at {:.1},{:.1}", at.x, at.y).into());
         }
-        project::save(&self.output, &imported.scene).context("write the scene")?;
+        loom::save(&self.output, &imported.scene).context("write the scene")?;
         let heights_m = frame.layout.relief.heights_m().unwrap_or_default();
         let lowest_m = heights_m.iter().copied().fold(0.0, f32::min);
         let highest_m = heights_m.iter().copied().fold(0.0, f32::max);
@@ -134,7 +134,7 @@ impl Import {
     /// A scene as the file holds it, and what of it was inferred.
     fn whole(&self, importer: &Importer, loaded: &Loaded) -> Outcome {
         let scene = &loaded.scene;
-        project::save(&self.output, scene).context("write the scene")?;
+        loom::save(&self.output, scene).context("write the scene")?;
         let frame = scene.frame();
         let report = json!({
             "format": importer.id,

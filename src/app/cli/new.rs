@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::{Common, Outcome, output};
 use app::open;
-use formats::project;
+use formats::loom;
 use scene::{Class, Scene};
 use world::scenery::Setting;
 use world::template::TEMPLATES;
@@ -65,7 +65,7 @@ impl New {
                     TEMPLATES.join(", ")
                 )
             })?;
-        project::save(&path, &scene)?;
+        loom::save(&path, &scene)?;
         let frame = scene.frame();
         let report = json!({
             "boxes": frame.boxes.len(),

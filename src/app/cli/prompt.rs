@@ -14,7 +14,7 @@ use app::open;
 use app::prompting::{How, Keep, Placer};
 use app::text::{self, Prompted, doubts};
 use editor::{Document, Edit};
-use formats::project;
+use formats::loom;
 use job::GenParams;
 use job::pipeline::OccPipeline;
 use nets::OccModels;
@@ -173,7 +173,7 @@ impl Prompt {
             None
         };
         let shortfalls = text::shortfalls(&made.laid);
-        project::save(&output, &made.scene)?;
+        loom::save(&output, &made.scene)?;
         let remarks: Vec<String> = prompted
             .described
             .remarks
@@ -304,7 +304,7 @@ impl Prompt {
             "file": write.then_some(&output),
         });
         if write {
-            project::save(&output, &scene)?;
+            loom::save(&output, &scene)?;
         }
         output::report(&self.common, &report, || {
             let mut lines = Vec::from_iter(Some(answer.clone()).filter(|a| !a.is_empty()));

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
 
 /// What is regenerated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub enum RegionArg {
     /// Everything, from fresh noise.
     Full,
     /// What an edit touches, and the cells of a rectangle.
-    Rect(RedrawMask),
+    Rect(InpaintMask),
 }
 
 impl std::str::FromStr for RegionArg {
@@ -34,7 +34,7 @@ impl std::str::FromStr for RegionArg {
         if numbers.iter().any(|n| !n.is_finite()) {
             return Err(wanted());
         }
-        let mask = RedrawMask::of_rect(DVec2::new(x0, y0), DVec2::new(x1, y1));
+        let mask = InpaintMask::of_rect(DVec2::new(x0, y0), DVec2::new(x1, y1));
         match mask.is_empty() {
             true => Err("the rectangle covers no cell of the grid".into()),
             false => Ok(Self::Rect(mask)),
@@ -50,7 +50,7 @@ mod tests {
     fn words_rectangles_and_what_is_neither() {
         assert_eq!("auto".parse(), Ok(RegionArg::Auto));
         assert_eq!("full".parse(), Ok(RegionArg::Full));
-        let rect = RedrawMask::of_rect(DVec2::new(-10.0, -5.0), DVec2::new(10.0, 5.0));
+        let rect = InpaintMask::of_rect(DVec2::new(-10.0, -5.0), DVec2::new(10.0, 5.0));
         assert_eq!("-10, 5,10,-5".parse(), Ok(RegionArg::Rect(rect)));
         for bad in ["", "some", "1,2,3", "1,2,3,4,5", "1,2,3,nan", "100,100,200,200"] {
             assert!(bad.parse::<RegionArg>().is_err(), "{bad}");

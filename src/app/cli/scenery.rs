@@ -1,4 +1,4 @@
-//! `sceneloom scenery`: what stands beside the roads, drawn anew.
+//! `sceneloom scenery`: what stands beside the roads, regenerated.
 
 use std::path::PathBuf;
 
@@ -10,8 +10,8 @@ use super::{Common, Outcome, output};
 use app::open;
 use app::scenery::{Drawer, SceneryWish};
 use editor::Document;
-use formats::project;
-use job::redraw::RedrawMask;
+use formats::loom;
+use job::inpaint::InpaintMask;
 use world::scenery::Setting;
 
 /// What draws scenery.
@@ -60,7 +60,7 @@ impl Scenery {
             }
         }
         let region = match self.region {
-            None | Some(RegionArg::Full) => RedrawMask::default(),
+            None | Some(RegionArg::Full) => InpaintMask::default(),
             Some(RegionArg::Rect(mask)) => mask,
             Some(RegionArg::Auto) => bail!("--region is auto, expected full or four numbers X0,Y0,X1,Y1"),
         };
@@ -88,7 +88,7 @@ impl Scenery {
         let mut document = Document::new(scene);
         document.apply_all("Draw scenery", &edits)?;
         let scene = document.scene();
-        project::save(&self.output, scene)?;
+        loom::save(&self.output, scene)?;
         let (things, changed) = (
             scene.background.len(),
             before.count_different(&scene.frame().occupancy),

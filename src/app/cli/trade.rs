@@ -10,9 +10,9 @@ use super::{Common, Outcome, Stop, output};
 use app::trade_plot;
 use judge::held_out::TEST_SEED;
 use judge::machine::{Load, machine};
-use judge::stops::measure::{Raw, add_times};
-use judge::stops::plan::{Plan, write_stops};
-use judge::stops::report::table;
+use judge::presets::measure::{Raw, add_times};
+use judge::presets::plan::{Plan, write_presets};
+use judge::presets::report::table;
 use nets::OccModels;
 
 /// Arguments.
@@ -59,9 +59,9 @@ pub struct Trade {
     /// Picture of time against error.
     #[arg(long, value_name = "F.png")]
     plot: Option<PathBuf>,
-    /// Write the stops of the quality slider that this run found.
-    #[arg(long, value_name = "STOPS.json")]
-    stops: Option<PathBuf>,
+    /// Write the presets of the quality slider that this run found.
+    #[arg(long, alias = "stops", value_name = "PRESETS.json")]
+    presets: Option<PathBuf>,
     /// Of a process of a larger run: write raw outcomes.
     #[arg(long, hide = true)]
     raw: bool,
@@ -133,7 +133,7 @@ impl Trade {
                 "vae": "the labels themselves",
             },
             "figures": found.figures,
-            "stops": found.stops,
+            "stops": found.presets,
             "load": { "at_start": load, "at_end": Load::now(), "busy": load.is_busy() },
             "machine": machine(),
             "model": models.card.name,
@@ -147,8 +147,8 @@ impl Trade {
             let picture = trade_plot::picture(&found.marks, [820.0, 480.0]);
             output::write_png(path, picture.width, picture.height, &picture.rgba)?;
         }
-        if let (Some(path), Some(stops)) = (&self.stops, &found.stops) {
-            write_stops(path, stops)?;
+        if let (Some(path), Some(presets)) = (&self.presets, &found.presets) {
+            write_presets(path, presets)?;
         }
         output::report(&self.common, &report, || table(&report));
         Ok(())

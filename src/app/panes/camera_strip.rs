@@ -9,8 +9,8 @@ use egui::{
 };
 use glam::DVec3;
 
+use super::box_outlines;
 use super::camera_header::header;
-use super::lit;
 use crate::camera_views::{CameraView, march};
 use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
@@ -258,7 +258,7 @@ impl CameraStrip {
             painter.image(texture.id(), left, uv, Color32::WHITE);
             painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
         }
-        lit::draw(&painter, rect, camera, scene, state);
+        box_outlines::draw(&painter, rect, camera, scene, state);
         let chosen = state.inspected == Some(index);
         let edge = match (chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, theme::accent()),
@@ -315,7 +315,7 @@ impl CameraStrip {
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
             response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Enlarged camera"));
             ui.painter().image(texture.id(), rect, unit(), Color32::WHITE);
-            lit::draw(ui.painter(), rect, camera, input.scene, state);
+            box_outlines::draw(ui.painter(), rect, camera, input.scene, state);
             if let (true, Some(p)) = (response.clicked(), response.interact_pointer_pos()) {
                 let part = (p - rect.min) / rect.size();
                 let hit = self.hit(input.scene, camera, part).and_then(|hit| hit.box_id);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::{Command, ViewCommand};
-use crate::meant::Meant;
+use crate::finding_marks::FindingMarks;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
 use scene::{BoxId, Frame};
@@ -43,11 +43,11 @@ impl Pane for Checks {
             selected: cx.state.selected,
             frame: settled.frame(),
         };
-        let meant = theme::panel_frame()
+        let marks = theme::panel_frame()
             .show(ui, |ui| checks_ui(ui, &input, commands))
             .inner;
-        if cx.state.meant.as_deref() != meant.as_ref() {
-            cx.state.meant = meant.map(Arc::new);
+        if cx.state.finding_marks.as_deref() != marks.as_ref() {
+            cx.state.finding_marks = marks.map(Arc::new);
             // The views are drawn before this pane or after it.
             ui.ctx().request_repaint();
         }
@@ -71,24 +71,24 @@ const WAIVED_TITLE: f32 = 30.0;
 const WAIVED_LIST: f32 = 94.0;
 
 /// Draws the panel. What the finding means that is under the pointer, else that was clicked last.
-pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) -> Option<Meant> {
+pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) -> Option<FindingMarks> {
     let mut pointed = Pointed {
         clicked: ui.data(|d| d.get_temp(clicked_id())).unwrap_or_default(),
         hovered: None,
     };
     list_ui(ui, input, &mut pointed, commands);
     let clicked = |f: &&Finding| Some(key(f)) == pointed.clicked;
-    let meant = pointed
+    let marks = pointed
         .hovered
-        .or_else(|| input.findings?.iter().find(clicked).map(Meant::by));
+        .or_else(|| input.findings?.iter().find(clicked).map(FindingMarks::by));
     ui.data_mut(|d| d.insert_temp(clicked_id(), pointed.clicked));
-    meant
+    marks
 }
 
 /// Which finding the user points at.
 struct Pointed {
     clicked: Option<String>,
-    hovered: Option<Meant>,
+    hovered: Option<FindingMarks>,
 }
 
 fn clicked_id() -> egui::Id {
@@ -178,7 +178,7 @@ fn row(
 ) {
     let line = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW));
     if ui.rect_contains_pointer(line) {
-        pointed.hovered = Some(Meant::by(finding));
+        pointed.hovered = Some(FindingMarks::by(finding));
     }
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), theme::ROW),

@@ -3,6 +3,7 @@
 
 pub(crate) mod areas;
 mod bev;
+pub mod box_outlines;
 pub mod box_views;
 mod camera;
 mod camera_header;
@@ -15,7 +16,6 @@ pub mod history;
 pub mod id;
 mod label;
 pub mod lidar;
-pub mod lit;
 mod modelled;
 pub mod objects;
 pub mod pane;

@@ -1,4 +1,4 @@
-//! Draws over the bird's-eye view what was computed for the last edit: tokens of the network, columns that were redrawn,
+//! Draws over the bird's-eye view what was computed for the last edit: tokens of the network, columns that were inpainted,
 //! bricks that changed, pieces of LiDAR rays that were sampled. All else was left as it was, and cost nothing.
 
 use egui::{Color32, Painter, Rect, Stroke, StrokeKind, pos2};

@@ -3,10 +3,10 @@
 mod completion;
 pub mod field;
 mod graph;
-mod heard;
 pub mod plan;
+mod reading;
 pub mod recalled;
-mod said;
+mod typed_text;
 
 use egui::Ui;
 

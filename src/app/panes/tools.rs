@@ -19,7 +19,7 @@ use widgets::icons::Icon;
 use widgets::icons::{self, section};
 use widgets::theme;
 
-/// Area of a cell that is drawn anew, m².
+/// Area of a cell that is inpainted, m².
 const REGION_CELL_M2: f64 = 2.56;
 
 /// Options of the tool in hand, map layers.
@@ -95,7 +95,7 @@ fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
             .response
             .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Kind of place"));
         let hint =
-            "What stands beside the roads, anew, as things: by rules for a kind of place, or by a network; voxels of scenery without a thing go";
+            "Regenerates what stands beside the roads, as things: by rules for a kind of place, or by a network; voxels of scenery without a thing go";
         let draw = ui.button("Draw").on_hover_text(hint);
         draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Draw scenery"));
         if draw.clicked() {

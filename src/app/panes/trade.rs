@@ -1,4 +1,4 @@
-//! Speed and accuracy: the slider of measured stops, the plot they lie on, the receipt of the last edit, what was
+//! Speed and accuracy: the slider of measured presets, the plot they lie on, the receipt of the last edit, what was
 //! computed for it, and what stability there was.
 
 use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
@@ -6,13 +6,13 @@ use egui::{Align, Label, Layout, RichText, Slider, Ui, vec2};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::{Command, GenerationCommand};
-use crate::shell::tuning::{LastEdit, Measuring, Tuning, foretold};
+use crate::shell::tuning::{LastEdit, Measuring, Tuning, predicted};
 use crate::trade_plot::front_plot;
 use job::GenParams;
 use judge::machine::{Load, machine};
-use judge::stops::figures::{percent, seconds};
-use judge::stops::plan::Mark;
-use trade::Stop;
+use judge::presets::figures::{percent, seconds};
+use judge::presets::plan::Mark;
+use trade::Preset;
 use widgets::icons::Icon;
 use widgets::theme;
 
@@ -50,7 +50,7 @@ pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: 
             ui.spacing_mut().item_spacing.y = 6.0;
             slider(ui, tuning, params, commands);
             calibration(ui, tuning, commands);
-            let current = tuning.current(params).map(|i| tuning.stops.stops[i].name.clone());
+            let current = tuning.current(params).map(|i| tuning.presets.all[i].name.clone());
             let last = tuning
                 .last
                 .as_ref()
@@ -60,7 +60,7 @@ pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: 
             let from = format!(
                 "Errors: {} held-out edits against {}. X-Scene's time is the paper's.",
                 edits(tuning),
-                tuning.stops.reference
+                tuning.presets.reference
             );
             ui.label(RichText::new(from).small().color(theme::text_weak()));
             ui.separator();
@@ -71,24 +71,24 @@ pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: 
 }
 
 fn edits(tuning: &Tuning) -> usize {
-    tuning.stops.stops.first().map_or(0, |s| s.error.n)
+    tuning.presets.all.first().map_or(0, |s| s.error.n)
 }
 
 fn marks(tuning: &Tuning) -> Vec<Mark> {
     let tokens = tuning.tokens_of_next();
-    let mark = |s: &Stop| Mark {
+    let mark = |s: &Preset| Mark {
         name: s.name.clone(),
-        wall_s: [tuning.foretold_s(s, tokens); 3],
+        wall_s: [tuning.predicted_s(s, tokens); 3],
         error: [s.error.median, s.error.low, s.error.high],
         on_front: true,
-        stop: Some(s.name.clone()),
+        preset: Some(s.name.clone()),
     };
-    tuning.stops.stops.iter().map(mark).collect()
+    tuning.presets.all.iter().map(mark).collect()
 }
 
 fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<Command>) {
-    let stops = &tuning.stops.stops;
-    if stops.is_empty() {
+    let presets = &tuning.presets.all;
+    if presets.is_empty() {
         ui.label("Nothing was measured for these weights: run `sceneloom trade`.");
         return;
     }
@@ -97,11 +97,11 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
     ui.horizontal(|ui| {
         ui.label(RichText::new("Fast").color(theme::text_weak()));
         ui.spacing_mut().slider_width = (ui.available_width() - 70.0).max(60.0);
-        let slider = Slider::new(&mut at, 0..=stops.len() - 1).show_value(false);
+        let slider = Slider::new(&mut at, 0..=presets.len() - 1).show_value(false);
         let response = ui
             .add(slider)
-            .on_hover_text("Each stop is a setting on the measured front");
-        let name = stops[at].name.clone();
+            .on_hover_text("Each preset is a setting on the measured front");
+        let name = presets[at].name.clone();
         response.widget_info(|| {
             let mut info = egui::WidgetInfo::slider(true, at as f64, format!("Quality: {name}"));
             info.label = Some(format!("Quality: {name}"));
@@ -115,14 +115,14 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
     let tokens = tuning.tokens_of_next();
     match current {
         Some(i) => {
-            ui.label(RichText::new(theme::sentence(&stops[i].name)).strong());
+            ui.label(RichText::new(theme::sentence(&presets[i].name)).strong());
             let of = if tuning.last.is_some() {
                 "An edit as large as the last one: "
             } else {
                 "An edit of a few vehicles' size: "
             };
-            let foretold = foretold(&stops[i], tuning.foretold_s(&stops[i], tokens));
-            ui.label(RichText::new(of.to_owned() + &foretold).small());
+            let predicted = predicted(&presets[i], tuning.predicted_s(&presets[i], tokens));
+            ui.label(RichText::new(of.to_owned() + &predicted).small());
             let factor = tuning.window_factor();
             if factor > 1.25 {
                 let text =
@@ -138,15 +138,17 @@ fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<C
 
 fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| match tuning.measuring() {
-        Some((Measuring::Stops, done, all)) => {
+        Some((Measuring::Presets, done, all)) => {
             ui.add(egui::Spinner::new().size(13.0));
-            ui.label(format!("Calibrating, {done} of {all} stops timed, 30 s at most"));
+            ui.label(format!(
+                "Calibrating, {done} of {all} presets timed, 30 s at most"
+            ));
             if ui.button("Stop").clicked() {
                 commands.push(Command::Generation(GenerationCommand::StopMeasuring));
             }
         }
         _ => {
-            let text = "Times every stop on this computer: 30 s at most. Best while nothing else runs.";
+            let text = "Times every preset on this computer: 30 s at most. Best while nothing else runs.";
             if ui.button("Calibrate").on_hover_text(text).clicked() {
                 commands.push(Command::Generation(GenerationCommand::Calibrate));
             }
@@ -157,16 +159,16 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
                     theme::warn(),
                 ),
                 (true, _) => (
-                    format!("times of this machine ({})", tuning.stops.machine),
+                    format!("times of this machine ({})", tuning.presets.machine),
                     theme::text_weak(),
                 ),
                 // (weights and program may be older than this one)
-                (false, _) if tuning.stops.machine == machine() => (
-                    format!("times of a machine like this one ({})", tuning.stops.machine),
+                (false, _) if tuning.presets.machine == machine() => (
+                    format!("times of a machine like this one ({})", tuning.presets.machine),
                     theme::text_weak(),
                 ),
                 (false, _) => (
-                    format!("times of another machine ({})", tuning.stops.machine),
+                    format!("times of another machine ({})", tuning.presets.machine),
                     theme::warn(),
                 ),
             };
@@ -211,14 +213,14 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
             "Computed",
             format!("{} of 625 tokens, {} network calls", r.tokens, r.network_calls),
         );
-        let foretold = last
+        let predicted = last
             .predicted_s
-            .map_or(String::new(), |s| format!(", foretold {}", seconds(s)));
+            .map_or(String::new(), |s| format!(", predicted {}", seconds(s)));
         row(
             ui,
             "Time",
             format!(
-                "{}{foretold}; on screen after {}",
+                "{}{predicted}; on screen after {}",
                 seconds(r.total_s()),
                 seconds(last.settled_s)
             ),
@@ -227,9 +229,9 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
         let error = match (last.measured_error, last.predicted_error) {
             (Some(e), Some([_, low, high])) => {
                 let where_ = match e {
-                    e if e < low => "better than foretold",
-                    e if e <= high => "as foretold",
-                    _ => "more than foretold",
+                    e if e < low => "better than predicted",
+                    e if e <= high => "as predicted",
+                    _ => "more than predicted",
                 };
                 format!(
                     "{} measured, {where_} ({} to {})",
@@ -240,7 +242,7 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
             }
             (Some(e), None) => format!("{} measured", percent(e)),
             (None, Some([e, low, high])) => {
-                format!("{} foretold ({} to {})", percent(e), percent(low), percent(high))
+                format!("{} predicted ({} to {})", percent(e), percent(low), percent(high))
             }
             (None, None) => "unknown for own settings".into(),
         };
@@ -263,7 +265,7 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
             }
             _ => {
                 let about = tuning
-                    .stops
+                    .presets
                     .named("reference")
                     .map(|s| s.invert_s + s.cost.fixed_s);
                 let about = about.map_or(String::new(), |s| format!(" About {}.", seconds(s)));

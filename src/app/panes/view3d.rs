@@ -107,13 +107,13 @@ impl Pane for View3dPane {
             dragging: false,
             marked: &[],
         };
-        let looks = (&cx.view3d.camera, &cx.view3d.options);
+        let seen_from = (&cx.view3d.camera, &cx.view3d.options);
         if mode == CompareMode::Side {
-            clipped(ui, left, |ui| other.still(ui, left, looks, &input, cx.state));
+            clipped(ui, left, |ui| other.still(ui, left, seen_from, &input, cx.state));
             sides(ui, left, right);
         } else {
             let part = left_part(area, cx.state.wipe_at);
-            clipped(ui, part, |ui| other.still(ui, area, looks, &input, cx.state));
+            clipped(ui, part, |ui| other.still(ui, area, seen_from, &input, cx.state));
             wipe_line(ui, area, &mut cx.state.wipe_at);
         }
     }

@@ -72,7 +72,7 @@ impl Pipeline for AnyPipeline {
 }
 
 /// Threads that follow the scene.
-pub struct Background {
+pub struct SceneThreads {
     pub(crate) sensing: Sensing,
     /// Findings of the quality checks.
     pub checking: Checking,
@@ -109,7 +109,7 @@ pub struct SceneloomApp {
     /// Views and panes.
     pub views: Views,
     /// Sensors and checks.
-    pub background: Background,
+    pub threads: SceneThreads,
     pub(crate) overlays: Overlays,
     /// Settings and keys.
     pub preferences: Preferences,
@@ -130,7 +130,7 @@ impl SceneloomApp {
             Some(Err(error)) => (Settings::default(), Some(one_line(&error))),
             None => (Settings::default(), None),
         };
-        theme::apply(ctx, settings.look);
+        theme::apply(ctx, settings.theme);
         settings.classes.make_current();
         if settings.ui_scale != 1.0 {
             ctx.set_zoom_factor(settings.ui_scale);
@@ -157,10 +157,10 @@ impl SceneloomApp {
         let tuning = Tuning::new(config.settings_file.as_deref());
         // Whoever starts the window without settings names its parameters.
         let quality = tuning
-            .stops
+            .presets
             .named(&settings.quality)
             .filter(|_| config.settings_file.is_some());
-        let params = quality.map_or(config.params, |stop| stop.knobs.on(config.params));
+        let params = quality.map_or(config.params, |preset| preset.knobs.on(config.params));
         let dock = settings.dock.clone().and_then(Dock::from_kept);
         let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
         let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));
@@ -177,7 +177,7 @@ impl SceneloomApp {
             files: Files::new(config.path, disk, config.native_dialogs),
             generation: Generation::new(worker, live, tuning, versions),
             views: Views::new(view3d, dock, render_state),
-            background: Background {
+            threads: SceneThreads {
                 checking: Checking::spawn(wake.clone())?,
                 sensing: Sensing::spawn(sensing_grace, wake)?,
             },
@@ -205,13 +205,13 @@ impl SceneloomApp {
 
     /// What the sensors returned last.
     pub fn sensing(&self) -> &Sensing {
-        &self.background.sensing
+        &self.threads.sensing
     }
 
     /// True if LiDAR and cameras show the state on screen.
     pub fn sensors_are_current(&self) -> bool {
         let rev = self.document.scene().rev;
-        !self.background.sensing.cameras_stale(rev) && !self.background.sensing.lidar_stale(rev)
+        !self.threads.sensing.cameras_stale(rev) && !self.threads.sensing.lidar_stale(rev)
     }
 
     /// The document's scene, or a preview of its generation.
@@ -227,8 +227,8 @@ impl SceneloomApp {
 
     /// Everything that happens without drawing: news of the worker, of sensing, of files.
     pub fn update(&mut self, ctx: &egui::Context) {
-        self.background.sensing.drain();
-        if let Some(problem) = self.background.sensing.take_problem() {
+        self.threads.sensing.drain();
+        if let Some(problem) = self.threads.sensing.take_problem() {
             self.fail(format!("The sensors show an older scene: {problem}"));
         }
         self.generation.tuning.update();
@@ -263,7 +263,7 @@ impl SceneloomApp {
     /// Puts changed settings to use, and writes them two seconds later at most.
     fn keep_settings(&mut self, ctx: &egui::Context) {
         if self.preferences.looks_changed() {
-            theme::apply(ctx, self.preferences.settings.look);
+            theme::apply(ctx, self.preferences.settings.theme);
             self.preferences.settings.classes.make_current();
             self.views.forget_pictures();
         }

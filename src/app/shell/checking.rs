@@ -255,7 +255,7 @@ mod tests {
             scene.rev = SceneRev::fresh();
             let now_s = f64::from(i) * 0.25;
             let wait_s = checking.update(&Arc::new(scene.clone()), false, now_s);
-            assert_eq!(wait_s, Some(AFTER_S), "each change starts the rest anew");
+            assert_eq!(wait_s, Some(AFTER_S), "each change starts the rest again");
         }
         let scene = Arc::new(scene);
         assert_eq!(checking.update(&scene, true, 9.0), None, "not while dragging");

@@ -42,7 +42,7 @@ impl SceneloomApp {
         let Some(mut panel) = self.files.exporting.panel.take() else {
             return;
         };
-        let findings = self.background.checking.findings();
+        let findings = self.threads.checking.findings();
         let input = ExportInput {
             browse: self.files.dialogs.is_native(),
             busy: self.files.exporting.running.as_ref().map(|r| &*r.progress),

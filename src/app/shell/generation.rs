@@ -6,8 +6,8 @@ use job::worker::GenWorker;
 use job::{GenParams, GenResult, Job, JobEvent, UpdateGate};
 use scene::{Scene, SceneRev};
 
-use super::drawing::Drawing;
 use super::live::{Bounds, Live, Purpose, Running};
+use super::scenery_thread::Drawing;
 use super::staged::Staged;
 use super::status::Receipt;
 use super::tuning::Tuning;

@@ -40,7 +40,7 @@ impl SceneloomApp {
                 self.generation.live.on = !self.generation.live.on;
                 self.generation.live.forget_asked();
             }
-            GenerationCommand::Quality(stop) => self.set_quality(stop),
+            GenerationCommand::Quality(preset) => self.set_quality(preset),
             GenerationCommand::Calibrate => {
                 let ctx = ctx.clone();
                 self.generation.tuning.calibrate(move || ctx.request_repaint());
@@ -67,33 +67,33 @@ impl SceneloomApp {
         }
         let scene = self.document.settled_scene().clone();
         let now_s = self.now_s();
-        let anew = !full && !self.state.tools.region.is_empty();
-        if !full && !anew && self.generation.live.look(&scene, now_s).is_empty {
+        let inpaints = !full && !self.state.tools.region.is_empty();
+        if !full && !inpaints && self.generation.live.touched_by(&scene, now_s).is_empty {
             self.toasts
                 .push(Level::Info, "Nothing was edited since the last generation", now_s);
             return;
         }
         let mut params = self.generation.live.params_for(&scene, full);
-        if anew {
-            self.state.tools.draw_anew(&mut params);
+        if inpaints {
+            self.state.tools.inpaint_region(&mut params);
         }
         if full && self.draws_scenery_first() {
             return self.generate_on_scenery(params);
         }
         let same = |r: &Running| r.key.rev == scene.rev && r.key.params == params;
         if !self.generation.live.running.as_ref().is_some_and(same) {
-            self.generation.live.look(&scene, now_s);
+            self.generation.live.touched_by(&scene, now_s);
             self.submit(scene, params);
         }
     }
 
-    /// Puts a stop's settings to use, from the next edit on.
-    pub(crate) fn set_quality(&mut self, stop: usize) {
-        let Some(stop) = self.generation.tuning.stops.stops.get(stop) else {
+    /// Puts a preset's settings to use, from the next edit on.
+    pub(crate) fn set_quality(&mut self, preset: usize) {
+        let Some(preset) = self.generation.tuning.presets.all.get(preset) else {
             return;
         };
-        self.generation.live.params = stop.knobs.on(self.generation.live.params);
-        self.preferences.settings.quality.clone_from(&stop.name);
+        self.generation.live.params = preset.knobs.on(self.generation.live.params);
+        self.preferences.settings.quality.clone_from(&preset.name);
         // The source's trajectory belongs to its settings.
         self.generation.live.source_changed();
     }

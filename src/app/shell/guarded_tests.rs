@@ -12,7 +12,7 @@ use crate::{AppConfig, SceneloomApp, open};
 use editor::Edit;
 use job::guard::panic_next;
 use job::{GenError, GenParams};
-use judge::stops::calibrate::{Background, News, Task};
+use judge::presets::calibrate::{Measurement, News, Task};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -115,9 +115,9 @@ fn checks_and_sensors() {
         &mut app,
         "The scene was not checked: checks panicked: asked for by a test",
     );
-    assert!(app.background.checking.findings().is_none());
+    assert!(app.threads.checking.findings().is_none());
     panic_next("sensing");
-    app.background.sensing.ask(app.document.scene(), wanted, true);
+    app.threads.sensing.ask(app.document.scene(), wanted, true);
     wait_for(
         &mut app,
         "The sensors show an older scene: sensing panicked: asked for by a test",
@@ -125,9 +125,9 @@ fn checks_and_sensors() {
     let prompt = "another state".to_owned();
     app.apply("Prompt", &[Edit::SetPrompt { prompt }]);
     let rev = app.document.settled_scene().rev;
-    app.background.sensing.ask(app.document.scene(), wanted, true);
+    app.threads.sensing.ask(app.document.scene(), wanted, true);
     let start = Instant::now();
-    while app.background.checking.is_stale(rev) || app.background.sensing.lidar_stale(rev) {
+    while app.threads.checking.is_stale(rev) || app.threads.sensing.lidar_stale(rev) {
         assert!(start.elapsed() < PATIENCE, "no findings");
         app.update(&Context::default());
         std::thread::sleep(Duration::from_millis(2));
@@ -136,17 +136,17 @@ fn checks_and_sensors() {
 
 #[test]
 fn measuring() {
-    let next = |background: &Background| {
+    let next = |measurement: &Measurement| {
         let start = Instant::now();
         loop {
-            if let Some(news) = background.next() {
+            if let Some(news) = measurement.next() {
                 return news;
             }
             assert!(start.elapsed() < PATIENCE, "no news");
             std::thread::sleep(Duration::from_millis(2));
         }
     };
-    let start = || Background::start(Task::Calibrate(trade::Stops::bundled()), || {}).expect("a thread");
+    let start = || Measurement::start(Task::Calibrate(trade::Presets::bundled()), || {}).expect("a thread");
     panic_next("measure");
     let News::Failed(line) = next(&start()) else {
         panic!("it goes on");

@@ -209,7 +209,7 @@ fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, _state: &mut UiState, on
         Command::Generation(GenerationCommand::Generate { full: false }),
     );
     on(
-        item(ui, "Draw scenery anew", "", true),
+        item(ui, "Regenerate scenery", "", true),
         Command::Generation(GenerationCommand::DrawScenery),
     );
     on(

@@ -36,13 +36,13 @@ impl Preferences {
         }
     }
 
-    /// True once after look or colours have changed; they are then written soon.
+    /// True once after theme or colours have changed; they are then written soon.
     pub(crate) fn looks_changed(&mut self) -> bool {
         let (now, kept) = (&self.settings, &mut self.kept);
-        if now.look == kept.look && now.classes == kept.classes {
+        if now.theme == kept.theme && now.classes == kept.classes {
             return false;
         }
-        (kept.look, kept.classes) = (now.look, now.classes);
+        (kept.theme, kept.classes) = (now.theme, now.classes);
         self.write_soon();
         true
     }

@@ -14,7 +14,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use serde::{Deserialize, Serialize};
 
 use editor::Document;
-use formats::{atomic, input, project};
+use formats::{atomic, input, loom};
 use job::guard::{Handed, guarded};
 use scene::{Scene, SceneRev};
 
@@ -235,7 +235,7 @@ impl Drop for Recovery {
 }
 
 fn write(folder: &Path, scene: &Scene, original: Option<PathBuf>) -> anyhow::Result<()> {
-    project::save(&folder.join(SCENE), scene)?;
+    loom::save(&folder.join(SCENE), scene)?;
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let about = About {
         original,
@@ -360,7 +360,7 @@ mod tests {
     }
 
     fn prompt_in(file: &Path) -> String {
-        project::load(file).expect("a whole scene").prompt.to_string()
+        loom::load(file).expect("a whole scene").prompt.to_string()
     }
 
     #[test]

@@ -12,13 +12,13 @@ impl SceneloomApp {
         let now_s = self.now_s();
         let scene = self.document.settled_scene();
         if let Some(seconds) = self
-            .background
+            .threads
             .checking
             .update(scene, self.document.is_dragging(), now_s)
         {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
         }
-        if let Some(problem) = self.background.checking.take_problem() {
+        if let Some(problem) = self.threads.checking.take_problem() {
             self.fail(format!("The scene was not checked: {problem}"));
         }
     }
@@ -27,10 +27,10 @@ impl SceneloomApp {
     pub(crate) fn fix_all(&mut self, ctx: &egui::Context) {
         let scene = self.document.settled_scene();
         let Some(findings) = self
-            .background
+            .threads
             .checking
             .findings()
-            .filter(|_| !self.background.checking.is_stale(scene.rev))
+            .filter(|_| !self.threads.checking.is_stale(scene.rev))
         else {
             return;
         };

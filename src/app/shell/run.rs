@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::app::{AppConfig, SceneloomApp};
 use super::{priority, settings};
 use crate::{open, pipeline};
-use formats::project;
+use formats::loom;
 use job::GenParams;
 use scene::Scene;
 use widgets::software_ui;
@@ -25,7 +25,7 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -
         warm_up: true,
         open: Arc::new(open::scene),
         save: Arc::new(|scene, path| {
-            project::save(path, scene)?;
+            loom::save(path, scene)?;
             Ok(())
         }),
         new_scene: Arc::new(new_scene),

@@ -1,4 +1,4 @@
-//! What is kept between sessions: looks, keys, panes, recent files. Never part of a scene.
+//! What is kept between sessions: theme, keys, panes, recent files. Never part of a scene.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -14,7 +14,7 @@ use super::workspace::Workspace;
 use crate::panes::id::PaneId;
 use editor::Document;
 use scene::classes::Palette;
-use widgets::theme::Look;
+use widgets::theme::Theme;
 
 /// Files that are remembered.
 const RECENT: usize = 12;
@@ -24,7 +24,8 @@ const RECENT: usize = 12;
 #[serde(default)]
 pub struct Settings {
     /// Dark or light.
-    pub look: Look,
+    #[serde(rename = "look")]
+    pub theme: Theme,
     /// Colours of the classes.
     pub classes: Palette,
     /// Size of everything, 1 = normal.
@@ -37,7 +38,7 @@ pub struct Settings {
     pub keys: Chords,
     /// The workspace chosen last.
     pub workspace: Workspace,
-    /// Name of the stop of the quality slider.
+    /// Name of the preset of the quality slider.
     pub quality: String,
     /// Where the panes stand.
     pub dock: Option<Tree<PaneId>>,
@@ -54,14 +55,14 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            look: Look::default(),
+            theme: Theme::default(),
             classes: Palette::default(),
             ui_scale: 1.0,
             start_screen: true,
             key_preset: "Default".into(),
             keys: Chords::new(),
             workspace: Workspace::default(),
-            quality: "careful".into(), // the fastest stop whose inverted noise is like a draw
+            quality: "careful".into(), // the fastest preset whose inverted noise is like a draw
             dock: None,
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
@@ -142,7 +143,7 @@ mod tests {
         let path = folder.path().join("below").join("settings.json");
         assert!(Settings::load(&path).expect("a new user") == Settings::default());
         let mut settings = Settings {
-            look: Look::Light,
+            theme: Theme::Light,
             dock: Some(Dock::workspace(Workspace::Sensors).tree().clone()),
             ..Settings::default()
         };

@@ -13,7 +13,7 @@ use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::UiState;
 use editor::Edit;
 use editor::part::{Part, changed_by_class};
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
 use job::region::COLUMNS_PER_CELL;
 use job::{GenParams, RegionMode};
 use scene::background::in_grid;
@@ -133,7 +133,7 @@ impl SceneloomApp {
                     return self.generate_on_scenery(*params);
                 }
                 let now_s = self.now_s();
-                self.generation.live.look(&before, now_s);
+                self.generation.live.touched_by(&before, now_s);
                 self.submit(before, *params);
             }
             Again::Scenery(mut wish) => {
@@ -159,7 +159,7 @@ impl SceneloomApp {
         let scene = self.document.settled_scene().clone();
         self.generation.drawn_first = (scene.rev != before.rev).then(|| (scene.rev, before));
         let now_s = self.now_s();
-        self.generation.live.look(&scene, now_s);
+        self.generation.live.touched_by(&scene, now_s);
         self.submit(scene, params);
     }
 
@@ -172,7 +172,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Draws what stands beside the roads anew, in the marked region or everywhere.
+    /// Regenerates what stands beside the roads, in the marked region or everywhere.
     pub(crate) fn draw_scenery(&mut self) {
         if self.document.is_dragging() {
             return;
@@ -250,7 +250,7 @@ impl SceneloomApp {
             self.generation
                 .versions
                 .push("Accept a part".to_owned(), String::new(), scene);
-            self.state.tools.region = RedrawMask::default();
+            self.state.tools.region = InpaintMask::default();
         }
     }
 
@@ -335,7 +335,7 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
         Part::Columns(columns) => {
             let to_ego = after.frame().world_from_ego.inverse();
             let mut inside = true;
-            authoring::around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
+            authoring::scenery_around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
                 inside &= columns[x * GridSpec::NY + y];
             });
             inside
@@ -346,7 +346,7 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
     before.background.iter().chain(came).cloned().collect()
 }
 
-fn columns_of_region(region: &RedrawMask) -> Vec<bool> {
+fn columns_of_region(region: &InpaintMask) -> Vec<bool> {
     let cell = |c: usize| [c / GridSpec::NY, c % GridSpec::NY].map(|v| v / COLUMNS_PER_CELL);
     (0..GridSpec::COLUMNS)
         .map(|c| {
@@ -367,7 +367,7 @@ fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
     let things = state.tools.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
     for thing in in_grid(things, &frame.world_from_ego) {
-        authoring::around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
+        authoring::scenery_around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
     }
     columns
 }

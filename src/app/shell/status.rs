@@ -12,7 +12,7 @@ use crate::state::UiState;
 use job::{GenReport, Stage};
 use widgets::theme;
 
-/// How often the time that a job runs is shown anew.
+/// How often the time that a job runs is shown again.
 const REPAINT: std::time::Duration = std::time::Duration::from_millis(250);
 
 /// What a finished generation did, for a person.

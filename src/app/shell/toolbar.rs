@@ -44,10 +44,10 @@ pub struct ToolbarInput<'a> {
     pub cameras: usize,
     /// The workspace chosen last.
     pub workspace: Workspace,
-    /// Stops of the quality slider, and what they are foretold to cost.
-    pub stops: Vec<(String, String)>,
+    /// Presets of the quality slider, and what they are predicted to cost.
+    pub presets: Vec<(String, String)>,
     /// The one in use.
-    pub stop: Option<usize>,
+    pub preset: Option<usize>,
 }
 
 /// Draws the bar.
@@ -215,19 +215,19 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     if live.clicked() {
         commands.push(Command::Generation(GenerationCommand::ToggleLive));
     }
-    if !input.stops.is_empty() {
+    if !input.presets.is_empty() {
         quality(ui, input, commands);
     }
 }
 
-/// The stops of the quality slider as a menu.
+/// The presets of the quality slider as a menu.
 fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
-    let current = input.stop.and_then(|i| input.stops.get(i));
+    let current = input.preset.and_then(|i| input.presets.get(i));
     let name = current.map_or("own settings", |(name, _)| name);
     let menu = ui.menu_button(theme::sentence(name), |ui| {
-        for (i, (name, foretold)) in input.stops.iter().enumerate() {
-            let text = egui::RichText::new(format!("{}   {foretold}", theme::sentence(name)));
-            if ui.selectable_label(input.stop == Some(i), text).clicked() {
+        for (i, (name, predicted)) in input.presets.iter().enumerate() {
+            let text = egui::RichText::new(format!("{}   {predicted}", theme::sentence(name)));
+            if ui.selectable_label(input.preset == Some(i), text).clicked() {
                 commands.push(Command::Generation(GenerationCommand::Quality(i)));
                 ui.close();
             }
@@ -241,7 +241,7 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     let label = format!("Quality: {name} menu");
     menu.response
         .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
-    let cost = current.map_or(String::new(), |(_, foretold)| format!("\n{foretold}"));
+    let cost = current.map_or(String::new(), |(_, predicted)| format!("\n{predicted}"));
     menu.response
         .on_hover_text(format!("How exactly edits are generated{cost}"));
 }

@@ -1,4 +1,4 @@
-//! The quality slider: its stops, what they are predicted to cost, what the last edit really cost, and the work beside
+//! The quality slider: its presets, what they are predicted to cost, what the last edit really cost, and the work beside
 //! the window that measures both.
 
 use std::collections::VecDeque;
@@ -6,38 +6,38 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use formats::input;
-use job::redraw;
+use job::inpaint;
 use job::region::Region;
 use job::{GenParams, GenReport, GenResult};
 use judge::machine::machine;
-use judge::stops::calibrate::{Background, News, Refine, Task, build};
-use judge::stops::figures::{percent, seconds};
+use judge::presets::calibrate::{Measurement, News, Refine, Task, build};
+use judge::presets::figures::{percent, seconds};
 use nets::{OccModels, tokens_of};
 use numeric::quantile::median;
 use scene::Scene;
-use trade::{Stop, Stops};
+use trade::{Preset, Presets};
 
 /// Edits that the window's own pace is taken from.
 const REMEMBERED: usize = 9;
 /// Tokens of an edit of one vehicle.
 const TYPICAL_TOKENS: f64 = 36.0;
 
-/// One line: what a stop is foretold to take, to miss and to invent.
-pub fn foretold(stop: &Stop, wall_s: f64) -> String {
+/// One line: what a preset is predicted to take, to miss and to invent.
+pub fn predicted(preset: &Preset, wall_s: f64) -> String {
     let time = seconds(wall_s);
-    if stop.error.high == 0.0 {
+    if preset.error.high == 0.0 {
         return format!("{time}  ·  what the others are measured against");
     }
-    let [low, high] = stop.error_of_one.map(percent);
-    let middle = percent(stop.error.median);
-    let invented = stop.invented.map_or(String::new(), |n| match n {
+    let [low, high] = preset.error_of_one.map(percent);
+    let middle = percent(preset.error.median);
+    let invented = preset.invented.map_or(String::new(), |n| match n {
         n if n < 0.05 => "  ·  invents nothing".into(),
         n => format!("  ·  invents {n:.1} voxels"),
     });
     format!("{time}  ·  {middle} of its voxels differ ({low} to {high}){invented}")
 }
 
-/// What an edit did and cost, beside what was foretold.
+/// What an edit did and cost, beside what was predicted.
 pub struct LastEdit {
     /// How it was generated.
     pub params: GenParams,
@@ -53,7 +53,7 @@ pub struct LastEdit {
     pub predicted_error: Option<[f64; 3]>,
     /// The same, measured.
     pub measured_error: Option<f64>,
-    /// Columns and latent cells that were redrawn.
+    /// Columns and latent cells that were inpainted.
     pub region: Region,
     /// Tokens that were computed (all: 625).
     pub tokens: Vec<usize>,
@@ -81,16 +81,16 @@ pub struct Stability {
 /// What runs beside the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measuring {
-    /// Times of the stops.
-    Stops,
+    /// Times of the presets.
+    Presets,
     /// Error of the last edit.
     Error,
 }
 
 /// State of the slider and its panel.
 pub struct Tuning {
-    /// The stops, with this machine's times if they were measured.
-    pub stops: Stops,
+    /// The presets, with this machine's times if they were measured.
+    pub presets: Presets,
     /// The times are of this machine and build.
     pub calibrated: bool,
     /// The last edit.
@@ -103,7 +103,7 @@ pub struct Tuning {
     pub message: Option<String>,
     /// How many times longer than in quiet the last edits took: the window draws on the same cores.
     slower: VecDeque<f64>,
-    running: Option<(Measuring, Background, (usize, usize))>,
+    running: Option<(Measuring, Measurement, (usize, usize))>,
     file: Option<PathBuf>,
 }
 
@@ -113,15 +113,15 @@ impl Tuning {
         let file = settings_file
             .and_then(Path::parent)
             .map(|f| f.join("calibration.json"));
-        let shipped = Stops::bundled();
+        let shipped = Presets::bundled();
         let text = file
             .as_ref()
             .and_then(|f| input::read_text(f, input::LARGEST_TEXT).ok());
-        let kept = text.and_then(|t| Stops::parse(&t, shipped.weights).ok());
+        let kept = text.and_then(|t| Presets::parse(&t, shipped.weights).ok());
         let ours = kept.filter(|s| s.machine == machine() && s.build == build());
         Self {
             calibrated: ours.is_some(),
-            stops: ours.unwrap_or(shipped),
+            presets: ours.unwrap_or(shipped),
             last: None,
             stability: Stability::default(),
             show_modelled: false,
@@ -139,14 +139,14 @@ impl Tuning {
             .map(|(what, _, (done, all))| (*what, *done, *all))
     }
 
-    /// Starts timing the stops.
+    /// Starts timing the presets.
     pub fn calibrate(&mut self, wake: impl Fn() + Send + Sync + 'static) {
-        self.start(Measuring::Stops, Task::Calibrate(self.stops.clone()), wake);
+        self.start(Measuring::Presets, Task::Calibrate(self.presets.clone()), wake);
     }
 
     /// Starts measuring how far the last edit lies from the reference.
     pub fn refine(&mut self, wake: impl Fn() + Send + Sync + 'static) {
-        let (Some(last), Some(reference)) = (&self.last, self.stops.named("reference")) else {
+        let (Some(last), Some(reference)) = (&self.last, self.presets.named("reference")) else {
             return;
         };
         let task = Task::Refine(Box::new(Refine {
@@ -160,13 +160,13 @@ impl Tuning {
 
     fn start(&mut self, what: Measuring, task: Task, wake: impl Fn() + Send + Sync + 'static) {
         self.message = None;
-        match Background::start(task, wake) {
+        match Measurement::start(task, wake) {
             Ok(background) => self.running = Some((what, background, (0, 0))),
             Err(error) => self.message = Some(format!("Nothing can be measured: {error}")),
         }
     }
 
-    /// Stops what is being measured.
+    /// Ends what is being measured.
     pub fn stop(&mut self) {
         self.running = None;
     }
@@ -180,9 +180,9 @@ impl Tuning {
                         *progress = (done, all);
                     }
                 }
-                News::Calibrated(stops, same) => {
+                News::Calibrated(presets, same) => {
                     self.running = None;
-                    (self.stops, self.calibrated) = (stops, true);
+                    (self.presets, self.calibrated) = (presets, true);
                     let errors = if same {
                         "results are bit for bit those whose errors are known"
                     } else {
@@ -211,7 +211,7 @@ impl Tuning {
         let Some(file) = &self.file else { return Ok(()) };
         let write = || -> anyhow::Result<()> {
             std::fs::create_dir_all(file.parent().unwrap_or(Path::new(".")))?;
-            judge::stops::plan::write_stops(file, &self.stops)
+            judge::presets::plan::write_presets(file, &self.presets)
         };
         write().map_err(|e| e.to_string())
     }
@@ -225,9 +225,9 @@ impl Tuning {
         median(&known).clamp(0.25, 20.0)
     }
 
-    /// Wall time that an edit of so many tokens is foretold to take in this window, s.
-    pub fn foretold_s(&self, stop: &Stop, tokens: f64) -> f64 {
-        stop.cost.wall_s(tokens) * self.window_factor()
+    /// Wall time that an edit of so many tokens is predicted to take in this window, s.
+    pub fn predicted_s(&self, preset: &Preset, tokens: f64) -> f64 {
+        preset.cost.wall_s(tokens) * self.window_factor()
     }
 
     /// Tokens of an edit like the last one, or of a typical one until there was one.
@@ -237,22 +237,22 @@ impl Tuning {
             .map_or(TYPICAL_TOKENS, |l| l.local_tokens as f64)
     }
 
-    /// What an edit like the last one is foretold to take with these parameters, s; 0 if they are of no stop.
-    pub fn foretold_now_s(&self, params: &GenParams) -> f64 {
-        let stop = self.current(params).map(|i| &self.stops.stops[i]);
-        stop.map_or(0.0, |stop| self.foretold_s(stop, self.tokens_of_next()))
+    /// What an edit like the last one is predicted to take with these parameters, s; 0 if they are of no preset.
+    pub fn predicted_now_s(&self, params: &GenParams) -> f64 {
+        let preset = self.current(params).map(|i| &self.presets.all[i]);
+        preset.map_or(0.0, |preset| self.predicted_s(preset, self.tokens_of_next()))
     }
 
-    /// Name of each stop, and what it is foretold to cost.
-    pub fn foretold(&self) -> Vec<(String, String)> {
+    /// Name of each preset, and what it is predicted to cost.
+    pub fn predicted(&self) -> Vec<(String, String)> {
         let tokens = self.tokens_of_next();
-        let of = |s: &Stop| (s.name.clone(), foretold(s, self.foretold_s(s, tokens)));
-        self.stops.stops.iter().map(of).collect()
+        let of = |s: &Preset| (s.name.clone(), predicted(s, self.predicted_s(s, tokens)));
+        self.presets.all.iter().map(of).collect()
     }
 
-    /// The stop that the parameters stand at.
+    /// The preset that the parameters stand at.
     pub fn current(&self, params: &GenParams) -> Option<usize> {
-        self.stops.index_of(params)
+        self.presets.index_of(params)
     }
 
     /// Notes what became of an edit. `edited` is the scene with the edit, before its result came.
@@ -270,11 +270,11 @@ impl Tuning {
             self.running = None;
             self.message = Some("The measurement stopped: another edit came".into());
         }
-        // The stops were measured on edits, not on what is drawn anew.
-        let stop = self.current(&params).filter(|_| params.strength == 0.0);
-        let stop = stop.map(|i| self.stops.stops[i].clone());
-        let stop = stop.as_ref();
-        let region = redraw::region_of(edited.frame(), &params);
+        // The presets were measured on edits, not on regions inpainted from fresh noise.
+        let preset = self.current(&params).filter(|_| params.strength == 0.0);
+        let preset = preset.map(|i| self.presets.all[i].clone());
+        let preset = preset.as_ref();
+        let region = inpaint::region_of(edited.frame(), &params);
         let all = OccModels::TOKENS;
         let local = tokens_of(&region.cells, params.halo_tokens as usize);
         let local_tokens = local.len();
@@ -283,15 +283,15 @@ impl Tuning {
             false => local,
         };
         let tokens_computed = report.tokens as f64;
-        let predicted_s = stop.map(|s| {
+        let predicted_s = preset.map(|s| {
             let inverted = if report.inversion_calls > 0 {
                 s.invert_s
             } else {
                 0.0
             };
-            self.foretold_s(s, tokens_computed) + inverted * self.window_factor()
+            self.predicted_s(s, tokens_computed) + inverted * self.window_factor()
         });
-        if let Some(quiet_s) = stop.map(|s| s.cost.wall_s(tokens_computed))
+        if let Some(quiet_s) = preset.map(|s| s.cost.wall_s(tokens_computed))
             && report.inversion_calls == 0
             && !beside // a measurement takes the same cores
             && quiet_s > 0.0
@@ -305,7 +305,7 @@ impl Tuning {
         self.last = Some(LastEdit {
             local_tokens,
             predicted_s,
-            predicted_error: stop.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
+            predicted_error: preset.map(|s| [s.error.median, s.error_of_one[0], s.error_of_one[1]]),
             measured_error: None,
             bricks: edited.frame().source.occupancy.changed_bricks(&result.occupancy),
             params,

@@ -44,7 +44,7 @@ impl Views {
         }
     }
 
-    /// Colours have changed: what was drawn with the old ones is drawn anew.
+    /// Colours have changed: what was drawn with the old ones is drawn again.
     pub(crate) fn forget_pictures(&mut self) {
         self.canvas.forget_pictures();
         self.strip = CameraStrip::default();

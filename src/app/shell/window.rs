@@ -116,8 +116,8 @@ impl SceneloomApp {
                 .filter(|id| self.views.dock.is_shown(*id))
                 .collect(),
             cameras: scene.rig.cameras.len(),
-            stops: self.generation.tuning.foretold(),
-            stop: self.generation.tuning.current(&self.generation.live.params),
+            presets: self.generation.tuning.predicted(),
+            preset: self.generation.tuning.current(&self.generation.live.params),
         };
         egui::Panel::top("toolbar")
             .exact_size(42.0)
@@ -126,10 +126,10 @@ impl SceneloomApp {
             .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
-        let touched = self.generation.live.look(&settled, now_s);
+        let touched = self.generation.live.touched_by(&settled, now_s);
         self.generation.unsettled = self.generation.live.parts();
         let unsettled = !touched.is_empty;
-        let findings = self.background.checking.findings().map(|all| {
+        let findings = self.threads.checking.findings().map(|all| {
             let open = waive::open(settled.frame(), all);
             let (errors, warnings): (Vec<_>, Vec<_>) = open.partition(|f| f.severity == Severity::Error);
             (errors.len(), warnings.len())
@@ -164,7 +164,7 @@ impl SceneloomApp {
         self.dock_ui(ui, scene, commands);
         // What nobody lists is not pointed at.
         if !self.views.dock.is_shown(PaneId::CHECKS) {
-            self.state.meant = None;
+            self.state.finding_marks = None;
         }
         self.generation.live.named = self.state.named;
     }
@@ -196,7 +196,7 @@ impl SceneloomApp {
 
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
-        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.background.sensing);
+        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.threads.sensing);
         self.views
             .strip
             .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);

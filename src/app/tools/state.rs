@@ -6,22 +6,22 @@ use editor::Shape;
 use editor::tools::{Area, DRAW_ORDER, Hand};
 use glam::DVec2;
 use job::GenParams;
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
 
 use crate::scenery::Drawer;
 
-/// What is drawn anew has no inverted noise that already holds most of it.
-const FEWEST_STEPS_ANEW: u32 = 10;
+/// What is inpainted from fresh noise has no inverted noise that already holds most of it.
+const FEWEST_INPAINT_STEPS: u32 = 10;
 
 /// What the tools hold. It is a [`Hand`] with more.
 #[derive(Clone, Debug)]
 pub struct ToolState {
     /// The tool in hand, what is chosen, the options of the tools.
     pub hand: Hand,
-    /// Cells to be drawn anew although nothing was edited there.
-    pub region: RedrawMask,
-    /// How often cells were drawn anew: each time other noise.
-    pub region_draws: u64,
+    /// Cells to inpaint although nothing was edited there.
+    pub region: InpaintMask,
+    /// How often cells were inpainted: each time from other noise.
+    pub times_inpainted: u64,
     /// What draws scenery.
     pub drawer: Drawer,
     /// Times that scenery was drawn.
@@ -40,8 +40,8 @@ impl Default for ToolState {
     fn default() -> Self {
         Self {
             hand: Hand::default(),
-            region: RedrawMask::default(),
-            region_draws: 0,
+            region: InpaintMask::default(),
+            times_inpainted: 0,
             drawer: Drawer::Rules(None),
             scenery_draws: 0,
             layer_opacity: [1.0; DRAW_ORDER.len()],
@@ -67,20 +67,20 @@ impl DerefMut for ToolState {
 }
 
 impl ToolState {
-    /// Makes parameters draw the region anew.
-    pub fn draw_anew(&mut self, params: &mut GenParams) {
-        self.region_draws += 1;
-        params.redraw = self.region;
+    /// Makes parameters inpaint the region.
+    pub fn inpaint_region(&mut self, params: &mut GenParams) {
+        self.times_inpainted += 1;
+        params.inpaint = self.region;
         params.strength = self.region_strength;
-        params.steps = params.steps.max(FEWEST_STEPS_ANEW);
-        params.seed = params.seed.wrapping_add(self.region_draws);
+        params.steps = params.steps.max(FEWEST_INPAINT_STEPS);
+        params.seed = params.seed.wrapping_add(self.times_inpainted);
     }
 
-    /// Marks an area to be drawn anew, or takes the mark away.
+    /// Marks an area to inpaint, or takes the mark away.
     pub fn mark(&mut self, area: &Area, on: bool) {
         let cells = match area {
-            Area::Rect(a_m, b_m) => RedrawMask::of_rect(*a_m, *b_m),
-            Area::Outline(points_m) => RedrawMask::of_outline(points_m),
+            Area::Rect(a_m, b_m) => InpaintMask::of_rect(*a_m, *b_m),
+            Area::Outline(points_m) => InpaintMask::of_outline(points_m),
             Area::Stroke(a_m, b_m, width_m) => {
                 let stroke = Shape::Line {
                     points_m: vec![*a_m, *b_m],
@@ -92,7 +92,7 @@ impl ToolState {
             }
             Area::All => {
                 let corner_m = DVec2::splat(scene::GridSpec::MAX_M[0]);
-                RedrawMask::of_rect(-corner_m, corner_m)
+                InpaintMask::of_rect(-corner_m, corner_m)
             }
         };
         for [i, j] in cells.cells() {

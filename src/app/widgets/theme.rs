@@ -1,4 +1,4 @@
-//! The look of the window: a dark and a light theme, one spacing scale, the colours that panels share.
+//! How the window is painted: a dark and a light theme, one spacing scale, the colours that panels share.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,7 +10,7 @@ use scene::Class;
 /// Which theme the window has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Look {
+pub enum Theme {
     /// Light text on dark surfaces.
     #[default]
     Dark,
@@ -77,10 +77,10 @@ const LIGHT: Colors = Colors {
 };
 
 /// The theme of this process's window: there is one, and its colours are asked for everywhere.
-static LIGHT_LOOK: AtomicBool = AtomicBool::new(false);
+static LIGHT_THEME: AtomicBool = AtomicBool::new(false);
 
 fn colors() -> &'static Colors {
-    if LIGHT_LOOK.load(Ordering::Relaxed) {
+    if LIGHT_THEME.load(Ordering::Relaxed) {
         &LIGHT
     } else {
         &DARK
@@ -89,7 +89,7 @@ fn colors() -> &'static Colors {
 
 /// True if surfaces are light.
 pub fn is_light() -> bool {
-    LIGHT_LOOK.load(Ordering::Relaxed)
+    LIGHT_THEME.load(Ordering::Relaxed)
 }
 
 /// Behind everything: gaps between panels.
@@ -152,7 +152,7 @@ pub fn good() -> Color32 {
     colors().good
 }
 
-/// Look at this.
+/// Draws attention.
 pub fn warn() -> Color32 {
     colors().warn
 }
@@ -175,11 +175,11 @@ pub const ROW: f32 = 24.0;
 pub const RADIUS: u8 = 4;
 
 /// Puts the theme on a context.
-pub fn apply(ctx: &egui::Context, look: Look) {
-    LIGHT_LOOK.store(look == Look::Light, Ordering::Relaxed);
-    let theme = match look {
-        Look::Dark => egui::Theme::Dark,
-        Look::Light => egui::Theme::Light,
+pub fn apply(ctx: &egui::Context, theme: Theme) {
+    LIGHT_THEME.store(theme == Theme::Light, Ordering::Relaxed);
+    let theme = match theme {
+        Theme::Dark => egui::Theme::Dark,
+        Theme::Light => egui::Theme::Light,
     };
     ctx.set_theme(theme);
     ctx.style_mut_of(theme, style);

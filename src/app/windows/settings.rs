@@ -1,10 +1,10 @@
-//! The window of settings: looks, colours, size, and what happens at the start.
+//! The window of settings: theme, colours, size, and what happens at the start.
 
 use egui::{Ui, Window};
 
 use crate::shell::settings::Settings;
 use scene::classes::Palette;
-use widgets::theme::{self, Look};
+use widgets::theme::{self, Theme};
 
 /// Draws the window while it is open.
 pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {
@@ -24,8 +24,8 @@ pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {
                 .show(ui, |ui| {
                     ui.label("Theme");
                     ui.horizontal(|ui| {
-                        ui.selectable_value(&mut settings.look, Look::Dark, "Dark");
-                        ui.selectable_value(&mut settings.look, Look::Light, "Light");
+                        ui.selectable_value(&mut settings.theme, Theme::Dark, "Dark");
+                        ui.selectable_value(&mut settings.theme, Theme::Light, "Light");
                     });
                     ui.end_row();
                     ui.label("Class colours");

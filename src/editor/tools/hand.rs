@@ -9,7 +9,7 @@ use crate::arrange::{Clipboard, LANE_REACH_M, Pivot, Row};
 use crate::flood::FillBounds;
 use crate::lane_strip::LaneStrip;
 use crate::lanes::nearest_lane;
-use crate::transform::{Kind, Orientation, Snap};
+use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, Cell};
 use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
@@ -173,7 +173,7 @@ pub struct Hand {
     /// Selecting draws lassos instead of rectangles.
     pub lasso: bool,
     /// What dragging a chosen box changes.
-    pub gizmo: Kind,
+    pub gizmo: TransformKind,
     /// Whose axes gizmo and number fields use.
     pub orientation: Orientation,
     /// About what several boxes turn.
@@ -204,9 +204,9 @@ pub struct Hand {
     pub voxels: Vec<Cell>,
     /// How a region is marked.
     pub region_shape: RegionShape,
-    /// How far what is drawn anew leaves what is there, 0 to 1.
+    /// How far what is inpainted leaves what is there, 0 to 1.
     pub region_strength: f64,
-    /// What is marked to be drawn anew, m²; the window counts it.
+    /// What is marked to be inpainted, m²; the window counts it.
     pub region_m2: f64,
     /// Kind of the next box of each class, by index among its kinds; none means the typical size.
     pub variants: BTreeMap<Class, usize>,
@@ -238,7 +238,7 @@ impl Default for Hand {
             layers_shown: 0xff,
             clipboard: Clipboard::default(),
             lasso: false,
-            gizmo: Kind::default(),
+            gizmo: TransformKind::default(),
             orientation: Orientation::default(),
             pivot: Pivot::default(),
             snap_grid: false,

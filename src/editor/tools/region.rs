@@ -1,4 +1,4 @@
-//! The region tool: marks what is drawn anew, by rectangles, outlines or a brush.
+//! The region tool: marks what to inpaint, by rectangles, outlines or a brush.
 
 use glam::DVec2;
 
@@ -17,14 +17,14 @@ pub const ID: ToolId = ToolId("region_tool");
 pub static DEF: ToolDef = ToolDef {
     id: ID,
     title: "Region",
-    key: "N: draw anew",
+    key: "N: inpaint",
     icon: "region",
     group: Group::Scene,
     is_brush: true,
     paints: false,
     shortcuts: &[Shortcut {
         id: ID.0,
-        title: "Region that is drawn anew",
+        title: "Region to inpaint",
         keys: "N",
         when: When::Always,
         set: |hand| hand.tool = ID,
@@ -170,7 +170,7 @@ impl Tool for Marker {
     fn options(&self, hand: &Hand) -> Vec<Setting> {
         let any = hand.region_m2 > 0.0;
         let mut out = vec![
-            Setting::title("Region to draw anew"),
+            Setting::title("Region to inpaint"),
             Setting::text(
                 "Mark it in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
             ),
@@ -187,7 +187,7 @@ impl Tool for Marker {
             Setting::new(
                 "",
                 setting::Control::Line(vec![
-                    Setting::button("draw", "Draw anew", "each time from other noise", any),
+                    Setting::button("draw", "Inpaint", "each time from other noise", any),
                     Setting::button("clear", "Clear region", "", any),
                 ]),
             ),

@@ -23,7 +23,7 @@ pub enum Act {
     AddBoxes(Label, Vec<Edit>, Vec<scene::BoxId>),
     /// Adds things (ego frame) as one undo step, and chooses them.
     AddThings(Vec<Form>),
-    /// Marks an area to be drawn anew, or takes the mark away.
+    /// Marks an area to inpaint, or takes the mark away.
     Mark(Area, bool),
     /// Says something to the user.
     Note(String),

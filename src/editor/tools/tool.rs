@@ -150,7 +150,7 @@ pub trait Tool: Debug + Send {
         }
     }
 
-    /// Another tool comes to hand, or this one anew.
+    /// Another tool comes to hand, or this one again.
     fn put_down(&mut self) {}
 
     /// It is to be used another way: what was drawn point by point is dropped.

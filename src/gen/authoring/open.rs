@@ -7,10 +7,10 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use super::around;
+use super::scenery_around;
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
-use formats::{atomic, input, project};
+use formats::{atomic, input, loom};
 use scene::{Frame, Scene, SensorRig, draft};
 use world::scenery::{self, Setting, Side, Style};
 use world::terrain::Terrain;
@@ -23,7 +23,7 @@ const ENOUGH_THINGS: usize = 5;
 /// The scene that ships with the program.
 pub fn bundled() -> anyhow::Result<Scene> {
     let bytes = assets::scenes::FIRST_LIGHT;
-    project::from_bytes(bytes).context("the bundled scene")
+    loom::from_bytes(bytes).context("the bundled scene")
 }
 
 /// A sensor rig from a JSON file.
@@ -143,7 +143,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         let background = match things_of_file < ENOUGH_THINGS {
             true => {
                 let drawn = scenery::background(&import.layout, &boxes, seed);
-                around::merged(import.background, &drawn)
+                scenery_around::merged(import.background, &drawn)
             }
             false => import.background,
         };

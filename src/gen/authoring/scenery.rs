@@ -1,17 +1,17 @@
-//! What stands beside the roads, drawn anew from a seed: by rules or by a network, everywhere or in a region, as things that
+//! What stands beside the roads, regenerated from a seed: by rules or by a network, everywhere or in a region, as things that
 //! can be edited. Nothing else changes.
 
 use editor::{Edit, Shape};
 use job::GenError;
-use job::drawn_scenery::drawn_scenery;
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
+use job::network_scenery::drawn_scenery;
 use job::region::COLUMNS_PER_CELL;
 use nets::scenery::SceneryNet;
 use scene::raster::box_cells;
 use scene::{Background, BevLayer, Class, Form, GridSpec, Scene, ThingId};
 use world::scenery::{self, Setting, Side, Style};
 
-use super::around;
+use super::scenery_around;
 
 /// Share of vegetation (`Density`) that is usual.
 pub const TYPICAL_VEGETATION: f64 = 0.5;
@@ -56,7 +56,7 @@ pub struct SceneryWish {
     /// Number of buildings, 1 = usual there; 0 is none.
     pub built: f64,
     /// Cells in which it is drawn; empty: everywhere.
-    pub region: RedrawMask,
+    pub region: InpaintMask,
 }
 
 impl SceneryWish {
@@ -67,11 +67,11 @@ impl SceneryWish {
             by: Drawer::Rules(None),
             green: 1.0,
             built: 1.0,
-            region: RedrawMask::default(),
+            region: InpaintMask::default(),
         }
     }
 
-    /// Edits that draw the scenery of a scene's current frame anew: what stands whole in the region goes, so do voxels of
+    /// Edits that regenerate the scenery of a scene's current frame: what stands whole in the region goes, so do voxels of
     /// scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border.
     pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
         let frame = scene.frame();
@@ -79,7 +79,7 @@ impl SceneryWish {
         let columns = self.columns();
         let whole = |form: &Form| {
             let mut inside = true;
-            around::columns(form, GridSpec::VOXEL_M, |x, y| {
+            scenery_around::columns(form, GridSpec::VOXEL_M, |x, y| {
                 inside &= columns[x * GridSpec::NY + y];
             });
             inside
@@ -101,7 +101,7 @@ impl SceneryWish {
         };
         let drawn: Background = drawn.iter().filter(|t| whole(&t.form)).cloned().collect();
         let known = stays.len();
-        let merged = around::merged(stays, &drawn);
+        let merged = scenery_around::merged(stays, &drawn);
         let come = merged.iter().skip(known);
         let forms: Vec<Form> = come.map(|t| t.form.in_frame(&frame.world_from_ego)).collect();
         let cells = (0..GridSpec::COLUMNS).filter(|c| columns[*c]);
@@ -209,7 +209,7 @@ impl Paved {
             return GridSpec::column_at(at.x, at.y).is_none_or(|[x, y]| !taken[x * GridSpec::NY + y]);
         }
         let (mut on, mut columns) = (0, 0);
-        around::columns(form, 0.0, |x, y| {
+        scenery_around::columns(form, 0.0, |x, y| {
             on += usize::from(taken[x * GridSpec::NY + y]);
             columns += 1;
         });
@@ -233,7 +233,7 @@ mod tests {
             by: Drawer::Rules(Some(Setting::OldTown)),
             green: 1.0,
             built: 1.0,
-            region: RedrawMask::default(),
+            region: InpaintMask::default(),
         }
     }
 
@@ -243,11 +243,11 @@ mod tests {
     }
 
     #[test]
-    fn a_region_is_drawn_anew_and_the_rest_stays() {
+    fn a_region_is_regenerated_and_the_rest_stays() {
         let scene = open::from_template("straight", 7).expect("a template");
         let mut document = Document::new(scene);
         let before = document.scene().clone();
-        let region = RedrawMask::of_rect(DVec2::new(0.0, -40.0), DVec2::new(40.0, 40.0));
+        let region = InpaintMask::of_rect(DVec2::new(0.0, -40.0), DVec2::new(40.0, 40.0));
         let wish = SceneryWish { region, ..wish(11) };
         document
             .apply_all("Draw scenery", &wish.edits(&before).expect("rules"))
@@ -347,7 +347,7 @@ mod tests {
     #[test]
     fn a_network_draws_in_a_region_and_keeps_the_road_free() {
         let scene = open::from_template("straight", 7).expect("a template");
-        let region = RedrawMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
+        let region = InpaintMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
         let by_network = |seed, green| SceneryWish {
             by: Drawer::Network,
             green,

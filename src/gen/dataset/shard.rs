@@ -186,7 +186,7 @@ mod tests {
         );
     }
 
-    /// A short last shard is made anew when more frames are asked for, a full one is left alone; fewer ask for nothing.
+    /// A short last shard is written again when more frames are asked for, a full one is left alone; fewer ask for nothing.
     #[test]
     fn a_short_shard_is_not_complete_for_more_frames() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,6 +1,6 @@
 //! Editing by trajectory replay: cells outside the mask follow the source's stored states, copied and
-//! never blended, cells inside are denoised anew. What comes out is again a trajectory, so an adopted
-//! edit needs no inversion. Where a region is drawn anew (SDEdit, Meng et al. 2021, arXiv 2108.01073), the source is no
+//! never blended, cells inside are denoised again. What comes out is again a trajectory, so an adopted
+//! edit needs no inversion. Where a region is inpainted (SDEdit, Meng et al. 2021, arXiv 2108.01073), the source is no
 //! inverted trajectory but [`Trajectory::noised`]: cells outside show what they showed in training.
 
 use super::inversion::Trajectory;

@@ -8,7 +8,7 @@ use glam::DVec2;
 use scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
-use scene::relations::{Placed, STANDING_MPS};
+use scene::relations::{PlacedGraph, STANDING_MPS};
 use scene::road_map::RoadMap;
 use scene::{BoxId, Class, SceneBox};
 use world::draw::Draw;
@@ -155,7 +155,7 @@ fn statements(
     road: &RoadMap,
     draw: &mut Draw,
 ) -> Vec<Edge> {
-    let placed = Placed { graph, boxes, road };
+    let placed = PlacedGraph { graph, boxes, road };
     let surroundings: Vec<u32> = graph
         .nodes
         .iter()
@@ -212,7 +212,7 @@ fn statements(
 }
 
 /// The distance that the statement could name, m.
-fn measured(placed: &Placed<'_>, edge: &Edge) -> Option<f64> {
+fn measured(placed: &PlacedGraph<'_>, edge: &Edge) -> Option<f64> {
     let (from, (to, at)) = (placed.thing(edge.from)?.0, placed.thing(edge.to)?);
     let (axis, d) = (scene::relations::course(&to), from.center_m.truncate() - at);
     Some(match edge.relation {
@@ -239,7 +239,7 @@ mod tests {
             assert!(graph.nodes.len() <= 64);
             assert!(road.ego_lane.is_some(), "{name} {seed}");
             assert_eq!(graph, graph_of(&road, &boxes, seed).0);
-            let view = Placed {
+            let view = PlacedGraph {
                 graph: &graph,
                 boxes: &placed,
                 road: &road,

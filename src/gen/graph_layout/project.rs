@@ -8,7 +8,7 @@ use glam::DVec2;
 use serde::Serialize;
 
 use scene::graph::{Edge, ObjectState, RelationKind, SceneGraph};
-use scene::relations::{Placed, ego_box, overlap_m};
+use scene::relations::{PlacedGraph, ego_box, overlap_m};
 use scene::road_map::RoadMap;
 use scene::{BevLayer, Class, SceneBox};
 
@@ -160,8 +160,8 @@ fn about(graph: &SceneGraph) -> BTreeMap<u32, Vec<Edge>> {
 }
 
 impl Repair<'_> {
-    fn placed(&self) -> Placed<'_> {
-        Placed {
+    fn placed(&self) -> PlacedGraph<'_> {
+        PlacedGraph {
             graph: self.graph,
             boxes: &self.boxes,
             road: self.road,

@@ -208,7 +208,7 @@ fn placements_are_sound_repeatable_and_keep_what_is_locked() {
         assert!(overlap_m(a, &ego_box()) <= 0.0);
         assert!(boxes[i + 1..].iter().all(|b| overlap_m(a, b) <= 0.0));
     }
-    // The bus stays where it is put; the others are placed anew around it.
+    // The bus stays where it is put; the others are placed again around it.
     let bus = graph
         .nodes
         .iter_mut()

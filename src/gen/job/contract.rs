@@ -205,7 +205,7 @@ pub enum GenError {
     /// A solver refused.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// The pipeline panicked; it is built anew for the next job.
+    /// The pipeline panicked; it is built again for the next job.
     #[error("generation panicked: {0}")]
     Panicked(String),
     /// Anything else: weights, device, networks.

@@ -1,19 +1,19 @@
 //! What nobody asked for does not come: an edit plants nothing on the road nor where a box stood, and puts nothing where
 //! a data set's masks say that no sensor looked. Counted, so that reports show when it was needed.
 
-use super::redraw::RedrawMask;
+use super::inpaint::InpaintMask;
 use super::region::{COLUMNS_PER_CELL, Region};
 use super::request::{Request, stands};
 use scene::{BevLayer, Class, Frame, GridSpec, VoxelGrid, draft};
 
 /// Takes out of `generated`, in the region's columns, what stands above the ground and is in neither the source nor the
 /// request: on road and car parks, and where a box of the source stood. Where the source held something that stays,
-/// it comes back; a column that is left without anything at its foot gets the layout's ground. Cells of `redraw` are left
+/// it comes back; a column that is left without anything at its foot gets the layout's ground. Cells of `inpaint` are left
 /// alone: something new was asked for there. Returns how many voxels needed it.
 pub fn keep_clear(
     frame: &Frame,
     region: &Region,
-    redraw: &RedrawMask,
+    inpaint: &InpaintMask,
     request: &Request<'_>,
     generated: &mut VoxelGrid,
 ) -> usize {
@@ -22,7 +22,7 @@ pub fn keep_clear(
     let mut found = Vec::new();
     request.each_invented(generated, region, |x, y, z, _| {
         let bare = frame.layout.cell(x, y) & road != 0 || request.left_by_a_box(x * GridSpec::NY + y);
-        if bare && !redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        if bare && !inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
             found.push([x, y, z]);
         }
     });
@@ -52,11 +52,11 @@ fn is_object(label: u8) -> bool {
 
 /// Takes out of `generated`, in the region's columns, what lies where the source is free and the frame's masks say that
 /// nothing was observed: free means unknown there, and an edit beside it tells nothing new. Columns that the user edited and
-/// cells of `redraw` are left alone. Returns how many voxels needed it.
+/// Cells of `inpaint` are left alone. Returns how many voxels needed it.
 pub fn keep_unobserved(
     frame: &Frame,
     region: &Region,
-    redraw: &RedrawMask,
+    inpaint: &InpaintMask,
     request: &Request<'_>,
     generated: &mut VoxelGrid,
 ) -> usize {
@@ -66,7 +66,7 @@ pub fn keep_unobserved(
     let mut count = 0;
     for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
         let (word, (x, y)) = (unobserved.words()[c], (c / GridSpec::NY, c % GridSpec::NY));
-        if word == 0 || request.edited(c) || redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        if word == 0 || request.edited(c) || inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
             continue;
         }
         let before = *frame.source.occupancy.column(x, y);
@@ -82,13 +82,13 @@ pub fn keep_unobserved(
     count
 }
 
-/// What is known to be observed after an edit, as the decoder hears it (`Unobserved::observed`): nothing of columns that the
-/// user edited and of cells of `redraw`. `None` where the frame has no masks.
-pub fn observed_still(frame: &Frame, redraw: &RedrawMask, request: &Request<'_>) -> Option<Vec<u32>> {
+/// What is known to be observed after an edit, as the decoder gets it (`Unobserved::observed`): nothing of columns that the
+/// user edited and of cells of `inpaint`. `None` where the frame has no masks.
+pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &Request<'_>) -> Option<Vec<u32>> {
     let mut observed = frame.inferred.unobserved.as_ref()?.observed();
     for (c, told) in observed.iter_mut().enumerate() {
         let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-        if request.edited(c) || redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        if request.edited(c) || inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
             *told = 0;
         }
     }
@@ -125,7 +125,7 @@ mod tests {
         (0..4).for_each(|z| generated.set(hx, hy, z, Class::Manmade.id()));
         generated.set(x + 3, y, 2, Class::Car.id());
         let request = Request::of(&frame);
-        let none = RedrawMask::default();
+        let none = InpaintMask::default();
         let before = Invented::of_request(&request, &frame, &generated, &region);
         assert_eq!(
             before.total(),
@@ -150,7 +150,7 @@ mod tests {
         // Where something new was asked for, it may come; outside the region nothing is touched.
         let mut wanted = clean.clone();
         (0..9).for_each(|z| wanted.set(x, y, z, Class::Vegetation.id()));
-        let mut mask = RedrawMask::default();
+        let mut mask = InpaintMask::default();
         mask.set_columns(&[[x, y]], true);
         assert_eq!(keep_clear(&frame, &region, &mask, &request, &mut wanted), 0);
         assert_eq!(
@@ -177,7 +177,7 @@ mod tests {
         for (x, y) in [(x, y), (hx, hy)] {
             (0..5).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
         }
-        let none = RedrawMask::default();
+        let none = InpaintMask::default();
         let cleared = keep_clear(&frame, &region, &none, &Request::of(&frame), &mut generated);
         assert_eq!(cleared, 5);
         assert_eq!(generated.get(x, y, 0), Class::Terrain.id());
@@ -193,7 +193,7 @@ mod tests {
         let region = Region::of_edit(&frame, 2);
         let clean = draft::draft(&frame.layout, frame.boxes.values());
         let request = Request::of(&frame);
-        let none = RedrawMask::default();
+        let none = InpaintMask::default();
         let halo = (0..GridSpec::COLUMNS).filter(|c| region.columns[*c] && !request.edited(*c));
         let halo = halo.count();
         assert!(halo > 20);

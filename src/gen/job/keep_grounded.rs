@@ -23,7 +23,7 @@ pub struct Grounded {
     pub dropped: usize,
 }
 
-/// Corrects `generated` inside the region. What the source held (unless `all` is drawn anew), what boxes and paint account
+/// Corrects `generated` inside the region. What the source held (unless `all` is inpainted), what boxes and paint account
 /// for, and what may be held by something out of sight stays as it is.
 pub fn keep_grounded(
     frame: &Frame,
@@ -146,13 +146,13 @@ mod tests {
         assert_eq!((found.stems, found.dropped), (6, 9));
         assert_eq!(generated.get(121, 130, 9), Class::FREE);
         assert_eq!(generated.get(121, 140, 2), Class::FREE);
-        // It hung there before, and nobody drew it anew.
+        // It hung there before, and nobody inpainted it.
         assert_eq!(generated.get(150, 120, 8), Class::Vegetation.id());
         assert_eq!(request_voxels(&frame, &generated), boxed);
         // Sound things are left alone.
         let again = keep_grounded(&frame, &region, false, &request, &mut generated);
         assert_eq!(again, Grounded::default());
-        // Drawn anew, it goes too; a voxel is no crown.
+        // Inpainted, it goes too; a voxel is no crown.
         let all = keep_grounded(&frame, &Region::full(), true, &request, &mut generated);
         assert_eq!((all.stems, all.dropped), (0, 1));
         // A crown at the top of the grid hangs from nothing; a wall there may go on beyond.

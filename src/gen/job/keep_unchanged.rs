@@ -1,7 +1,7 @@
 //! An edit transports a difference: where the networks give a voxel the label that they also give it in the source, the source's
 //! own label stays. What the VAE cannot carry (holes of labels, thin things) is so lost only where something changed.
 
-use super::redraw::RedrawMask;
+use super::inpaint::InpaintMask;
 use super::region::{COLUMNS_PER_CELL, Region};
 use super::request::Request;
 use scene::raster::box_cells;
@@ -11,12 +11,12 @@ use scene::{Frame, GridSpec, VoxelGrid};
 const SCRAPS_M: f64 = 1.2;
 
 /// Gives `generated` the source's labels, in the region's columns, where it agrees with `decoded`: what the same decoder makes of
-/// the source. Columns that the user edited and cells of `redraw` are left alone, and so are voxels beside a box that went,
+/// the source. Columns that the user edited and cells of `inpaint` are left alone, and so are voxels beside a box that went,
 /// of its class and in no other box. Returns how many voxels got their label back.
 pub fn keep_unchanged(
     frame: &Frame,
     region: &Region,
-    redraw: &RedrawMask,
+    inpaint: &InpaintMask,
     request: &Request<'_>,
     decoded: &VoxelGrid,
     generated: &mut VoxelGrid,
@@ -32,7 +32,7 @@ pub fn keep_unchanged(
     let mut count = 0;
     for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
         let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-        if request.edited(c) || redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        if request.edited(c) || inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
             continue;
         }
         let (source, before) = (frame.source.occupancy.column(x, y), decoded.column(x, y));
@@ -76,7 +76,7 @@ mod tests {
         let region = Region::of_edit(&frame, 2);
         let request = Request::of(&frame);
         let mut found = generated.clone();
-        let none = RedrawMask::default();
+        let none = InpaintMask::default();
         assert_eq!(
             keep_unchanged(&frame, &region, &none, &request, &decoded, &mut found),
             2
@@ -86,7 +86,7 @@ mod tests {
         expected.set(92, 90, 0, Class::DriveableSurface.id());
         assert_eq!(found, expected);
         // Where something new is asked for, nothing of the source comes back.
-        let mut inpaint = RedrawMask::default();
+        let mut inpaint = InpaintMask::default();
         inpaint.set_columns(&[[90, 90], [91, 90]], true);
         let mut found = generated.clone();
         assert_eq!(

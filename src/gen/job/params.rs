@@ -4,7 +4,7 @@ use std::hash::{Hash, Hasher};
 
 use serde::{Deserialize, Serialize};
 
-use super::redraw::RedrawMask;
+use super::inpaint::InpaintMask;
 use crate::contract::GenError;
 use diffusion::solver::{Guidance, SolverKind};
 use nn::Precision;
@@ -92,13 +92,14 @@ pub struct GenParams {
     pub region: RegionMode,
     /// Cells that are regenerated in automatic mode although nothing was edited there; something new comes only
     /// with a `strength` above 0.
-    pub redraw: RedrawMask,
+    #[serde(rename = "redraw", alias = "inpaint")]
+    pub inpaint: InpaintMask,
     /// 0: the region starts from the noise that its source comes from (inversion). Above: it is inpainted from the source
     /// with fresh noise, at this share of the steps (SDEdit); 1 keeps nothing of it. Then all tokens are computed.
     pub strength: f64,
     /// Fixed-point updates per inversion step; 0 = plain DDIM inversion.
     pub inversion_iterations: u32,
-    /// Columns around an edit that are redrawn with it.
+    /// Columns around an edit that are inpainted with it.
     pub halo_columns: u32,
     /// Computes only the tokens around an edit; the others show what they held in the source.
     pub local: bool,
@@ -108,7 +109,7 @@ pub struct GenParams {
     pub precision: Precision,
     /// The middle blocks of the network are computed at every so many steps and reused in between; 1 = at every one.
     pub reuse_steps: u32,
-    /// Steps of the fine stage, which redraws in the fine latent what the coarse one decodes to; 0 = none.
+    /// Steps of the fine stage, which inpaints in the fine latent what the coarse one decodes to; 0 = none.
     pub fine_steps: u32,
     /// How much work the result is worth.
     pub quality: Quality,
@@ -128,7 +129,7 @@ impl Default for GenParams {
             guidance_rescale: 0.0,
             seed: 0,
             region: RegionMode::Auto,
-            redraw: RedrawMask::default(),
+            inpaint: InpaintMask::default(),
             strength: 0.0,
             inversion_iterations: 0,
             halo_columns: 2,
@@ -146,7 +147,7 @@ impl Default for GenParams {
 
 /// Counts, numbers, named numbers, choices.
 type Bits = ([u32; 6], [u64; 4], [Option<u32>; 4], Choices);
-type Choices = (SolverKind, RegionMode, RedrawMask, Quality, Precision, [bool; 2]);
+type Choices = (SolverKind, RegionMode, InpaintMask, Quality, Precision, [bool; 2]);
 
 impl GenParams {
     /// For all of a scene from its layout and boxes alone.
@@ -186,7 +187,7 @@ impl GenParams {
             (
                 self.solver,
                 self.region,
-                self.redraw,
+                self.inpaint,
                 self.quality,
                 self.precision,
                 [self.keep_objects, self.local],
@@ -265,7 +266,7 @@ mod tests {
             |p| p.fine_steps = 0,
             |p| p.precision = Precision::Int8,
             |p| p.reuse_steps = 2,
-            |p| p.redraw.set(3, 4, true),
+            |p| p.inpaint.set(3, 4, true),
             |p| p.steps = 11,
             |p| p.guidance = 1.0 + f64::EPSILON,
             |p| p.guidance_rescale = 0.7,

@@ -1,4 +1,4 @@
-//! The second, local stage: what the coarse latent decodes to is redrawn in the fine one, where a voxel has room, by diffusion in a few
+//! The second, local stage: what the coarse latent decodes to is inpainted in the fine one, where a voxel has room, by diffusion in a few
 //! steps. Noise stays with its cell, so the same surroundings are refined alike in a source and in an edit of it.
 
 use crate::contract::GenError;
@@ -6,7 +6,7 @@ use crate::region::CELLS_PER_SIDE;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::pieces::pieces;
 use nets::refiner::{Refiner, Rough};
-use nets::{CHANNELS, Heard, OccModels, Window};
+use nets::{CHANNELS, DecoderInput, OccModels, Window};
 use numeric::philox::{Stream, normal};
 use scene::VoxelGrid;
 
@@ -14,19 +14,19 @@ use scene::VoxelGrid;
 /// without the rest.
 const AROUND: usize = 2;
 
-/// What a coarse latent (50x50x8) decodes to in some cells, by a decoder that hears `heard`; refined in `steps` steps, if in any and by
+/// What a coarse latent (50x50x8) decodes to in some cells, by a decoder that gets `input`; refined in `steps` steps, if in any and by
 /// any network. The other cells stay free.
 pub fn decode_refined(
     models: &OccModels,
     latent: &[f32],
     cells: &[bool],
-    heard: Heard<'_>,
+    input: DecoderInput<'_>,
     (steps, seed): (u32, u64),
 ) -> Result<VoxelGrid, GenError> {
     let rough = |cells: &[bool]| {
         models
             .vae
-            .decode_told(latent, cells, heard)
+            .decode_with(latent, cells, input)
             .map_err(GenError::failed)
     };
     let Some(net) = models.refiner.as_deref().filter(|_| steps > 0) else {
@@ -46,7 +46,7 @@ pub fn decode_refined(
             found.map(|(latent, _)| latent).map_err(GenError::failed)
         };
         let rough = encoded(&rough(&seen)?)?;
-        let told = match heard.draft {
+        let told = match input.draft {
             Some(draft) => encoded(draft)?,
             None => vec![0.0; rough.len()],
         };
@@ -118,7 +118,8 @@ mod tests {
             cells[cell] = true;
         }
         let refined = |steps| {
-            decode_refined(&models, &latent, &cells, Heard::default(), (steps, 7)).expect("a finite latent")
+            decode_refined(&models, &latent, &cells, DecoderInput::default(), (steps, 7))
+                .expect("a finite latent")
         };
         let found = refined(2);
         assert_eq!(found, refined(2));
@@ -136,7 +137,7 @@ mod tests {
             &models,
             &latent,
             &vec![false; SIDE * SIDE],
-            Heard::default(),
+            DecoderInput::default(),
             (2, 7),
         );
         assert_eq!(none.expect("nothing to do").iter_set().count(), 0);
@@ -149,7 +150,8 @@ mod tests {
         let latent: Vec<f32> = (0..LATENT).map(|i| (i as f32 * 0.7).sin()).collect();
         let refined = |inside: &dyn Fn(usize, usize) -> bool| {
             let cells: Vec<bool> = (0..SIDE * SIDE).map(|c| inside(c / SIDE, c % SIDE)).collect();
-            decode_refined(&models, &latent, &cells, Heard::default(), (2, 7)).expect("a finite latent")
+            decode_refined(&models, &latent, &cells, DecoderInput::default(), (2, 7))
+                .expect("a finite latent")
         };
         let rectangle = |x: usize, y: usize| (10..20).contains(&x) && (10..20).contains(&y);
         let bend = |x: usize, y: usize| rectangle(x, y) && (x < 12 || y < 12);
@@ -166,7 +168,7 @@ mod tests {
         let models = OccModels::bundled().expect("weights");
         let all = vec![true; SIDE * SIDE];
         let latent = vec![f32::NAN; LATENT];
-        let error = decode_refined(&models, &latent, &all, Heard::default(), (2, 7)).expect_err("NaN");
+        let error = decode_refined(&models, &latent, &all, DecoderInput::default(), (2, 7)).expect_err("NaN");
         assert_eq!(error.to_string().lines().count(), 1, "{error}");
     }
 }

@@ -1,4 +1,4 @@
-//! Which part of a scene an edit touches: columns to be redrawn, latent cells to be regenerated.
+//! Which part of a scene an edit touches: columns to be inpainted, latent cells to be regenerated.
 
 use nets::pieces::pieces;
 use scene::raster::box_cells;
@@ -13,7 +13,7 @@ pub const COLUMNS_PER_CELL: usize = GridSpec::NX / CELLS_PER_SIDE;
 /// How far the voxels of an object may stand out of its box: one voxel.
 const OVERHANG_M: f64 = GridSpec::VOXEL_M;
 
-/// Columns of the grid to be redrawn, and latent cells to be regenerated for them.
+/// Columns of the grid to be inpainted, and latent cells to be regenerated for them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Region {
     /// `[x][y]`, 40,000: columns whose labels come from the generated grid.
@@ -298,7 +298,7 @@ pub(super) mod tests {
     fn nothing_changed_is_an_empty_region() {
         let mut frame = frame_with(&[car(1, 5.0, 2.0, 0.1)]);
         assert!(Region::of_edit(&frame, 2).is_empty());
-        // Velocity and paint are not for generation to redraw.
+        // Velocity and paint are not for generation to touch.
         frame.boxes.get_mut(&BoxId(1)).expect("there").velocity_mps.x = 3.0;
         frame.painted.set(3, 3, 3, 4);
         let region = Region::of_edit(&frame, 2);
@@ -401,7 +401,7 @@ pub(super) mod tests {
         for kept in [&b, &c] {
             assert!(cells_of(kept, 0.0).iter().all(|i| !region.columns[*i]));
         }
-        // The removed car's own ground is redrawn down to the last column, and no voxel of the others changes.
+        // The removed car's own ground is inpainted down to the last column, and no voxel of the others changes.
         assert!(cells_of(&a, 0.0).iter().all(|i| region.columns[*i]));
         let bare = frame_with(&[]).occupancy;
         let result = composite(&frame.source.occupancy, &bare, &region, &frame.painted);

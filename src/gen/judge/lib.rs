@@ -6,7 +6,7 @@ pub mod machine;
 pub mod markdown;
 pub mod options;
 pub mod origin;
-pub mod stops;
+pub mod presets;
 pub mod suite;
 pub mod suites;
 pub mod table;

@@ -13,7 +13,7 @@ pub struct Options {
     pub data: Option<PathBuf>,
     /// Vehicles of a scene that are removed, moved and changed, one by one, at most (editing).
     pub vehicles: usize,
-    /// Stops of the quality slider to judge; all but the reference if none is named (editing).
+    /// Presets of the quality slider to judge; all but the reference if none is named (editing).
     pub presets: Vec<String>,
     /// Worlds whose objects say how many voxels a class has, at least (editing).
     pub band_worlds: usize,
@@ -31,7 +31,7 @@ pub struct Options {
     pub reader: Who,
     /// Prompts on which the placers are compared, with and without memory (layout); 0 leaves that out.
     pub placer_prompts: usize,
-    /// No ablations of layout and boxes, no redrawn squares (generation).
+    /// No ablations of layout and boxes, no inpainted squares (generation).
     pub rows_only: bool,
     /// Parameters of whole scenes.
     pub scene_params: GenParams,

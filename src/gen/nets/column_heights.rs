@@ -1,4 +1,4 @@
-//! What stands in each column of a draft and how high its ground is: what the transformer hears of the background.
+//! What stands in each column of a draft and how high its ground is: what the transformer gets to know of the background.
 //! Twin of `columns_of` in `training/pack.py`.
 
 use scene::{Class, GridSpec, VoxelGrid};

@@ -28,7 +28,7 @@ pub(crate) use error::{check_finite, check_length};
 pub use latent::{CELLS, CHANNELS, LATENT, SIDE};
 pub use nn::map::Window;
 pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
-pub use occ_vae::{Heard, OccVae, VaeConfig};
+pub use occ_vae::{DecoderInput, OccVae, VaeConfig};
 pub use refiner::Refiner;
 
 use nn::weights::{self, WeightFile, WeightsError};

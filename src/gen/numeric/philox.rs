@@ -9,7 +9,7 @@
 pub enum Stream {
     /// Noise that a scene starts from when it is generated from nothing.
     Start = 0,
-    /// Noise that a region is drawn anew from, and that its surroundings show meanwhile.
+    /// Noise that a region is inpainted from, and that its surroundings show meanwhile.
     Region = 1,
     /// Where in the encoder's normal distribution a latent is drawn.
     Encoder = 2,

@@ -5,8 +5,8 @@
 use glam::{DVec2, DVec3};
 
 use super::border::{Border, GRID_M};
-use super::exits::{Exit, exits};
 use super::plots;
+use super::road_exits::{Exit, exits};
 use scene::solid::Solid;
 use scene::{Class, Polyline, VoxelGrid};
 use world::World;

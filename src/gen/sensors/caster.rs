@@ -4,10 +4,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::around::{Around, Height};
 use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Met, Packet};
+use super::surroundings::{Around, Height};
 use scene::grid::{BRICK, BRICKS};
 use scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
 

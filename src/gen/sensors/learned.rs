@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::around::{Around, Height};
 use super::lidar::{EgoBox, Rays};
+use super::surroundings::{Around, Height};
 use super::texture::textured;
 use nets::ModelError;
 use nets::lidar::field::{Field, Ray, Sampling};

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::around::{Around, Height};
 use super::learned::{self, Drops};
 use super::lidar::{EgoBox, Rays};
+use super::surroundings::{Around, Height};
 use nets::ModelError;
 use nets::lidar::field::{Field, Ray, Sampling};
 use nets::lidar::update::{Changed, Region};
@@ -194,7 +194,7 @@ fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::around::is_own;
+    use super::super::surroundings::is_own;
     use super::*;
     use scene::Class;
     use world::World;

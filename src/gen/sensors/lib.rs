@@ -4,14 +4,12 @@
 //! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
 
 pub mod appearance;
-pub mod around;
 pub mod backdrop;
 pub mod border;
 pub mod cameras;
 pub mod caster;
 pub mod cloud;
 pub mod color;
-pub mod exits;
 pub mod learned;
 pub mod learned_caster;
 pub mod lidar;
@@ -24,7 +22,9 @@ pub mod perspective;
 mod plots;
 pub mod project;
 pub mod raycast;
+pub mod road_exits;
 pub mod splat;
+pub mod surroundings;
 mod texture;
 mod tile;
 pub mod truth;

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::backdrop::{REACH_M, Things};
 use super::border::{Border, GRID_M};
-use super::exits::Exit;
+use super::road_exits::Exit;
 use scene::solid::Solid;
 use scene::{BoxId, Class, SceneBox};
 use world::draw::{Draw, hash};

@@ -8,7 +8,7 @@ pub use scene::splats::{RawMaps, SplatOptions};
 
 use super::order::depth_order;
 use super::project::{Conic, View};
-use super::tile::{Limits, Placed, Splat, TILE, Tile};
+use super::tile::{Limits, Splat, SplatPixels, TILE, Tile};
 use scene::sensor_data::RENDER_IDS;
 use scene::splats::MIN_DEPTH_COVERAGE;
 use scene::{Camera, CameraMaps, SensorRig};
@@ -116,10 +116,10 @@ fn project_all(
     width: u32,
     height: u32,
     options: &SplatOptions,
-) -> Vec<Placed> {
+) -> Vec<SplatPixels> {
     let view = View::new(camera, width, height, options.jacobian_clamp);
     let size = [width, height];
-    let one = |g: &Gaussian| -> Option<Placed> {
+    let one = |g: &Gaussian| -> Option<SplatPixels> {
         let position = glam::Vec3::from(g.position_m).as_dvec3();
         let footprint = view.project(position, f64::from(g.std_m), options.near_m, options.far_m)?;
         let conic = Conic::new(footprint.covariance_px2, options.low_pass_px2)?;
@@ -158,7 +158,7 @@ fn project_all(
         };
         Some((splat, bounds))
     };
-    let splats: Vec<Placed> = cloud.gaussians().par_iter().filter_map(one).collect();
+    let splats: Vec<SplatPixels> = cloud.gaussians().par_iter().filter_map(one).collect();
     let depths: Vec<f32> = splats.iter().map(|(s, _)| s.depth_m).collect();
     depth_order(&depths)
         .into_iter()
@@ -174,7 +174,7 @@ struct Bins {
 }
 
 impl Bins {
-    fn new(splats: &[Placed], width: usize, height: usize) -> Bins {
+    fn new(splats: &[SplatPixels], width: usize, height: usize) -> Bins {
         let (tiles_x, tiles_y) = (width.div_ceil(TILE), height.div_ceil(TILE));
         let tiles = |&[x, y]: &[[u16; 2]; 2]| {
             let range = |[first, end]: [u16; 2]| usize::from(first) / TILE..usize::from(end).div_ceil(TILE);

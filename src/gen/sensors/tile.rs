@@ -32,8 +32,8 @@ pub(super) struct Limits {
     pub t_stop: f32,
 }
 
-/// A splat and the pixels it may touch: first and one past the last, x then y.
-pub(super) type Placed = (Splat, [[u16; 2]; 2]);
+/// A splat and the pixels that it may touch: first and one past the last, x then y.
+pub(super) type SplatPixels = (Splat, [[u16; 2]; 2]);
 
 /// What is summed per pixel, `[row][column]`.
 pub(super) struct Tile {
@@ -89,7 +89,7 @@ impl Tile {
     /// Runs with the widest vectors this computer has; each lane computes the same on all of them.
     pub fn draw(
         &mut self,
-        splats: &[Placed],
+        splats: &[SplatPixels],
         list: &[u32],
         origin_px: [usize; 2],
         size: [usize; 2],
@@ -97,7 +97,7 @@ impl Tile {
     ) -> [Resolved; TILE] {
         struct Draw<'a>(
             &'a mut Tile,
-            &'a [Placed],
+            &'a [SplatPixels],
             &'a [u32],
             [usize; 2],
             [usize; 2],
@@ -134,7 +134,7 @@ impl Tile {
     #[inline(always)]
     fn blend(
         &mut self,
-        splats: &[Placed],
+        splats: &[SplatPixels],
         list: &[u32],
         origin_px: [usize; 2],
         size: [usize; 2],

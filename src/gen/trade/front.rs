@@ -2,16 +2,16 @@
 
 use super::interval::Interval;
 
-/// Where a setting lies.
+/// A setting as a point in time and error.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
+pub struct TradePoint {
     /// Wall time, s.
     pub wall_s: Interval,
     /// Error, in whatever unit all of them have.
     pub error: Interval,
 }
 
-impl Placed {
+impl TradePoint {
     /// True if this one is no worse in either, and better in one by more than the intervals.
     fn beats(&self, other: &Self) -> bool {
         let faster = self.wall_s.below(&other.wall_s);
@@ -25,7 +25,7 @@ impl Placed {
 }
 
 /// For each setting: true if none beats it. One with an infinite error is never on the front.
-pub fn front(points: &[Placed]) -> Vec<bool> {
+pub fn front(points: &[TradePoint]) -> Vec<bool> {
     points
         .iter()
         .map(|p| p.error.median.is_finite() && !points.iter().any(|q| q.beats(p)))
@@ -34,7 +34,7 @@ pub fn front(points: &[Placed]) -> Vec<bool> {
 
 /// Area between the front and a corner that every useful setting is better than, in log10 of time times error: larger
 /// is better. Errors are taken as they are, times by their logarithm, as the slider shows them.
-pub fn hypervolume(points: &[Placed], worst_s: f64, worst_error: f64) -> f64 {
+pub fn hypervolume(points: &[TradePoint], worst_s: f64, worst_error: f64) -> f64 {
     let mut of: Vec<(f64, f64)> = points
         .iter()
         .map(|p| (p.wall_s.median, p.error.median))
@@ -53,18 +53,18 @@ pub fn hypervolume(points: &[Placed], worst_s: f64, worst_error: f64) -> f64 {
 
 /// The setting that lies nearest to the best time and the best error at once, both as shares of what the front spans
 /// (times by logarithm): the default of a slider. `None` for no points.
-pub fn knee(points: &[Placed]) -> Option<usize> {
-    let log_s = |p: &Placed| p.wall_s.median.max(1e-9).ln();
-    let span = |of: &dyn Fn(&Placed) -> f64| {
+pub fn knee(points: &[TradePoint]) -> Option<usize> {
+    let log_s = |p: &TradePoint| p.wall_s.median.max(1e-9).ln();
+    let span = |of: &dyn Fn(&TradePoint) -> f64| {
         let values = points.iter().map(of);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
             (l.min(v), h.max(v))
         });
         (low, (high - low).max(1e-12))
     };
-    let error = |p: &Placed| p.error.median;
+    let error = |p: &TradePoint| p.error.median;
     let ((s0, s), (e0, e)) = (span(&log_s), span(&error));
-    let far = |p: &Placed| ((log_s(p) - s0) / s).hypot((error(p) - e0) / e);
+    let far = |p: &TradePoint| ((log_s(p) - s0) / s).hypot((error(p) - e0) / e);
     (0..points.len()).min_by(|a, b| far(&points[*a]).total_cmp(&far(&points[*b])))
 }
 
@@ -72,14 +72,14 @@ pub fn knee(points: &[Placed]) -> Option<usize> {
 mod tests {
     use super::*;
 
-    fn at(s: f64, e: f64, half: f64) -> Placed {
+    fn at(s: f64, e: f64, half: f64) -> TradePoint {
         let interval = |v: f64| Interval {
             median: v,
             low: v * (1.0 - half),
             high: v * (1.0 + half),
             n: 9,
         };
-        Placed {
+        TradePoint {
             wall_s: interval(s),
             error: interval(e),
         }

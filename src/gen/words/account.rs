@@ -110,11 +110,11 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
             (!there && !small && !NOT.contains(&before) && t.text != "hundred").then_some(Why::NotCarriedOut)
         } else if !t.senses.is_empty() {
             let there = t.senses.iter().any(|s| sense_is_said(s.kind, s.symbol, &said));
-            let looks = t
+            let of_the_thing = t
                 .senses
                 .iter()
                 .all(|s| !matches!(s.kind, "place" | "ego" | "road" | "group" | "env" | "density"));
-            (!there && looks && !NOT.contains(&before)).then_some(Why::NotCarriedOut)
+            (!there && of_the_thing && !NOT.contains(&before)).then_some(Why::NotCarriedOut)
         } else if !side_is_said(t, before, &said) {
             Some(Why::NotCarriedOut)
         } else if let Some(n) = grammar::cannot(&tokens[i..]) {

@@ -3,8 +3,8 @@
 use super::account::{Missing, Why};
 use super::nouns::Noun;
 use super::reading::{
-    Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading, Relation,
-    Thing, Turn, Way, What,
+    Amount, Anchor, Destination, Feature, LaneSide, PaintWish, Place, Quantity, Reading, Relation, Thing,
+    Traits, Turn, Way, What,
 };
 use super::remark::Remark;
 use super::resolve::plural;
@@ -105,7 +105,7 @@ pub fn sentence(what: &What) -> String {
         What::Replace { who, things } => format!("replaces {} with {}", list(who), list(things)),
         What::Move { who, to } => format!("moves {} {}", list(who), destination(to)),
         What::Turn { who, turn } => format!("turns {} {}", list(who), turned(turn)),
-        What::Set { who, look } => format!("makes {} {}", list(who), looks(look)),
+        What::Set { who, traits } => format!("makes {} {}", list(who), traits_in_words(traits)),
         What::Count { who, amount } => {
             let who: Vec<String> = who.iter().map(many).collect();
             match amount {
@@ -373,20 +373,22 @@ fn turned(turn: &Turn) -> String {
     }
 }
 
-fn looks(look: &Look) -> String {
+fn traits_in_words(traits: &Traits) -> String {
     let mut out: Vec<String> = Vec::new();
     out.extend(
-        look.size
+        traits
+            .size
             .map(|s| if s == SizeHint::Large { "larger" } else { "smaller" }.to_string()),
     );
-    out.extend(look.state.map(|s| match s {
+    out.extend(traits.state.map(|s| match s {
         ObjectState::Moving => "move".to_string(),
         ObjectState::Parked => "park".into(),
         ObjectState::Waiting => "stand still".into(),
     }));
-    out.extend(look.paint.map(|p| p.name().to_string()));
+    out.extend(traits.paint.map(|p| p.name().to_string()));
     out.extend(
-        look.paint_of
+        traits
+            .paint_of
             .as_ref()
             .map(|t| format!("the colour of {}", thing(t))),
     );

@@ -5,8 +5,8 @@ use super::notation::{self, NotationError};
 use super::nouns::Noun;
 use super::plan::{Nowhere, Plan};
 use super::reading::{
-    Amount, Anchor as Said, Destination, Feature, LaneSide, Look, PaintWish, Place, Quantity, Reading,
-    Relation, Thing, Turn, What,
+    Amount, Anchor as Said, Destination, Feature, LaneSide, PaintWish, Place, Quantity, Reading, Relation,
+    Thing, Traits, Turn, What,
 };
 use super::remark::Remark;
 use super::resolve::words_of;
@@ -146,7 +146,7 @@ impl Describing {
                 self.alone = true;
                 self.add(&who.iter().map(as_new).collect::<Vec<_>>());
             }
-            What::Set { who, look } => who.iter().for_each(|t| self.set(t, look)),
+            What::Set { who, traits } => who.iter().for_each(|t| self.set(t, traits)),
             What::Count { who, amount } => who.iter().for_each(|t| self.count(t, *amount)),
             What::Move {
                 who,
@@ -184,16 +184,16 @@ impl Describing {
         them
     }
 
-    fn set(&mut self, t: &Thing, look: &Look) {
-        let mut paint = look.paint;
-        if let Some(of) = &look.paint_of {
+    fn set(&mut self, t: &Thing, traits: &Traits) {
+        let mut paint = traits.paint;
+        if let Some(of) = &traits.paint_of {
             let model = self.those(of).first().copied();
             paint = model.and_then(|k| self.plan.specs[k].label.paint);
         }
         for k in self.those(t) {
             let s = &mut self.plan.specs[k];
-            s.state = look.state.or(s.state);
-            s.size = look.size.or(s.size);
+            s.state = traits.state.or(s.state);
+            s.size = traits.size.or(s.size);
             s.label.paint = paint.or(s.label.paint);
         }
     }

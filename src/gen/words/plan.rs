@@ -270,7 +270,8 @@ impl Plan {
         }
         let fits = |i: &usize| {
             let n = &self.named[*i];
-            let look = (t.state.is_none() || t.state == n.state) && (t.size.is_none() || t.size == n.size);
+            let same_traits =
+                (t.state.is_none() || t.state == n.state) && (t.size.is_none() || t.size == n.size);
             let noun = match t.noun {
                 Noun::It | Noun::One | Noun::Thing => true,
                 Noun::Vehicle => self.specs[*i].class.is_vehicle(),
@@ -278,7 +279,7 @@ impl Plan {
             };
             let paint = t.paint.is_none() || t.paint == n.paint;
             let places = t.places.is_empty() || n.places.iter().any(|p| t.places.contains(p));
-            noun && paint && look && places && self.held[*i].is_none() && !t.other
+            noun && paint && same_traits && places && self.held[*i].is_none() && !t.other
         };
         (0..self.specs.len()).rev().filter(|i| *i != of).find(fits)
     }

@@ -120,12 +120,13 @@ pub enum What {
         /// How.
         turn: Turn,
     },
-    /// These look or do otherwise.
+    /// These get other traits.
     Set {
         /// Which.
         who: Vec<Thing>,
         /// What changes.
-        look: Look,
+        #[serde(rename = "look")]
+        traits: Traits,
     },
     /// So many of these there shall be.
     Count {
@@ -419,10 +420,10 @@ pub enum Turn {
     To(Vec<Place>),
 }
 
-/// What something looks like or does from now on.
+/// What something is like, and what it does, from now on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
-pub struct Look {
+pub struct Traits {
     /// Size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<SizeHint>,

@@ -1,13 +1,13 @@
-//! What the shader of camera pictures reads besides the words of a look, field by field as in `shaders/appearance.wgsl`,
+//! What the shader of camera pictures reads besides the words of an appearance, field by field as in `shaders/appearance.wgsl`,
 //! and the constants that stand in front of it.
 
 use std::fmt::Write as _;
 use std::sync::OnceLock;
 
-use scene::look::{
-    BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HEAD_NEAR_M2, HIGHEST_M, KERB_EDGE_M, KERB_M,
-    KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, LookData, MIRROR_M, NX, NY, NZ,
-    PART_WORDS, SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
+use scene::appearance::{
+    AppearanceData, BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HEAD_NEAR_M2, HIGHEST_M,
+    KERB_EDGE_M, KERB_M, KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, MIRROR_M, NX, NY,
+    NZ, PART_WORDS, SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
 };
 use scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
 
@@ -30,23 +30,23 @@ pub const APPEARANCE_UNIFORM_BYTES: usize = size_of::<GpuView>();
 
 impl GpuView {
     /// `None` for a camera without a place or direction: it sees nothing.
-    pub fn new(look: &LookData, camera: &Camera, [width, height]: [u32; 2]) -> Option<GpuView> {
+    pub fn new(appearance: &AppearanceData, camera: &Camera, [width, height]: [u32; 2]) -> Option<GpuView> {
         let camera = camera.resized(width.max(1), height.max(1));
         let pose = camera.ego_from_camera();
         let rotation = glam::DMat3::from_quat(pose.rotation);
         let column = |i: usize| rotation.col(i).as_vec3().extend(0.0).to_array();
         let pixel = (1.0 / camera.focal_px[0].max(1e-3)) as f32;
         let [[fx, fy], [cx, cy]] = [camera.focal_px, camera.center_px];
-        let [x, y, z] = look.shift_m;
+        let [x, y, z] = appearance.shift_m;
         let view = GpuView {
-            at: look.at,
-            air: look.air,
-            turn: look.turn,
+            at: appearance.at,
+            air: appearance.air,
+            turn: appearance.turn,
             shift: [x, y, z, 0.0],
             columns: [column(0), column(1), column(2)],
             place: pose.translation_m.as_vec3().extend(pixel).to_array(),
             lens: [fx, fy, cx, cy].map(|v| v as f32),
-            size: [width, height, look.seed, 0],
+            size: [width, height, appearance.seed, 0],
         };
         let numbers = [view.columns.as_flattened(), &view.place, &view.lens].concat();
         (numbers.iter().all(|v| v.is_finite()) && fx != 0.0 && fy != 0.0).then_some(view)

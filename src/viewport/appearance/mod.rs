@@ -11,7 +11,7 @@ use super::splats::buffers::Growing;
 use super::splats::pipelines::checked;
 use super::splats::read::mapped;
 use scene::Camera;
-use scene::look::LookData;
+use scene::appearance::AppearanceData;
 
 /// Rows that are drawn in one piece: a card that also draws the screen is not held up for long.
 const BAND: u32 = 64;
@@ -23,11 +23,11 @@ const PIXEL_BYTES: u64 = 16;
 /// Why the graphics card draws no pictures; the caller draws them on the processor then. One line.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("the graphics device draws no camera pictures: {0}")]
-pub struct LookError(String);
+pub struct AppearanceError(String);
 
 /// Draws pictures' light on a graphics device. May be used on any one thread; its calls wait for the device.
 #[derive(Debug)]
-pub struct LookRenderer {
+pub struct AppearanceRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     middle: wgpu::ComputePipeline,
@@ -37,12 +37,12 @@ pub struct LookRenderer {
     samples: Growing,
     light: Growing,
     staging: Growing,
-    look: Option<LookData>, // without its words
+    appearance: Option<AppearanceData>, // without its words
 }
 
-impl LookRenderer {
+impl AppearanceRenderer {
     /// Errors if the device is too small or refuses the shader.
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<LookRenderer, LookError> {
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<AppearanceRenderer, AppearanceError> {
         use wgpu::BufferUsages as U;
         let build = || {
             let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -60,8 +60,8 @@ impl LookRenderer {
                 })
             })
         };
-        let [middle, edges] = checked(device, build).map_err(|e| LookError(e.to_string()))?;
-        Ok(LookRenderer {
+        let [middle, edges] = checked(device, build).map_err(|e| AppearanceError(e.to_string()))?;
+        Ok(AppearanceRenderer {
             middle,
             edges,
             view: Growing::new("appearance view", U::UNIFORM | U::COPY_DST),
@@ -69,35 +69,35 @@ impl LookRenderer {
             samples: Growing::new("appearance samples", U::STORAGE),
             light: Growing::new("appearance light", U::STORAGE | U::COPY_SRC),
             staging: Growing::new("appearance staging", U::COPY_DST | U::MAP_READ),
-            look: None,
+            appearance: None,
             device: device.clone(),
             queue: queue.clone(),
         })
     }
 
     /// Uploads what is drawn from now on. Errors if it does not fit the device.
-    pub fn set_look(&mut self, look: &LookData) -> Result<(), LookError> {
-        self.look = None; // until it is there
-        let bytes: &[u8] = bytemuck::cast_slice(&look.words);
+    pub fn set_appearance(&mut self, appearance: &AppearanceData) -> Result<(), AppearanceError> {
+        self.appearance = None; // until it is there
+        let bytes: &[u8] = bytemuck::cast_slice(&appearance.words);
         self.fits(bytes.len() as u64)?;
         checked(&self.device, || {
             let buffer = self.words.at_least(&self.device, bytes.len() as u64);
             self.queue.write_buffer(buffer, 0, bytes);
         })
-        .map_err(|e| LookError(e.to_string()))?;
-        self.look = Some(LookData {
+        .map_err(|e| AppearanceError(e.to_string()))?;
+        self.appearance = Some(AppearanceData {
             words: Vec::new(),
-            ..look.clone()
+            ..appearance.clone()
         });
         Ok(())
     }
 
-    fn fits(&self, bytes: u64) -> Result<(), LookError> {
+    fn fits(&self, bytes: u64) -> Result<(), AppearanceError> {
         let limits = self.device.limits();
         let binding: u64 = limits.max_storage_buffer_binding_size;
         let most = binding.min(limits.max_buffer_size);
         if bytes > most {
-            return Err(LookError(format!(
+            return Err(AppearanceError(format!(
                 "{bytes} bytes are needed at once, {most} can be had"
             )));
         }
@@ -105,24 +105,24 @@ impl LookRenderer {
     }
 
     /// Linear light of a camera's `width * height` pixels, row-major; with `edges`, four samples where a pixel differs
-    /// from its neighbours. Errors if no look was set, or the device fails.
+    /// from its neighbours. Errors if no appearance was set, or the device fails.
     pub fn light(
         &mut self,
         camera: &Camera,
         [width, height]: [u32; 2],
         edges: bool,
-    ) -> Result<Vec<[f32; 3]>, LookError> {
-        let Some(look) = &self.look else {
-            return Err(LookError("no look was set".into()));
+    ) -> Result<Vec<[f32; 3]>, AppearanceError> {
+        let Some(appearance) = &self.appearance else {
+            return Err(AppearanceError("no appearance was set".into()));
         };
         let pixels = u64::from(width) * u64::from(height);
-        let Some(view) = GpuView::new(look, camera, [width, height]).filter(|_| pixels > 0) else {
+        let Some(view) = GpuView::new(appearance, camera, [width, height]).filter(|_| pixels > 0) else {
             return Ok(vec![[0.0; 3]; pixels as usize]);
         };
         let bytes = pixels * PIXEL_BYTES;
         self.fits(bytes)?;
         let out = self.draw(&view, [width, height], bytes, edges);
-        out.map_err(|e| LookError(e.to_string()))
+        out.map_err(|e| AppearanceError(e.to_string()))
     }
 
     fn draw(

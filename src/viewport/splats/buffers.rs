@@ -2,7 +2,7 @@
 
 use super::pipelines::{DIGIT_BITS, GROUP, SORT_BLOCK};
 
-/// A buffer that is made anew only when it is too small.
+/// A buffer that is replaced only when it is too small.
 #[derive(Debug)]
 pub(crate) struct Growing {
     label: &'static str,

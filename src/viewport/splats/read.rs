@@ -4,12 +4,12 @@ use super::SplatError;
 use crate::error::one_line;
 use scene::splats::{MIN_DEPTH_COVERAGE, RawMaps};
 
-/// Waits for the device and shows the first `bytes` of a buffer to `look`.
+/// Waits for the device and shows the first `bytes` of a buffer to `reader`.
 pub(crate) fn mapped<T>(
     device: &wgpu::Device,
     buffer: &wgpu::Buffer,
     bytes: u64,
-    look: impl FnOnce(&[u32]) -> T,
+    reader: impl FnOnce(&[u32]) -> T,
 ) -> Result<T, SplatError> {
     let failed = |e: &dyn std::fmt::Display| SplatError::Device(one_line(&e));
     let (sender, receiver) = std::sync::mpsc::channel();
@@ -27,7 +27,7 @@ pub(crate) fn mapped<T>(
     }
     let out = {
         let range = buffer.get_mapped_range(..bytes).map_err(|e| failed(&e))?;
-        look(bytemuck::cast_slice(&range))
+        reader(bytemuck::cast_slice(&range))
     };
     buffer.unmap();
     Ok(out)

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use editor::Edit;
-use formats::{box_list, occ3d, project};
+use formats::{box_list, loom, occ3d};
 use job::GenParams;
 use numeric::splitmix::SplitMix64;
 use scene::{Class, SensorRig, VoxelGrid};
@@ -206,7 +206,7 @@ fn opendrive_files() {
 
 #[test]
 fn box_files() {
-    let scene = project::from_bytes(&file("assets/scenes/first_light.loom")).expect("sound");
+    let scene = loom::from_bytes(&file("assets/scenes/first_light.loom")).expect("sound");
     plain(
         "boxes",
         vec![box_list::to_bytes("s", scene.frame(), None, None).expect("finite")],
@@ -333,8 +333,8 @@ fn command_lines_and_words() {
 }
 
 #[test]
-fn measured_stops() {
-    plain("stops", vec![file("assets/trade/stops.json")], 1500);
+fn measured_presets() {
+    plain("presets", vec![file("assets/trade/presets.json")], 1500);
 }
 
 /// Every target is run by a test of this file.

@@ -39,7 +39,7 @@ fn the_fine_stage_of_a_folder() {
     let models = OccModels::from_dir(folder.path()).expect("two networks");
     assert!(models.refiner.is_none() && models.card != self::models().card);
     let (latent, cells) = (uniform(LATENT, 9), [true; CELLS]);
-    let refined = decode_refined(&models, &latent, &cells, Heard::default(), (2, 1));
+    let refined = decode_refined(&models, &latent, &cells, DecoderInput::default(), (2, 1));
     assert_eq!(
         refined.expect("no stage"),
         models.vae.decode(&latent).expect("a finite latent")

@@ -16,8 +16,8 @@ use nets::lidar::{LearnedRay, LidarNet};
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::{
-    CELLS, CHANNELS, ColumnHeights, DitCondition, Heard, KeysValues, LATENT, ModelError, OccModels, OccVae,
-    Window, fine_vae, tokens_of,
+    CELLS, CHANNELS, ColumnHeights, DecoderInput, DitCondition, KeysValues, LATENT, ModelError, OccModels,
+    OccVae, Window, fine_vae, tokens_of,
 };
 use safetensors::{Dtype, SafeTensors};
 use scene::VoxelGrid;
@@ -223,16 +223,16 @@ fn agrees(vae: &OccVae, golden: &Golden) {
         _ => 0,
     });
     let observed: Vec<u32> = observed.collect();
-    let told = Heard {
+    let informed = DecoderInput {
         draft: Some(&draft),
         observed: Some(&observed),
     };
-    for (name, heard) in [("logits", Heard::default()), ("logits_told", told)] {
+    for (name, input) in [("logits", DecoderInput::default()), ("logits_told", informed)] {
         let (logits, cells) = (golden.f32(name), golden.i32("cells"));
         let of_cell = logits.len() / cells.len();
         assert_eq!(of_cell, (200 / vae.config().side()).pow(2) * 16 * 18);
         for (cell, truth) in cells.into_iter().zip(logits.chunks_exact(of_cell)) {
-            let found = vae.logits(&latent, cell as usize, heard);
+            let found = vae.logits(&latent, cell as usize, input);
             assert_close(
                 &format!("{name} of cell {cell}"),
                 found.expect("a finite latent"),
@@ -265,7 +265,7 @@ fn row_33_decode() {
     for cell in [0, 49, 1275, 2499] {
         let logits = models
             .vae
-            .logits(&latent, cell, Heard::default())
+            .logits(&latent, cell, DecoderInput::default())
             .expect("a finite latent");
         for (voxel, logits) in logits.chunks_exact(18).enumerate() {
             let best = nn::kernels::argmax(logits).expect("no NaN");

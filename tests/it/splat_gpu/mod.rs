@@ -140,7 +140,7 @@ fn splat_reference() {
 fn clouds() -> [(&'static str, GaussianCloud); 2] {
     let (grid, bev) = crate::sensor_scene::street();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/first_light.loom");
-    let scene = formats::project::load(&path).expect("the bundled scene");
+    let scene = formats::loom::load(&path).expect("the bundled scene");
     let frame = scene.frame();
     let bundled = GaussianCloud::from_grid(&frame.occupancy, &frame.bev_channels());
     [

@@ -227,7 +227,7 @@ fn markings_lie_on_ground_voxels_and_the_plane_where_there_are_none() {
     let (rig, mut options) = (bench.rig.clone(), bench.options.clone());
     let top = ViewCamera::preset(ViewPreset::Top);
     let at = |x, y| top.project(GridSpec::center(x, y, 0), SIZE).expect("in view");
-    let mut look = |options: &ViewOptions, x, y| {
+    let mut pixel_at = |options: &ViewOptions, x, y| {
         let scene = ViewScene {
             bev: &bev,
             ..scene_of(&grid, &rig, options)
@@ -235,16 +235,16 @@ fn markings_lie_on_ground_voxels_and_the_plane_where_there_are_none() {
         bench.picture_of(&top, &scene).at(at(x, y))
     };
     // On voxels: yellow paint, or bare road without it.
-    assert!(hue_apart(look(&options, 110, 90), BevLayer::RoadDivider.color()) < 15.0);
-    assert!(hue_apart(look(&options, 110, 115), Class::DriveableSurface.color()) < 12.0);
+    assert!(hue_apart(pixel_at(&options, 110, 90), BevLayer::RoadDivider.color()) < 15.0);
+    assert!(hue_apart(pixel_at(&options, 110, 115), Class::DriveableSurface.color()) < 12.0);
     options.markings = false;
-    assert!(hue_apart(look(&options, 110, 90), Class::DriveableSurface.color()) < 12.0);
+    assert!(hue_apart(pixel_at(&options, 110, 90), Class::DriveableSurface.color()) < 12.0);
     // Beside them: the plane.
-    let plane = look(&options, 90, 90);
+    let plane = pixel_at(&options, 90, 90);
     assert_eq!(plane[..3], BevLayer::RoadDivider.color());
     options.layout_plane = LayoutPlane::Off;
     options.background = Background::Transparent;
-    assert_eq!(look(&options, 90, 90), [0; 4]);
+    assert_eq!(pixel_at(&options, 90, 90), [0; 4]);
 }
 
 #[test]

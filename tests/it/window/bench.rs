@@ -10,7 +10,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use formats::project;
+use formats::loom;
 use glam::DVec2;
 use job::composite::{composite, untouched_voxels_changed};
 use job::region::Region;
@@ -152,8 +152,8 @@ impl Bench {
                 ..GenParams::default()
             },
             warm_up: false,
-            open: Arc::new(|path| Ok(project::load(path)?)),
-            save: Arc::new(|scene, path| Ok(project::save(path, scene).map(|_| ())?)),
+            open: Arc::new(|path| Ok(loom::load(path)?)),
+            save: Arc::new(|scene, path| Ok(loom::save(path, scene).map(|_| ())?)),
             new_scene: Arc::new(|| Ok(scene())),
             native_dialogs: false,
             settings_file,

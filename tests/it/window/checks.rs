@@ -25,7 +25,7 @@ impl Bench {
     fn all_checked(&mut self) {
         self.wait_until("the checks", |b| {
             let rev = b.app().document.scene().rev;
-            !b.app().background.checking.is_stale(rev)
+            !b.app().threads.checking.is_stale(rev)
         });
         self.steps(3);
     }
@@ -53,7 +53,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
         let view = bench.pane(view);
         assert!(view.height() > 300.0 && !view.intersects(row), "{view:?} {row:?}");
     }
-    let meant = |b: &mut Bench| b.app().state.meant.as_deref().cloned();
+    let finding_marks = |b: &mut Bench| b.app().state.meant.as_deref().cloned();
     assert_eq!(meant(&mut bench), None);
     bench.harness.hover_at(row.center());
     bench.steps(3);

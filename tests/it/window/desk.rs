@@ -8,7 +8,7 @@ use app::tools::RegionShape;
 use editor::{Edit, Shape as Area};
 use egui::{Key, Modifiers, Rect, Shape};
 use egui_kittest::kittest::Queryable;
-use formats::project;
+use formats::loom;
 use glam::DVec2;
 use job::RegionMode;
 use scene::{BevLayer, BoxId};
@@ -30,7 +30,7 @@ impl Bench {
     fn checked(&mut self) {
         self.wait_until("the checks", |b| {
             let rev = b.app().document.scene().rev;
-            !b.app().background.checking.is_stale(rev)
+            !b.app().threads.checking.is_stale(rev)
         });
         self.steps(3);
     }
@@ -272,8 +272,8 @@ fn a_finding_is_waived_with_a_reason_and_taken_back() {
     bench.checked();
     assert!(bench.sees("All is well, but for what was waived."));
     assert_eq!(&*bench.frame().waivers[0].reason, "it turns round");
-    let bytes = project::to_bytes(bench.app().document.scene()).expect("written");
-    let again = project::from_bytes(&bytes).expect("read");
+    let bytes = loom::to_bytes(bench.app().document.scene()).expect("written");
+    let again = loom::from_bytes(&bytes).expect("read");
     assert_eq!(
         again.frame().waivers,
         bench.frame().waivers,

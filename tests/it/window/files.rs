@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use formats::project;
+use formats::loom;
 
 use super::bench::{Bench, Do, scene};
 
@@ -100,7 +100,7 @@ fn a_dropped_file_opens_and_closing_asks_first() {
     let path = bench.open_path();
     let mut other = scene();
     other.name = "Dropped".into();
-    project::save(&path, &other).expect("saved");
+    loom::save(&path, &other).expect("saved");
     bench
         .harness
         .input_mut()

@@ -3,7 +3,7 @@
 use app::recovery::Recovery;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use formats::project;
+use formats::loom;
 use scene::{BoxId, Class};
 
 use app::command::{Command, ViewCommand};
@@ -41,7 +41,7 @@ fn work_is_offered_after_a_crash_and_comes_back_unsaved() {
     bench.key(Modifiers::CTRL, Key::S);
     bench.give_path(&path, "Save file");
     bench.steps(3);
-    assert_eq!(project::load(&path).expect("saved").frame().boxes, worked.boxes);
+    assert_eq!(loom::load(&path).expect("saved").frame().boxes, worked.boxes);
     drop(bench);
     assert_eq!(std::fs::read_dir(root.path()).expect("there").count(), 0);
 }
@@ -56,7 +56,7 @@ fn findings_lead_to_their_place_and_are_fixed() {
         .execute(Command::View(ViewCommand::ShowPane(PaneId::CHECKS)), &ctx);
     let checked = |b: &mut Bench| {
         let rev = b.app().document.scene().rev;
-        !b.app().background.checking.is_stale(rev)
+        !b.app().threads.checking.is_stale(rev)
     };
     bench.wait_until("the checks", checked);
     bench.steps(3);

@@ -8,7 +8,7 @@ use editor::tools::{add_box, measure, select};
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use scene::{BoxId, Class};
-use widgets::theme::Look;
+use widgets::theme::Theme;
 
 use super::bench::{Bench, Do};
 
@@ -152,17 +152,17 @@ fn settings_are_kept() {
     assert!(bench.app().state.start_open, "a new user sees the start screen");
     bench.click("Go on with this scene");
     assert!(!bench.app().state.start_open);
-    bench.app().preferences.settings.look = Look::Light;
+    bench.app().preferences.settings.theme = Theme::Light;
     bench.app().preferences.settings.start_screen = false;
     bench.click("Sensors");
     bench.wait_until("settings", |_| {
-        Settings::load(&file).is_ok_and(|s| s.look == Look::Light && s.workspace == Workspace::Sensors)
+        Settings::load(&file).is_ok_and(|s| s.theme == Theme::Light && s.workspace == Workspace::Sensors)
     });
     drop(bench);
     let mut again = Bench::with_settings(&file);
     assert!(!again.app().state.start_open);
     assert!(again.harness.query_by_label("LiDAR sweep").is_some());
-    again.app().preferences.settings.look = Look::Dark; // the colours of a theme are the process's
+    again.app().preferences.settings.theme = Theme::Dark; // the colours of a theme are the process's
     again.steps(3);
     assert_eq!(again.app().state.hovered_pane, None::<PaneId>);
 }

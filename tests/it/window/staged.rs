@@ -7,7 +7,7 @@ use editor::Edit;
 use egui::Modifiers;
 use egui_kittest::kittest::Queryable;
 use job::RegionMode;
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
 use scene::{Class, GridSpec, VoxelGrid};
 use world::scenery::Setting;
 
@@ -165,7 +165,7 @@ fn a_generation_is_stopped_with_what_it_shows() {
 }
 
 #[test]
-fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
+fn scenery_is_regenerated_by_rules_everywhere_or_in_a_region() {
     let mut bench = Bench::new();
     bench.off();
     let before = bench.frame().occupancy.clone();
@@ -195,7 +195,7 @@ fn scenery_is_drawn_anew_by_rules_everywhere_or_in_a_region() {
     assert_ne!(things(&mut bench), second);
     let second = things(&mut bench);
     // Only what lies in a region is taken.
-    bench.app().state.tools.region = RedrawMask::of_rect([0.0, -40.0].into(), [40.0, 40.0].into());
+    bench.app().state.tools.region = InpaintMask::of_rect([0.0, -40.0].into(), [40.0, 40.0].into());
     bench.steps(2);
     bench.click("Accept a part");
     bench.click("In the marked region");

@@ -496,7 +496,7 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
     bench.drag(&corner, Modifiers::SHIFT);
     assert!(bench.app().state.tools.region.count() < marked);
     assert_eq!(bench.history(), ["Open"]);
-    bench.click("Draw anew");
+    bench.click("Inpaint");
     let params = bench
         .app()
         .generation
@@ -506,7 +506,7 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
         .expect("asked for")
         .key
         .params;
-    assert_eq!(params.redraw, bench.app().state.tools.region);
+    assert_eq!(params.inpaint, bench.app().state.tools.region);
     assert!(params.strength > 0.0);
     assert_eq!(
         bench.started.recv_timeout(super::bench::PATIENCE),

@@ -3,12 +3,12 @@
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use scene::BoxId;
-use trade::StopKnobs;
+use trade::PresetKnobs;
 
 use super::bench::{Bench, Do};
 
 #[test]
-fn a_stop_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost() {
+fn a_preset_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost() {
     let mut bench = Bench::new();
     bench.click("Trade");
     bench.steps(3);
@@ -18,22 +18,22 @@ fn a_stop_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost() {
             .query_by_label("Edit something: what it cost is written here.")
             .is_some()
     );
-    let stops = bench.app().generation.tuning.stops.stops.clone();
-    let draft = stops.iter().position(|s| s.name == "draft").expect("shipped");
+    let presets = bench.app().generation.tuning.presets.all.clone();
+    let draft = presets.iter().position(|s| s.name == "draft").expect("shipped");
     let params = bench.app().generation.live.params;
     let now = bench
         .app()
         .generation
         .tuning
         .current(&params)
-        .map_or("own settings".to_owned(), |i| stops[i].name.clone());
+        .map_or("own settings".to_owned(), |i| presets[i].name.clone());
     bench.click(&format!("Quality: {now} menu"));
     bench.steps(2);
-    let foretold = bench.app().generation.tuning.foretold()[draft].1.clone();
-    bench.click(&format!("Draft   {foretold}"));
+    let predicted = bench.app().generation.tuning.predicted()[draft].1.clone();
+    bench.click(&format!("Draft   {predicted}"));
     bench.steps(2);
     let params = bench.app().generation.live.params;
-    assert_eq!(StopKnobs::of(&params), stops[draft].knobs);
+    assert_eq!(PresetKnobs::of(&params), presets[draft].knobs);
     assert_eq!(bench.app().generation.tuning.current(&params), Some(draft));
     assert!(bench.harness.query_by_label("Quality: draft").is_some());
 

@@ -4,7 +4,7 @@ use app::panes::id::PaneId;
 use editor::tools::{VoxelVerb, voxel};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use formats::project;
+use formats::loom;
 use image::GenericImageView;
 use scene::{BevLayer, BoxId, Class};
 
@@ -98,7 +98,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let colors: std::collections::HashSet<_> = pane.pixels().copied().collect();
     assert!(colors.len() > 100, "{} colours", colors.len());
     let path = bench.folder.path().join("scene.loom");
-    project::save(&path, bench.app().document.scene()).expect("saved");
+    loom::save(&path, bench.app().document.scene()).expect("saved");
     bench.app().document.mark_saved();
     bench.app().execute(
         app::Command::File(app::command::FileCommand::OpenPath(path.clone())),

@@ -6,8 +6,8 @@ use egui::text_edit::TextEditState;
 use egui::{Key, Modifiers, Ui, WidgetInfo};
 
 use super::completion::Completion;
-use super::heard::Both;
 use super::plan::{Plan, Told};
+use super::typed_text::Both;
 use crate::command::{Command, FileCommand};
 use crate::text::doubts;
 use scene::Scene;

@@ -150,7 +150,7 @@ pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
     }
 }
 
-/// Objects with their class; which of them is to be placed anew.
+/// Objects with their class; which of them is to be placed again.
 pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
     let mut rolled = None;
     let mut gone = None;

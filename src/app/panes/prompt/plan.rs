@@ -491,7 +491,7 @@ impl Plan {
         self.told.show(ui);
     }
 
-    /// The scene graph, editable; true if it is to be placed anew.
+    /// The scene graph, editable; true if it is to be placed again.
     pub fn graph(
         &mut self,
         ui: &mut Ui,

@@ -84,11 +84,11 @@ impl Recall {
         let (send, coming) = channel();
         let (ask, wake) = (ask.clone(), ctx.clone());
         let words = ask.prompt.clone();
-        let look = move || {
+        let recall = move || {
             let found = recall(&ask.prompt, &ask.description, ask.seed);
             found.as_ref().and_then(Recalled::of)
         };
-        let thread = job::guard::spawn("recall", look, move |found| {
+        let thread = job::guard::spawn("recall", recall, move |found| {
             // Nobody listens once the pane is gone.
             let _ = send.send((words, found));
             wake.request_repaint();

@@ -188,7 +188,7 @@ pub(super) const ACTIONS: &[ActionDef] = &[
             waiting: false,
         }))
     }),
-    action(Generation, "scenery", "Draw scenery anew", "", |_| {
+    action(Generation, "scenery", "Regenerate scenery", "", |_| {
         Some(Command::Generation(GenerationCommand::DrawScenery))
     }),
     action(Generation, "accept", "Accept the new result", "", |_| {

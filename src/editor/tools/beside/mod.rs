@@ -2,9 +2,9 @@
 //! the table; `drawing` is the state machine that they share.
 
 pub mod building;
+mod choosing;
 mod draft;
 mod drawing;
-mod in_hand;
 pub mod line;
 mod options;
 pub mod post;

@@ -7,7 +7,7 @@ use crate::tools::{
     Act, At, CLICK_SLACK, Choose, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers, Pointer,
     Response, Role, Sight,
 };
-use crate::transform::{Axis, Kind, Pull, Transform};
+use crate::transform::{Axis, Pull, Transform, TransformKind};
 use crate::{Edit, choose};
 use scene::{Frame, SceneBox};
 
@@ -72,7 +72,10 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         let handle = first.and_then(|b| pick::handle_at(b, at_m, reach_m));
         match (first, handle) {
             (_, Some(Handle::Rotate)) => {
-                return Some(held(transform(frame, cx.hand, &chosen, Kind::Turn), at_m));
+                return Some(held(
+                    transform(frame, cx.hand, &chosen, TransformKind::Turn),
+                    at_m,
+                ));
             }
             // A corner resizes one box.
             (Some(b), Some(Handle::Corner(corner))) if chosen.len() == 1 && !shift => {
@@ -99,7 +102,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             if !cx.hand.is_chosen(id) {
                 cx.hand.choose(&[id], Choose::Only);
             }
-            return Some(held(transform(frame, cx.hand, &ids, Kind::Move), at_m));
+            return Some(held(transform(frame, cx.hand, &ids, TransformKind::Move), at_m));
         }
         // A thing is chosen by a click and moved once it is: a drag over a forest still marks.
         if let Some(drag) = things::held(cx.settled, cx.hand, at_m, reach_m, shift) {
@@ -196,9 +199,9 @@ fn show(drag: &Drag, frame: &Frame, hand: &Hand, held: Modifiers) -> Response {
     else {
         return Response::none();
     };
-    let moves = transform.kind == Kind::Move;
+    let moves = transform.kind == TransformKind::Move;
     let pull = pull(transform, *from_m, *to_m, held.shift && moves);
-    let grid = held.ctrl || transform.kind == Kind::Turn && held.shift;
+    let grid = held.ctrl || transform.kind == TransformKind::Turn && held.shift;
     preview(boxes::edits(transform, &pull, frame, hand, grid))
 }
 
@@ -268,7 +271,7 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
         Drag::Boxes { transform, .. } => {
             // A click on one of several chooses it alone.
             let several = cx.hand.chosen().len() > 1 || !cx.hand.things.chosen.is_empty();
-            if transform.kind == Kind::Move
+            if transform.kind == TransformKind::Move
                 && transform.axis.is_none()
                 && several
                 && let Some(b) = transform.start.first()
@@ -369,7 +372,7 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
                 transform,
                 *from_m,
                 *to_m,
-                held.shift && transform.kind == Kind::Move,
+                held.shift && transform.kind == TransformKind::Move,
             );
             let text = transform.text(&pull, &sight.hand.snap(held.ctrl));
             out.push(Mark::Tag((*to_m).into(), text));
@@ -401,7 +404,7 @@ mod tests {
     #[test]
     fn shift_keeps_to_an_axis() {
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
-        let t = transform(&frame, &Hand::default(), &[], Kind::Move);
+        let t = transform(&frame, &Hand::default(), &[], TransformKind::Move);
         let p = pull(&t, DVec2::ZERO, DVec2::new(3.0, 1.0), true);
         assert_eq!(p.delta_m, DVec3::new(3.0, 0.0, 0.0));
         let up = Transform {

@@ -3,13 +3,13 @@
 use crate::Edit;
 use crate::arrange::{Pivot, boxes_of};
 use crate::tools::{Hand, Key, Modifiers};
-use crate::transform::{Axis, Kind, Pull, Transform};
+use crate::transform::{Axis, Pull, Transform, TransformKind};
 use scene::{BoxId, Frame, SceneBox};
 
 use super::things::along_with;
 
 /// A drag of boxes that has not begun to move.
-pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Kind) -> Transform {
+pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: TransformKind) -> Transform {
     Transform {
         kind,
         start: boxes_of(frame, ids),
@@ -17,7 +17,7 @@ pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Kind) -
         orientation: hand.orientation,
         pivot: match kind {
             // The ring goes about the middle of what it is drawn around.
-            Kind::Turn => Pivot::Middle,
+            TransformKind::Turn => Pivot::Middle,
             _ => hand.pivot,
         },
         typed: String::new(),
@@ -35,12 +35,12 @@ pub(super) fn step_name(transform: &Transform) -> &'static str {
     let boxes: &[SceneBox] = &transform.start;
     let several = boxes.len() > 1;
     match (transform.kind, several) {
-        (Kind::Move, false) => "Move box",
-        (Kind::Move, true) => "Move boxes",
-        (Kind::Turn, false) => "Turn box",
-        (Kind::Turn, true) => "Turn boxes",
-        (Kind::Scale, false) => "Resize box",
-        (Kind::Scale, true) => "Resize boxes",
+        (TransformKind::Move, false) => "Move box",
+        (TransformKind::Move, true) => "Move boxes",
+        (TransformKind::Turn, false) => "Turn box",
+        (TransformKind::Turn, true) => "Turn boxes",
+        (TransformKind::Scale, false) => "Resize box",
+        (TransformKind::Scale, true) => "Resize boxes",
     }
 }
 

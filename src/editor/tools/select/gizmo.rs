@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::arrange::{boxes_of, middle_m};
-use crate::transform::{Axis, Kind, Orientation, Transform};
+use crate::transform::{Axis, Orientation, Transform, TransformKind};
 use scene::Frame;
 
 use super::ID;
@@ -39,7 +39,7 @@ impl<'a> Gizmo<'a> {
     /// `None` if no box is chosen, the middle is not in view, or the knob of the box turns it there.
     pub fn new(frame: &Frame, hand: &Hand, view: &'a dyn View) -> Option<Self> {
         let from_above = view.kind() == ViewKind::Bev;
-        if hand.tool != ID || from_above && hand.gizmo == Kind::Turn {
+        if hand.tool != ID || from_above && hand.gizmo == TransformKind::Turn {
             return None;
         }
         let chosen = hand.chosen();
@@ -65,7 +65,7 @@ impl<'a> Gizmo<'a> {
     /// Begin and tip of the arrow of an axis, on the screen. Sizes are of the box's own axes.
     fn arrow(&self, axis: Axis) -> Option<[DVec2; 2]> {
         let mut turned = self.transform.clone();
-        if turned.kind == Kind::Scale {
+        if turned.kind == TransformKind::Scale {
             turned.orientation = Orientation::Local;
         }
         let along = turned.axis_in_ego(axis) * self.length_m;
@@ -86,7 +86,7 @@ impl<'a> Gizmo<'a> {
 
     /// The part under the pointer.
     pub fn at(&self, pointer: DVec2) -> Option<Part> {
-        if self.transform.kind == Kind::Turn {
+        if self.transform.kind == TransformKind::Turn {
             let near = self
                 .ring()
                 .windows(2)
@@ -103,7 +103,7 @@ impl<'a> Gizmo<'a> {
     /// What is drawn of it; `hot` is under the pointer or held.
     pub fn marks(&self, hot: Option<Part>) -> Vec<Mark> {
         let screen = |p: DVec2| At::Screen(p);
-        if self.transform.kind == Kind::Turn {
+        if self.transform.kind == TransformKind::Turn {
             let ring = self.ring().into_iter().map(screen).collect();
             return vec![Mark::Ring(ring, hot == Some(Part::Ring))];
         }
@@ -112,7 +112,7 @@ impl<'a> Gizmo<'a> {
                 ends: self.arrow(*axis)?.map(screen),
                 role: Role::Axis(*axis as usize),
                 hot: hot == Some(Part::Axis(*axis)),
-                square: self.transform.kind == Kind::Scale,
+                square: self.transform.kind == TransformKind::Scale,
             })
         };
         self.axes().iter().filter_map(arrow).collect()

@@ -7,7 +7,7 @@ mod space;
 mod things;
 
 use crate::arrange::Pivot;
-use crate::transform::{Kind, Orientation};
+use crate::transform::{Orientation, TransformKind};
 use scene::Frame;
 
 use super::setting::{self, Control, Setting, Value};
@@ -41,7 +41,7 @@ fn lasso(hand: &mut Hand, lasso: bool) {
     (hand.tool, hand.lasso) = (ID, lasso);
 }
 
-fn gizmo(hand: &mut Hand, kind: Kind) {
+fn gizmo(hand: &mut Hand, kind: TransformKind) {
     (hand.tool, hand.gizmo) = (ID, kind);
 }
 
@@ -65,13 +65,13 @@ pub static DEF: ToolDef = ToolDef {
             |h| lasso(h, false),
         ),
         shortcut("gizmo_move", "Dragging moves", "W", When::Chosen, |h| {
-            gizmo(h, Kind::Move)
+            gizmo(h, TransformKind::Move)
         }),
         shortcut("gizmo_turn", "Dragging turns", "E", When::Chosen, |h| {
-            gizmo(h, Kind::Turn)
+            gizmo(h, TransformKind::Turn)
         }),
         shortcut("gizmo_scale", "Dragging scales", "R", When::Chosen, |h| {
-            gizmo(h, Kind::Scale)
+            gizmo(h, TransformKind::Scale)
         }),
     ],
     make: || Box::new(Select::default()),
@@ -149,9 +149,9 @@ impl Tool for Select {
         }
         if hand.selected.is_some() {
             parts.push(match hand.gizmo {
-                Kind::Move => "Drag moves, X Y Z keep an axis, digits type",
-                Kind::Turn => "Drag turns, Shift in steps",
-                Kind::Scale => "Drag scales",
+                TransformKind::Move => "Drag moves, X Y Z keep an axis, digits type",
+                TransformKind::Turn => "Drag turns, Shift in steps",
+                TransformKind::Scale => "Drag scales",
             });
             if !over_space {
                 parts.push("Ctrl snaps to the grid");
@@ -285,14 +285,14 @@ const WAYS: [(bool, &str, &str); 2] = [
     (true, "Lasso", "O: drag around boxes"),
 ];
 
-const KINDS: [(Kind, &str, &str); 3] = [
+const KINDS: [(TransformKind, &str, &str); 3] = [
     (
-        Kind::Move,
+        TransformKind::Move,
         "Move",
         "W; X, Y, Z keep to an axis, digits set the way",
     ),
-    (Kind::Turn, "Turn", "E; digits set the angle"),
-    (Kind::Scale, "Scale", "R; digits set the factor"),
+    (TransformKind::Turn, "Turn", "E; digits set the angle"),
+    (TransformKind::Scale, "Scale", "R; digits set the factor"),
 ];
 
 const ORIENTATIONS: [(Orientation, &str, &str); 2] = [

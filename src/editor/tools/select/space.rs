@@ -10,7 +10,7 @@ use crate::tools::{
     Act, At, CLICK_SLACK, Choose, Context, FARTHEST_M, Hand, Key, Mark, Modifiers, Pointer, Response, Role,
     Sight, View, point_of,
 };
-use crate::transform::{Axis, Kind, Orientation, Pull, Transform};
+use crate::transform::{Axis, Orientation, Pull, Transform, TransformKind};
 use scene::{BoxId, Frame, Scene, ThingId};
 
 use super::above::{how, preview};
@@ -101,7 +101,7 @@ pub(super) fn press(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let gizmo = Gizmo::new(frame, cx.hand, cx.view);
     if let Some(part) = gizmo.and_then(|g| g.at(at)) {
         let mut transform = transform(frame, cx.hand, &cx.hand.chosen(), cx.hand.gizmo);
-        if transform.kind == Kind::Scale {
+        if transform.kind == TransformKind::Scale {
             transform.orientation = Orientation::Local;
         }
         transform.axis = match part {
@@ -120,7 +120,7 @@ pub(super) fn press(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let ray = cx.view.ray(at)?;
     match pick::pick(frame, &ray) {
         Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.lasso => Some(Drag::Boxes {
-            transform: transform(frame, cx.hand, &boxes::with(cx.hand, id), Kind::Move),
+            transform: transform(frame, cx.hand, &boxes::with(cx.hand, id), TransformKind::Move),
             grabbed_m: point_of(&hit, &ray),
             from: at,
             to: at,
@@ -192,25 +192,25 @@ fn pull(transform: &Transform, view: &dyn View, grabbed_m: DVec3, from: DVec2, t
     let mut pull = Pull::default();
     let middle_m = transform.middle_m();
     match (transform.kind, transform.axis) {
-        (Kind::Move, Some(axis)) => {
+        (TransformKind::Move, Some(axis)) => {
             let axis = transform.axis_in_ego(axis);
             let way_m = along_axis(&now, grabbed_m, axis)? - along_axis(&start, grabbed_m, axis)?;
             pull.delta_m = axis * way_m.clamp(-FARTHEST_M, FARTHEST_M);
         }
-        (Kind::Move, None) => {
+        (TransformKind::Move, None) => {
             let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < FARTHEST_M)?;
             pull.delta_m = (to_m - pick::ray_ground(&start, grabbed_m.z)?).with_z(0.0);
         }
-        (Kind::Turn, _) => {
+        (TransformKind::Turn, _) => {
             let on_ground = |ray| Some(pick::ray_ground(ray, middle_m.z)?.truncate());
             pull.turn_deg = transform.turn_deg(on_ground(&start)?, on_ground(&now)?);
         }
-        (Kind::Scale, Some(axis)) => {
+        (TransformKind::Scale, Some(axis)) => {
             let axis = transform.axis_in_ego(axis);
             let from_m = along_axis(&start, middle_m, axis)?;
             pull.factor = along_axis(&now, middle_m, axis)? / from_m;
         }
-        (Kind::Scale, None) => {
+        (TransformKind::Scale, None) => {
             let middle = view.project(middle_m)?;
             pull.factor = to.distance(middle) / from.distance(middle).max(1.0);
         }
@@ -326,9 +326,9 @@ fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, add: boo
 }
 
 /// The part of the gizmo that a drag holds.
-fn held_part(axis: Option<Axis>, kind: Kind) -> Option<Part> {
+fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<Part> {
     match (kind, axis) {
-        (Kind::Turn, _) => Some(Part::Ring),
+        (TransformKind::Turn, _) => Some(Part::Ring),
         (_, axis) => axis.map(Part::Axis),
     }
 }

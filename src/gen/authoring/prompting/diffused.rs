@@ -16,7 +16,7 @@ use scene::{BevLayout, SceneBox};
 const ASTRAY_M: f64 = 1.0;
 
 /// Boxes of the network; those that the projection could not mend are placed by rules around all the others. While a
-/// statement does not hold even so, the things that it speaks of are placed anew, too, and at last everything: what was said
+/// statement does not hold even so, the things that it speaks of are placed again, too, and at last everything: what was said
 /// comes before what the network would like. The first of these placements that breaks the least is taken.
 pub(super) fn diffuse_and_mend(
     net: &LayoutNet,

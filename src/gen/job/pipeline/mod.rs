@@ -16,18 +16,18 @@ use crate::composite::{composite, seam_change_share, untouched_hash, untouched_v
 use crate::contract::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
 };
+use crate::inpaint::{self, InpaintMask};
 use crate::keep_clear::{keep_clear, keep_unobserved, observed_still};
 use crate::keep_grounded::keep_grounded;
 use crate::keep_objects::{keep_ground, keep_objects};
 use crate::keep_unchanged::keep_unchanged;
-use crate::redraw::{self, RedrawMask};
 use crate::refine::decode_refined;
 use crate::region::{CELLS, CELLS_PER_SIDE, Region, dilate};
 use crate::request::Request;
 use diffusion::inversion::Trajectory;
 use diffusion::replay::edit_with_replay;
 use diffusion::solver::Sampler;
-use nets::{DitCondition, GROUPS, Heard, OccModels, tokens_of};
+use nets::{DecoderInput, DitCondition, GROUPS, OccModels, tokens_of};
 use network::{Condition, Network, density_of_source};
 use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
@@ -257,7 +257,13 @@ impl OccPipeline {
         let latent = trajectory.latent_f32();
         let mut generated = report.timed(Stage::Decode, |_| {
             let refine = (params.fine_steps, params.seed);
-            decode_refined(&self.models, &latent, &region.cells, condition.told(), refine)
+            decode_refined(
+                &self.models,
+                &latent,
+                &region.cells,
+                condition.decoder_input(),
+                refine,
+            )
         })?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, true, &mut generated);
@@ -296,7 +302,7 @@ impl OccPipeline {
     ) -> Result<(), GenError> {
         let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
         let (vae, region) = (&self.models.vae, Region::full());
-        let grid = vae.decode_told(&latent, &region.cells, condition.told());
+        let grid = vae.decode_with(&latent, &region.cells, condition.decoder_input());
         let grid = grid.map_err(GenError::failed)?;
         let frame = job.scene.frame();
         ctx.preview(GenResult {
@@ -311,13 +317,13 @@ impl OccPipeline {
     fn edit(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let mut report = GenReport::default();
         let region = report.timed(Stage::Composite, |_| {
-            redraw::region_of(job.scene.frame(), &job.params)
+            inpaint::region_of(job.scene.frame(), &job.params)
         });
-        self.redraw(job, region, &job.params.redraw, report, ctx)
+        self.inpaint(job, region, &job.params.inpaint, report, ctx)
     }
 
     /// Regenerates a region of the job's frame, whatever was edited in it.
-    pub fn redraw_region(
+    pub fn inpaint_region(
         &mut self,
         job: &Job,
         region: Region,
@@ -325,29 +331,29 @@ impl OccPipeline {
     ) -> Result<GenResult, GenError> {
         job.params.check()?;
         // Something new is wanted in all of it.
-        let mut inpaint = RedrawMask::default();
+        let mut mask = InpaintMask::default();
         let columns = region.columns.iter().enumerate().filter(|(_, c)| **c);
-        columns.for_each(|(c, _)| inpaint.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
-        self.redraw(job, region, &inpaint, GenReport::default(), ctx)
+        columns.for_each(|(c, _)| mask.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
+        self.inpaint(job, region, &mask, GenReport::default(), ctx)
     }
 
-    fn redraw(
+    fn inpaint(
         &mut self,
         job: &Job,
         region: Region,
-        redraw: &RedrawMask,
+        inpainted: &InpaintMask,
         mut report: GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<GenResult, GenError> {
         let (frame, params) = (job.scene.frame(), &job.params);
         let before = &frame.source.occupancy;
         if region.is_empty() {
-            // Nothing to redraw: no network is asked.
+            // Nothing to inpaint: no network is asked.
             return Ok(self.finish(job, before, before, &region, &mut report));
         }
-        let inpaint = params.strength > 0.0;
+        let fresh = params.strength > 0.0;
         let condition_before = self.condition_of_source(&job.scene);
-        let (sampler, source) = match inpaint {
+        let (sampler, source) = match fresh {
             true => self.noised(&job.scene, &condition_before, params, &mut report, ctx)?,
             false => self.inverted(&job.scene, &condition_before, params, &mut report, ctx)?,
         };
@@ -366,7 +372,7 @@ impl OccPipeline {
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
         let keys_values = match kept {
             Some(kept) => Some(kept.clone()),
-            None => stored_for(params).filter(|_| !inpaint),
+            None => stored_for(params).filter(|_| !fresh),
         };
         let mut network = report.timed(Stage::Encode, |_| {
             self.network(&condition, local, mask, context, params)
@@ -391,7 +397,7 @@ impl OccPipeline {
                         let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
                         let grid = models
                             .vae
-                            .decode_told(&clean, &region.cells, condition.told())
+                            .decode_with(&clean, &region.cells, condition.decoder_input())
                             .map_err(GenError::failed)?;
                         let occupancy = composite(before, &grid, &region, &frame.painted);
                         ctx.preview(GenResult {
@@ -410,33 +416,34 @@ impl OccPipeline {
         report.network_calls += edited.calls;
         ctx.progress(Stage::Decode, 0, 1)?;
         let request = Request::of(frame);
-        let observed = observed_still(frame, redraw, &request);
+        let observed = observed_still(frame, inpainted, &request);
         let mut generated = report.timed(Stage::Decode, |report| {
             let refine = (params.fine_steps, params.seed);
             let decoded = |latent: &[f32], condition: &Condition| {
-                let heard = Heard {
+                let input = DecoderInput {
                     observed: observed.as_deref(),
-                    ..condition.told()
+                    ..condition.decoder_input()
                 };
-                decode_refined(&self.models, latent, &region.cells, heard, refine)
+                decode_refined(&self.models, latent, &region.cells, input, refine)
             };
             let (generated, source) = rayon::join(
                 || decoded(&edited.latent, &condition),
                 || decoded(&latent, &condition_before),
             );
             let (mut generated, source) = (generated?, source?);
-            report.unchanged_kept = keep_unchanged(frame, &region, redraw, &request, &source, &mut generated);
+            report.unchanged_kept =
+                keep_unchanged(frame, &region, inpainted, &request, &source, &mut generated);
             Ok::<_, GenError>(generated)
         })?;
         if params.keep_objects {
             report.objects_kept = keep_objects(frame, &region, false, &mut generated);
             report.ground_kept = keep_ground(frame, &region, &mut generated);
-            report.unobserved_kept = keep_unobserved(frame, &region, redraw, &request, &mut generated);
-            report.invented_cleared = keep_clear(frame, &region, redraw, &request, &mut generated);
+            report.unobserved_kept = keep_unobserved(frame, &region, inpainted, &request, &mut generated);
+            report.invented_cleared = keep_clear(frame, &region, inpainted, &request, &mut generated);
             report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
-        if inpaint {
+        if fresh {
             return Ok(result); // its states around the region lead nowhere: the next edit inverts it
         }
         self.adopt(

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::standing::Standing;
 use crate::contract::{GenError, Named};
 use diffusion::solver::{Branch, Denoiser};
-use nets::{ColumnHeights, Heard, KeysValues, Middle, OccModels, Prepared, column_heights};
+use nets::{ColumnHeights, DecoderInput, KeysValues, Middle, OccModels, Prepared, column_heights};
 use nn::Precision;
 use scene::{BevLayout, BoxId, Density, Frame, SceneBox, VoxelGrid, draft, raster};
 
@@ -38,7 +38,7 @@ pub struct Condition {
     pub draft: VoxelGrid,
     /// The background is given.
     pub given: bool,
-    /// Nobody hears the draft.
+    /// The networks do not get the draft.
     pub draft_hidden: bool,
     /// What of it stands in each column, and how high the ground is there.
     pub columns: Vec<ColumnHeights>,
@@ -83,9 +83,9 @@ impl Condition {
 }
 
 impl Condition {
-    /// What the decoder hears of it; nothing where the draft is hidden.
-    pub fn told(&self) -> Heard<'_> {
-        Heard {
+    /// The input of the decoder; empty where the draft is hidden.
+    pub fn decoder_input(&self) -> DecoderInput<'_> {
+        DecoderInput {
             draft: (!self.draft_hidden).then_some(&self.draft),
             observed: None,
         }

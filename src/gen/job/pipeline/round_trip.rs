@@ -5,7 +5,7 @@ use crate::contract::{GenError, GenParams, GenReport, Job, JobCtx, Named, Stage}
 use crate::region::Region;
 use diffusion::inversion::{Refinement, invert, round_trip_error};
 use diffusion::solver::{Guidance, Sampler};
-use nets::Heard;
+use nets::DecoderInput;
 use scene::{Scene, Unobserved, VoxelGrid};
 
 /// What inverting and sampling again gave.
@@ -18,18 +18,18 @@ pub struct RoundTrip {
 }
 
 impl OccPipeline {
-    /// What the VAE makes of the occupancy of a scene's frame; its decoder hears the frame's draft and masks.
+    /// What the VAE makes of the occupancy of a scene's frame; its decoder gets the frame's draft and masks.
     pub fn reconstruct(&mut self, scene: &Scene) -> Result<VoxelGrid, GenError> {
         let frame = scene.frame();
         let condition = self.condition(scene, &frame.layout, &frame.boxes, Named::default());
         let observed = frame.inferred.unobserved.as_ref().map(Unobserved::observed);
-        let heard = Heard {
+        let input = DecoderInput {
             observed: observed.as_deref(),
-            ..condition.told()
+            ..condition.decoder_input()
         };
         let vae = &self.models.vae;
         vae.encode(&frame.occupancy)
-            .and_then(|latent| vae.decode_told(&latent, &Region::full().cells, heard))
+            .and_then(|latent| vae.decode_with(&latent, &Region::full().cells, input))
             .map_err(GenError::failed)
     }
 

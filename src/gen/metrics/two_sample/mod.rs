@@ -1,8 +1,8 @@
 //! Can two sets of scenes be told apart? A classifier learns it on one half of the scenes and is judged on the other
 //! (Lopez-Paz and Oquab 2017, arXiv 1610.06545): .5 is guessing, 1 certainty. Halves are of scenes, never of windows.
 
+mod differing_features;
 mod net;
-mod tells;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -11,8 +11,8 @@ use super::MetricError;
 use super::frechet::check;
 use super::local::Windows;
 use super::stats::{interval, t_quantile_975};
+pub use differing_features::{Tell, tells};
 use net::Net;
-pub use tells::{Tell, tells};
 use world::draw::Draw;
 
 /// Random splits into halves; each half is judged once in each.

@@ -1,4 +1,4 @@
-//! The field after an edit: only voxels within the network's sight of a changed one are computed anew, with what lies
+//! The field after an edit: only voxels within the network's sight of a changed one are computed again, with what lies
 //! within sight of those; all others keep their numbers. Bit for bit the field of a fresh run.
 
 use super::field::{Field, HIDDEN, Line};
@@ -88,9 +88,9 @@ impl LidarNet {
             *field = self.field_of(keys, classes)?;
             return Ok(Changed::Everywhere);
         }
-        let anew: Vec<Region> = changed.iter().map(Region::around).collect();
+        let again: Vec<Region> = changed.iter().map(Region::around).collect();
         let mut next = kept(field, keys, classes);
-        for region in &anew {
+        for region in &again {
             let seen = match self.config.unet {
                 true => region.around().whole(),
                 false => *region,
@@ -112,7 +112,7 @@ impl LidarNet {
             }
         }
         *field = next;
-        Ok(Changed::In(anew))
+        Ok(Changed::In(again))
     }
 }
 

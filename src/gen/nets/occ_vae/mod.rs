@@ -4,7 +4,7 @@
 //! `training/models/occ_vae.py`.
 
 mod config;
-mod heard;
+mod decoder_input;
 
 use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps};
 use super::{ModelError, check_finite, check_length};
@@ -16,8 +16,8 @@ use numeric::philox::{self, Stream};
 use scene::{Class, GridSpec, VoxelGrid};
 
 pub use config::VaeConfig;
-use heard::Ears;
-pub use heard::Heard;
+pub use decoder_input::DecoderInput;
+use decoder_input::InputEmbedding;
 
 /// Numbers per voxel before the class table.
 const FEATURES: usize = 8;
@@ -34,7 +34,7 @@ pub struct OccVae<B: Ops = Cpu> {
     decoder_stem: B::Linear,
     decoder: Vec<Level<B>>, // coarsest first
     up: Vec<B::Linear>,
-    ears: Option<Ears<B>>,
+    input: Option<InputEmbedding<B>>,
     decoder_norm: B::Norm,
     decoder_head: B::Linear, // with the class table multiplied in: logits of a column, [class][z]
     latent_mean: Vec<f32>,
@@ -70,8 +70,8 @@ impl<B: Ops> OccVae<B> {
                 "up",
                 upwards.windows(2).map(|p| [p[0], 4 * p[1]]).collect(),
             )?,
-            ears: match config.hears {
-                true => Some(Ears::new(&ops, w, fine)?),
+            input: match config.hears {
+                true => Some(InputEmbedding::new(&ops, w, fine)?),
                 false => None,
             },
             decoder_norm: ops.load_norm(w, "decoder_norm", fine)?,
@@ -198,26 +198,26 @@ impl<B: Ops> OccVae<B> {
     /// The same for some of the cells; the others stay free. Computes only what those cells
     /// can see, and gives them the labels that [`decode`](Self::decode) gives.
     pub fn decode_cells(&self, latent: &[f32], cells: &[bool]) -> Result<VoxelGrid, ModelError> {
-        self.decode_told(latent, cells, Heard::default())
+        self.decode_with(latent, cells, DecoderInput::default())
     }
 
     /// The same where more is known of the columns; networks that do not listen decode as without.
-    pub fn decode_told(
+    pub fn decode_with(
         &self,
         latent: &[f32],
         cells: &[bool],
-        heard: Heard<'_>,
+        input: DecoderInput<'_>,
     ) -> Result<VoxelGrid, ModelError> {
         check_length("cell mask", cells.len(), self.cells())?;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
-        if let Some(observed) = heard.observed {
+        if let Some(observed) = input.observed {
             check_length("observed columns", observed.len(), GridSpec::COLUMNS)?;
         }
         let mut grid = VoxelGrid::new();
         let reach = self.decoder_reach();
         for cells in pieces(cells, reach) {
             if let Some(window) = Window::around(&cells, reach) {
-                let map = self.decoder_map(latent, window, heard)?;
+                let map = self.decoder_map(latent, window, input)?;
                 self.labels_of(&map, &cells, window, &mut grid)?;
             }
         }
@@ -263,14 +263,19 @@ impl<B: Ops> OccVae<B> {
     }
 
     /// Class logits `[dx][dy][z][class]` of one cell, for tests and uncertainty.
-    pub fn logits(&self, latent: &[f32], cell: usize, heard: Heard<'_>) -> Result<Vec<f32>, ModelError> {
+    pub fn logits(
+        &self,
+        latent: &[f32],
+        cell: usize,
+        input: DecoderInput<'_>,
+    ) -> Result<Vec<f32>, ModelError> {
         let mut cells = vec![false; self.cells()];
         cells[cell] = true;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
         let Some(window) = Window::around(&cells, self.decoder_reach()) else {
             return Ok(Vec::new());
         };
-        let map = self.decoder_map(latent, window, heard)?;
+        let map = self.decoder_map(latent, window, input)?;
         let logits = self.ops.apply(&self.decoder_head, &map, PIECE)?;
         let logits = self.ops.download(logits)?.data;
         let column = |place: usize| &logits[place * CLASSES * HEIGHT..][..CLASSES * HEIGHT];
@@ -282,7 +287,12 @@ impl<B: Ops> OccVae<B> {
     }
 
     /// The decoder's blocks over a window, up to its last norm: one place per column of voxels.
-    fn decoder_map(&self, latent: &[f32], window: Window, heard: Heard<'_>) -> Result<B::Tensor, ModelError> {
+    fn decoder_map(
+        &self,
+        latent: &[f32],
+        window: Window,
+        input: DecoderInput<'_>,
+    ) -> Result<B::Tensor, ModelError> {
         check_finite("latent", latent)?;
         let (ops, channels) = (&self.ops, self.config.latent);
         let mut scaled = Vec::with_capacity(window.rows * window.columns * channels);
@@ -305,8 +315,8 @@ impl<B: Ops> OccVae<B> {
         let mut map = self.decoder[0].apply(ops, map)?;
         for (i, (up, level)) in self.up.iter().zip(&self.decoder[1..]).enumerate() {
             map = ops.unfold(&ops.apply(up, &map, PIECE)?)?;
-            if let (true, Some(ears)) = (i + 1 == self.up.len(), &self.ears) {
-                map = ears.add_to(ops, map, heard, window)?;
+            if let (true, Some(embedding)) = (i + 1 == self.up.len(), &self.input) {
+                map = embedding.add_to(ops, map, input, window)?;
             }
             map = level.apply(ops, map)?;
         }

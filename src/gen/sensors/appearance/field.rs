@@ -5,7 +5,7 @@
 use glam::{IVec3, Vec2, Vec3};
 
 use super::noise::{floor, hash1, unit, value3};
-use scene::look::{BLOCK, BLOCKS, LEAVES, LookData, NX, NY, NZ, SURFACE, Section, TRUNK};
+use scene::appearance::{AppearanceData, BLOCK, BLOCKS, LEAVES, NX, NY, NZ, SURFACE, Section, TRUNK};
 use scene::{Class, GridSpec, VoxelGrid};
 
 /// Cells between the middles of voxels.
@@ -106,7 +106,7 @@ impl Field {
     }
 
     /// For the graphics card.
-    pub fn pack(&self, out: &mut LookData) {
+    pub fn pack(&self, out: &mut AppearanceData) {
         let halves = |v: &u64| [*v as u32, (*v >> 32) as u32];
         out.push_bytes(Section::Weight, &self.weight);
         out.push_bytes(Section::Label, &self.label);

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::noise::{floor, ramp, value2};
 use crate::march::ground::Ground as Columns;
-use scene::look::{HIGHEST_M, KERB_M, LookData, Section};
+use scene::appearance::{AppearanceData, HIGHEST_M, KERB_M, Section};
 use scene::{BevLayer, BevLayout, Class, GridSpec};
 
 /// Width of the blur's kernel in columns: its standard deviation is about 1.2.
@@ -94,7 +94,7 @@ impl Ground {
     }
 
     /// For the graphics card.
-    pub fn pack(&self, out: &mut LookData) {
+    pub fn pack(&self, out: &mut AppearanceData) {
         out.push(
             Section::Share,
             self.share.as_flattened().iter().map(|v| v.to_bits()),

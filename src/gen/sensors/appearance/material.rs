@@ -7,8 +7,8 @@ mod thing;
 
 use glam::Vec3;
 
-use super::look::{Hit, Look, What};
 use super::noise::{ramp, value3};
+use super::prepared::{Appearance, Hit, What};
 use super::things::rgb;
 use scene::Class;
 
@@ -64,7 +64,7 @@ fn gray(v: f32) -> Vec3 {
 /// Light of tail lamps: exposed at night just beyond white in red alone, so that they stay red and keep a soft halo.
 const TAIL: Vec3 = Vec3::new(1.0, 0.035, 0.02);
 
-impl Look {
+impl Appearance {
     /// The surface at a hit; `footprint` is the width of a pixel on it in m.
     pub(super) fn surface(&self, hit: &Hit, dir: Vec3, footprint: f32) -> Surface {
         let normal = self.normal(hit);

@@ -4,16 +4,16 @@
 
 mod field;
 mod ground;
-mod look;
 mod material;
 mod noise;
 mod pack;
+mod prepared;
 mod render;
 mod shade;
 mod sky;
 mod things;
 
-pub use look::Look;
+pub use prepared::Appearance;
 
 use rayon::prelude::*;
 
@@ -101,9 +101,11 @@ impl ViewSynthesizer for RayMarched {
                 "a picture of {w}x{h} px is too large"
             )));
         }
-        let look = Look::new(input.frame, input.rig, &input.conditions);
+        let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
         let cameras = input.rig.cameras.par_iter();
-        Ok(cameras.map(|c| look.render(c, w, h, input.quality)).collect())
+        Ok(cameras
+            .map(|c| appearance.render(c, w, h, input.quality))
+            .collect())
     }
 }
 

@@ -1,19 +1,19 @@
-//! A look as plain numbers, for the renderer of the graphics card: see `scene::look`.
+//! An appearance as plain numbers, for the renderer of the graphics card: see `scene::appearance`.
 
-use super::Look;
-use super::look::Beam;
+use super::Appearance;
+use super::prepared::Beam;
 use super::things::{Material, Part, Thing, rgb};
 use glam::Vec3;
 use scene::Class;
-use scene::look::{LookData, PART_WORDS, Section, THING_WORDS};
+use scene::appearance::{AppearanceData, PART_WORDS, Section, THING_WORDS};
 
-impl Look {
+impl Appearance {
     /// Everything that the picture of a camera depends on.
-    pub fn data(&self) -> LookData {
+    pub fn data(&self) -> AppearanceData {
         let air = &self.air;
         let with = |v: Vec3, w: f32| v.extend(w).to_array();
         let (turn, shift) = self.anchoring();
-        let mut out = LookData {
+        let mut out = AppearanceData {
             air: [
                 with(air.to_sun, air.clouds),
                 with(air.sun, air.haze_per_m),
@@ -28,7 +28,7 @@ impl Look {
             turn: turn.to_array(),
             shift_m: shift.to_array(),
             seed: self.seed,
-            ..LookData::default()
+            ..AppearanceData::default()
         };
         self.field.pack(&mut out);
         self.ground.pack(&mut out);
@@ -56,7 +56,7 @@ impl Look {
         out
     }
 
-    fn pack_things(&self, out: &mut LookData) {
+    fn pack_things(&self, out: &mut AppearanceData) {
         let (mut things, mut parts, mut planes) = (Vec::new(), Vec::new(), Vec::new());
         for t in &self.things {
             let first = (parts.len() / PART_WORDS) as u32;

@@ -4,15 +4,15 @@
 use glam::{IVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
-use super::look::Look;
 use super::noise::{hash3, ramp, unit, unit3};
+use super::prepared::Appearance;
 use super::shade::Sample;
 use super::{CameraImage, Quality};
 use crate::march::CameraRays;
 use scene::Camera;
-use scene::look::CONTRAST;
+use scene::appearance::CONTRAST;
 
-impl Look {
+impl Appearance {
     /// The picture of one camera at `width` x `height` px.
     pub fn render(&self, camera: &Camera, width: u32, height: u32, quality: Quality) -> CameraImage {
         let (w, h) = (width as usize, height as usize);

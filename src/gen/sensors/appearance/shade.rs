@@ -2,10 +2,12 @@
 
 use glam::Vec3;
 
-use super::look::{Beam, Hit, Look, What};
 use super::material::Surface;
 use super::noise::ramp;
-use scene::look::{FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M};
+use super::prepared::{Appearance, Beam, Hit, What};
+use scene::appearance::{
+    FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M,
+};
 
 /// A sample of a picture: its light and what was seen, to find edges.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,7 +20,7 @@ pub struct Sample {
     pub key: u32,
 }
 
-impl Look {
+impl Appearance {
     /// Light along a ray; `pixel` is the angle between neighbouring pixels.
     pub(super) fn light_along(&self, o: Vec3, d: Vec3, pixel: f32) -> Sample {
         let Some(hit) = self.trace(o, d, FAR_M, false) else {

@@ -105,13 +105,13 @@ fn wetness_visibility_and_sun_show() {
     });
     assert!((blue(&thick) - blue(&base)).abs() > 5.0);
     // Streaks of rain do not hang on how wet the ground is.
-    let look = |wetness| {
+    let appearance = |wetness| {
         let rain = of(TimeOfDay::Day, Weather::Rain);
-        Look::new(&frame, &rig, &Conditions { wetness, ..rain })
+        Appearance::new(&frame, &rig, &Conditions { wetness, ..rain })
     };
-    assert!(look(0.3).air.rain && look(1.0).air.rain);
-    let wet = |l: &Look| l.data().air[2][3];
-    assert_eq!((wet(&look(0.25)), wet(&look(1.0))), (2.25, 3.0));
+    assert!(appearance(0.3).air.rain && appearance(1.0).air.rain);
+    let wet = |l: &Appearance| l.data().air[2][3];
+    assert_eq!((wet(&appearance(0.25)), wet(&appearance(1.0))), (2.25, 3.0));
 }
 
 #[test]
@@ -155,13 +155,13 @@ fn places_look_the_same_from_everywhere() {
     let rig = SensorRig::default();
     let conditions = of(TimeOfDay::Day, Weather::Clear);
     let (now, then) = (
-        Look::new(&frame, &rig, &conditions),
-        Look::new(&ahead, &rig, &conditions),
+        Appearance::new(&frame, &rig, &conditions),
+        Appearance::new(&ahead, &rig, &conditions),
     );
     // The light of a place of the world seen from an eye of the ego frame.
-    let light = |look: &Look, place: DVec3, eye: DVec3| {
+    let light = |appearance: &Appearance, place: DVec3, eye: DVec3| {
         let d = place - eye;
-        let sample = look.light_along(eye.as_vec3(), d.normalize().as_vec3(), 0.0015);
+        let sample = appearance.light_along(eye.as_vec3(), d.normalize().as_vec3(), 0.0015);
         assert!(
             (f64::from(sample.t) - d.length()).abs() < 0.02,
             "{place}: {} {}",
@@ -205,12 +205,17 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
     };
     let conditions = of(TimeOfDay::Day, Weather::Clear);
     let (empty, full) = (
-        Look::new(&with(&[]), &rig, &conditions),
-        Look::new(&with(&[car(1)]), &rig, &conditions),
+        Appearance::new(&with(&[]), &rig, &conditions),
+        Appearance::new(&with(&[car(1)]), &rig, &conditions),
     );
     let beside = glam::Vec3::new(10.0, 0.0, 0.0) - full.to_sun().truncate().normalize().extend(0.0) * 2.0;
     let eye = glam::Vec3::new(beside.x, beside.y, 9.0);
-    let down = |look: &Look| look.light_along(eye, -glam::Vec3::Z, 0.001).color.element_sum();
+    let down = |appearance: &Appearance| {
+        appearance
+            .light_along(eye, -glam::Vec3::Z, 0.001)
+            .color
+            .element_sum()
+    };
     assert!(
         down(&full) < 0.6 * down(&empty),
         "{} {}",
@@ -218,8 +223,8 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
         down(&empty)
     );
     let roof = |id| {
-        let look = Look::new(&with(&[car(id)]), &rig, &conditions);
-        look.light_along(glam::Vec3::new(9.6, 0.0, 9.0), -glam::Vec3::Z, 0.001)
+        let appearance = Appearance::new(&with(&[car(id)]), &rig, &conditions);
+        appearance.light_along(glam::Vec3::new(9.6, 0.0, 9.0), -glam::Vec3::Z, 0.001)
     };
     assert!((roof(1).t - 7.3).abs() < 0.1, "{}", roof(1).t);
     assert_eq!(roof(1).color, roof(1).color);
@@ -308,14 +313,14 @@ fn bears_anything() {
         Err(SynthesisError::Input(_))
     ));
     // Rays along axes and through edges.
-    let look = Look::new(&street(1), &SensorRig::default(), &Conditions::default());
+    let appearance = Appearance::new(&street(1), &SensorRig::default(), &Conditions::default());
     let pick = [0.0f32, -0.0, 1.0, -1.0, 1e-30, 0.2, f32::NAN, f32::INFINITY];
     for (i, x) in pick.iter().enumerate() {
         for (k, y) in pick.iter().enumerate() {
             let d = glam::Vec3::new(*x, *y, pick[(i + 2 * k) % 6]).normalize_or_zero();
             let o = glam::Vec3::new(-40.2 + 3.2 * i as f32, 0.2 * k as f32, 0.1 * k as f32);
             if d != glam::Vec3::ZERO {
-                let sample = look.light_along(o, d, 0.001);
+                let sample = appearance.light_along(o, d, 0.001);
                 assert!(!sample.color.is_nan(), "{o} {d} {:?}", sample);
             }
         }

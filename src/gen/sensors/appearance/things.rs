@@ -114,7 +114,7 @@ fn usual_paint(name: &str) -> Option<Paint> {
 }
 
 impl Thing {
-    /// The look of a box; `None` if the box has a problem.
+    /// A box as a thing to be drawn; `None` if the box has a problem.
     pub fn of(b: &SceneBox, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
             return None;

@@ -19,7 +19,7 @@ pub use marched::march_scene;
 pub use picture::CameraPicture;
 pub use view::{Knob, SourceId, View, ViewId};
 
-use super::appearance::{CameraImage, Look, Quality};
+use super::appearance::{Appearance, CameraImage, Quality};
 use super::cloud::GaussianCloud;
 use super::march::GroundHeight;
 use scene::Conditions;
@@ -122,12 +122,12 @@ pub trait Card {
     fn set_cloud(&mut self, cloud: &GaussianCloud) -> bool;
     /// Maps of the cloud that was set last; `None` if the processor has to draw them.
     fn maps(&mut self, camera: &Camera, size: [u32; 2]) -> Option<CameraMaps>;
-    /// Takes a look up; false if the processor has to draw it.
-    fn set_look(&mut self, look: &Look) -> bool;
-    /// A picture of the look that was set last, which is `look`; `None` if the processor has to draw it.
+    /// Takes up an appearance; false if the processor has to draw it.
+    fn set_appearance(&mut self, appearance: &Appearance) -> bool;
+    /// A picture of the appearance that was set last, which is `appearance`; `None` if the processor has to draw it.
     fn picture(
         &mut self,
-        look: &Look,
+        appearance: &Appearance,
         camera: &Camera,
         size: [u32; 2],
         quality: Quality,

@@ -10,7 +10,7 @@ use super::{
     CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
     ViewId,
 };
-use crate::appearance::{CameraImage, Look};
+use crate::appearance::{Appearance, CameraImage};
 use crate::march::CameraRays;
 use scene::Camera;
 use scene::Conditions;
@@ -68,7 +68,7 @@ impl CameraSource for Normals {
             seed: input.conditions.seed,
             ..Conditions::default()
         };
-        Box::new(Ready(Look::new(input.frame, input.rig, &conditions)))
+        Box::new(Ready(Appearance::new(input.frame, input.rig, &conditions)))
     }
 }
 
@@ -79,7 +79,7 @@ fn color(ego_from_camera: DQuat, normal: Vec3) -> [u8; 3] {
     [n.x, -n.y, -n.z].map(|v| ((v * 0.5 + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-struct Ready(Look);
+struct Ready(Appearance);
 
 impl PreparedCameras for Ready {
     fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {

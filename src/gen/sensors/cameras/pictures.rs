@@ -4,7 +4,7 @@ use super::{
     CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
     ViewId,
 };
-use crate::appearance::Look;
+use crate::appearance::Appearance;
 use scene::Camera;
 
 /// What it shows.
@@ -53,11 +53,11 @@ impl CameraSource for Pictures {
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
-        Box::new(Ready(Look::new(input.frame, input.rig, &input.conditions)))
+        Box::new(Ready(Appearance::new(input.frame, input.rig, &input.conditions)))
     }
 }
 
-struct Ready(Look);
+struct Ready(Appearance);
 
 impl PreparedCameras for Ready {
     fn suits_card(&self) -> bool {
@@ -65,7 +65,7 @@ impl PreparedCameras for Ready {
     }
 
     fn upload(&self, card: &mut dyn Card) -> bool {
-        card.set_look(&self.0)
+        card.set_appearance(&self.0)
     }
 
     fn draw(&self, camera: &Camera, options: &RenderOptions, card: Option<&mut dyn Card>) -> CameraPicture {

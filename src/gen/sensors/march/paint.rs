@@ -4,7 +4,7 @@
 
 use glam::DVec2;
 
-use scene::look::{LookData, Section};
+use scene::appearance::{AppearanceData, Section};
 use scene::sensor_data::RenderId;
 use scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
 
@@ -177,7 +177,7 @@ impl Paint {
     }
 
     /// For the graphics card.
-    pub fn pack(&self, out: &mut LookData) {
+    pub fn pack(&self, out: &mut AppearanceData) {
         let bits = |v: f64| (v as f32).to_bits();
         let mut starts = vec![0];
         let mut segments = Vec::new();

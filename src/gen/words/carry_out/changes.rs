@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::super::reading::{Look, Quantity, Thing, Turn};
+use super::super::reading::{Quantity, Thing, Traits, Turn};
 use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
@@ -95,12 +95,12 @@ impl Stage<'_> {
         }
     }
 
-    pub(super) fn set(&mut self, who: &[Thing], look: &Look) {
+    pub(super) fn set(&mut self, who: &[Thing], traits: &Traits) {
         let Some(ids) = self.those(who, Spare::Nearest) else {
             return;
         };
-        let mut paint = look.paint;
-        if let Some(of) = &look.paint_of {
+        let mut paint = traits.paint;
+        if let Some(of) = &traits.paint_of {
             paint = self.paint_of(of);
             if paint.is_none() {
                 self.remark(Remark::Nobody {
@@ -110,7 +110,7 @@ impl Stage<'_> {
             }
         }
         for id in ids {
-            self.set_one(id, look, paint);
+            self.set_one(id, traits, paint);
         }
     }
 
@@ -133,14 +133,14 @@ impl Stage<'_> {
         paint
     }
 
-    fn set_one(&mut self, id: BoxId, look: &Look, paint: Option<scene::Paint>) {
+    fn set_one(&mut self, id: BoxId, traits: &Traits, paint: Option<scene::Paint>) {
         let Some(b) = self.boxes.get(&id).copied() else {
             return;
         };
         if paint.is_some() && b.label.paint != paint {
             self.label_box(id, BoxLabel { paint, ..b.label });
         }
-        if let Some(size) = look.size {
+        if let Some(size) = traits.size {
             let factor = if size == SizeHint::Large { 1.18 } else { 0.85 };
             let b = self.boxes[&id];
             let base_m = b.center_m.z - b.size_m.z / 2.0;
@@ -152,7 +152,7 @@ impl Stage<'_> {
                 ..b
             });
         }
-        let Some(state) = look.state else { return };
+        let Some(state) = traits.state else { return };
         let b = self.boxes[&id];
         if state == ObjectState::Parked && b.class.is_vehicle() && !self.does(&b, ObjectState::Parked) {
             // (what parks stands at the edge of the road, on its side)

@@ -89,7 +89,7 @@ impl Stage<'_> {
             What::Replace { who, things } => self.replace(who, things),
             What::Move { who, to } => self.moved(who, to),
             What::Turn { who, turn } => self.turned(who, turn),
-            What::Set { who, look } => self.set(who, look),
+            What::Set { who, traits } => self.set(who, traits),
             What::Count { who, amount } => {
                 for t in who {
                     self.count(t, *amount);

@@ -4,7 +4,7 @@ use super::super::lexicon::{LONGEST_PHRASE, Lexicon};
 use super::super::nouns::Noun;
 use super::super::reader::Mode;
 use super::super::reading::{
-    Amount, Destination, Feature, Look, Place, Quantity, Relation, Thing, Turn, Way, What,
+    Amount, Destination, Feature, Place, Quantity, Relation, Thing, Traits, Turn, Way, What,
 };
 use super::Grammar;
 use super::things::state_of;
@@ -212,11 +212,11 @@ impl Grammar<'_> {
             "set" => vec![self.painted(i, false), self.painted(i, true)],
             "park" => vec![self.parked(i)],
             "stop" => vec![who(true).filter(|w| there(&w.0)).map(|(who, end)| {
-                let look = Look {
+                let traits = Traits {
                     state: Some(ObjectState::Waiting),
-                    ..Look::default()
+                    ..Traits::default()
                 };
-                (What::Set { who, look }, end)
+                (What::Set { who, traits }, end)
             })],
             "swap" => vec![self.swapped(i)],
             "double" => vec![self.times(i, 2.0)],
@@ -319,21 +319,21 @@ impl Grammar<'_> {
         self.is_end(end).then_some((What::Turn { who, turn }, end))
     }
 
-    fn look(&self, i: usize) -> Option<(Look, usize)> {
+    fn traits(&self, i: usize) -> Option<(Traits, usize)> {
         if let Some((paint, end)) = self.paint(i) {
             return Some((
-                Look {
+                Traits {
                     paint: Some(paint),
-                    ..Look::default()
+                    ..Traits::default()
                 },
                 end,
             ));
         }
         let (state, end) = self.symbol("state", i)?;
         Some((
-            Look {
+            Traits {
                 state: state_of(state),
-                ..Look::default()
+                ..Traits::default()
             },
             end,
         ))
@@ -348,8 +348,8 @@ impl Grammar<'_> {
             return None;
         }
         let end = if self.word(end) == "in" { end + 1 } else { end };
-        let (look, end) = self.look(end)?;
-        self.is_end(end).then_some((What::Set { who, look }, end))
+        let (traits, end) = self.traits(end)?;
+        self.is_end(end).then_some((What::Set { who, traits }, end))
     }
 
     fn parked(&self, i: usize) -> Found {
@@ -364,11 +364,11 @@ impl Grammar<'_> {
                     end,
                 ));
             }
-            let look = Look {
+            let traits = Traits {
                 state: Some(ObjectState::Parked),
-                ..Look::default()
+                ..Traits::default()
             };
-            return self.is_end(end).then_some((What::Set { who, look }, end));
+            return self.is_end(end).then_some((What::Set { who, traits }, end));
         }
         let (what, end) = self.new_things(i)?;
         let What::Add { mut things } = what else {
@@ -434,11 +434,11 @@ impl Grammar<'_> {
         }
         let is = self.after("becomes", end);
         let at = is.unwrap_or(end);
-        if let Some((look, end)) = self.look(at).filter(|(_, e)| self.is_end(*e)) {
+        if let Some((traits, end)) = self.traits(at).filter(|(_, e)| self.is_end(*e)) {
             out.push((
                 What::Set {
                     who: who.clone(),
-                    look,
+                    traits,
                 },
                 end,
             ));

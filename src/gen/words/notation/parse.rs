@@ -2,8 +2,8 @@
 
 use super::super::nouns::Noun;
 use super::super::reading::{
-    Amount, Anchor, Destination, Feature, LaneSide, Look, PaintWish, Pick, Place, Quantity, Reading,
-    Relation, Thing, Turn, Way, What,
+    Amount, Anchor, Destination, Feature, LaneSide, PaintWish, Pick, Place, Quantity, Reading, Relation,
+    Thing, Traits, Turn, Way, What,
 };
 use super::{SIZES, STATES, anchors, paint, plain};
 use place::description::{Density, Environment, Road};
@@ -195,8 +195,8 @@ impl<'t> Parser<'t> {
             }
             "set" => {
                 let who = self.list()?;
-                let look = self.look()?;
-                What::Set { who, look }
+                let traits = self.traits()?;
+                What::Set { who, traits }
             }
             "count" => {
                 let who = self.list()?;
@@ -295,21 +295,21 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn look(&mut self) -> Parsed<Look> {
-        let mut look = Look::default();
+    fn traits(&mut self) -> Parsed<Traits> {
+        let mut traits = Traits::default();
         loop {
             if let Some(x) = self.maybe(size) {
-                look.size = Some(x);
+                traits.size = Some(x);
             } else if let Some(x) = self.maybe(state) {
-                look.state = Some(x);
+                traits.state = Some(x);
             } else if let Some(x) = self.maybe(paint) {
-                look.paint = Some(x);
+                traits.paint = Some(x);
             } else if self.takes("paint_of") {
-                look.paint_of = Some(Box::new(self.thing()?));
-            } else if look == Look::default() {
-                return self.wrong("a look");
+                traits.paint_of = Some(Box::new(self.thing()?));
+            } else if traits == Traits::default() {
+                return self.wrong("a size, state or paint");
             } else {
-                return Ok(look);
+                return Ok(traits);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Values to notation.
 
 use super::super::reading::{
-    Amount, Anchor, Destination, Look, PaintWish, Place, Quantity, Reading, Thing, Turn, What,
+    Amount, Anchor, Destination, PaintWish, Place, Quantity, Reading, Thing, Traits, Turn, What,
 };
 use super::{SIZES, STATES, anchors, plain};
 use scene::graph::{ObjectState, SizeHint};
@@ -23,7 +23,7 @@ fn act(what: &What) -> String {
         What::Replace { who, things } => format!("replace {} with {}", list(who), list(things)),
         What::Move { who, to } => format!("move {} {}", list(who), destination(to)),
         What::Turn { who, turn } => format!("turn {} {}", list(who), turned(turn)),
-        What::Set { who, look } => format!("set {} {}", list(who), looks(look)),
+        What::Set { who, traits } => format!("set {} {}", list(who), traits_in_words(traits)),
         What::Count { who, amount } => format!("count {} {}", list(who), count(*amount)),
         What::Swap { one, other } => format!("swap {} and {}", thing(one), thing(other)),
         What::Time { what } => format!("time {}", what.name()),
@@ -80,12 +80,12 @@ fn turned(turn: &Turn) -> String {
     }
 }
 
-fn looks(look: &Look) -> String {
+fn traits_in_words(traits: &Traits) -> String {
     let mut out: Vec<String> = Vec::new();
-    out.extend(look.size.map(|s| size(s).into()));
-    out.extend(look.state.map(|s| state(s).into()));
-    out.extend(look.paint.map(|p| p.name().into()));
-    out.extend(look.paint_of.as_ref().map(|t| format!("paint_of {}", thing(t))));
+    out.extend(traits.size.map(|s| size(s).into()));
+    out.extend(traits.state.map(|s| state(s).into()));
+    out.extend(traits.paint.map(|p| p.name().into()));
+    out.extend(traits.paint_of.as_ref().map(|t| format!("paint_of {}", thing(t))));
     out.join(" ")
 }
 

@@ -155,7 +155,7 @@ impl LearnedReader {
         while said.len() < symbols::MOST_SYMBOLS {
             let line = self.symbols.line(&said, all);
             let prefix = notation::prefix(&line);
-            let (p, look) = self.net.next(state, memory, said.last().copied(), input);
+            let (p, attention) = self.net.next(state, memory, said.last().copied(), input);
             let mut order: Vec<usize> = (0..p.len()).filter(|i| p[*i] > 1e-6).collect();
             order.sort_by(|a, b| p[*b].total_cmp(&p[*a]));
             let fits = |s: &&usize| self.symbols.may_follow(**s, &said, &line, all, &prefix);
@@ -166,8 +166,8 @@ impl LearnedReader {
             spoken.said.push(Symbol {
                 id: symbol,
                 p: f64::from(p[symbol]),
-                // (what the look of the network rests on belongs to the act that is being said)
-                look: look
+                // (what the attention of the network rests on belongs to the act that is being said)
+                looked_at: attention
                     .iter()
                     .skip(1)
                     .enumerate()
@@ -195,7 +195,7 @@ impl LearnedReader {
         let acts = spoken.said.split_inclusive(|s| self.symbols.name(s.id) == ";");
         for (act, said) in reading.acts.iter_mut().zip(acts) {
             act.confidence = said.iter().fold(1.0, |least: f64, s| least.min(s.p)).max(0.0);
-            let spans = said.iter().filter_map(|s| all.get(s.look?)).map(|t| t.span);
+            let spans = said.iter().filter_map(|s| all.get(s.looked_at?)).map(|t| t.span);
             act.span = spans.reduce(Span::to);
         }
         reading
@@ -214,7 +214,7 @@ struct Symbol {
     id: usize,
     p: f64,
     /// The token that the network looked at most.
-    look: Option<usize>,
+    looked_at: Option<usize>,
     /// What else could be said here, and its probability.
     rival: Option<(usize, f64)>,
 }
@@ -224,7 +224,7 @@ impl From<(usize, f64)> for Symbol {
         Self {
             id,
             p,
-            look: None,
+            looked_at: None,
             rival: None,
         }
     }

@@ -63,7 +63,7 @@ impl Attention {
     }
 
     /// One query row against keys and values of all rows; `at` is its place. Adds the output to `x`, and the attention,
-    /// mean over heads, to `look`.
+    /// mean over heads, to `attention`.
     fn attend(
         &self,
         heads: usize,
@@ -71,7 +71,7 @@ impl Attention {
         [keys, values]: [&[f32]; 2],
         at: usize,
         x: &mut [f32],
-        mut look: Option<&mut [f32]>,
+        mut attention: Option<&mut [f32]>,
     ) {
         let width = query.len();
         let (rows, size) = (keys.len() / width, width / heads);
@@ -100,8 +100,8 @@ impl Attention {
             }
             for (j, s) in scores.iter().enumerate() {
                 let p = s / sum;
-                if let Some(look) = look.as_deref_mut() {
-                    look[j] += p / heads as f32;
+                if let Some(attention) = attention.as_deref_mut() {
+                    attention[j] += p / heads as f32;
                 }
                 let v = &values[j * width..][part.clone()];
                 mixed[part.clone()]
@@ -323,7 +323,7 @@ impl Net {
         let id = last.unwrap_or(self.symbols);
         let mut x = self.symbol[id * width..][..width].to_vec();
         let mut y = vec![0.0; width];
-        let mut look = vec![0.0f32; tokens];
+        let mut attention = vec![0.0f32; tokens];
         for (i, layer) in self.decoder.iter().enumerate() {
             layer.norm.rows(&x, &mut y);
             state.keys[i].extend(layer.attention.k.vector(&y));
@@ -345,7 +345,7 @@ impl Net {
                     [&memory.keys[i], &memory.values[i]],
                     0,
                     &mut x,
-                    last.then_some(&mut look[..]),
+                    last.then_some(&mut attention[..]),
                 );
             }
             layer.through_inner(&mut x, width);
@@ -383,10 +383,10 @@ impl Net {
                     let p = copied[k * tokens + i];
                     logits[*s] += p;
                     // (what is copied is looked at)
-                    look[i] = look[i].max(p);
+                    attention[i] = attention[i].max(p);
                 }
             }
         }
-        (logits, look)
+        (logits, attention)
     }
 }

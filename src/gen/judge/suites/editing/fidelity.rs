@@ -175,7 +175,7 @@ impl Options {
     }
 }
 
-/// What a trial redraws.
+/// What a trial inpaints.
 fn region(scene: &Scene, trial: &Trial, params: &GenParams) -> anyhow::Result<Region> {
     let mut document = Document::new(scene.clone());
     document.apply("Edit", &trial.edit)?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::tried::Brought;
+use super::trial_run::Brought;
 use crate::suite::with_interval;
 use job::request::voxels_of;
 use numeric::quantile::{median, quantile};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::tally::Tally;
-use super::tried::try_edit;
+use super::trial_run::try_edit;
 use crate::trials::Trial;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx};

@@ -9,14 +9,14 @@ use serde_json::{Value, json};
 use super::fit::{Bands, Fit};
 use super::materials::Material;
 use super::tally::{MUCH, Tally};
-use super::tried::{STATES, try_edit};
+use super::trial_run::{STATES, try_edit};
 use crate::Progress;
 use crate::suite::Options;
 use crate::trials::{Trial, vehicles};
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx};
 use scene::{Class, Scene};
-use trade::{Stop, Stops};
+use trade::{Preset, Presets};
 
 /// Classes that are added to every scene, in this order, as many as `--vehicles` allows.
 const ADDED: [Class; 6] = [
@@ -67,15 +67,15 @@ pub(super) fn trials(scene: &Scene, most: usize, seed: u64) -> Vec<(&'static str
 }
 
 impl Options {
-    /// The stops to judge.
-    pub(super) fn presets(&self) -> anyhow::Result<Vec<Stop>> {
-        let all = Stops::bundled().stops;
+    /// The presets to judge.
+    pub(super) fn presets(&self) -> anyhow::Result<Vec<Preset>> {
+        let all = Presets::bundled().all;
         if self.presets.is_empty() {
             // The reference takes seconds an edit.
             return Ok(all.into_iter().filter(|s| s.error.high > 0.0).collect());
         }
         let named = |name: &String| match all.iter().find(|s| s.name == *name) {
-            Some(stop) => Ok(stop.clone()),
+            Some(preset) => Ok(preset.clone()),
             None => {
                 let names: Vec<&str> = all.iter().map(|s| s.name.as_str()).collect();
                 bail!("--presets {name}: expected some of {}", names.join(", "))
@@ -88,7 +88,7 @@ impl Options {
     pub(super) fn invention(
         &self,
         material: &Material,
-        presets: &[Stop],
+        presets: &[Preset],
         pipeline: &OccPipeline,
         progress: &dyn Progress,
     ) -> anyhow::Result<Invention> {
@@ -105,8 +105,8 @@ impl Options {
             let scene = material.scene(i)?;
             bands.add(scene.frame());
             let trials = trials(&scene, self.vehicles, i as u64);
-            for (stop, found) in presets.iter().zip(&mut found) {
-                let params = stop.knobs.on(base);
+            for (preset, found) in presets.iter().zip(&mut found) {
+                let params = preset.knobs.on(base);
                 // Every edit starts from the inverted source, none from what another left in memory.
                 let mut ready = pipeline.clone();
                 let job = Job {
@@ -135,7 +135,7 @@ impl Options {
         let by_preset: BTreeMap<&str, Value> = presets
             .iter()
             .zip(&found)
-            .map(|(stop, found)| (stop.name.as_str(), found.report(&bands)))
+            .map(|(preset, found)| (preset.name.as_str(), found.report(&bands)))
             .collect();
         let usual = presets.iter().position(|s| s.name == USUAL);
         let removals = usual.and_then(|i| found[i].kinds.get("remove"));
@@ -162,8 +162,8 @@ impl OfPreset {
 }
 
 /// One row per preset, from the fastest to the slowest: how far it is from the slider's reference, and what it invents.
-fn table(presets: &[Stop], found: &[OfPreset]) -> Value {
-    let rows = presets.iter().zip(found).map(|(stop, found)| {
+fn table(presets: &[Preset], found: &[OfPreset]) -> Value {
+    let rows = presets.iter().zip(found).map(|(preset, found)| {
         let kinds = found.kinds.iter().map(|(kind, tally)| {
             let of = |state: usize| {
                 let (mean, much) = tally.invents(state);
@@ -173,9 +173,9 @@ fn table(presets: &[Stop], found: &[OfPreset]) -> Value {
             ((*kind).to_owned(), json!({ "networks": of(0), "shown": of(2) }))
         });
         json!({
-            "preset": stop.name,
-            "steps": stop.knobs.steps,
-            "differs_from_reference": stop.error.median,
+            "preset": preset.name,
+            "steps": preset.knobs.steps,
+            "differs_from_reference": preset.error.median,
             "kinds": kinds.collect::<Value>(),
         })
     });
@@ -184,16 +184,16 @@ fn table(presets: &[Stop], found: &[OfPreset]) -> Value {
 
 /// Kinds of edits in which a preset invents more than a faster one does, networks alone: nearer to the slider's reference,
 /// and not more accurate.
-fn contradictions(presets: &[Stop], found: &[OfPreset]) -> Vec<String> {
+fn contradictions(presets: &[Preset], found: &[OfPreset]) -> Vec<String> {
     let kinds: BTreeSet<&str> = found.iter().flat_map(|f| f.kinds.keys().copied()).collect();
     let mut out = Vec::new();
     for kind in kinds {
         let mut least: Option<(&str, f64)> = None; // of the faster presets
-        for (stop, found) in presets.iter().zip(found) {
+        for (preset, found) in presets.iter().zip(found) {
             let Some(tally) = found.kinds.get(kind) else {
                 continue;
             };
-            let (name, invents) = (stop.name.as_str(), tally.invents(0).0);
+            let (name, invents) = (preset.name.as_str(), tally.invents(0).0);
             match least {
                 Some((fast, less)) if invents > less + CLEARLY => out.push(format!(
                     "{kind}: {name} invents {invents:.1} voxels per edit, {fast} {less:.1}: it is not more accurate"
@@ -209,12 +209,12 @@ fn contradictions(presets: &[Stop], found: &[OfPreset]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::suites::editing::tried::Tried;
+    use crate::suites::editing::trial_run::Tried;
     use job::invented::Invented;
 
     #[test]
     fn a_slower_preset_that_invents_more_is_named() {
-        let presets = &Stops::bundled().stops[..3];
+        let presets = &Presets::bundled().all[..3];
         let of = |voxels: usize| {
             let mut invented = Invented::default();
             invented.by_class[usize::from(Class::Vegetation.id())] = voxels;

@@ -8,7 +8,7 @@ mod invention;
 mod materials;
 mod success;
 mod tally;
-mod tried;
+mod trial_run;
 
 use anyhow::bail;
 use serde_json::json;

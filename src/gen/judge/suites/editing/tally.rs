@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::tried::{STATES, Tried};
+use super::trial_run::{STATES, Tried};
 use crate::suite::with_interval;
 use metrics::stats::mean_ci95;
 use scene::Class;

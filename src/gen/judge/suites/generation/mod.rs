@@ -4,11 +4,11 @@
 mod agreement;
 mod distribution;
 mod follow;
-mod given;
-mod redrawn;
+mod given_background;
+mod inpainted;
 mod row;
 mod table;
-mod told_apart;
+mod two_sample;
 
 use std::sync::Arc;
 
@@ -22,14 +22,14 @@ use agreement::Agreement;
 use authoring::scenery::{Drawer, SceneryWish};
 use editor::Document;
 use follow::Follow;
-use given::Given;
+use given_background::Given;
+use inpainted::Inpainted;
 use job::pipeline::{Ablation, OccPipeline};
 use job::{GenParams, Job, JobCtx, Pipeline};
 use metrics::extractor::Extractor;
 use metrics::iou::Confusion;
 use nets::fine_vae;
 use numeric::quantile::median;
-use redrawn::Redrawn;
 use row::{ROWS, Row, Seen};
 use scene::{Scene, VoxelGrid, draft};
 pub(crate) use table::table;
@@ -51,7 +51,7 @@ struct Measured {
     boxless: Agreement,
     likeness: Confusion,
     wall_s: Vec<f64>,
-    redrawn: Redrawn,
+    inpainted: Inpainted,
     /// Of generated scenes and of worlds.
     follow: [Follow; 2],
     /// With the fine stage and without.
@@ -79,7 +79,7 @@ impl Options {
         let found = &measured.rows[GENERATED];
         let mut report = json!({});
         if !self.rows_only {
-            report["ablations"] = measured.redrawn.report();
+            report["ablations"] = measured.inpainted.report();
             report["ablations"]["without_layout"] = measured.bare.report();
             report["ablations"]["without_boxes"] = measured.boxless.report();
         }
@@ -180,7 +180,7 @@ impl Options {
             measured.bare.add(&job.scene, &bare);
             let boxless = run(Some(Ablation::Boxes), &job)?.occupancy;
             measured.boxless.add(&job.scene, &boxless);
-            measured.redrawn.add(pipeline, &job)?;
+            measured.inpainted.add(pipeline, &job)?;
         }
         measured.likeness.add(&truth, &result.occupancy);
         let vae = &pipeline.models().vae;
@@ -220,7 +220,7 @@ fn of<'a>(row: usize, other: &'a Scene, world: &'a Scene) -> &'a Scene {
     if row == 0 { other } else { world }
 }
 
-/// A scene with its background drawn anew; the window does it by rules before it generates.
+/// A scene with its background regenerated; the window does it by rules before it generates.
 fn with_drawn_scenery(scene: &Arc<Scene>, by: Drawer, seed: u64) -> anyhow::Result<Arc<Scene>> {
     let mut document = Document::new((**scene).clone());
     let wish = SceneryWish {

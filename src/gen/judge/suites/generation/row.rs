@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 
 use super::agreement::Agreement;
-use super::{distribution, told_apart};
+use super::{distribution, two_sample};
 use crate::suite::with_interval;
 use editor::checks::{Severity, names, run_checks};
 use metrics::extractor::Extractor;
@@ -179,8 +179,8 @@ impl Row {
                 &pair(|s| &s.windows),
             )?;
             out["told_apart"] = json!({
-                "occupancy": told_apart::report(&pair(|s| &s.patches), &occupancy::names(), seed)?,
-                "depth": told_apart::report(&pair(|s| &s.depths), &depth::names(), seed)?,
+                "occupancy": two_sample::report(&pair(|s| &s.patches), &occupancy::names(), seed)?,
+                "depth": two_sample::report(&pair(|s| &s.depths), &depth::names(), seed)?,
             });
         }
         Ok(out)

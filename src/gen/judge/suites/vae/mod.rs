@@ -18,7 +18,7 @@ use formats::occ3d;
 use job::pipeline::OccPipeline;
 use metrics::agreement::AgreementCount;
 use metrics::iou::Confusion;
-use nets::{CELLS, Heard, OccVae, fine_vae};
+use nets::{CELLS, DecoderInput, OccVae, fine_vae};
 use scene::{Class, Unobserved, VoxelGrid, draft, infer};
 use slopes::Slopes;
 
@@ -84,13 +84,13 @@ fn try_all(
     fine: &OccVae,
     truth: &VoxelGrid,
     seed: u64,
-    heard: Heard<'_>,
+    input: DecoderInput<'_>,
     kept: &mut [Kept; MODES.len()],
 ) -> anyhow::Result<VoxelGrid> {
     let latent = vae.encode(truth)?;
     let mean = vae.decode(&latent)?;
     kept[0].add(truth, &mean);
-    kept[TOLD].add(truth, &vae.decode_told(&latent, &[true; CELLS], heard)?);
+    kept[TOLD].add(truth, &vae.decode_with(&latent, &[true; CELLS], input)?);
     kept[1].add(truth, &vae.decode(&vae.encode_sampled(truth, seed)?)?);
     kept[2].add(truth, &fine.decode(&fine.encode(truth)?)?);
     Ok(mean)
@@ -106,14 +106,14 @@ impl Options {
             progress.at("vae", i, self.frames);
             slopes.add_world(vae, TEST_SEED, i as u64)?;
             let world = occupancy_frame(TEST_SEED, i as u64, |_| None);
-            let mut heard = Heard {
+            let mut input = DecoderInput {
                 draft: Some(&world.draft),
                 observed: None,
             };
-            let found = try_all(vae, &fine, &world.dense, i as u64, heard, &mut complete)?;
+            let found = try_all(vae, &fine, &world.dense, i as u64, input, &mut complete)?;
             agreement.add(scene(i as u64).frame(), &found);
-            heard.observed = Some(&world.observed);
-            try_all(vae, &fine, &world.labels, i as u64, heard, &mut labels)?;
+            input.observed = Some(&world.observed);
+            try_all(vae, &fine, &world.labels, i as u64, input, &mut labels)?;
         }
         let bars = vec![
             ("complete miou", complete[0].miou(), 0.93),
@@ -150,11 +150,11 @@ impl Options {
             let draft = draft::draft(&layout, boxes.values());
             let observed = file.lidar_observed.as_deref().and_then(Unobserved::from_observed);
             let observed = observed.as_ref().map(Unobserved::observed);
-            let heard = Heard {
+            let input = DecoderInput {
                 draft: Some(&draft),
                 observed: observed.as_deref(),
             };
-            try_all(vae, &fine, &truth, i as u64, heard, &mut kept)?;
+            try_all(vae, &fine, &truth, i as u64, input, &mut kept)?;
             slopes.add_tilted(vae, &truth, i as u64)?;
         }
         let report = json!({ "data": dir, "files": used.len(), "labels": report(&kept), "labels_tilted": slopes.report() });

@@ -3,14 +3,14 @@
 use glam::{IVec3, Vec2, Vec3};
 
 use super::super::field::Structure;
-use super::super::look::{Hit, Look};
 use super::super::noise::{hash1, ramp, unit, unit3, value2, value3};
+use super::super::prepared::{Appearance, Hit};
 use super::super::things::rgb;
 use super::{Surface, band, calm, gray, visible};
 use scene::Class;
-use scene::look::TRUNK;
+use scene::appearance::TRUNK;
 
-impl Look {
+impl Appearance {
     pub(super) fn voxel_surface(&self, hit: &Hit, label: u8, normal: Vec3, fp: f32) -> Surface {
         let a = self.anchor(hit.p);
         let class = Class::from_id(label).unwrap_or(Class::Others);

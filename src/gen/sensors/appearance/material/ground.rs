@@ -2,13 +2,13 @@
 
 use glam::{IVec3, Vec2, Vec3};
 
-use super::super::look::Look;
 use super::super::noise::{fbm2, ramp, unit3, value2};
+use super::super::prepared::Appearance;
 use super::{Surface, band, gray, visible};
-use scene::look::{KERB_EDGE_M, KERB_SEEN_M};
+use scene::appearance::{KERB_EDGE_M, KERB_SEEN_M};
 use scene::{BevLayer, PolylineKind};
 
-impl Look {
+impl Appearance {
     pub(super) fn ground_surface(&self, p: Vec3, normal: Vec3, fp: f32) -> Surface {
         let a = self.anchor(p).truncate();
         let p2 = p.truncate();

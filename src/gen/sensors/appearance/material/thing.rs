@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::super::look::Look;
 use super::super::noise::{ramp, unit, unit3, value2, value3};
+use super::super::prepared::Appearance;
 use super::super::things::{Material, Thing, rgb};
 use super::{Surface, TAIL, band, gray, visible};
 use scene::Class;
@@ -31,7 +31,7 @@ impl Spot<'_> {
     }
 }
 
-impl Look {
+impl Appearance {
     pub(super) fn thing_surface(&self, t: &Thing, p: Vec3, n: Vec3, material: Material, fp: f32) -> Surface {
         let mut out = Surface::matt(gray(0.1), n);
         let spot = Spot {

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
 
 use super::field::PromptField;
-use super::heard;
+use super::typed_text;
 use crate::command::Command;
 use crate::tools::things::ThingCommand;
 use crate::tools::{Choose, ToolCommand};
@@ -105,8 +105,8 @@ impl PromptField {
         }
         if let Some((act, k)) = gone {
             match as_change {
-                true => both.set_edit(scene, |r| heard::take_out(r, act, k)),
-                false => both.set_prompt(|r| heard::take_out(r, act, k)),
+                true => both.set_edit(scene, |r| typed_text::take_out(r, act, k)),
+                false => both.set_prompt(|r| typed_text::take_out(r, act, k)),
             }
         }
         if let Some(i) = beside {
@@ -119,7 +119,7 @@ impl PromptField {
             }
         }
         if let Some((act, k, n)) = number {
-            both.set_prompt(|r| heard::set_number(r, act, k, n));
+            both.set_prompt(|r| typed_text::set_number(r, act, k, n));
         }
         if let Some((act, what)) = other {
             both.set_prompt(|r| r.acts[act].what = what);
@@ -217,7 +217,7 @@ impl PromptField {
             }
         }
         if let (Some((act, asked, id)), Some(read)) = (chosen, &mut self.read) {
-            read.set_edit(scene, |r| heard::answer(r, act, &asked, id));
+            read.set_edit(scene, |r| typed_text::answer(r, act, &asked, id));
             self.change(scene, commands);
         } else if let (Some((clause, said)), Some(read)) = (beside, &mut self.read) {
             read.set_edit(scene, |r| r.background[clause] = said);

@@ -7,8 +7,8 @@ use anyhow::bail;
 use serde_json::{Value, json};
 
 use super::cases::{self, Case};
-use super::choose::stops_of;
-pub use super::choose::write_stops;
+use super::choose::presets_of;
+pub use super::choose::write_presets;
 use super::edits::{Bench, Outcome, reference_params};
 use super::measure::Raw;
 use super::report::{Row, sensor_json, untouched_the_same};
@@ -19,7 +19,7 @@ use crate::held_out::bare_scene;
 use job::{GenParams, JobCtx};
 use nets::OccModels;
 use scene::Scene;
-use trade::{Placed, StopKnobs, Stops, front, hypervolume};
+use trade::{PresetKnobs, Presets, TradePoint, front, hypervolume};
 
 /// What can be measured.
 pub const PARTS: [&str; 5] = ["edit", "scene", "lidar", "splat", "vae"];
@@ -60,8 +60,8 @@ pub struct Mark {
     pub error: [f64; 3],
     /// Nothing beats it.
     pub on_front: bool,
-    /// It is a stop of the slider, and this one is called so.
-    pub stop: Option<String>,
+    /// It is a preset of the slider, and this one is called so.
+    pub preset: Option<String>,
 }
 
 /// What a run found.
@@ -71,8 +71,8 @@ pub struct Found {
     pub points: Vec<Value>,
     /// The settings of edits, to be plotted.
     pub marks: Vec<Mark>,
-    /// The stops of the slider, if edits were measured.
-    pub stops: Option<Stops>,
+    /// The presets of the slider, if edits were measured.
+    pub presets: Option<Presets>,
     /// Figures over all settings of a part.
     pub figures: Value,
     /// How far half of the reference's steps lie from the reference; null if edits were not measured.
@@ -161,18 +161,18 @@ impl Plan {
             self.add_part(part, cases, models, &mut found);
         }
         self.sensors(models, &mut found)?;
-        if let Some(stops) = &found.stops {
-            let usual = StopKnobs::of(&GenParams::default());
+        if let Some(presets) = &found.presets {
+            let usual = PresetKnobs::of(&GenParams::default());
             for mark in &mut found.marks {
-                let named = |s: &&trade::Stop| settings::name_of(&s.knobs, &usual) == mark.name;
-                mark.stop = stops.stops.iter().find(named).map(|s| s.name.clone());
+                let named = |s: &&trade::Preset| settings::name_of(&s.knobs, &usual) == mark.name;
+                mark.preset = presets.all.iter().find(named).map(|s| s.name.clone());
             }
         }
         found.self_check = self.self_check(models, progress)?;
         Ok(found)
     }
 
-    /// Edits or scenes: points, marks, stops, figures.
+    /// Edits or scenes: points, marks, presets, figures.
     fn add_part(&self, part: &str, cases: &[(String, Vec<Outcome>)], models: &OccModels, found: &mut Found) {
         let (base, settings) = self.settings(part);
         let of_setting = |i: usize| cases.iter().filter_map(move |(_, o)| o.get(i)).cloned().collect();
@@ -182,28 +182,28 @@ impl Plan {
         });
         let rows: Vec<Row> = rows.collect();
         let same_target: Vec<&Row> = rows.iter().filter(|r| !r.setting.other_target).collect();
-        let placed: Vec<Placed> = same_target.iter().map(|r| r.placed()).collect();
-        let mut on_front = front(&placed).into_iter();
+        let points: Vec<TradePoint> = same_target.iter().map(|r| r.point()).collect();
+        let mut on_front = front(&points).into_iter();
         for row in &rows {
             let on_front = !row.setting.other_target && on_front.next().unwrap_or(false);
             found.points.push(row.json(part, on_front));
             if part == "edit" && !row.setting.other_target {
-                let p = row.placed();
+                let p = row.point();
                 found.marks.push(Mark {
                     name: row.setting.name.clone(),
                     wall_s: [p.wall_s.median, p.wall_s.low, p.wall_s.high],
                     error: [p.error.median, p.error.low, p.error.high],
                     on_front,
-                    stop: None,
+                    preset: None,
                 });
             }
         }
-        found.figures[format!("hypervolume_{part}")] = hypervolume(&placed, 30.0, 0.2).into();
+        found.figures[format!("hypervolume_{part}")] = hypervolume(&points, 30.0, 0.2).into();
         let same = cases.iter().all(|(_, o)| untouched_the_same(o, &rows));
         found.figures[format!("untouched_identical_{part}")] = same.into();
         if part == "edit" {
             let reference = reference_params(base, self.reference_steps);
-            found.stops = Some(stops_of(&same_target, reference, models));
+            found.presets = Some(presets_of(&same_target, reference, models));
         }
     }
 

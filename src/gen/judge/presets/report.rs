@@ -9,7 +9,7 @@ use super::figures::{percent, seconds};
 use super::sensors::Measured;
 use super::settings::Setting;
 use numeric::quantile::{median, quantile};
-use trade::{Cost, Placed, SizedTime, bootstrap_median};
+use trade::{Cost, SizedTime, TradePoint, bootstrap_median};
 
 /// What the report says of a setting.
 pub(super) struct Row {
@@ -22,8 +22,8 @@ impl Row {
         self.outcomes.iter().map(of).collect()
     }
 
-    pub(super) fn placed(&self) -> Placed {
-        Placed {
+    pub(super) fn point(&self) -> TradePoint {
+        TradePoint {
             wall_s: bootstrap_median(&self.all(|o| median(&o.wall_s)), 1),
             error: bootstrap_median(&self.all(|o| o.error), 2),
         }
@@ -38,7 +38,7 @@ impl Row {
     }
 
     pub(super) fn json(&self, part: &str, on_front: bool) -> Value {
-        let placed = self.placed();
+        let point = self.point();
         let every: Vec<f64> = self.outcomes.iter().flat_map(|o| o.wall_s.clone()).collect();
         let mean = |of: &dyn Fn(&Outcome) -> f64| {
             let values = self.all(of);
@@ -63,7 +63,7 @@ impl Row {
             "knobs": self.setting.params,
             "other_target": self.setting.other_target,
             "on_front": on_front,
-            "wall_s": placed.wall_s,
+            "wall_s": point.wall_s,
             "wall_s_p95": quantile(&every, 0.95),
             "wall_s_least": every.iter().copied().fold(f64::INFINITY, f64::min),
             "runs": every.len(),
@@ -72,7 +72,7 @@ impl Row {
             "cost": self.cost(),
             "network_calls": mean(&|o| o.network_calls as f64),
             "tokens": mean(&|o| o.tokens as f64),
-            "error": placed.error,
+            "error": point.error,
             "error_of_occupied": bootstrap_median(&self.all(|o| o.error_of_occupied), 3),
             "miou": bootstrap_median(&self.all(|o| o.miou), 4),
             "latent_error": bootstrap_median(&self.all(|o| o.latent_error), 5),

@@ -1,4 +1,4 @@
-//! Work beside the window: times the slider's stops on this machine, or measures how far the last edit's result lies
+//! Work beside the window: times the slider's presets on this machine, or measures how far the last edit's result lies
 //! from the reference. Each in a thread of its own that can be stopped.
 
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use job::{GenError, GenParams, GenReport, Job, JobCtx, JobUpdate, Pipeline};
 use nets::OccModels;
 use numeric::quantile::median;
 use scene::{Scene, VoxelGrid};
-use trade::{Cost, SizedTime, Stop, Stops};
+use trade::{Cost, Preset, Presets, SizedTime};
 use world::draw::Draw;
 
 /// Calibration ends after this, with what was measured so far.
@@ -25,8 +25,8 @@ const AT_MOST: Duration = Duration::from_secs(28);
 
 /// What is asked for.
 pub enum Task {
-    /// Times of all stops.
-    Calibrate(Stops),
+    /// Times of all presets.
+    Calibrate(Presets),
     /// Error of a result.
     Refine(Box<Refine>),
 }
@@ -40,7 +40,7 @@ pub struct Refine {
     /// What that gave.
     pub result: VoxelGrid,
     /// The reference's settings.
-    pub reference: Stop,
+    pub reference: Preset,
 }
 
 /// What came of it.
@@ -48,8 +48,8 @@ pub struct Refine {
 pub enum News {
     /// So many of so many parts are done.
     Progress(usize, usize),
-    /// Stops with this machine's times; true if their results are the very ones whose errors are known.
-    Calibrated(Stops, bool),
+    /// Presets with this machine's times; true if their results are the very ones whose errors are known.
+    Calibrated(Presets, bool),
     /// Share of the region's voxels in which the result differs from the reference.
     Refined(f64),
     /// One line.
@@ -57,12 +57,12 @@ pub enum News {
 }
 
 /// A task on its way. Dropping it stops the thread soon.
-pub struct Background {
+pub struct Measurement {
     news: Receiver<News>,
     stop: Arc<AtomicBool>,
 }
 
-impl Background {
+impl Measurement {
     /// Starts the thread; `wake` is called after each piece of news. Errors if the system gives no thread.
     pub fn start(task: Task, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
         let (out, news) = unbounded();
@@ -74,7 +74,7 @@ impl Background {
             let told = Told { out, wake: &*wake };
             let should_stop = || stopped.load(Ordering::Relaxed);
             match task {
-                Task::Calibrate(stops) => calibrate(stops, &should_stop, &told),
+                Task::Calibrate(presets) => calibrate(presets, &should_stop, &told),
                 Task::Refine(refine) => refined(&refine, &should_stop, &told),
             }
         };
@@ -98,7 +98,7 @@ impl Background {
     }
 }
 
-impl Drop for Background {
+impl Drop for Measurement {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -117,9 +117,9 @@ impl Told<'_> {
     }
 }
 
-/// A stop whose source stands ready, and the times its runs took.
+/// A preset whose source stands ready, and the times its runs took.
 struct Ready {
-    stop: usize,
+    preset: usize,
     pipeline: OccPipeline,
     times: Vec<Vec<SizedTime>>, // by case
 }
@@ -144,22 +144,26 @@ fn run(
     Ok((time, label_hash(&result.occupancy)))
 }
 
-/// Times every stop on the edits of one world, each at least once, then in random turns until the time is up.
-fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Result<News, GenError> {
+/// Times every preset on the edits of one world, each at least once, then in random turns until the time is up.
+fn calibrate(
+    mut presets: Presets,
+    stop: &(dyn Fn() -> bool + Sync),
+    told: &Told<'_>,
+) -> Result<News, GenError> {
     let ctx = JobCtx::new(stop, &|_| {});
     let deadline = Instant::now() + AT_MOST;
     let models = OccModels::bundled().map_err(GenError::failed)?;
     let cases = cases::of_scene(&bare_scene(0), "world 0", 0);
-    let timed: Vec<usize> = (0..stops.stops.len())
-        .filter(|i| stops.stops[*i].name != "reference")
+    let timed: Vec<usize> = (0..presets.all.len())
+        .filter(|i| presets.all[*i].name != "reference")
         .collect();
     let parts = timed.len() + 1;
     let mut same = true;
     let mut ready: Vec<Ready> = Vec::new();
-    let mut slower = Vec::new(); // than where the stops were measured
+    let mut slower = Vec::new(); // than where the presets were measured
     for (k, i) in timed.into_iter().enumerate() {
         told.say(News::Progress(k, parts));
-        let of = &mut stops.stops[i];
+        let of = &mut presets.all[i];
         let params = of.knobs.on(GenParams::default());
         let mut pipeline = OccPipeline::new(models.clone());
         let start = Instant::now();
@@ -181,7 +185,7 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
             }
         }
         ready.push(Ready {
-            stop: i,
+            preset: i,
             pipeline,
             times,
         });
@@ -190,7 +194,7 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
     let mut draw = Draw::new(0, "calibration");
     while Instant::now() < deadline && !ready.is_empty() {
         let (r, c) = (draw.below(ready.len()), draw.below(cases.len()));
-        let params = stops.stops[ready[r].stop].knobs.on(GenParams::default());
+        let params = presets.all[ready[r].preset].knobs.on(GenParams::default());
         let (time, _) = run(&ready[r].pipeline, &cases[c], params, &ctx)?;
         ready[r].times[c].push(time);
     }
@@ -204,22 +208,22 @@ fn calibrate(mut stops: Stops, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>
                 wall_s: median(&t.iter().map(|t| t.wall_s).collect::<Vec<_>>()),
             })
             .collect();
-        let of = &mut stops.stops[r.stop];
+        let of = &mut presets.all[r.preset];
         if let Some(cost) = Cost::fit(&middle) {
             of.cost = cost;
         }
     }
     // The reference takes minutes: its time is scaled as the others' inversions are.
     let slower = median(&slower);
-    let reference = stops.stops.iter_mut().find(|s| s.name == "reference");
+    let reference = presets.all.iter_mut().find(|s| s.name == "reference");
     if let Some(reference) = reference.filter(|_| slower.is_finite()) {
         reference.invert_s *= slower;
         reference.cost.fixed_s *= slower;
     }
-    stops.machine = machine();
-    stops.build = build();
-    stops.load_per_core = Load::now().per_core;
-    Ok(News::Calibrated(stops, same))
+    presets.machine = machine();
+    presets.build = build();
+    presets.load_per_core = Load::now().per_core;
+    Ok(News::Calibrated(presets, same))
 }
 
 /// Names this build of the program: figures of another one may not hold.

@@ -32,7 +32,7 @@ impl Both {
         }
     }
 
-    /// Carries the change out anew where the scene or the seed is another one; true if it was.
+    /// Carries the change out again where the scene or the seed is another one; true if it was.
     pub fn follow(&mut self, scene: &Scene, seed: u64) -> bool {
         if (scene.rev, seed) == (self.rev, self.seed) {
             return false;
@@ -245,9 +245,9 @@ fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
                 places(list, f);
             }
         }
-        What::Set { who, look } => {
+        What::Set { who, traits } => {
             who.iter_mut().for_each(|t| one(t, f));
-            if let Some(t) = &mut look.paint_of {
+            if let Some(t) = &mut traits.paint_of {
                 one(t, f);
             }
         }

@@ -15,7 +15,7 @@ const LEAST: f32 = 9.0;
 
 /// What is marked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Meant {
+pub struct FindingMarks {
     /// Voxels.
     pub cells: Vec<[usize; 3]>,
     /// A box.
@@ -24,7 +24,7 @@ pub struct Meant {
     pub where_m: DVec3,
 }
 
-impl Meant {
+impl FindingMarks {
     /// By a finding.
     pub fn by(finding: &Finding) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The stops of the quality slider: settings on the measured front, from draft to reference.
+//! The presets of the quality slider: settings on the measured front, from draft to reference.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,10 +7,10 @@ use diffusion::solver::SolverKind;
 use job::params::GenParams;
 use nn::Precision;
 
-/// The knobs that a stop sets; everything else of the parameters stays.
+/// The knobs that a preset sets; everything else of the parameters stays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StopKnobs {
+pub struct PresetKnobs {
     /// Sampling steps.
     pub steps: u32,
     /// How a step is made.
@@ -30,7 +30,7 @@ pub struct StopKnobs {
     pub fine_steps: u32,
 }
 
-impl StopKnobs {
+impl PresetKnobs {
     /// Those of some parameters.
     pub fn of(params: &GenParams) -> Self {
         Self {
@@ -61,20 +61,20 @@ impl StopKnobs {
     }
 }
 
-/// One stop.
+/// One preset.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Stop {
+pub struct Preset {
     /// What users call it: `draft`.
     pub name: String,
     /// Its settings.
-    pub knobs: StopKnobs,
+    pub knobs: PresetKnobs,
     /// Share of the region's voxels that differ from the reference: median over edits and its interval.
     pub error: Interval,
     /// The share that nine of ten single edits lie between.
     pub error_of_one: [f64; 2],
     /// Voxels above the ground that an edit brings though they are in neither the source nor the request: mean over edits,
-    /// where it was counted. A stop that invents more than a faster one is not more accurate in this.
+    /// where it was counted. A preset that invents more than a faster one is not more accurate in this.
     #[serde(default)]
     pub invented: Option<f64>,
     /// Wall time of an edit whose source is ready.
@@ -86,10 +86,10 @@ pub struct Stop {
     pub probe: Vec<u64>,
 }
 
-/// All stops, from the fastest to the reference.
+/// All presets, from the fastest to the reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Stops {
+pub struct Presets {
     /// Which weights they were measured with: `hashes` of the `ModelCard` in `nets`.
     pub weights: [u64; 3],
     /// The machine on which the times were taken.
@@ -102,21 +102,22 @@ pub struct Stops {
     pub load_per_core: Option<f64>,
     /// What the errors are measured against.
     pub reference: String,
-    /// The stops.
-    pub stops: Vec<Stop>,
+    /// The presets. Files call them by their first name.
+    #[serde(rename = "stops", alias = "presets")]
+    pub all: Vec<Preset>,
 }
 
-impl Stops {
+impl Presets {
     /// Those measured for the shipped weights; times are of the machine named in them until the user calibrates.
     pub fn bundled() -> Self {
-        let text = assets::trade::STOPS;
+        let text = assets::trade::PRESETS;
         serde_json::from_str(text).unwrap_or_else(|_| Self {
             weights: [0; 3],
             machine: String::new(),
             build: String::new(),
             load_per_core: None,
             reference: String::new(),
-            stops: Vec::new(),
+            all: Vec::new(),
         })
     }
 
@@ -126,7 +127,7 @@ impl Stops {
         if read.weights != weights {
             return Err("measured with other weights".into());
         }
-        let sound = |s: &Stop| {
+        let sound = |s: &Preset| {
             let ends = [
                 s.error.low,
                 s.error.median,
@@ -141,22 +142,22 @@ impl Stops {
                 .all(|v| v.is_finite() && *v >= 0.0)
                 && s.knobs.on(GenParams::default()).check().is_ok()
         };
-        match read.stops.iter().find(|s| !sound(s)) {
-            _ if read.stops.is_empty() => Err("no stops".into()),
-            Some(bad) => Err(format!("stop {:?}: a figure is out of range", bad.name)),
+        match read.all.iter().find(|s| !sound(s)) {
+            _ if read.all.is_empty() => Err("no presets".into()),
+            Some(bad) => Err(format!("preset {:?}: a figure is out of range", bad.name)),
             None => Ok(read),
         }
     }
 
-    /// The stop of that name.
-    pub fn named(&self, name: &str) -> Option<&Stop> {
-        self.stops.iter().find(|s| s.name == name)
+    /// The preset of that name.
+    pub fn named(&self, name: &str) -> Option<&Preset> {
+        self.all.iter().find(|s| s.name == name)
     }
 
-    /// The stop whose knobs these parameters have.
+    /// The preset whose knobs these parameters have.
     pub fn index_of(&self, params: &GenParams) -> Option<usize> {
-        let knobs = StopKnobs::of(params);
-        self.stops.iter().position(|s| s.knobs == knobs)
+        let knobs = PresetKnobs::of(params);
+        self.all.iter().position(|s| s.knobs == knobs)
     }
 }
 
@@ -165,12 +166,12 @@ mod tests {
     use super::*;
     use nets::OccModels;
 
-    /// Row 64: from the fastest stop to the slowest, time rises and the error falls; every stop can be run.
+    /// Row 64: from the fastest preset to the slowest, time rises and the error falls; every preset can be run.
     #[test]
-    fn row_64_the_shipped_stops_are_a_front() {
-        let stops = Stops::bundled();
-        assert!(stops.stops.len() >= 5);
-        for pair in stops.stops.windows(2) {
+    fn row_64_the_shipped_presets_are_a_front() {
+        let presets = Presets::bundled();
+        assert!(presets.all.len() >= 5);
+        for pair in presets.all.windows(2) {
             assert!(
                 pair[0].error.median > pair[1].error.median,
                 "{} {}",
@@ -182,42 +183,45 @@ mod tests {
             }
         }
         for name in ["draft", "balanced", "accurate", "reference"] {
-            assert!(stops.named(name).is_some(), "{name}");
+            assert!(presets.named(name).is_some(), "{name}");
         }
-        for (i, stop) in stops.stops.iter().enumerate() {
-            let params = stop.knobs.on(GenParams::default());
-            assert_eq!((params.check(), stops.index_of(&params)), (Ok(()), Some(i)));
-            assert!(stop.error_of_one[0] <= stop.error.median && stop.error.median <= stop.error_of_one[1]);
+        for (i, preset) in presets.all.iter().enumerate() {
+            let params = preset.knobs.on(GenParams::default());
+            assert_eq!((params.check(), presets.index_of(&params)), (Ok(()), Some(i)));
+            assert!(
+                preset.error_of_one[0] <= preset.error.median
+                    && preset.error.median <= preset.error_of_one[1]
+            );
         }
-        assert!(stops.stops[0].cost.wall_s(40.0) <= 0.15, "the fastest stop");
+        assert!(presets.all[0].cost.wall_s(40.0) <= 0.15, "the fastest preset");
     }
 
     #[test]
-    fn the_shipped_stops_were_measured_with_the_shipped_weights() {
+    fn the_shipped_presets_were_measured_with_the_shipped_weights() {
         let models = OccModels::bundled().expect("weights");
         assert_eq!(
-            Stops::bundled().weights,
+            Presets::bundled().weights,
             models.card.hashes,
-            "run `sceneloom trade --stops`"
+            "run `sceneloom trade --presets`"
         );
     }
 
     #[test]
     fn foreign_files_are_refused_in_one_line() {
-        let stops = Stops::bundled();
-        let text = serde_json::to_string(&stops).expect("plain values");
-        assert_eq!(Stops::parse(&text, stops.weights), Ok(stops.clone()));
-        assert!(Stops::parse(&text, [1, 2, 3]).is_err());
-        let mut bad = stops.clone();
-        bad.stops[0].knobs.steps = 0;
+        let presets = Presets::bundled();
+        let text = serde_json::to_string(&presets).expect("plain values");
+        assert_eq!(Presets::parse(&text, presets.weights), Ok(presets.clone()));
+        assert!(Presets::parse(&text, [1, 2, 3]).is_err());
+        let mut bad = presets.clone();
+        bad.all[0].knobs.steps = 0;
         let refused = |s: &str| {
-            let error = Stops::parse(s, stops.weights).expect_err("refused");
+            let error = Presets::parse(s, presets.weights).expect_err("refused");
             assert_eq!(error.lines().count(), 1, "{error}");
         };
         refused(&serde_json::to_string(&bad).expect("plain values"));
         refused(&text[..text.len() / 2]);
         refused(&text.replace("\"steps\"", "\"stepps\""));
-        bad.stops.clear();
+        bad.all.clear();
         refused(&serde_json::to_string(&bad).expect("plain values"));
     }
 }

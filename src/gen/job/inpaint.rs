@@ -13,21 +13,21 @@ const WORDS: usize = CELLS.div_ceil(64);
 /// A set of latent cells, 1.6 m wide, `[i][j]` along ego x and y. As JSON a list of `[i, j]`.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "Vec<[usize; 2]>", into = "Vec<[usize; 2]>")]
-pub struct RedrawMask([u64; WORDS]);
+pub struct InpaintMask([u64; WORDS]);
 
-impl Default for RedrawMask {
+impl Default for InpaintMask {
     fn default() -> Self {
         Self([0; WORDS])
     }
 }
 
-impl std::fmt::Debug for RedrawMask {
+impl std::fmt::Debug for InpaintMask {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "RedrawMask({} cells)", self.count())
+        write!(f, "InpaintMask({} cells)", self.count())
     }
 }
 
-impl RedrawMask {
+impl InpaintMask {
     /// True if it holds no cell.
     pub fn is_empty(&self) -> bool {
         self.0 == [0; WORDS]
@@ -84,13 +84,13 @@ impl RedrawMask {
     }
 }
 
-impl From<RedrawMask> for Vec<[usize; 2]> {
-    fn from(mask: RedrawMask) -> Self {
+impl From<InpaintMask> for Vec<[usize; 2]> {
+    fn from(mask: InpaintMask) -> Self {
         mask.cells().collect()
     }
 }
 
-impl TryFrom<Vec<[usize; 2]>> for RedrawMask {
+impl TryFrom<Vec<[usize; 2]>> for InpaintMask {
     type Error = String;
     fn try_from(cells: Vec<[usize; 2]>) -> Result<Self, String> {
         let mut mask = Self::default();
@@ -107,16 +107,16 @@ impl TryFrom<Vec<[usize; 2]>> for RedrawMask {
 }
 
 /// What parameters in automatic mode regenerate of a frame: what was edited, and the mask without the boxes in
-/// it that did not change, so that no untouched object is redrawn.
+/// it that did not change, so that no untouched object is inpainted.
 pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
     let edited = Region::of_edit(frame, params.halo_columns as usize);
-    if params.redraw.is_empty() {
+    if params.inpaint.is_empty() {
         return edited;
     }
     let mut columns: Vec<bool> = (0..GridSpec::COLUMNS)
         .map(|c| {
             let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-            params.redraw.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
+            params.inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
         })
         .collect();
     let kept = frame
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn masks_are_sets_and_travel_as_json() {
-        let mut mask = RedrawMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(-36.8, -38.4));
+        let mut mask = InpaintMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(-36.8, -38.4));
         assert_eq!(mask.cells().collect::<Vec<_>>(), [[0, 0], [1, 0]]);
         mask.set(49, 49, true);
         mask.set(50, 0, true);
@@ -151,16 +151,16 @@ mod tests {
         );
         let text = serde_json::to_string(&mask).expect("JSON");
         assert_eq!(text, "[[1,0],[49,49]]");
-        assert_eq!(serde_json::from_str::<RedrawMask>(&text).expect("JSON"), mask);
-        let error = serde_json::from_str::<RedrawMask>("[[0,50]]").expect_err("outside");
+        assert_eq!(serde_json::from_str::<InpaintMask>(&text).expect("JSON"), mask);
+        let error = serde_json::from_str::<InpaintMask>("[[0,50]]").expect_err("outside");
         assert!(
             error
                 .to_string()
                 .starts_with("redraw holds [0, 50], expected indices below 50")
         );
-        assert!(RedrawMask::of_rect(DVec2::NAN, DVec2::ZERO).is_empty());
+        assert!(InpaintMask::of_rect(DVec2::NAN, DVec2::ZERO).is_empty());
         assert_eq!(
-            RedrawMask::of_rect(DVec2::splat(-1e9), DVec2::splat(1e9)).count(),
+            InpaintMask::of_rect(DVec2::splat(-1e9), DVec2::splat(1e9)).count(),
             CELLS
         );
     }
@@ -179,7 +179,7 @@ mod tests {
         let boxes = [(BoxId(1), car)].into();
         let mut frame = Frame::new(BevLayout::default(), boxes, VoxelGrid::new());
         let params = GenParams {
-            redraw: RedrawMask::of_rect(DVec2::splat(-8.0), DVec2::splat(8.0)),
+            inpaint: InpaintMask::of_rect(DVec2::splat(-8.0), DVec2::splat(8.0)),
             halo_columns: 0,
             ..GenParams::default()
         };

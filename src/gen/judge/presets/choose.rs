@@ -1,4 +1,4 @@
-//! The stops of the quality slider, chosen from what was measured.
+//! The presets of the quality slider, chosen from what was measured.
 
 use std::path::Path;
 
@@ -13,38 +13,38 @@ use job::GenParams;
 use metrics::stats::mean_ci95;
 use nets::OccModels;
 use numeric::quantile::{median, quantile};
-use trade::{Cost, Interval, Placed, Stop, StopKnobs, Stops, front, knee};
+use trade::{Cost, Interval, Preset, PresetKnobs, Presets, TradePoint, front, knee};
 
-/// Stops from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
-pub fn stops_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Stops {
-    let placed: Vec<Placed> = rows.iter().map(|r| r.placed()).collect();
-    let kept = well_apart(rows, &placed);
-    let names = names(&kept.iter().map(|i| placed[*i]).collect::<Vec<_>>());
-    let mut stops: Vec<Stop> = Vec::new();
+/// Presets from the front: the fastest, the knee, the most exact, and those between them that lie well apart, and the reference.
+pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Presets {
+    let points: Vec<TradePoint> = rows.iter().map(|r| r.point()).collect();
+    let kept = well_apart(rows, &points);
+    let names = names(&kept.iter().map(|i| points[*i]).collect::<Vec<_>>());
+    let mut presets: Vec<Preset> = Vec::new();
     for (i, name) in kept.iter().zip(names) {
-        stops.extend(stop(name, rows[*i], placed[*i]));
+        presets.extend(preset(name, rows[*i], points[*i]));
     }
-    stops.extend(reference_stop(rows, reference));
-    Stops {
+    presets.extend(reference_preset(rows, reference));
+    Presets {
         weights: models.card.hashes,
         machine: machine(),
         build: String::new(),
         load_per_core: Load::now().per_core,
         reference: format!("{} steps, every token, f32", reference.steps),
-        stops,
+        all: presets,
     }
 }
 
 /// Rows of the front in the order of their times, only those whose time rises and whose error falls by enough to be felt.
-fn well_apart(rows: &[&Row], placed: &[Placed]) -> Vec<usize> {
-    let on_front = front(placed);
+fn well_apart(rows: &[&Row], points: &[TradePoint]) -> Vec<usize> {
+    let on_front = front(points);
     let mut order: Vec<usize> = (0..rows.len())
         .filter(|i| on_front[*i] && rows[*i].cost().is_some())
         .collect();
-    order.sort_by(|a, b| placed[*a].wall_s.median.total_cmp(&placed[*b].wall_s.median));
+    order.sort_by(|a, b| points[*a].wall_s.median.total_cmp(&points[*b].wall_s.median));
     let mut kept: Vec<usize> = Vec::new();
     for i in order {
-        let of = |k: usize| (placed[k].wall_s.median, placed[k].error.median);
+        let of = |k: usize| (points[k].wall_s.median, points[k].error.median);
         match kept.last().map(|k| of(*k)) {
             Some((_, error)) if of(i).1 >= 0.85 * error => {}
             // Nearly as fast and much nearer: nobody would choose the other.
@@ -61,7 +61,7 @@ fn well_apart(rows: &[&Row], placed: &[Placed]) -> Vec<usize> {
 }
 
 /// What the kept ones are called, from the fastest to the most exact.
-fn names(kept: &[Placed]) -> Vec<String> {
+fn names(kept: &[TradePoint]) -> Vec<String> {
     let last = kept.len().saturating_sub(1);
     let middle = knee(kept).unwrap_or(0);
     let middle = if last >= 2 {
@@ -83,14 +83,14 @@ fn names(kept: &[Placed]) -> Vec<String> {
     (0..kept.len()).map(name).collect()
 }
 
-/// A row as a stop; `None` if nothing can be foretold of its time.
-fn stop(name: String, row: &Row, placed: Placed) -> Option<Stop> {
+/// A row as a preset; `None` if nothing can be predicted of its time.
+fn preset(name: String, row: &Row, point: TradePoint) -> Option<Preset> {
     let errors = row.all(|o| o.error);
     let probe = row.outcomes.iter().take(cases::KINDS.len());
-    Some(Stop {
+    Some(Preset {
         name,
-        knobs: StopKnobs::of(&row.setting.params),
-        error: placed.error,
+        knobs: PresetKnobs::of(&row.setting.params),
+        error: point.error,
         error_of_one: [quantile(&errors, 0.05), quantile(&errors, 0.95)],
         invented: Some(mean_ci95(&row.all(|o| o.invented)).0),
         cost: row.cost()?,
@@ -99,9 +99,9 @@ fn stop(name: String, row: &Row, placed: Placed) -> Option<Stop> {
     })
 }
 
-/// The reference as a stop. One step of all tokens, from the dense setting, gives what it takes; `None` if that was not
+/// The reference as a preset. One step of all tokens, from the dense setting, gives what it takes; `None` if that was not
 /// measured.
-fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
+fn reference_preset(rows: &[&Row], reference: GenParams) -> Option<Preset> {
     let dense = rows.iter().find(|r| {
         let p = &r.setting.params;
         !p.local && p.steps == 10 && p.reuse_steps == 1
@@ -118,9 +118,9 @@ fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
         n: dense.outcomes.len(),
     };
     let steps = f64::from(reference.steps);
-    Some(Stop {
+    Some(Preset {
         name: "reference".into(),
-        knobs: StopKnobs::of(&reference),
+        knobs: PresetKnobs::of(&reference),
         error: none,
         error_of_one: [0.0, 0.0],
         invented: None,
@@ -133,8 +133,8 @@ fn reference_stop(rows: &[&Row], reference: GenParams) -> Option<Stop> {
     })
 }
 
-/// Writes stops where they are to be read by [`Stops::parse`]. Errors name the file.
-pub fn write_stops(path: &Path, stops: &Stops) -> anyhow::Result<()> {
-    let text = serde_json::to_string_pretty(stops).context("write stops")?;
+/// Writes presets where they are to be read by [`Presets::parse`]. Errors name the file.
+pub fn write_presets(path: &Path, presets: &Presets) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(presets).context("write presets")?;
     atomic::write(path, text.as_bytes()).with_context(|| format!("write {}", path.display()))
 }

@@ -13,9 +13,9 @@ use super::settings::Setting;
 use crate::machine::{forget_peak_memory, peak_rss_mb};
 use formats::{atomic, input};
 use job::composite::label_hash;
+use job::inpaint;
 use job::invented::Invented;
 use job::pipeline::OccPipeline;
-use job::redraw;
 use job::region::Region;
 use job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
 use metrics::iou::Confusion;
@@ -162,7 +162,7 @@ impl Bench {
     ) -> Outcome {
         let region = match params.region {
             RegionMode::Full => Region::full(),
-            RegionMode::Auto => redraw::region_of(case.after.frame(), params),
+            RegionMode::Auto => inpaint::region_of(case.after.frame(), params),
         };
         let (mut differ, mut occupied, mut both) = (0usize, 0usize, 0usize);
         let mut outside = 0u64;

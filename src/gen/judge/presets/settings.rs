@@ -3,7 +3,7 @@
 
 use diffusion::solver::SolverKind;
 use job::{GenParams, Precision};
-use trade::StopKnobs;
+use trade::PresetKnobs;
 use world::draw::Draw;
 
 /// A setting with a name.
@@ -18,7 +18,7 @@ pub struct Setting {
 }
 
 /// What the knobs are called where they differ from `base`.
-pub fn name_of(knobs: &StopKnobs, base: &StopKnobs) -> String {
+pub fn name_of(knobs: &PresetKnobs, base: &PresetKnobs) -> String {
     let mut parts = vec![format!("{} steps", knobs.steps)];
     if knobs.solver != base.solver {
         parts.push(knobs.solver.name().into());
@@ -68,7 +68,7 @@ impl List {
 
     /// Adds one with `extra` to its name: what else it asks for makes another target of it.
     fn put(&mut self, params: GenParams, extra: Option<String>) {
-        let name = name_of(&StopKnobs::of(&params), &StopKnobs::of(&self.base));
+        let name = name_of(&PresetKnobs::of(&params), &PresetKnobs::of(&self.base));
         if params.check().is_ok() && !self.settings.iter().any(|s| s.params == params) {
             self.settings.push(Setting {
                 other_target: extra.is_some(),

@@ -1,5 +1,5 @@
 //! A frame made ready for camera pictures, as plain numbers: what the renderers on processor and graphics card share.
-//! `generation::sensors::appearance` fills it, `viewport::appearance` draws from it.
+//! `sensors::appearance` fills it, `viewport::appearance` draws from it.
 
 use super::grid::Window;
 
@@ -48,12 +48,12 @@ pub const MIRROR_M: f32 = 60.0;
 pub const FAR_M: f32 = 400.0;
 /// A pixel gets more samples if its tone differs from a neighbour's by more than this.
 pub const CONTRAST: f32 = 0.10;
-/// Words of a thing and of a part in [`LookData::words`].
+/// Words of a thing and of a part in [`AppearanceData::words`].
 pub const THING_WORDS: usize = 20;
 /// See [`THING_WORDS`].
 pub const PART_WORDS: usize = 12;
 
-/// Sections of [`LookData::words`], in the order of [`LookData::at`].
+/// Sections of [`AppearanceData::words`], in the order of [`AppearanceData::at`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Section {
     /// Softened occupancy `[x][y][z]`, four bytes a word.
@@ -104,12 +104,12 @@ pub enum Section {
     Calm,
 }
 
-/// How many entries [`LookData::at`] has.
+/// How many entries [`AppearanceData::at`] has.
 pub const SECTIONS: usize = 24;
 
 /// A frame under certain conditions.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LookData {
+pub struct AppearanceData {
     /// Everything that is looked up by place.
     pub words: Vec<u32>,
     /// Where each [`Section`] begins in `words`; the two counts.
@@ -125,7 +125,7 @@ pub struct LookData {
     pub seed: u32,
 }
 
-impl LookData {
+impl AppearanceData {
     /// Puts a section at the end.
     pub fn push(&mut self, section: Section, words: impl IntoIterator<Item = u32>) {
         self.at[section as usize] = self.words.len() as u32;
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn bytes_are_found_where_the_shader_looks() {
-        let mut data = LookData::default();
+        let mut data = AppearanceData::default();
         data.push(Section::Weight, [7]);
         data.push_bytes(Section::Label, &[1, 2, 3, 4, 250]);
         let at = data.at[Section::Label as usize];

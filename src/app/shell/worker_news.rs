@@ -12,7 +12,7 @@ use crate::shell::staged::Again;
 use crate::shell::status::Receipt;
 use crate::shell::toasts::Level;
 use editor::Document;
-use job::redraw::RedrawMask;
+use job::inpaint::InpaintMask;
 use job::{GenParams, GenResult, JobEvent, JobUpdate, Named};
 use scene::Scene;
 
@@ -20,10 +20,10 @@ impl SceneloomApp {
     pub(crate) fn schedule(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
         let scene = self.document.settled_scene().clone();
-        self.generation.live.foretold_s = self
+        self.generation.live.predicted_s = self
             .generation
             .tuning
-            .foretold_now_s(&self.generation.live.params);
+            .predicted_now_s(&self.generation.live.params);
         match self
             .generation
             .live
@@ -39,7 +39,7 @@ impl SceneloomApp {
         // Small pictures while they will not last; the large ones cost as much as the generation itself.
         let for_a_moment = self.document.is_dragging() || self.generation.live.running.is_some();
         let wanted = Wanted::of(&self.state);
-        self.background
+        self.threads
             .sensing
             .ask(self.document.scene(), wanted, for_a_moment);
     }
@@ -85,7 +85,7 @@ impl SceneloomApp {
                         );
                         return;
                     }
-                    // What is drawn anew says nothing about the time of an edit.
+                    // What is inpainted by hand says nothing about the time of an edit.
                     if !full && running.key.params.strength == 0.0 {
                         self.generation
                             .live
@@ -154,7 +154,7 @@ impl SceneloomApp {
             .take()
             .filter(|(rev, _)| *rev == result.rev());
         let own_step_label = own_step.filter(|_| drawn.is_none());
-        // What the user asked to be drawn anew is a step of its own; what follows an edit belongs to that edit.
+        // A region that the user asked to inpaint is a step of its own; what follows an edit belongs to that edit.
         let adopted = match own_step_label {
             Some(label) => self
                 .document
@@ -285,7 +285,7 @@ impl SceneloomApp {
                 self.files.path = opening.path;
                 self.state.choose(&[], crate::tools::Choose::Only);
                 self.state.correcting = false;
-                self.state.tools.region = RedrawMask::default();
+                self.state.tools.region = InpaintMask::default();
                 self.state.named = Named::default();
                 self.note_opened(&opening.what, true);
                 ctx.request_repaint();

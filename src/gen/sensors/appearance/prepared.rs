@@ -8,7 +8,7 @@ use super::sky::Air;
 use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
-use scene::look::{BLOCK_M, BLOCKS, BLOCKS_FROM_M, FAR_M};
+use scene::appearance::{BLOCK_M, BLOCKS, BLOCKS_FROM_M, FAR_M};
 use scene::{Conditions, Frame, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
@@ -60,14 +60,14 @@ pub struct Hit {
     pub t: f32,
     /// Place, ego frame, m.
     pub p: Vec3,
-    /// Normal, ego frame; for the ground and voxels filled in by [`Look::normal`].
+    /// Normal, ego frame; for the ground and voxels filled in by [`Appearance::normal`].
     pub normal: Vec3,
     /// What it is.
     pub what: What,
 }
 
 /// A frame under certain conditions, ready for any camera.
-pub struct Look {
+pub struct Appearance {
     pub(super) field: Field,
     pub(super) ground: Ground,
     pub(super) things: Vec<Thing>,
@@ -83,7 +83,7 @@ pub struct Look {
     highest: f32,
 }
 
-impl Look {
+impl Appearance {
     /// Prepares a frame: some 50 ms.
     pub fn new(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Self {
         let seed = (conditions.seed ^ conditions.seed >> 32) as u32;

@@ -1,4 +1,4 @@
-//! What the decoder is told of the columns that it decodes.
+//! What the decoder gets to know of the columns that it decodes.
 
 use crate::ModelError;
 use crate::encoder::{HEIGHT, VoxelTable};
@@ -7,9 +7,9 @@ use nn::map::Window;
 use nn::weights::{WeightFile, WeightsError};
 use scene::{GridSpec, VoxelGrid};
 
-/// What the decoder is told of the columns that it decodes.
+/// What the decoder gets to know of the columns that it decodes.
 #[derive(Clone, Copy, Default)]
-pub struct Heard<'a> {
+pub struct DecoderInput<'a> {
     /// The draft of the layout, with the background where that is given.
     pub draft: Option<&'a VoxelGrid>,
     /// Which voxels of a labelled frame were observed ([`Unobserved::observed`]), 200x200.
@@ -18,13 +18,13 @@ pub struct Heard<'a> {
     pub observed: Option<&'a [u32]>,
 }
 
-/// What the decoder's columns hear.
-pub(super) struct Ears<B: Ops> {
+/// The tensors that turn a decoder's input into features of columns.
+pub(super) struct InputEmbedding<B: Ops> {
     drafted: VoxelTable<B>,
     observed: B::Table, // one vector per bit
 }
 
-impl<B: Ops> Ears<B> {
+impl<B: Ops> InputEmbedding<B> {
     /// Takes the tensors `observed` and `drafted`.
     pub fn new(ops: &B, w: &mut WeightFile<'_>, width: usize) -> Result<Self, WeightsError> {
         let bits = HEIGHT + 1;
@@ -37,18 +37,18 @@ impl<B: Ops> Ears<B> {
         })
     }
 
-    /// Adds what is heard to every column of a window; `map` has one place per column.
+    /// Adds the input to every column of a window; `map` has one place per column.
     pub fn add_to(
         &self,
         ops: &B,
         mut map: B::Tensor,
-        heard: Heard<'_>,
+        input: DecoderInput<'_>,
         window: Window,
     ) -> Result<B::Tensor, ModelError> {
-        if let Some(draft) = heard.draft {
+        if let Some(draft) = input.draft {
             map = self.drafted.add_to(ops, map, draft, window)?;
         }
-        let Some(observed) = heard.observed else {
+        let Some(observed) = input.observed else {
             return Ok(map);
         };
         let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));

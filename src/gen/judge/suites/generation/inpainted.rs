@@ -1,4 +1,4 @@
-//! What context is worth: a square of a world drawn anew, with and without what stands around it.
+//! What context is worth: a square of a world inpainted, with and without what stands around it.
 
 use std::sync::Arc;
 
@@ -11,19 +11,19 @@ use job::region::Region;
 use job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
 use scene::{Class, Density, GridSpec, VoxelGrid};
 
-/// Side of the square, columns, how often it is drawn, and the step of its places.
-const REDRAWN: usize = 28;
+/// Side of the square, columns, how often it is inpainted, and the step of its places.
+const SIDE: usize = 28;
 const DRAWS: u64 = 3;
 const PLACE_STEP: usize = 12;
 
-/// IoU of redrawn squares frame by frame: with context and without; of the square, of its seam.
+/// IoU of inpainted squares frame by frame: with context and without; of the square, of its seam.
 #[derive(Default)]
-pub struct Redrawn([[Vec<f64>; 2]; 2]);
+pub struct Inpainted([[Vec<f64>; 2]; 2]);
 
-impl Redrawn {
-    /// Redraws the fullest square of the job's world.
+impl Inpainted {
+    /// Inpaints the fullest square of the job's world.
     pub fn add(&mut self, pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<()> {
-        for (shares, of) in self.0.iter_mut().zip(redrawn_iou(pipeline, job)?) {
+        for (shares, of) in self.0.iter_mut().zip(inpainted_iou(pipeline, job)?) {
             shares.iter_mut().zip(of).for_each(|(all, one)| all.push(one));
         }
         Ok(())
@@ -50,10 +50,10 @@ fn standing(grid: &VoxelGrid, x: usize, y: usize) -> impl Iterator<Item = bool> 
 /// The columns of the square in which most stands.
 fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
     let square = |x0: usize, y0: usize| {
-        let ys = move |x| (y0..y0 + REDRAWN).map(move |y| [x, y]);
-        (x0..x0 + REDRAWN).flat_map(ys).collect::<Vec<_>>()
+        let ys = move |x| (y0..y0 + SIDE).map(move |y| [x, y]);
+        (x0..x0 + SIDE).flat_map(ys).collect::<Vec<_>>()
     };
-    let starts = || (PLACE_STEP..GridSpec::NX - REDRAWN - PLACE_STEP).step_by(PLACE_STEP);
+    let starts = || (PLACE_STEP..GridSpec::NX - SIDE - PLACE_STEP).step_by(PLACE_STEP);
     let squares = starts().flat_map(|x| starts().map(move |y| square(x, y)));
     let count = |c: &Vec<[usize; 2]>| {
         let each = c
@@ -65,10 +65,10 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
 }
 
 /// Draws a whole scene of a world's layout, character and steps that sees nothing of the world, puts what it drew into the
-/// world's fullest square, and redraws that square from fresh noise: so nothing, not even the latents around, knows what
-/// stood there. Of the redrawn square and of the whole scene's, IoU of what stands in it with the world there, and of what
+/// world's fullest square, and inpaints that square from fresh noise: so nothing, not even the latents around, knows what
+/// stood there. Of the inpainted square and of the whole scene's, IoU of what stands in it with the world there, and of what
 /// stands along its border with the world's columns right outside: walls and hedges should go on. Means of some draws.
-fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2]; 2]> {
+fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2]; 2]> {
     let frame = job.scene.frame();
     let truth = &frame.occupancy;
     let square = fullest_square(truth);
@@ -123,7 +123,7 @@ fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2
             source.occupancy.column_mut(*x, *y).copy_from_slice(drawn);
         }
         frame.occupancy = source.occupancy.clone();
-        let seen = pipeline.redraw_region(&other, region.clone(), &ctx)?;
+        let seen = pipeline.inpaint_region(&other, region.clone(), &ctx)?;
         for (mean, result) in mean.iter_mut().zip([seen, blind]) {
             for (mean, share) in mean.iter_mut().zip(shares(&result.occupancy)) {
                 *mean += share / DRAWS as f64;
@@ -134,7 +134,7 @@ fn redrawn_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64; 2
 }
 
 /// What context adds, frame by frame: of the square (0) or of its seam (1).
-fn gain(redrawn: &[[Vec<f64>; 2]; 2], of: usize) -> Value {
-    let pairs = redrawn[0][of].iter().zip(&redrawn[1][of]);
+fn gain(inpainted: &[[Vec<f64>; 2]; 2], of: usize) -> Value {
+    let pairs = inpainted[0][of].iter().zip(&inpainted[1][of]);
     with_interval(&pairs.map(|(seen, blind)| seen - blind).collect::<Vec<_>>())
 }
