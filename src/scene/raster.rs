@@ -243,7 +243,7 @@ mod tests {
             assert_eq!(cells(&b), cells(&turned));
         }
         // Far turned: the reduction in f64 keeps the heading to 1e-9 rad, so cells agree.
-            crate::Window::COLUMNS
+        let far = car([1.1, 2.1, 0.0], [4.0, 2.0, 2.0], 2e6 * std::f64::consts::PI);
         assert_eq!(cells(&far), cells(&car([1.1, 2.1, 0.0], [4.0, 2.0, 2.0], 0.0)));
         assert_eq!(
             cells(&car([0.1, 0.1, 0.0], [0.0, 0.0, 0.0], 0.0)),
@@ -253,7 +253,10 @@ mod tests {
             cells(&car([0.1, 0.1, 0.0], [0.01, 0.01, 0.1], 0.7)),
             vec![(100, 100)]
         );
-        assert_eq!(cells(&car([0.0; 3], [1e6, 1e6, 1e6], 0.5)).len(), Window::COLUMNS);
+        assert_eq!(
+            cells(&car([0.0; 3], [1e6, 1e6, 1e6], 0.5)).len(),
+            crate::Window::COLUMNS
+        );
         for bad in [f64::NAN, f64::INFINITY] {
             assert!(cells(&car([bad, 0.0, 0.0], [1.0; 3], 0.0)).is_empty());
             assert!(cells(&car([0.0; 3], [bad, 1.0, 1.0], 0.0)).is_empty() || bad.is_infinite());
