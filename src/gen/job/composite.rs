@@ -1,15 +1,15 @@
-//! The composite of old and new occupancy that leaves all but the region bit-identical, and its measures.
+//! Puts the generated region into the old occupancy and leaves everything else bit-identical; and measures of that.
 //!
-//! It is made in label space, after decoding: blending latents leaks through the decoder, choosing
-//! between labels cannot.
+//! This is done with labels, after decoding. Blending latents instead would change labels outside the region, because
+//! the decoder of a cell sees its neighbours.
 
 use super::region::Region;
 use numeric::hash::Fnv1a;
 use scene::grid::NOT_PAINTED;
 use scene::{GridSpec, VoxelGrid, VoxelPaint};
 
-/// The source, with the region's columns from `generated`, with the user's painted voxels over all.
-/// Bricks in which nothing differs keep the source's memory.
+/// The source, with the region's columns from `generated` and the user's painted voxels on top.
+/// Bricks in which nothing differs share memory with the source.
 pub fn composite(
     source: &VoxelGrid,
     generated: &VoxelGrid,
@@ -36,7 +36,7 @@ pub fn composite(
     out
 }
 
-/// Voxels outside the region, not painted, in which `result` differs from `source`. 0 is the promise.
+/// How many voxels outside the region, not painted, differ between `result` and `source`: must be 0.
 pub fn untouched_voxels_changed(
     source: &VoxelGrid,
     result: &VoxelGrid,
@@ -61,7 +61,7 @@ pub fn untouched_voxels_changed(
 }
 
 /// Share of the voxels along the inner border of the region, `width` columns wide, in which `result`
-/// differs from `source`; 0 without a border. High where the new content does not join the old.
+/// differs from `source`; 0 without a border. It is high if the new content does not join the old.
 pub fn seam_change_share(source: &VoxelGrid, result: &VoxelGrid, region: &Region, width: usize) -> f64 {
     let (mut changed, mut all) = (0usize, 0usize);
     for (i, _) in region.seam(width).iter().enumerate().filter(|(_, c)| **c) {
@@ -77,8 +77,8 @@ pub fn seam_change_share(source: &VoxelGrid, result: &VoxelGrid, region: &Region
     }
 }
 
-/// FNV-1a (64 bit) over the labels outside the region that are not painted, with their positions
-/// implied by order: the same before and after an edit.
+/// Hash (FNV-1a, 64 bit) of the labels outside the region that are not painted, in order: the same before and after an
+/// edit.
 pub fn untouched_hash(grid: &VoxelGrid, region: &Region, painted: &VoxelPaint) -> u64 {
     let mut hash = Fnv1a::new();
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| !**c) {
@@ -95,7 +95,7 @@ pub fn untouched_hash(grid: &VoxelGrid, region: &Region, painted: &VoxelPaint) -
     hash.get()
 }
 
-/// FNV-1a (64 bit) over all labels in C order: names the content of a grid.
+/// Hash (FNV-1a, 64 bit) of all labels of a grid in C order.
 pub fn label_hash(grid: &VoxelGrid) -> u64 {
     untouched_hash(grid, &Region::empty(), &VoxelPaint::new())
 }

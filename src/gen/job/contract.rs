@@ -55,7 +55,7 @@ pub struct JobKey {
     pub params: GenParams,
 }
 
-/// Names a submitted job; later jobs have greater ids.
+/// Number of a submitted job; later jobs have greater ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct JobId(pub u64);
 
@@ -101,7 +101,7 @@ impl Stage {
 pub struct GenReport {
     /// Calls of the denoising network, inversion included.
     pub network_calls: usize,
-    /// Calls of them for inversion; 0 if the trajectory was at hand.
+    /// How many of those calls inverted the source; 0 if its trajectory was in memory.
     pub inversion_calls: usize,
     /// Wall time by [`Stage::name`], s.
     pub wall_s: BTreeMap<&'static str, f64>,
@@ -115,34 +115,35 @@ pub struct GenReport {
     pub tokens: usize,
     /// Voxels outside the region, not painted, that differ from the source: must be 0.
     pub untouched_voxels_changed: usize,
-    /// Names the labels outside the region that are not painted (FNV-1a): the same before and after.
+    /// Hash (FNV-1a) of the labels outside the region that are not painted: the same before and after.
     pub untouched_hash: u64,
     /// Share of voxels changed along the inner border of the region.
     pub seam_change_share: f64,
     /// Voxels that differ from the source.
     pub voxels_changed: usize,
-    /// Voxels of the region that the edit does not change and the VAE would have ([`keep_unchanged`]).
+    /// Voxels of the region that the edit does not concern, and that only the VAE's own error would have changed
+    /// ([`keep_unchanged`]).
     ///
     /// [`keep_unchanged`]: super::keep_unchanged::keep_unchanged
     pub unchanged_kept: usize,
     /// Boxes that the networks left out and whose draft was put in ([`GenParams::keep_objects`]).
     pub objects_kept: usize,
-    /// Columns whose painted ground the networks did not follow, and that were given it.
+    /// Columns in which the networks ignored the painted ground, so that it was put in.
     pub ground_kept: usize,
-    /// Voxels that nobody asked for on the road or in a removed box's place, and that were cleared.
+    /// Voxels that the networks put on the road or in a removed box's place unasked, and that were cleared.
     pub invented_cleared: usize,
-    /// Columns that the networks left without ground in a scene that is to be complete, and that were given it.
+    /// Columns that the networks left without ground in a scene that should be complete, and that got ground.
     pub holes_closed: usize,
     /// Voxels put under crowns that hung in the air.
     pub stems_added: usize,
-    /// Voxels that hung in the air or were of an object without a box, and were taken out.
+    /// Voxels that were taken out because they hung in the air or belonged to an object without a box.
     pub loose_dropped: usize,
-    /// Voxels that were put where no sensor of the source had looked, and that were taken out again.
+    /// Voxels that the networks put where no sensor of the source had looked, and that were taken out again.
     pub unobserved_kept: usize,
     /// Relative RMS error of encode, invert and sample again, where it was measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub round_trip_error: Option<f64>,
-    /// Standard deviation of the noise that inversion ended in, where one ran or was at hand.
+    /// Standard deviation of the noise that inversion ended in, where one ran or was in memory.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise_std: Option<f64>,
     /// Largest magnitude in that noise.
@@ -226,10 +227,10 @@ impl From<ScheduleError> for GenError {
     }
 }
 
-/// News about a job.
+/// What a running job reports.
 #[derive(Clone, Debug)]
 pub enum JobUpdate {
-    /// Where it is: `step` of `steps` of a stage are done.
+    /// `step` of `steps` of a stage are done.
     Progress {
         /// Part of the work.
         stage: Stage,
@@ -238,7 +239,7 @@ pub enum JobUpdate {
         /// All steps of the stage.
         steps: usize,
     },
-    /// Something to look at on the way.
+    /// An unfinished result to show meanwhile.
     Preview(Arc<GenResult>),
     /// The result. Terminal.
     Finished(Arc<GenResult>),
@@ -275,7 +276,7 @@ impl<'a> JobCtx<'a> {
         }
     }
 
-    /// For somebody who looks on: long jobs show what comes.
+    /// Asks long jobs for previews: somebody watches.
     pub fn with_previews(self) -> Self {
         Self {
             previews: true,
@@ -283,12 +284,12 @@ impl<'a> JobCtx<'a> {
         }
     }
 
-    /// Somebody looks on.
+    /// True if previews are wanted.
     pub fn previews(&self) -> bool {
         self.previews
     }
 
-    /// For a caller that waits: never stopped, tells nobody.
+    /// For a caller that waits for the result: never stopped, reports nothing.
     pub fn detached() -> JobCtx<'static> {
         JobCtx {
             stop: &|| false,
@@ -306,14 +307,14 @@ impl<'a> JobCtx<'a> {
         }
     }
 
-    /// Says where the job is; fails if it should end. Call it between steps and leave with `?`.
+    /// Reports how far the job is; fails if it should end. Call it between steps, with `?`.
     pub fn progress(&self, stage: Stage, step: usize, steps: usize) -> Result<(), GenError> {
         self.check()?;
         (self.report)(JobUpdate::Progress { stage, step, steps });
         Ok(())
     }
 
-    /// Shows something on the way; may be dropped if the receiver is slow.
+    /// Sends a preview; it is dropped if the receiver is slow.
     pub fn preview(&self, result: GenResult) {
         (self.report)(JobUpdate::Preview(Arc::new(result)));
     }
@@ -325,8 +326,8 @@ pub trait Pipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError>;
 }
 
-/// Lets through only what may still change the screen: nothing of a job that has ended, and nothing of a
-/// job older than the newest one that was heard of.
+/// Filters updates: drops those of a job that has ended, and those of a job that is older than the newest one
+/// that an update came from.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UpdateGate {
     newest: Option<JobId>,
@@ -334,7 +335,7 @@ pub struct UpdateGate {
 }
 
 impl UpdateGate {
-    /// True if the update is news.
+    /// True if the update should be shown.
     pub fn admit(&mut self, event: &JobEvent) -> bool {
         if Some(event.id) < self.newest || Some(event.id) <= self.ended {
             return false;

@@ -108,8 +108,8 @@ impl TryFrom<Vec<[usize; 2]>> for InpaintMask {
     }
 }
 
-/// What parameters in automatic mode regenerate of a frame: what was edited, and the mask without the boxes in
-/// it that did not change, so that no untouched object is inpainted.
+/// The region that parameters in automatic mode regenerate: what was edited, and the mask. Unchanged boxes in the mask are
+/// left out, so that no untouched object is inpainted.
 pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
     let edited = Region::of_edit(frame, params.halo_columns as usize);
     if params.inpaint.is_empty() {

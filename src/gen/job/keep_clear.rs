@@ -1,15 +1,14 @@
-//! What nobody asked for does not come: an edit plants nothing on the road nor where a box stood, and puts nothing where
-//! a data set's masks say that no sensor looked. Counted, so that reports show when it was needed.
+//! Removes what an edit invented: things on the road or where a box was taken away, and voxels where a data set's masks
+//! say that no sensor looked. The removed voxels are counted for the report.
 
 use super::inpaint::InpaintMask;
 use super::region::{COLUMNS_PER_CELL, Region};
 use super::request::{Request, stands};
 use scene::{BevLayer, Class, Frame, GridSpec, VoxelGrid, draft};
 
-/// Takes out of `generated`, in the region's columns, what stands above the ground and is in neither the source nor the
-/// request: on road and car parks, and where a box of the source stood. Where the source held something that stays,
-/// it comes back; a column that is left without anything at its foot gets the layout's ground. Cells of `inpaint` are left
-/// alone: something new was asked for there. Returns how many voxels needed it.
+/// Removes invented voxels (see [`Request::each_invented`]) from `generated` on roads and car parks, and where a box of the
+/// source stood. If the source held something there that stays, that is put back; a column that has no ground left gets
+/// the layout's. Cells of `inpaint` are skipped: new content was asked for there. Returns the number of removed voxels.
 pub fn keep_clear(
     frame: &Frame,
     region: &Region,
@@ -50,9 +49,9 @@ fn is_object(label: u8) -> bool {
     Class::from_id(label).is_some_and(Class::is_object)
 }
 
-/// Takes out of `generated`, in the region's columns, what lies where the source is free and the frame's masks say that
-/// nothing was observed: free means unknown there, and an edit beside it tells nothing new. Columns that the user edited and
-/// Cells of `inpaint` are left alone. Returns how many voxels needed it.
+/// Removes voxels from `generated`, in the region's columns, where the source is free and the frame's masks say that nothing
+/// was observed: free means unknown there, and stays unknown. Columns that the user edited and cells of `inpaint` are
+/// skipped. Returns the number of removed voxels.
 pub fn keep_unobserved(
     frame: &Frame,
     region: &Region,
@@ -82,8 +81,8 @@ pub fn keep_unobserved(
     count
 }
 
-/// What is known to be observed after an edit, as the decoder gets it (`Unobserved::observed`): nothing of columns that the
-/// user edited and of cells of `inpaint`. `None` where the frame has no masks.
+/// Which voxels were observed, for the decoder (`Unobserved::observed`). In columns that the user edited and in cells of
+/// `inpaint` none counts as observed. `None` if the frame has no masks.
 pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &Request<'_>) -> Option<Vec<u32>> {
     let mut observed = frame.inferred.unobserved.as_ref()?.observed();
     for (c, told) in observed.iter_mut().enumerate() {

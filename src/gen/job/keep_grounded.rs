@@ -1,5 +1,5 @@
-//! What is generated stands: what hangs in the air gets a stem or goes, objects that belong to no box go. Counted, so that
-//! reports show when it was needed.
+//! Makes generated things stand: crowns in the air get a stem, other floating voxels and voxels of objects without a box are
+//! removed. Both are counted for the report.
 
 use super::composite::composite;
 use super::region::Region;
@@ -14,17 +14,17 @@ use scene::{Class, Frame, GridSpec, VoxelGrid};
 /// Voxels of an object this far outside its box still belong to it, m.
 const MARGIN_M: f64 = 0.6;
 
-/// What was needed, voxels.
+/// Number of corrected voxels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Grounded {
-    /// Put under crowns that hung in the air.
+    /// Put under crowns as stems.
     pub stems: usize,
-    /// Taken out: they hung in the air, or were of an object without a box.
+    /// Removed: they hung in the air, or belonged to an object without a box.
     pub dropped: usize,
 }
 
-/// Corrects `generated` inside the region. What the source held (unless `all` is inpainted), what boxes and paint account
-/// for, and what may be held by something out of sight stays as it is.
+/// Corrects `generated` inside the region. These stay as they are: what the source held (unless `all` is inpainted), voxels
+/// of boxes and paint, and what may be held by something outside the grid.
 pub fn keep_grounded(
     frame: &Frame,
     region: &Region,
@@ -51,7 +51,7 @@ pub fn keep_grounded(
             out.dropped += 1;
         }
     }
-    // Whether something stands is seen with what is around the region.
+    // Whether something stands depends on what is around the region too.
     let whole = composite(source, generated, region, &frame.painted);
     let occupied = occupied(&whole);
     let stands = support::supported(
@@ -67,7 +67,7 @@ pub fn keep_grounded(
         let new: Vec<_> = group.iter().copied().filter(|c| is_new(&whole, *c)).collect();
         let class = main_class(&whole, &group);
         let is_crown = class == Class::Vegetation && group.len() >= CROWN;
-        // Nothing holds a tree from above; whatever else reaches the top of the grid may go on beyond it.
+        // Something at the top of the grid may go on above it and be held there; a tree may not.
         let needs_stem = all && is_crown && !reaches_side(scene::Extent::WINDOW, &group);
         let floats = needs_stem || is_known_to_float(&whole, frame.inferred.unobserved.as_ref(), &group);
         if new.is_empty() || !floats {

@@ -1,5 +1,5 @@
-//! The user's word on objects and ground: a box that was placed does not vanish, one that was taken away does not
-//! come back, painted ground stays, whatever the networks made of it. Counted, so that reports show when it was needed.
+//! Makes the result follow the user's boxes and ground where the networks did not: a placed box does not vanish, a removed
+//! one does not come back, painted ground stays. The corrections are counted for the report.
 
 use glam::DVec3;
 
@@ -9,21 +9,21 @@ use scene::draft::{ground_bin, ground_class};
 use scene::raster::box_cells;
 use scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
 
-/// A placed box counts as there if at least this share of its columns holds its class, of the share that boxes of the
-/// frame usually have: labels with holes hold less than complete worlds.
+/// A placed box counts as there if the share of its columns that hold its class is at least this part of the usual share of
+/// the frame's boxes. (Labels have holes, so their usual share is below that of complete worlds.)
 const THERE: f64 = 0.5;
-/// Objects are hollow in frames that hold something in a smaller share of their columns, as labels do.
+/// A frame counts as labels, whose objects are hollow, if a smaller share of its columns than this holds anything.
 const SOLID: f64 = 0.8;
-/// A box of the source whose class fills less of its columns was not seen, and says nothing of a box that moved.
+/// A box of the source counts as never seen if its class fills a smaller share of its columns than this.
 const SEEN: f64 = 0.05;
-/// A box that kept its size to this much keeps its voxels when it moves, m.
+/// A moved box keeps its voxels if its size changed by no more than this, m.
 const SAME_SIZE_M: f64 = 0.05;
 /// Voxels this far outside a removed box still belong to it, m.
 const OVERHANG_M: f64 = 0.3;
 
-/// Corrects `generated` inside the region: drafts of placed boxes that are mostly missing are put in (as labels would have them, where the frame is like that),
-/// voxels of removed boxes are cleared. Returns how many boxes needed it. Of the boxes that are there,
-/// `all` looks at every one, else only at those that differ from the source.
+/// Corrects `generated` inside the region: puts in placed boxes that are mostly missing (hollow, if the frame's objects are),
+/// and clears the voxels of removed boxes. With `all` it examines every box, else only those that differ from the source.
+/// Returns how many boxes it corrected.
 pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut VoxelGrid) -> usize {
     let old = &frame.source.boxes;
     let changed = |id: &BoxId, b: &SceneBox| old.get(id) != Some(b);
@@ -42,17 +42,17 @@ pub fn keep_objects(frame: &Frame, region: &Region, all: bool, generated: &mut V
     corrected
 }
 
-/// What boxes of a frame hold.
+/// What the boxes of a frame usually hold.
 struct Usual {
-    /// Share of its columns that a box of the source fills, as a median over boxes that were seen at all; without any, the share
-    /// of all columns that hold something; 1 where nothing does.
+    /// Share of its columns that a box of the source fills: the median over boxes that were seen. Without such boxes, the
+    /// share of all columns that hold something; 1 in an empty frame.
     fill: f64,
     /// Objects are hollow, as in labels, in which many columns are empty.
     hollow: bool,
 }
 
 impl Usual {
-    /// Of the boxes of a frame's source; `shown` is the grid that a new box joins.
+    /// From the boxes of a frame's source; `shown` is the grid that a new box joins.
     fn of(frame: &Frame, shown: &VoxelGrid) -> Self {
         let source = &frame.source;
         let seen = source.boxes.values().map(|b| filled(&source.occupancy, b));
@@ -84,8 +84,8 @@ fn filled(grid: &VoxelGrid, b: &SceneBox) -> f64 {
     there.count() as f64 / columns.len().max(1) as f64
 }
 
-/// Columns of the region whose ground the user has just painted: where the networks left the old ground, or none where
-/// there was some, the layout's is laid. Returns how many columns needed it.
+/// Corrects columns of the region whose ground the user has just painted: if the networks left the old ground, or removed the
+/// ground, the layout's ground is put in. Returns how many columns it corrected.
 pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) -> usize {
     let layouts = frame.layout.cells().iter().zip(frame.source.layout.cells());
     let mut corrected = 0;
@@ -133,8 +133,8 @@ fn held_ground(column: &[u8; GridSpec::NZ], bin: usize) -> bool {
             .any(|l| Class::from_id(*l).is_some_and(Class::is_ground))
 }
 
-/// Puts a box in if its columns hold much less of it than the `usual` share: with its own voxels if it moved, else as its draft,
-/// of which labels hold what a sensor can see.
+/// Puts a box in if its columns hold much less of it than the `usual` share: with its old voxels if it moved, else as its
+/// draft (in hollow frames only the part of the draft that a sensor can see).
 fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated: &mut VoxelGrid) -> bool {
     let mut columns = draft::box_columns(scene::Extent::WINDOW, b);
     columns.retain(|(x, y, _)| region.columns[x * GridSpec::NY + y]);
@@ -175,8 +175,8 @@ fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated
     true
 }
 
-/// Voxels of a box of the source, where it stands now: each voxel of the new box takes what lies at the same place of the
-/// old one. What the networks made of it goes.
+/// Moves the voxels of a box of the source to where the box stands now: each voxel of the new box takes the label at the same
+/// place of the old one. What the networks put there is removed.
 fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generated: &mut VoxelGrid) {
     let (source, class) = (&frame.source.occupancy, new.class.id());
     // Labels reach down to the ground below the box.

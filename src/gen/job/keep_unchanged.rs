@@ -1,5 +1,6 @@
-//! An edit transports a difference: where the networks give a voxel the label that they also give it in the source, the source's
-//! own label stays. What the VAE cannot carry (holes of labels, thin things) is so lost only where something changed.
+//! Takes over only what an edit changes: where the networks give a voxel the same label before and after the edit, the
+//! source's own label stays. So what the VAE cannot represent (holes of labels, thin things) is lost only where something
+//! changed.
 
 use super::inpaint::InpaintMask;
 use super::region::{COLUMNS_PER_CELL, Region};
@@ -7,12 +8,12 @@ use super::request::Request;
 use scene::raster::box_cells;
 use scene::{Frame, GridSpec, VoxelGrid};
 
-/// How far around a removed or changed box its class does not come back: what lies there may have been a part of it, m.
+/// Within this distance of a removed or changed box its class is not restored: it may have been a part of the box, m.
 const SCRAPS_M: f64 = 1.2;
 
-/// Gives `generated` the source's labels, in the region's columns, where it agrees with `decoded`: what the same decoder makes of
-/// the source. Columns that the user edited and cells of `inpaint` are left alone, and so are voxels beside a box that went,
-/// of its class and in no other box. Returns how many voxels got their label back.
+/// Restores the source's labels in `generated`, in the region's columns, where it equals `decoded`, which is what the same
+/// decoder makes of the source. Skips columns that the user edited, cells of `inpaint`, and voxels near a removed box that
+/// have its class and lie in no other box. Returns how many voxels got their label back.
 pub fn keep_unchanged(
     frame: &Frame,
     region: &Region,

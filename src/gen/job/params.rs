@@ -32,8 +32,8 @@ pub enum Quality {
     Final,
 }
 
-/// Numbers of [`Density`] that the user names, each 0 to 1. What is not named stays as it is in an edit, and is left
-/// to the networks in a new scene (but completeness, which is 1 there).
+/// Numbers of [`Density`] that the user chose, each 0 to 1. An edit keeps what is not chosen; in a new scene the networks
+/// decide it (except completeness, which is 1 there).
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Named {
@@ -53,7 +53,7 @@ impl Named {
         [self.vegetation, self.building, self.clutter, self.completeness]
     }
 
-    /// With those of `other` where none is named.
+    /// The same; numbers that are not chosen come from `other`.
     pub fn or_else(&self, other: &Self) -> Self {
         Self {
             vegetation: self.vegetation.or(other.vegetation),
@@ -63,7 +63,7 @@ impl Named {
         }
     }
 
-    /// With those of `density` where none is named.
+    /// The same; numbers that are not chosen come from `density`.
     pub fn or(&self, density: &Density) -> Self {
         self.or_else(&Self {
             vegetation: Some(density.vegetation),
@@ -90,33 +90,33 @@ pub struct GenParams {
     pub seed: u64,
     /// What is regenerated.
     pub region: RegionMode,
-    /// Cells that are regenerated in automatic mode although nothing was edited there; something new comes only
-    /// with a `strength` above 0.
+    /// Cells that are regenerated in automatic mode although nothing was edited there. They change only if `strength` is
+    /// above 0.
     #[serde(rename = "redraw", alias = "inpaint")]
     pub inpaint: InpaintMask,
-    /// 0: the region starts from the noise that its source comes from (inversion). Above: it is inpainted from the source
-    /// with fresh noise, at this share of the steps (SDEdit); 1 keeps nothing of it. Then all tokens are computed.
+    /// 0: the region starts from the noise that its source comes from (inversion). Above 0: it starts from the source with
+    /// fresh noise added, at this share of the steps (SDEdit); 1 keeps nothing of the source. Then all tokens are computed.
     pub strength: f64,
     /// Fixed-point updates per inversion step; 0 = plain DDIM inversion.
     pub inversion_iterations: u32,
     /// Columns around an edit that are inpainted with it.
     pub halo_columns: u32,
-    /// Computes only the tokens around an edit; the others show what they held in the source.
+    /// Computes only the tokens around an edit; the others take part with their keys and values from the source.
     pub local: bool,
     /// Tokens (3.2 m) around an edited region that are computed with it.
     pub halo_tokens: u32,
-    /// In what the denoising network's products are computed.
+    /// Number format of the denoising network's matrix products.
     pub precision: Precision,
     /// The middle blocks of the network are computed at every so many steps and reused in between; 1 = at every one.
     pub reuse_steps: u32,
-    /// Steps of the fine stage, which inpaints in the fine latent what the coarse one decodes to; 0 = none.
+    /// Steps of the fine stage; 0 = none.
     pub fine_steps: u32,
     /// How much work the result is worth.
     pub quality: Quality,
     /// Densities and completeness asked for.
     pub named: Named,
-    /// Puts the draft of an added or changed box in where the networks left out most of it, so that
-    /// what the user placed never vanishes.
+    /// Corrects the networks where they ignore the user: for example, puts in the draft of a placed box that is mostly
+    /// missing.
     pub keep_objects: bool,
 }
 

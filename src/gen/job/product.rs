@@ -1,5 +1,6 @@
-//! What is made in the background: one [`Worker`] per kind of product (occupancy, sweeps and pictures, findings). The
-//! newest job of a kind wins, a stopped job ends at its next look, a panic ends one job and not the thread.
+//! Work in the background: one [`Worker`] thread per kind of product (occupancy, sweeps and pictures, findings). A newer
+//! job of a kind replaces the older ones. A job asks between its steps whether it should stop. A panic ends the job, not
+//! the thread.
 //!
 //! Every submitted job gets exactly one terminal update, in the order of submission. Other updates are dropped while
 //! the receiver is behind; terminal updates never are.
@@ -16,20 +17,20 @@ use crate::guard::{Handed, Panicked, guarded};
 /// Called after every update, from the worker's thread: wakes the event loop.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Updates that may wait for the receiver before those on the way are dropped.
+/// How many updates may wait for the receiver; beyond that only terminal updates are queued.
 pub(crate) const MOST_WAITING: usize = 64;
 
 /// One kind of thing that is made in the background. Lives on the worker's thread.
 pub trait Product: 'static {
-    /// What is asked for.
+    /// A job.
     type Request: Send + 'static;
-    /// What is told, on the way and at the end.
+    /// What the worker reports, on the way and at the end.
     type Update: Send + 'static;
 
-    /// Does a job. The answer is its terminal update; it must be one.
+    /// Does a job and returns its terminal update.
     fn make(&mut self, request: &Self::Request, ctx: &Ctx<'_, Self::Update>) -> Self::Update;
 
-    /// Throws away what a panic may have left half-done.
+    /// Called after a panic: throws away what may be half-done.
     fn reset(&mut self);
 
     /// The terminal update of a job that was given up for a newer one or on request.
@@ -41,7 +42,7 @@ pub trait Product: 'static {
     /// True for the last update of a job.
     fn is_terminal(update: &Self::Update) -> bool;
 
-    /// True for an update on the way that must arrive though the receiver is behind.
+    /// True for an update that must arrive even if the receiver is behind.
     fn must_arrive(_: &Self::Update) -> bool {
         false
     }
@@ -68,13 +69,13 @@ impl<U> Ctx<'_, U> {
         (self.stop)()
     }
 
-    /// Tells something on the way; terminal updates do not pass.
+    /// Reports an update on the way. Terminal updates are ignored: the worker sends that itself.
     pub fn tell(&self, update: U) {
         (self.report)(update);
     }
 }
 
-/// What submitter and worker both see.
+/// State that the submitting side and the worker thread share.
 #[derive(Default)]
 struct Orders {
     /// Id of the newest submitted job; 0 before the first.
@@ -102,7 +103,8 @@ pub struct Worker<R, U> {
 }
 
 impl<R: Send + 'static, U: Send + 'static> Worker<R, U> {
-    /// Starts the thread of this name; `product` makes there what does the work. Errors if the system gives no thread.
+    /// Starts a thread of this name. `product` runs on it and makes the object that does the work. Errors if the system
+    /// gives no thread.
     pub fn start<P: Product<Request = R, Update = U>>(
         name: &'static str,
         product: impl FnOnce() -> P + Send + 'static,
@@ -132,7 +134,7 @@ impl<R: Send + 'static, U: Send + 'static> Worker<R, U> {
     /// Asks for a job; the running one and those that wait are given up.
     pub fn submit(&mut self, request: R) -> JobId {
         let id = JobId(self.orders.newest.load(Ordering::Acquire) + 1);
-        // Before sending: the running job should end now, not when this one is looked at.
+        // Before sending: the running job should end now, not when the thread takes the new one.
         self.orders.newest.store(id.0, Ordering::Release);
         if let Some(jobs) = &self.jobs {
             // The thread ends only when this sender is gone, so somebody listens.
@@ -147,7 +149,7 @@ impl<R: Send + 'static, U: Send + 'static> Worker<R, U> {
         self.orders.cancelled.fetch_max(newest, Ordering::AcqRel);
     }
 
-    /// What has happened, oldest first. `try_iter` it once per frame; all clones share one stream.
+    /// All updates, oldest first. Call `try_iter` once per frame; all clones share one stream.
     pub fn updates(&self) -> &Receiver<Event<U>> {
         &self.updates
     }
@@ -158,7 +160,7 @@ impl<R, U> Drop for Worker<R, U> {
         self.orders.cancelled.store(u64::MAX, Ordering::Release);
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
-            // An error would be a panic outside any job; there is nobody left to tell.
+            // An error here means a panic outside any job: nobody can be told any more.
             let _ = thread.join();
         }
     }
@@ -192,7 +194,7 @@ fn work<P: Product>(
             P::given_up()
         } else {
             let stop = || orders.is_unwanted(id);
-            // A product must not end its own job twice: only news on the way pass.
+            // The worker sends the terminal update; a product must not send a second one.
             let report = |update: P::Update| {
                 if !P::is_terminal(&update) {
                     let must_arrive = P::must_arrive(&update);

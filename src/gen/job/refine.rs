@@ -1,5 +1,6 @@
-//! The second, local stage: what the coarse latent decodes to is inpainted in the fine one, where a voxel has room, by diffusion in a few
-//! steps. Noise stays with its cell, so the same surroundings are refined alike in a source and in an edit of it.
+//! The fine stage. The coarse latent is decoded, the result is encoded by the fine VAE, and a few steps of diffusion inpaint
+//! that finer latent, which has room for single voxels. Each cell has its own noise, so equal surroundings are refined
+//! alike in a source and in an edit of it.
 
 use crate::contract::GenError;
 use crate::region::CELLS_PER_SIDE;
@@ -10,12 +11,12 @@ use nets::{CHANNELS, DecoderInput, OccModels, Window};
 use numeric::philox::{Stream, normal};
 use scene::VoxelGrid;
 
-/// Coarse cells around the wanted ones that are computed with them, 3.2 m: half of what the network sees. Training had crops, so it knows how to do
-/// without the rest.
+/// Coarse cells around the wanted ones that are computed with them: 3.2 m, half of what the network sees. It was trained
+/// on crops, so it can do without the rest.
 const AROUND: usize = 2;
 
-/// What a coarse latent (50x50x8) decodes to in some cells, by a decoder that gets `input`; refined in `steps` steps, if in any and by
-/// any network. The other cells stay free.
+/// Decodes some cells of a coarse latent (50x50x8) with `input` for the decoder, and refines them in `steps` steps. With 0
+/// steps, or without a fine network, it only decodes. The other cells stay free.
 pub fn decode_refined(
     models: &OccModels,
     latent: &[f32],

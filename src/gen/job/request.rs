@@ -1,5 +1,5 @@
-//! What the user of a frame has asked for, as voxels: the boxes that are there now, painted voxels, and the columns
-//! whose boxes or ground an edit changed.
+//! What the user asked for, in voxels: where the boxes of a frame allow objects, which voxels are painted, and which columns
+//! an edit changed.
 
 use glam::DVec3;
 
@@ -12,19 +12,19 @@ use scene::{Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
 pub const OVERHANG_M: f64 = GridSpec::VOXEL_M;
 const OBJECTS: usize = Class::OBJECTS.len();
 
-/// Voxels that the frame's boxes and paint account for.
+/// Which voxels and columns of a frame the user has asked something for.
 pub struct Request<'a> {
     frame: &'a Frame,
     /// `[x][y]`: how many bins from the lowest up each object class (ids 1 to 10) may fill.
     heights: Vec<[u8; OBJECTS]>,
-    /// `[x][y]`: columns in which a box of the source stood that is gone, moved or of another class.
+    /// `[x][y]`: columns in which a box of the source stood that is now gone, moved or of another class.
     left: Vec<bool>,
-    /// `[x][y]`: those, the columns of new and changed boxes, and those whose ground the layout changed.
+    /// `[x][y]`: the same columns, those of new and changed boxes, and those whose ground the layout changed.
     edited: Vec<bool>,
 }
 
 impl<'a> Request<'a> {
-    /// Of a frame and the source that it was edited from.
+    /// From a frame and its source.
     pub fn of(frame: &'a Frame) -> Self {
         let mut heights = vec![[0; OBJECTS]; GridSpec::COLUMNS];
         for b in frame.boxes.values() {
@@ -64,7 +64,7 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// True if a label at a voxel belongs to a box that is there now, or is the user's paint.
+    /// True if this label at this voxel belongs to a box of the frame, or was painted by the user.
     pub fn holds(&self, x: usize, y: usize, z: usize, label: u8) -> bool {
         let boxed = slot(label).is_some_and(|s| z < usize::from(self.heights[x * GridSpec::NY + y][s]));
         boxed || self.frame.painted.get(x, y, z) != NOT_PAINTED
@@ -80,8 +80,8 @@ impl<'a> Request<'a> {
         self.edited[column]
     }
 
-    /// Voxels of the region's columns whose labels stand above the ground and that were in neither the source nor
-    /// the request: calls `visit` with place and label of each.
+    /// Calls `visit` with place and label of each invented voxel: one in the region's columns, above the ground, that was
+    /// neither in the source nor asked for.
     pub fn each_invented(
         &self,
         after: &VoxelGrid,

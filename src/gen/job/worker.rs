@@ -11,8 +11,8 @@ use crate::product::{Ctx, Product, Worker};
 pub type GenWorker = Worker<Job, JobUpdate>;
 
 impl GenWorker {
-    /// Starts the thread. `build` makes the pipeline there, for the first job and again after a panic or
-    /// a failed attempt; reading weights belongs in it. Errors if the system gives no thread.
+    /// Starts the thread. `build` runs on it and makes the pipeline (reads weights), for the first job and again
+    /// after a panic or if it failed. Errors if the system gives no thread.
     pub fn spawn<P, B>(build: B, wake: Wake) -> std::io::Result<Self>
     where
         P: Pipeline + 'static,
@@ -26,7 +26,7 @@ impl GenWorker {
     }
 }
 
-/// Occupancy as a product: its pipeline is built when it is first needed.
+/// Occupancy as a product. Builds its pipeline when the first job needs it.
 struct Occupancy<P, B> {
     build: B,
     pipeline: Option<P>,

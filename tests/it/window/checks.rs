@@ -53,11 +53,11 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
         let view = bench.pane(view);
         assert!(view.height() > 300.0 && !view.intersects(row), "{view:?} {row:?}");
     }
-    let finding_marks = |b: &mut Bench| b.app().state.meant.as_deref().cloned();
-    assert_eq!(meant(&mut bench), None);
+    let marks = |b: &mut Bench| b.app().state.finding_marks.as_deref().cloned();
+    assert_eq!(marks(&mut bench), None);
     bench.harness.hover_at(row.center());
     bench.steps(3);
-    assert_eq!(meant(&mut bench).expect("pointed at").cells, cells);
+    assert_eq!(marks(&mut bench).expect("pointed at").cells, cells);
     let turned = "Error: car 7 faces against its lane, 180 degrees from it";
     let turned = match bench.harness.query_by_label(turned) {
         Some(_) => turned,
@@ -66,16 +66,16 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
     let other = bench.harness.get_by_label(turned).rect().center();
     bench.harness.hover_at(other);
     bench.steps(3);
-    assert_eq!(meant(&mut bench).expect("pointed at").box_id, Some(BoxId(7)));
+    assert_eq!(marks(&mut bench).expect("pointed at").box_id, Some(BoxId(7)));
     // A click keeps the mark when the pointer leaves.
     bench.click(floats);
     let away = bench.bev(0.0, 0.0);
     bench.harness.hover_at(away);
     bench.steps(3);
-    assert_eq!(meant(&mut bench).expect("clicked").cells, cells);
+    assert_eq!(marks(&mut bench).expect("clicked").cells, cells);
     bench.key(Modifiers::CTRL, Key::Z);
     bench.all_checked();
-    assert_eq!(meant(&mut bench), None, "it is gone, and so is its mark");
+    assert_eq!(marks(&mut bench), None, "it is gone, and so is its mark");
     bench.command(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)));
     assert!(!bench.shows("All is well") && !bench.shows("Fix all ("));
 }

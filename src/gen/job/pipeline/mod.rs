@@ -1,6 +1,6 @@
-//! The generation itself: from a layout alone, or by inverting the source of an edit and denoising
-//! the touched region under the new layout. UniScene (occupancy, C.1 editing) with trajectory replay
-//! outside the region and a composite in label space.
+//! The generation itself. A whole scene is sampled from its layout. An edit inverts the source to noise and denoises
+//! the region that it touches under the new layout; outside the region the stored states are replayed, and the labels
+//! are copied from the source. After UniScene (occupancy; editing in C.1).
 
 mod network;
 mod round_trip;
@@ -39,10 +39,10 @@ pub use round_trip::RoundTrip;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
-/// A scene of which at least this share of the columns is asked for is to be complete.
+/// Completeness from which on a scene may have no holes in its ground.
 const COMPLETE: f32 = 0.95;
 
-/// When a long job shows what comes: after its first step, then so seldom that looking on costs a fifth of its time.
+/// Decides when a long job sends a preview: after its first step, then so seldom that previews take a fifth of the time.
 #[derive(Default)]
 struct Glimpses {
     begun: Option<Instant>,
@@ -63,17 +63,17 @@ impl Glimpses {
     }
 }
 
-/// Generates occupancy. Clones share what they keep. Keeps the trajectories of recent sources, its own results among them, so
-/// that the next edit of a scene needs no inversion.
+/// Generates occupancy. It keeps the trajectories of recent sources and of its own results in memory, so that the next
+/// edit of such a scene needs no inversion. Clones share that memory.
 #[derive(Clone)]
 pub struct OccPipeline {
     models: Arc<OccModels>,
     sources: VecDeque<Source>,
-    /// The last draft and its latent: the next one differs in a few columns.
+    /// The last draft and its latent. The next draft mostly differs in a few columns, and only those are encoded again.
     draft: Option<(VoxelGrid, Vec<f32>)>,
-    /// What stood beside the road in the last job.
+    /// The voxels beside the road in the last job.
     standing: Option<Standing>,
-    /// What is hidden from the network, to measure what it is worth.
+    /// The part of the condition that is hidden from the network, to measure what that part is worth.
     ablation: Option<Ablation>,
 }
 
@@ -104,8 +104,8 @@ impl OccPipeline {
         &self.models
     }
 
-    /// The tokens that an edit computes: those of its region and a few around, if the source's keys and
-    /// values can stand for the others; `None` for all tokens.
+    /// The tokens that an edit computes: those of its region and a few around it. That works if the keys and values of all
+    /// other tokens are in memory from the source; `None` if all tokens must be computed.
     fn local_tokens(
         &self,
         source: &Source,
@@ -121,7 +121,7 @@ impl OccPipeline {
             .then(|| tokens_of(&region.cells, params.halo_tokens as usize))
     }
 
-    /// Encodes a draft; where the last one was the same, its latents are taken.
+    /// Encodes a draft. Cells that see only columns that are as in the last draft keep their latents.
     fn draft_latent(&mut self, draft: &VoxelGrid) -> Result<Vec<f32>, GenError> {
         let vae = &self.models.vae;
         let latent = match self.draft.take() {
@@ -141,7 +141,7 @@ impl OccPipeline {
         Ok(latent)
     }
 
-    /// What a scene's frame is generated from, with this layout and these boxes.
+    /// The condition for a scene's frame with this layout and these boxes.
     fn condition(
         &mut self,
         scene: &Scene,
@@ -203,7 +203,7 @@ impl OccPipeline {
         })
     }
 
-    /// The clean end of the trajectory that the latest job used or made: latent, 50x50x8.
+    /// The latent (50x50x8) of the trajectory that the latest job used or made.
     pub fn latest_latent(&self) -> Option<Vec<f32>> {
         self.sources.front().map(|s| s.trajectory.latent_f32())
     }
@@ -291,7 +291,7 @@ impl OccPipeline {
         Ok(result)
     }
 
-    /// Shows what the latent on the way would decode to.
+    /// Sends a preview: the present estimate of the clean latent, decoded.
     fn glimpse(
         &self,
         job: &Job,
@@ -330,7 +330,7 @@ impl OccPipeline {
         ctx: &JobCtx<'_>,
     ) -> Result<GenResult, GenError> {
         job.params.check()?;
-        // Something new is wanted in all of it.
+        // All of the region may get new content.
         let mut mask = InpaintMask::default();
         let columns = region.columns.iter().enumerate().filter(|(_, c)| **c);
         columns.for_each(|(c, _)| mask.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
@@ -368,7 +368,7 @@ impl OccPipeline {
             .collect();
         let models = self.models.clone();
         let local = self.local_tokens(&source, &sampler, &region, params);
-        // Tokens that are not computed show what they held in the source; if all are, nothing is shown.
+        // Tokens that are not computed take part with their keys and values from the source.
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
         let keys_values = match kept {
             Some(kept) => Some(kept.clone()),
@@ -444,7 +444,7 @@ impl OccPipeline {
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
         if fresh {
-            return Ok(result); // its states around the region lead nowhere: the next edit inverts it
+            return Ok(result); // not adopted: its states around the region are noised, not inverted
         }
         self.adopt(
             &result.occupancy,

@@ -40,12 +40,12 @@ pub struct Condition {
     pub given: bool,
     /// The networks do not get the draft.
     pub draft_hidden: bool,
-    /// What of it stands in each column, and how high the ground is there.
+    /// For each column of the draft: what stands there, and the height of the ground.
     pub columns: Vec<ColumnHeights>,
 }
 
 impl Condition {
-    /// Of a layout, boxes and what stands beside the road, less what the ablation hides.
+    /// From layout, boxes and the background's voxels, without what the ablation hides.
     pub fn new(
         layout: &BevLayout,
         boxes: &BTreeMap<BoxId, SceneBox>,
@@ -92,7 +92,7 @@ impl Condition {
     }
 }
 
-/// What a frame's source is made of: an edit keeps that character unless the user names another.
+/// The densities of a frame's source. An edit keeps them unless the user names others.
 pub fn density_of_source(frame: &Frame) -> Density {
     Density::of(&frame.source.occupancy, frame.source.layout.cells())
 }
@@ -101,12 +101,12 @@ pub fn density_of_source(frame: &Frame) -> Density {
 pub struct Network {
     /// Its weights.
     pub models: Arc<OccModels>,
-    /// What it is asked for.
+    /// Its condition.
     pub condition: Prepared,
     /// The same without layout and draft, for guidance.
     pub without: Option<Prepared>,
-    /// Those of the conditional branch: renewed by every prediction, and needed if not all tokens are
-    /// computed; none if nobody wants them.
+    /// Keys and values of the conditional branch. Each prediction renews those of the tokens that it computes and reads
+    /// the others. None if all tokens are computed and nobody keeps them.
     pub keys_values: Option<StepKeysValues>,
     /// How the denoising network's products are computed.
     pub precision: Precision,

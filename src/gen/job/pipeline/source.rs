@@ -1,5 +1,5 @@
-//! What an edit starts from: the trajectory that leads to the frame's source, from memory or inverted, or the source
-//! under fresh noise; and which trajectories are kept.
+//! What an edit starts from: the trajectory that leads from noise to the frame's source, taken from memory or found by
+//! inversion; or the source with fresh noise added. Also decides which trajectories stay in memory.
 
 use std::sync::Arc;
 
@@ -24,8 +24,8 @@ const KEYS_VALUES_BYTES: usize = 256 << 20;
 /// About what those of one step take.
 const STEP_BYTES: usize = 7_700_000;
 
-/// What a trajectory belongs to: labels under a layout. Which of the trajectories that lead there it is, such as
-/// what densities it was sampled with, does not matter to an edit.
+/// What a trajectory belongs to: labels under a layout. Several trajectories may lead there, for example from other
+/// densities; an edit can use any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SourceKey {
     occupancy: u64,
@@ -40,20 +40,20 @@ pub(super) struct SourceKey {
 #[derive(Clone)]
 pub(super) struct Source {
     pub(super) key: SourceKey,
-    /// What edits of it are to be sampled with: O-BELM continues only what it inverted itself.
+    /// The solver for edits of it: O-BELM can only continue what it inverted itself.
     pub(super) solver: SolverKind,
     pub(super) trajectory: Arc<Trajectory>,
-    /// What the network made of the trajectory's states; none where memory did not allow it.
+    /// Keys and values of the network at the trajectory's states; none if they take too much memory.
     pub(super) keys_values: Option<Arc<StepKeysValues>>,
     pub(super) report: Option<InversionReport>, // none for a trajectory that sampling made
 }
 
-/// Where keys and values go, if those of so many steps find room.
+/// An empty store for keys and values, if those of so many steps fit into memory.
 pub(super) fn stored(steps: u32) -> Option<StepKeysValues> {
     (steps as usize * STEP_BYTES <= KEYS_VALUES_BYTES).then(StepKeysValues::new)
 }
 
-/// The same; blocks that are not computed at every step leave none.
+/// The same for parameters; none if blocks are reused between steps, which leave no keys and values.
 pub(super) fn stored_for(params: &GenParams) -> Option<StepKeysValues> {
     stored(params.steps).filter(|_| params.reuse_steps <= 1)
 }
@@ -116,7 +116,7 @@ impl OccPipeline {
         let old = &*scene.frame().source;
         let key = self.key(&old.occupancy, condition, params);
         if let Some(known) = self.sources.iter().find(|s| s.key == key).cloned() {
-            self.remember(known.clone()); // used last, forgotten last
+            self.remember(known.clone()); // now the latest: forgotten last
             return Ok(known);
         }
         ctx.progress(Stage::Encode, 0, 1)?;
@@ -139,8 +139,8 @@ impl OccPipeline {
             if solver != SolverKind::OBelm || inversion.moments_ok() {
                 break (trajectory, inversion);
             }
-            // Noise that no draw would give: edits from it look wrong. The plain inverse is approximate but
-            // tame, and replay needs no more.
+            // The noise is far from normal: edits from it look wrong. Plain inversion is less exact, but its noise
+            // is near normal, and replay needs no more.
             report.notes.push(format!(
                 "exact inversion gave unusual noise (std {:.2}, max {:.1}): plain inversion was used",
                 inversion.std, inversion.max_abs
@@ -162,7 +162,7 @@ impl OccPipeline {
         Ok(source)
     }
 
-    /// What an edit starts from: the noise that the source comes from.
+    /// Sampler and source for an edit: it starts from the noise that the source comes from.
     pub(super) fn inverted(
         &mut self,
         scene: &Scene,
@@ -186,7 +186,8 @@ impl OccPipeline {
         Ok((sampler, source))
     }
 
-    /// What a region is inpainted from: its source under fresh noise, from the step on that the strength asks for.
+    /// Sampler and source for inpainting from fresh noise: the source with noise added, from the step on that the strength
+    /// asks for.
     pub(super) fn noised(
         &mut self,
         scene: &Scene,
@@ -242,7 +243,7 @@ impl OccPipeline {
         self.network(condition, None, mask, context, &params)
     }
 
-    /// A result's own trajectory is that of the scene that adopts it: no inversion next time.
+    /// Remembers the trajectory of a result. The scene that adopts the result then needs no inversion.
     pub(super) fn adopt(
         &mut self,
         occupancy: &VoxelGrid,

@@ -15,8 +15,8 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// The background of a scene's frame on the ground of `layout`; `last` is taken where it is the same. `None` where the
-    /// scene has no background, or one that was only guessed from voxels and lacks much of what is there.
+    /// The background of a scene's frame on the ground of `layout`; reuses `last` if nothing changed. `None` if the scene
+    /// has no background, or only one that was guessed from voxels, which lacks much of what is there.
     pub fn of(scene: &Scene, layout: &BevLayout, last: Option<&Self>) -> Option<Self> {
         let frame = scene.frame();
         if scene.background.is_empty() || frame.inferred.background {
@@ -49,7 +49,7 @@ impl Standing {
         })
     }
 
-    /// Puts it into a draft, but for what objects hide.
+    /// Puts it into a draft wherever no object stands.
     pub fn stand_in(&self, draft: &mut VoxelGrid) {
         for ([x, y], labels) in &*self.columns {
             let column = draft.column_mut(*x, *y);
