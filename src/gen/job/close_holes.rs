@@ -1,13 +1,13 @@
 //! A scene that is to be complete has ground everywhere: what the networks left open is closed, and counted.
 
 use scene::draft::{ground_bin, ground_class};
-use scene::{BevLayout, Class, GridSpec, VoxelGrid};
+use scene::{BevLayout, Class, VoxelGrid, Window};
 
 /// Lays the layout's ground in columns without any ground in which nothing stands on its place either. Returns how many.
 pub fn close_holes(layout: &BevLayout, generated: &mut VoxelGrid) -> usize {
     let mut closed = 0;
-    for c in 0..GridSpec::COLUMNS {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+    for c in 0..Window::COLUMNS {
+        let (x, y) = (c / Window::NY, c % Window::NY);
         let bin = ground_bin(layout, x, y);
         let column = generated.column(x, y);
         let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);

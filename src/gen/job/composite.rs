@@ -6,7 +6,7 @@
 use super::region::Region;
 use numeric::hash::Fnv1a;
 use scene::grid::NOT_PAINTED;
-use scene::{GridSpec, VoxelGrid, VoxelPaint};
+use scene::{VoxelGrid, VoxelPaint, Window};
 
 /// The source, with the region's columns from `generated` and the user's painted voxels on top.
 /// Bricks in which nothing differs share memory with the source.
@@ -18,7 +18,7 @@ pub fn composite(
 ) -> VoxelGrid {
     let mut out = source.clone();
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let (x, y) = (i / Window::NY, i % Window::NY);
         // Paint first, so that a brick is not copied for labels that paint takes back.
         let mut column = *generated.column(x, y);
         for (label, paint) in column.iter_mut().zip(painted.column(x, y)) {
@@ -48,11 +48,11 @@ pub fn untouched_voxels_changed(
     }
     let mut count = 0;
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| !**c) {
-        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let (x, y) = (i / Window::NY, i % Window::NY);
         let (before, after) = (source.column(x, y), result.column(x, y));
         if before != after {
             let paint = painted.column(x, y);
-            count += (0..GridSpec::NZ)
+            count += (0..Window::NZ)
                 .filter(|z| before[*z] != after[*z] && paint[*z] == NOT_PAINTED)
                 .count();
         }
@@ -65,10 +65,10 @@ pub fn untouched_voxels_changed(
 pub fn seam_change_share(source: &VoxelGrid, result: &VoxelGrid, region: &Region, width: usize) -> f64 {
     let (mut changed, mut all) = (0usize, 0usize);
     for (i, _) in region.seam(width).iter().enumerate().filter(|(_, c)| **c) {
-        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let (x, y) = (i / Window::NY, i % Window::NY);
         let pairs = source.column(x, y).iter().zip(result.column(x, y));
         changed += pairs.filter(|(a, b)| a != b).count();
-        all += GridSpec::NZ;
+        all += Window::NZ;
     }
     if all == 0 {
         0.0
@@ -82,7 +82,7 @@ pub fn seam_change_share(source: &VoxelGrid, result: &VoxelGrid, region: &Region
 pub fn untouched_hash(grid: &VoxelGrid, region: &Region, painted: &VoxelPaint) -> u64 {
     let mut hash = Fnv1a::new();
     for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| !**c) {
-        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let (x, y) = (i / Window::NY, i % Window::NY);
         let pairs = grid.column(x, y).iter().zip(painted.column(x, y));
         pairs.for_each(|(label, paint)| {
             hash.add(if *paint == NOT_PAINTED {
@@ -110,6 +110,7 @@ mod tests {
 
     use super::super::region::tests::{Dice, car, frame_with, random_grid};
     use super::*;
+    use scene::Extent;
     use scene::raster::disc_cells;
     use scene::{BevLayer, BevLayout, BoxId, Frame, SceneBox};
 
@@ -124,14 +125,9 @@ mod tests {
                     let layer = BevLayer::MAP[dice.below(8)];
                     let on = dice.below(2) == 0;
                     let mut cells = Vec::new();
-                    disc_cells(
-                        scene::Extent::WINDOW,
-                        DVec2::new(x, y),
-                        dice.within(0.1, 4.0),
-                        |x, y| {
-                            cells.push((x, y));
-                        },
-                    );
+                    disc_cells(Extent::WINDOW, DVec2::new(x, y), dice.within(0.1, 4.0), |x, y| {
+                        cells.push((x, y));
+                    });
                     cells
                         .iter()
                         .for_each(|(x, y)| frame.layout.set(layer, *x, *y, on));
@@ -177,7 +173,7 @@ mod tests {
                 );
             }
             for (i, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                let (x, y) = (i / Window::NY, i % Window::NY);
                 if paint.column(x, y).iter().all(|p| *p == NOT_PAINTED) {
                     assert_eq!(result.column(x, y), new.column(x, y));
                 }
@@ -233,7 +229,7 @@ mod tests {
         let (source, new) = (random_grid(&mut dice), random_grid(&mut dice));
         let square = |lo: usize, hi: usize| {
             let inside = |i: usize| (lo..hi).contains(&(i / 200)) && (lo..hi).contains(&(i % 200));
-            Region::of_columns((0..GridSpec::COLUMNS).map(inside).collect())
+            Region::of_columns((0..Window::COLUMNS).map(inside).collect())
         };
         let (a, b, paint) = (square(20, 60), square(61, 90), VoxelPaint::new());
         let then = |first: &Region, second: &Region| {

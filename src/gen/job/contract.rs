@@ -39,13 +39,13 @@ impl Job {
         JobKey {
             rev: self.scene.rev,
             frame: self.frame(),
-            params: self.params,
+            params: self.params.clone(),
         }
     }
 }
 
 /// Same key, same result: the key of a cache of results.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct JobKey {
     /// State of the scene.
     pub rev: SceneRev,
@@ -181,7 +181,7 @@ pub struct GenResult {
     pub key: JobKey,
     /// Index of the frame that was generated.
     pub frame: usize,
-    /// The new occupancy: source outside the region, painted voxels kept.
+    /// The new occupancy, of the frame's extent: source outside the region, painted voxels kept.
     pub occupancy: VoxelGrid,
     /// What it cost.
     pub report: GenReport,
@@ -312,6 +312,11 @@ impl<'a> JobCtx<'a> {
         self.check()?;
         (self.report)(JobUpdate::Progress { stage, step, steps });
         Ok(())
+    }
+
+    /// Passes an update on.
+    pub fn report(&self, update: JobUpdate) {
+        (self.report)(update);
     }
 
     /// Sends a preview; it is dropped if the receiver is slow.

@@ -1,25 +1,22 @@
 //! Parts of a scene that are inpainted although nothing was edited there.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::params::GenParams;
-use super::region::{CELLS, CELLS_PER_SIDE, COLUMNS_PER_CELL, Region};
+use super::region::{CELLS_PER_SIDE, COLUMNS_PER_CELL, Region};
 use scene::raster::{box_cells, polygon_cells};
-use scene::{Frame, GridSpec};
+use scene::{Extent, Frame, Window};
 
-const WORDS: usize = CELLS.div_ceil(64);
-
-/// A set of latent cells, 1.6 m wide, `[i][j]` along ego x and y. As JSON a list of `[i, j]`.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(try_from = "Vec<[usize; 2]>", into = "Vec<[usize; 2]>")]
-pub struct InpaintMask([u64; WORDS]);
-
-impl Default for InpaintMask {
-    fn default() -> Self {
-        Self([0; WORDS])
-    }
-}
+/// A sparse set of latent cells, 1.6 m wide: `[i, j]` along ego x and y, counted from the corner of the networks' window, so
+/// that a cell of the window lies in `0..50`. A cell may lie anywhere on the map; those beyond the window wait until a window
+/// reaches them. As JSON a list of `[i, j]`.
+#[derive(Clone, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "Vec<[i32; 2]>", into = "Vec<[i32; 2]>")]
+pub struct InpaintMask(Arc<BTreeSet<[i32; 2]>>);
 
 impl std::fmt::Debug for InpaintMask {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -28,83 +25,111 @@ impl std::fmt::Debug for InpaintMask {
 }
 
 impl InpaintMask {
+    /// Cells farther from the corner of the window than this are refused: no map is larger.
+    const FARTHEST: i32 = (Extent::MAX_COLUMNS / COLUMNS_PER_CELL) as i32;
+
     /// True if it holds no cell.
     pub fn is_empty(&self) -> bool {
-        self.0 == [0; WORDS]
+        self.0.is_empty()
     }
 
     /// Number of cells.
     pub fn count(&self) -> usize {
-        self.0.iter().map(|w| w.count_ones() as usize).sum()
+        self.0.len()
     }
 
-    /// True if it holds the cell; false outside.
-    pub fn has(&self, i: usize, j: usize) -> bool {
-        let at = i * CELLS_PER_SIDE + j;
-        i < CELLS_PER_SIDE && j < CELLS_PER_SIDE && self.0[at / 64] >> (at % 64) & 1 == 1
+    /// True if it holds the cell.
+    pub fn has(&self, cell: [i32; 2]) -> bool {
+        self.0.contains(&cell)
     }
 
-    /// Puts a cell in or takes it out; nothing outside.
-    pub fn set(&mut self, i: usize, j: usize, on: bool) {
-        if i < CELLS_PER_SIDE && j < CELLS_PER_SIDE {
-            let at = i * CELLS_PER_SIDE + j;
-            let bit = 1u64 << (at % 64);
-            self.0[at / 64] = if on {
-                self.0[at / 64] | bit
-            } else {
-                self.0[at / 64] & !bit
-            };
+    /// True if it holds the cell of a column of a map.
+    pub fn has_column(&self, extent: Extent, column: [usize; 2]) -> bool {
+        !self.is_empty() && self.has(Self::cell_of(extent, column))
+    }
+
+    /// Puts a cell in or takes it out.
+    pub fn set(&mut self, cell: [i32; 2], on: bool) {
+        if self.has(cell) == on {
+            return;
+        }
+        let cells = Arc::make_mut(&mut self.0);
+        match on {
+            true => cells.insert(cell),
+            false => cells.remove(&cell),
+        };
+    }
+
+    /// The cell that holds a column of a map.
+    pub fn cell_of(extent: Extent, [x, y]: [usize; 2]) -> [i32; 2] {
+        let (from, window) = (extent.from(), Extent::WINDOW.from());
+        let along = |axis: usize, at: usize| {
+            (from[axis] - window[axis] + at as i32).div_euclid(COLUMNS_PER_CELL as i32)
+        };
+        [along(0, x), along(1, y)]
+    }
+
+    /// Puts the cells of columns `[x, y]` of a map in, or takes them out.
+    pub fn set_columns(&mut self, extent: Extent, columns: &[[usize; 2]], on: bool) {
+        for column in columns {
+            self.set(Self::cell_of(extent, *column), on);
         }
     }
 
-    /// Puts the cells of columns `[x, y]` in, or takes them out.
-    pub fn set_columns(&mut self, columns: &[[usize; 2]], on: bool) {
-        for [x, y] in columns {
-            self.set(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL, on);
-        }
+    /// The columns of a map that it holds, `[x][y]`.
+    pub fn columns(&self, extent: Extent) -> Vec<bool> {
+        let held = |column| self.has_column(extent, column);
+        extent.all_columns().map(held).collect()
     }
 
-    /// The cells that an upright rectangle of the ego frame touches by the centre of a column, m.
-    pub fn of_rect(a_m: DVec2, b_m: DVec2) -> Self {
+    /// The cells of a map that an upright rectangle of the ego frame touches by the centre of a column, m.
+    pub fn of_rect(extent: Extent, a_m: DVec2, b_m: DVec2) -> Self {
         let (min, max) = (a_m.min(b_m), a_m.max(b_m));
-        Self::of_outline(&[min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)])
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        Self::of_outline(extent, &corners)
     }
 
-    /// The cells that an outline of the ego frame, m, goes around or touches by the centre of a column.
-    pub fn of_outline(points_m: &[DVec2]) -> Self {
-        let mut mask = Self::default();
-        polygon_cells(scene::Extent::WINDOW, points_m, |x, y| {
-            mask.set_columns(&[[x, y]], true)
+    /// The cells of a map that an outline of the ego frame, m, goes around or touches by the centre of a column.
+    pub fn of_outline(extent: Extent, points_m: &[DVec2]) -> Self {
+        let mut cells = BTreeSet::new();
+        polygon_cells(extent, points_m, |x, y| {
+            cells.insert(Self::cell_of(extent, [x, y]));
         });
-        mask
+        Self(Arc::new(cells))
     }
 
     /// Every cell `[i, j]`, in order.
-    pub fn cells(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
-        let all = (0..CELLS).map(|at| [at / CELLS_PER_SIDE, at % CELLS_PER_SIDE]);
-        all.filter(|[i, j]| self.has(*i, *j))
+    pub fn cells(&self) -> impl Iterator<Item = [i32; 2]> + '_ {
+        self.0.iter().copied()
+    }
+
+    /// How many of its cells no network reaches, because they lie beyond the window.
+    pub fn count_beyond_window(&self) -> usize {
+        let within = |[i, j]: &[i32; 2]| {
+            let side = 0..CELLS_PER_SIDE as i32;
+            side.contains(i) && side.contains(j)
+        };
+        self.0.iter().filter(|cell| !within(cell)).count()
     }
 }
 
-impl From<InpaintMask> for Vec<[usize; 2]> {
+impl From<InpaintMask> for Vec<[i32; 2]> {
     fn from(mask: InpaintMask) -> Self {
         mask.cells().collect()
     }
 }
 
-impl TryFrom<Vec<[usize; 2]>> for InpaintMask {
+impl TryFrom<Vec<[i32; 2]>> for InpaintMask {
     type Error = String;
-    fn try_from(cells: Vec<[usize; 2]>) -> Result<Self, String> {
-        let mut mask = Self::default();
-        for [i, j] in cells {
-            if i >= CELLS_PER_SIDE || j >= CELLS_PER_SIDE {
-                return Err(format!(
-                    "redraw holds [{i}, {j}], expected indices below {CELLS_PER_SIDE}"
-                ));
-            }
-            mask.set(i, j, true);
+    fn try_from(cells: Vec<[i32; 2]>) -> Result<Self, String> {
+        let far = |n: &i32| n.unsigned_abs() > Self::FARTHEST as u32;
+        if let Some([i, j]) = cells.iter().find(|cell| cell.iter().any(far)) {
+            return Err(format!(
+                "redraw holds [{i}, {j}], expected indices within {}",
+                Self::FARTHEST
+            ));
         }
-        Ok(mask)
+        Ok(Self(Arc::new(cells.into_iter().collect())))
     }
 }
 
@@ -115,19 +140,14 @@ pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
     if params.inpaint.is_empty() {
         return edited;
     }
-    let mut columns: Vec<bool> = (0..GridSpec::COLUMNS)
-        .map(|c| {
-            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-            params.inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
-        })
-        .collect();
+    let mut columns = params.inpaint.columns(Extent::WINDOW);
     let kept = frame
         .boxes
         .values()
         .filter(|b| frame.source.boxes.get(&b.id) == Some(b));
     for b in kept {
-        box_cells(scene::Extent::WINDOW, b, GridSpec::VOXEL_M, |x, y| {
-            columns[x * GridSpec::NY + y] = false
+        box_cells(Extent::WINDOW, b, Window::VOXEL_M, |x, y| {
+            columns[x * Window::NY + y] = false
         });
     }
     for (column, edited) in columns.iter_mut().zip(edited.columns) {
@@ -140,33 +160,52 @@ pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
 mod tests {
     use super::*;
     use crate::composite::{composite, untouched_voxels_changed};
+    use crate::region::CELLS;
     use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox, VoxelGrid};
+
+    const WINDOW: Extent = Extent::WINDOW;
 
     #[test]
     fn masks_are_sets_and_travel_as_json() {
-        let mut mask = InpaintMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(-36.8, -38.4));
+        let mut mask = InpaintMask::of_rect(WINDOW, DVec2::new(-40.0, -40.0), DVec2::new(-36.8, -38.4));
         assert_eq!(mask.cells().collect::<Vec<_>>(), [[0, 0], [1, 0]]);
-        mask.set(49, 49, true);
-        mask.set(50, 0, true);
-        mask.set(0, 0, false);
+        mask.set([49, 49], true);
+        mask.set([0, 0], false);
+        mask.set([-3, 60], true);
         assert_eq!(
-            (mask.count(), mask.is_empty(), mask.has(99, 99)),
-            (2, false, false)
+            (mask.count(), mask.is_empty(), mask.count_beyond_window()),
+            (3, false, 1)
         );
         let text = serde_json::to_string(&mask).expect("JSON");
-        assert_eq!(text, "[[1,0],[49,49]]");
+        assert_eq!(text, "[[-3,60],[1,0],[49,49]]");
         assert_eq!(serde_json::from_str::<InpaintMask>(&text).expect("JSON"), mask);
-        let error = serde_json::from_str::<InpaintMask>("[[0,50]]").expect_err("outside");
+        let error = serde_json::from_str::<InpaintMask>("[[0,99999999]]").expect_err("outside");
         assert!(
             error
                 .to_string()
-                .starts_with("redraw holds [0, 50], expected indices below 50")
+                .starts_with("redraw holds [0, 99999999], expected"),
+            "{error}"
         );
-        assert!(InpaintMask::of_rect(DVec2::NAN, DVec2::ZERO).is_empty());
-        assert_eq!(
-            InpaintMask::of_rect(DVec2::splat(-1e9), DVec2::splat(1e9)).count(),
-            CELLS
-        );
+        assert!(InpaintMask::of_rect(WINDOW, DVec2::NAN, DVec2::ZERO).is_empty());
+        let all = InpaintMask::of_rect(WINDOW, DVec2::splat(-1e9), DVec2::splat(1e9));
+        assert_eq!((all.count(), all.count_beyond_window()), (CELLS, 0));
+        assert!(all.columns(WINDOW).iter().all(|held| *held));
+    }
+
+    #[test]
+    fn a_place_has_the_same_cell_on_every_map() {
+        let map = Extent::new([-150, -110], [480, 320]).expect("sound");
+        let at = |extent: Extent, p: DVec2| {
+            InpaintMask::cell_of(extent, extent.column_at(p.x, p.y).expect("inside"))
+        };
+        for p in [DVec2::ZERO, DVec2::new(-39.9, 39.9), DVec2::new(12.3, -7.7)] {
+            assert_eq!(at(map, p), at(WINDOW, p), "{p}");
+        }
+        assert_eq!(at(map, DVec2::new(-40.1, 41.7)), [-1, 51]);
+        let mask = InpaintMask::of_rect(map, DVec2::new(96.0, 0.0), DVec2::new(99.2, 1.6));
+        assert_eq!((mask.count(), mask.count_beyond_window()), (2, 2));
+        assert_eq!(mask.columns(map).iter().filter(|held| **held).count(), 2 * 16);
+        assert!(!mask.columns(WINDOW).contains(&true));
     }
 
     #[test]
@@ -183,24 +222,24 @@ mod tests {
         let boxes = [(BoxId(1), car)].into();
         let mut frame = Frame::new(BevLayout::default(), boxes, VoxelGrid::new());
         let params = GenParams {
-            inpaint: InpaintMask::of_rect(DVec2::splat(-8.0), DVec2::splat(8.0)),
+            inpaint: InpaintMask::of_rect(WINDOW, DVec2::splat(-8.0), DVec2::splat(8.0)),
             halo_columns: 0,
             ..GenParams::default()
         };
         assert!(region_of(&frame, &GenParams::default()).is_empty());
         frame.layout.set(BevLayer::Walkway, 10, 10, true);
         let region = region_of(&frame, &params);
-        let [x, y] = GridSpec::column_at(0.0, 0.0).expect("inside");
-        assert!(!region.columns[x * GridSpec::NY + y], "the car stays");
-        assert!(region.columns[10 * GridSpec::NY + 10], "the edit counts too");
+        let [x, y] = Window::column_at(0.0, 0.0).expect("inside");
+        assert!(!region.columns[x * Window::NY + y], "the car stays");
+        assert!(region.columns[10 * Window::NY + 10], "the edit counts too");
         assert!(
             (1400..=1601).contains(&region.column_count()),
             "{}",
             region.column_count()
         );
         let mut new = VoxelGrid::new();
-        for c in 0..GridSpec::COLUMNS {
-            new.column_mut(c / GridSpec::NY, c % GridSpec::NY)[3] = Class::Vegetation.id();
+        for c in 0..Window::COLUMNS {
+            new.column_mut(c / Window::NY, c % Window::NY)[3] = Class::Vegetation.id();
         }
         let source = &frame.source.occupancy;
         let result = composite(source, &new, &region, &frame.painted);

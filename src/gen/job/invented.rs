@@ -2,7 +2,7 @@
 
 use crate::region::Region;
 use crate::request::Request;
-use scene::{Class, Frame, GridSpec, VoxelGrid};
+use scene::{Class, Frame, VoxelGrid, Window};
 
 /// Counts of one edit, in voxels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl Invented {
             return out;
         };
         for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-            let (word, (x, y)) = (unobserved.words()[c], (c / GridSpec::NY, c % GridSpec::NY));
+            let (word, (x, y)) = (unobserved.words()[c], (c / Window::NY, c % Window::NY));
             if word == 0 || request.edited(c) {
                 continue;
             }
@@ -63,8 +63,8 @@ impl Invented {
 /// True if a voxel of the label lies within one voxel of a place.
 fn is_near(grid: &VoxelGrid, [x, y, z]: [usize; 3], label: u8) -> bool {
     let span = |v: usize, n: usize| v.saturating_sub(1)..(v + 2).min(n);
-    span(x, GridSpec::NX)
-        .any(|i| span(y, GridSpec::NY).any(|j| grid.column(i, j)[span(z, GridSpec::NZ)].contains(&label)))
+    span(x, Window::NX)
+        .any(|i| span(y, Window::NY).any(|j| grid.column(i, j)[span(z, Window::NZ)].contains(&label)))
 }
 
 #[cfg(test)]
@@ -80,7 +80,7 @@ mod tests {
         let region = Region::of_edit(&frame, 2);
         let clean = draft::draft(&frame.layout, frame.boxes.values());
         assert_eq!(Invented::count(&frame, &clean, &region), Invented::default());
-        let [x, y] = GridSpec::column_at(10.0, 0.0).expect("inside");
+        let [x, y] = Window::column_at(10.0, 0.0).expect("inside");
         let mut planted = clean.clone();
         (0..8).for_each(|z| planted.set(x, y, z, Class::Vegetation.id()));
         let found = Invented::count(&frame, &planted, &region);
@@ -111,15 +111,15 @@ mod tests {
         let mut frame = removal();
         let region = Region::of_edit(&frame, 2);
         // A column of the region beside what was edited: nobody observed it, and the labels are free there.
-        let at = (0..GridSpec::COLUMNS).find(|c| region.columns[*c] && !Request::of(&frame).edited(*c));
+        let at = (0..Window::COLUMNS).find(|c| region.columns[*c] && !Request::of(&frame).edited(*c));
         let at = at.expect("the halo");
-        let mut observed = vec![true; GridSpec::VOXELS];
-        (0..GridSpec::NZ).for_each(|z| observed[at * GridSpec::NZ + z] = false);
+        let mut observed = vec![true; Window::VOXELS];
+        (0..Window::NZ).for_each(|z| observed[at * Window::NZ + z] = false);
         frame.inferred.unobserved = Unobserved::from_observed(&observed);
         let mut source = (*frame.source).clone();
         source
             .occupancy
-            .set(at / GridSpec::NY, at % GridSpec::NY, 0, Class::FREE);
+            .set(at / Window::NY, at % Window::NY, 0, Class::FREE);
         frame.source = std::sync::Arc::new(source);
         let mut after = draft::draft(&frame.layout, frame.boxes.values());
         assert_eq!(
@@ -127,7 +127,7 @@ mod tests {
             1,
             "ground"
         );
-        after.set(at / GridSpec::NY, at % GridSpec::NY, 4, Class::Manmade.id());
+        after.set(at / Window::NY, at % Window::NY, 4, Class::Manmade.id());
         let found = Invented::count(&frame, &after, &region);
         assert_eq!((found.into_unobserved, found.total()), (2, 1));
         frame.inferred.unobserved = None;

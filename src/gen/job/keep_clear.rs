@@ -2,9 +2,9 @@
 //! say that no sensor looked. The removed voxels are counted for the report.
 
 use super::inpaint::InpaintMask;
-use super::region::{COLUMNS_PER_CELL, Region};
+use super::region::Region;
 use super::request::{Request, stands};
-use scene::{BevLayer, Class, Frame, GridSpec, VoxelGrid, draft};
+use scene::{BevLayer, Class, Extent, Frame, VoxelGrid, Window, draft};
 
 /// Removes invented voxels (see [`Request::each_invented`]) from `generated` on roads and car parks, and where a box of the
 /// source stood. If the source held something there that stays, that is put back; a column that has no ground left gets
@@ -20,8 +20,8 @@ pub fn keep_clear(
     let source = &frame.source.occupancy;
     let mut found = Vec::new();
     request.each_invented(generated, region, |x, y, z, _| {
-        let bare = frame.layout.cell(x, y) & road != 0 || request.left_by_a_box(x * GridSpec::NY + y);
-        if bare && !inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        let bare = frame.layout.cell(x, y) & road != 0 || request.left_by_a_box(x * Window::NY + y);
+        if bare && !inpaint.has_column(Extent::WINDOW, [x, y]) {
             found.push([x, y, z]);
         }
     });
@@ -64,8 +64,8 @@ pub fn keep_unobserved(
     };
     let mut count = 0;
     for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-        let (word, (x, y)) = (unobserved.words()[c], (c / GridSpec::NY, c % GridSpec::NY));
-        if word == 0 || request.edited(c) || inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        let (word, (x, y)) = (unobserved.words()[c], (c / Window::NY, c % Window::NY));
+        if word == 0 || request.edited(c) || inpaint.has_column(Extent::WINDOW, [x, y]) {
             continue;
         }
         let before = *frame.source.occupancy.column(x, y);
@@ -86,8 +86,8 @@ pub fn keep_unobserved(
 pub fn observed_still(frame: &Frame, inpaint: &InpaintMask, request: &Request<'_>) -> Option<Vec<u32>> {
     let mut observed = frame.inferred.unobserved.as_ref()?.observed();
     for (c, told) in observed.iter_mut().enumerate() {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-        if request.edited(c) || inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        let (x, y) = (c / Window::NY, c % Window::NY);
+        if request.edited(c) || inpaint.has_column(Extent::WINDOW, [x, y]) {
             *told = 0;
         }
     }
@@ -103,7 +103,7 @@ mod tests {
     use scene::Unobserved;
 
     fn at(x_m: f64, y_m: f64) -> [usize; 2] {
-        GridSpec::column_at(x_m, y_m).expect("inside")
+        Window::column_at(x_m, y_m).expect("inside")
     }
 
     #[test]
@@ -115,7 +115,7 @@ mod tests {
         (0..4).for_each(|z| source.occupancy.set(hx, hy, z, Class::Vegetation.id()));
         frame.source = std::sync::Arc::new(source);
         let region = Region::of_edit(&frame, 2);
-        assert!(region.columns[hx * GridSpec::NY + hy]);
+        assert!(region.columns[hx * Window::NY + hy]);
         let clean = draft::draft(&frame.layout, frame.boxes.values());
         let [x, y] = at(10.0, 0.0);
         // Networks that grow a tree out of the car's place, wall the hedge in, and see a car beside it.
@@ -150,7 +150,7 @@ mod tests {
         let mut wanted = clean.clone();
         (0..9).for_each(|z| wanted.set(x, y, z, Class::Vegetation.id()));
         let mut mask = InpaintMask::default();
-        mask.set_columns(&[[x, y]], true);
+        mask.set_columns(Extent::WINDOW, &[[x, y]], true);
         assert_eq!(keep_clear(&frame, &region, &mask, &request, &mut wanted), 0);
         assert_eq!(
             keep_clear(&frame, &Region::empty(), &none, &request, &mut wanted),
@@ -170,8 +170,7 @@ mod tests {
         let mut generated = draft::draft(&frame.layout, frame.boxes.values());
         let ([x, y], [hx, hy]) = (at(10.0, 0.0), at(10.0, 1.9));
         assert!(
-            region.columns[hx * GridSpec::NY + hy]
-                && !Request::of(&frame).left_by_a_box(hx * GridSpec::NY + hy)
+            region.columns[hx * Window::NY + hy] && !Request::of(&frame).left_by_a_box(hx * Window::NY + hy)
         );
         for (x, y) in [(x, y), (hx, hy)] {
             (0..5).for_each(|z| generated.set(x, y, z, Class::Vegetation.id()));
@@ -193,7 +192,7 @@ mod tests {
         let clean = draft::draft(&frame.layout, frame.boxes.values());
         let request = Request::of(&frame);
         let none = InpaintMask::default();
-        let halo = (0..GridSpec::COLUMNS).filter(|c| region.columns[*c] && !request.edited(*c));
+        let halo = (0..Window::COLUMNS).filter(|c| region.columns[*c] && !request.edited(*c));
         let halo = halo.count();
         assert!(halo > 20);
         let mut generated = clean.clone();
@@ -203,7 +202,7 @@ mod tests {
             "no mask"
         );
         let mut masked = frame.clone();
-        masked.inferred.unobserved = Unobserved::from_observed(&vec![false; GridSpec::VOXELS]);
+        masked.inferred.unobserved = Unobserved::from_observed(&vec![false; Window::VOXELS]);
         let request = Request::of(&masked);
         let found = Invented::of_request(&request, &masked, &generated, &region);
         assert_eq!(found.into_unobserved, halo);

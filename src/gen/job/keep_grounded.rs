@@ -9,7 +9,7 @@ use scene::raster::box_cells;
 use scene::support::{
     self, CROWN, bins_set, by_class, groups, is_known_to_float, main_class, occupied, reaches_side, stem,
 };
-use scene::{Class, Frame, GridSpec, VoxelGrid};
+use scene::{Class, Extent, Frame, VoxelGrid, Window};
 
 /// Voxels of an object this far outside its box still belong to it, m.
 const MARGIN_M: f64 = 0.6;
@@ -34,7 +34,7 @@ pub fn keep_grounded(
 ) -> Grounded {
     let mut out = Grounded::default();
     let source = &frame.source.occupancy;
-    let inside = |x: usize, y: usize| region.columns[x * GridSpec::NY + y];
+    let inside = |x: usize, y: usize| region.columns[x * Window::NY + y];
     let is_new = |grid: &VoxelGrid, [x, y, z]: [usize; 3]| {
         let label = grid.get(x, y, z);
         inside(x, y) && (all || source.get(x, y, z) != label) && !request.holds(x, y, z, label)
@@ -55,20 +55,20 @@ pub fn keep_grounded(
     let whole = composite(source, generated, region, &frame.painted);
     let occupied = occupied(&whole);
     let stands = support::supported(
-        scene::Extent::WINDOW,
+        Extent::WINDOW,
         &occupied,
-        &support::ground(scene::Extent::WINDOW, &by_class(&whole)),
+        &support::ground(Extent::WINDOW, &by_class(&whole)),
     );
     let hanging = occupied.iter().zip(&stands).enumerate();
     let hanging = hanging
-        .flat_map(|(c, (all, stands))| bins_set(scene::Extent::WINDOW, c, all & !stands))
+        .flat_map(|(c, (all, stands))| bins_set(Extent::WINDOW, c, all & !stands))
         .collect();
-    for group in groups(scene::Extent::WINDOW, hanging) {
+    for group in groups(Extent::WINDOW, hanging) {
         let new: Vec<_> = group.iter().copied().filter(|c| is_new(&whole, *c)).collect();
         let class = main_class(&whole, &group);
         let is_crown = class == Class::Vegetation && group.len() >= CROWN;
         // Something at the top of the grid may go on above it and be held there; a tree may not.
-        let needs_stem = all && is_crown && !reaches_side(scene::Extent::WINDOW, &group);
+        let needs_stem = all && is_crown && !reaches_side(Extent::WINDOW, &group);
         let floats = needs_stem || is_known_to_float(&whole, frame.inferred.unobserved.as_ref(), &group);
         if new.is_empty() || !floats {
             continue;
@@ -92,15 +92,15 @@ pub fn keep_grounded(
 
 /// Voxels of the region whose object class no box within reach has.
 fn without_box(frame: &Frame, region: &Region, generated: &VoxelGrid) -> Vec<[usize; 3]> {
-    let mut explained = vec![0u32; GridSpec::COLUMNS];
+    let mut explained = vec![0u32; Window::COLUMNS];
     for b in frame.boxes.values() {
-        box_cells(scene::Extent::WINDOW, b, MARGIN_M, |x, y| {
-            explained[x * GridSpec::NY + y] |= 1 << b.class.id()
+        box_cells(Extent::WINDOW, b, MARGIN_M, |x, y| {
+            explained[x * Window::NY + y] |= 1 << b.class.id()
         });
     }
     let mut out = Vec::new();
     for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        let (x, y) = (c / Window::NY, c % Window::NY);
         let labels = generated.column(x, y).iter().enumerate();
         let unboxed = labels.filter(|(_, label)| {
             let is_object = Class::from_id(**label).is_some_and(Class::is_object);
@@ -132,9 +132,9 @@ mod tests {
             generated.set(x, 130, 9, Class::Manmade.id());
             (1..3).for_each(|z| generated.set(x, 140, z, Class::Car.id()));
         }
-        let mut columns = vec![false; GridSpec::COLUMNS];
+        let mut columns = vec![false; Window::COLUMNS];
         for x in 110..160 {
-            (110..150).for_each(|y| columns[x * GridSpec::NY + y] = true);
+            (110..150).for_each(|y| columns[x * Window::NY + y] = true);
         }
         (frame, generated, Region::of_columns(columns))
     }
@@ -160,7 +160,7 @@ mod tests {
         let all = keep_grounded(&frame, &Region::full(), true, &request, &mut generated);
         assert_eq!((all.stems, all.dropped), (0, 1));
         // A crown at the top of the grid hangs from nothing; a wall there may go on beyond.
-        for z in 12..GridSpec::NZ {
+        for z in 12..Window::NZ {
             (0..9).for_each(|c| generated.set(130 + c / 3, 120 + c % 3, z, Class::Vegetation.id()));
             generated.set(140, 120, z, Class::Manmade.id());
         }

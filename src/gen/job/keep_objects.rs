@@ -7,7 +7,7 @@ use super::region::Region;
 use super::seen_draft::seen_voxels;
 use scene::draft::{ground_bin, ground_class};
 use scene::raster::box_cells;
-use scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
+use scene::{BoxId, Class, Extent, Frame, SceneBox, VoxelGrid, Window, draft};
 
 /// A placed box counts as there if the share of its columns that hold its class is at least this part of the usual share of
 /// the frame's boxes. (Labels have holes, so their usual share is below that of complete worlds.)
@@ -70,14 +70,14 @@ impl Usual {
 
 /// Share of the columns that hold something, 0 to 1.
 fn held_share(grid: &VoxelGrid) -> f64 {
-    let columns = (0..GridSpec::COLUMNS).map(|c| grid.column(c / GridSpec::NY, c % GridSpec::NY));
+    let columns = (0..Window::COLUMNS).map(|c| grid.column(c / Window::NY, c % Window::NY));
     let held = columns.filter(|c| c.iter().any(|l| *l != Class::FREE)).count();
-    held as f64 / GridSpec::COLUMNS as f64
+    held as f64 / Window::COLUMNS as f64
 }
 
 /// Share of a box's columns that hold its class, 0 to 1.
 fn filled(grid: &VoxelGrid, b: &SceneBox) -> f64 {
-    let columns = draft::box_columns(scene::Extent::WINDOW, b);
+    let columns = draft::box_columns(Extent::WINDOW, b);
     let there = columns
         .iter()
         .filter(|(x, y, _)| grid.column(*x, *y).contains(&b.class.id()));
@@ -94,7 +94,7 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
         if !region.columns[i] || wanted == ground_class(*before) {
             continue;
         }
-        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let (x, y) = (i / Window::NY, i % Window::NY);
         let bin = ground_bin(&frame.layout, x, y);
         let is_old = |l: &u8| *l != wanted.id() && Class::from_id(*l).is_some_and(Class::is_ground);
         let found = generated.column(x, y);
@@ -126,7 +126,7 @@ pub fn keep_ground(frame: &Frame, region: &Region, generated: &mut VoxelGrid) ->
 }
 
 /// True unless a column has a hole in its ground: a sidewalk lies a bin above the road.
-fn held_ground(column: &[u8; GridSpec::NZ], bin: usize) -> bool {
+fn held_ground(column: &[u8; Window::NZ], bin: usize) -> bool {
     column[bin] != Class::FREE
         || column
             .iter()
@@ -136,8 +136,8 @@ fn held_ground(column: &[u8; GridSpec::NZ], bin: usize) -> bool {
 /// Puts a box in if its columns hold much less of it than the `usual` share: with its old voxels if it moved, else as its
 /// draft (in hollow frames only the part of the draft that a sensor can see).
 fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated: &mut VoxelGrid) -> bool {
-    let mut columns = draft::box_columns(scene::Extent::WINDOW, b);
-    columns.retain(|(x, y, _)| region.columns[x * GridSpec::NY + y]);
+    let mut columns = draft::box_columns(Extent::WINDOW, b);
+    columns.retain(|(x, y, _)| region.columns[x * Window::NY + y]);
     let there = columns
         .iter()
         .filter(|(x, y, _)| generated.column(*x, *y).contains(&b.class.id()))
@@ -155,7 +155,7 @@ fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated
     }
     if usual.hollow {
         let mut seen = seen_voxels(&frame.layout, b);
-        seen.retain(|[x, y, _]| region.columns[x * GridSpec::NY + y]);
+        seen.retain(|[x, y, _]| region.columns[x * Window::NY + y]);
         let drop = |label: &mut u8| {
             if *label == b.class.id() {
                 *label = Class::FREE;
@@ -181,22 +181,22 @@ fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generat
     let (source, class) = (&frame.source.occupancy, new.class.id());
     // Labels reach down to the ground below the box.
     let rise_m = new.center_m.z - old.center_m.z;
-    box_cells(scene::Extent::WINDOW, new, 0.0, |x, y| {
-        if !region.columns[x * GridSpec::NY + y] {
+    box_cells(Extent::WINDOW, new, 0.0, |x, y| {
+        if !region.columns[x * Window::NY + y] {
             return;
         }
-        let center = GridSpec::center(x, y, 0);
+        let center = Window::center(x, y, 0);
         let there = old.to_ego(new.to_local(center.truncate().extend(new.center_m.z)));
-        let from = GridSpec::column_at(there.x, there.y).map(|[x, y]| *source.column(x, y));
+        let from = Window::column_at(there.x, there.y).map(|[x, y]| *source.column(x, y));
         let column = generated.column_mut(x, y);
         column
             .iter_mut()
             .filter(|l| **l == class)
             .for_each(|l| *l = Class::FREE);
         for (z, cell) in column.iter_mut().enumerate() {
-            let level = GridSpec::to_voxel_units(GridSpec::center(x, y, z) - DVec3::Z * rise_m).z;
+            let level = Window::to_voxel_units(Window::center(x, y, z) - DVec3::Z * rise_m).z;
             let is_own =
-                |column: &[u8; GridSpec::NZ]| level >= 0.0 && column.get(level as usize) == Some(&class);
+                |column: &[u8; Window::NZ]| level >= 0.0 && column.get(level as usize) == Some(&class);
             if from.as_ref().is_some_and(is_own) {
                 *cell = class;
             }
@@ -209,15 +209,15 @@ fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generat
 }
 
 fn clear(frame: &Frame, region: &Region, removed: &SceneBox, generated: &mut VoxelGrid) -> bool {
-    let mut owned = vec![false; GridSpec::COLUMNS]; // by boxes of the class that are there now
+    let mut owned = vec![false; Window::COLUMNS]; // by boxes of the class that are there now
     for b in frame.boxes.values().filter(|b| b.class == removed.class) {
-        box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
-            owned[x * GridSpec::NY + y] = true
+        box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
+            owned[x * Window::NY + y] = true
         });
     }
     let mut cleared = false;
-    box_cells(scene::Extent::WINDOW, removed, OVERHANG_M, |x, y| {
-        let i = x * GridSpec::NY + y;
+    box_cells(Extent::WINDOW, removed, OVERHANG_M, |x, y| {
+        let i = x * Window::NY + y;
         if owned[i] || !region.columns[i] || !generated.column(x, y).contains(&removed.class.id()) {
             return;
         }
@@ -297,7 +297,7 @@ mod tests {
     }
 
     fn holds_car(grid: &VoxelGrid, x_m: f64) -> bool {
-        let [x, y] = GridSpec::column_at(x_m, 0.1).expect("inside");
+        let [x, y] = Window::column_at(x_m, 0.1).expect("inside");
         grid.column(x, y).contains(&Class::Car.id())
     }
 
@@ -337,8 +337,8 @@ mod tests {
         let layout = BevLayout::default();
         let mut labels = draft::draft(&layout, [].into_iter());
         // One side of the car was seen.
-        for (x, y, layers) in draft::box_columns(scene::Extent::WINDOW, &before) {
-            if GridSpec::center(x, y, 0).y > 0.0 {
+        for (x, y, layers) in draft::box_columns(Extent::WINDOW, &before) {
+            if Window::center(x, y, 0).y > 0.0 {
                 (0..layers).for_each(|z| labels.set(x, y, z, Class::Car.id()));
             }
         }
@@ -362,14 +362,11 @@ mod tests {
         );
         // It turned round, and the side that was seen with it.
         let cars = generated.iter_set().filter(|v| v.3 == Class::Car.id());
-        let ys: Vec<f64> = cars.map(|v| GridSpec::center(v.0, v.1, 0).y).collect();
+        let ys: Vec<f64> = cars.map(|v| Window::center(v.0, v.1, 0).y).collect();
         assert!(!ys.is_empty() && ys.iter().all(|y| *y <= 0.3));
         // A third of the columns is what labels usually hold, and enough.
         let mut sparse = draft::draft(&frame.layout, [].into_iter());
-        for (x, y, _) in draft::box_columns(scene::Extent::WINDOW, &after)
-            .into_iter()
-            .step_by(3)
-        {
+        for (x, y, _) in draft::box_columns(Extent::WINDOW, &after).into_iter().step_by(3) {
             sparse.set(x, y, 2, Class::Car.id());
         }
         let same = sparse.clone();
@@ -380,10 +377,7 @@ mod tests {
     #[test]
     fn a_new_box_is_hollow_among_labels_and_solid_in_a_complete_world() {
         let new = car(1, 10.0);
-        let solid: usize = draft::box_columns(scene::Extent::WINDOW, &new)
-            .iter()
-            .map(|c| c.2)
-            .sum();
+        let solid: usize = draft::box_columns(Extent::WINDOW, &new).iter().map(|c| c.2).sum();
         let complete = draft::draft(&BevLayout::default(), [].into_iter());
         let mut labels = VoxelGrid::new();
         for (x, y, z, label) in complete.iter_set().filter(|v| (v.0 + v.1) % 3 == 0) {
@@ -406,7 +400,7 @@ mod tests {
     #[test]
     fn on_a_slope_nothing_is_put_below_the_ground() {
         let mut layout = BevLayout::default();
-        layout.relief = scene::Relief::from_fn(scene::Extent::WINDOW, |p| 2.0 + 0.04 * p.x);
+        layout.relief = scene::Relief::from_fn(Extent::WINDOW, |p| 2.0 + 0.04 * p.x);
         let mut new = car(1, 10.0);
         new.center_m.z += 2.4;
         let empty = draft::draft(&layout, [].into_iter());

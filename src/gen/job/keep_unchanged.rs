@@ -3,10 +3,10 @@
 //! changed.
 
 use super::inpaint::InpaintMask;
-use super::region::{COLUMNS_PER_CELL, Region};
+use super::region::Region;
 use super::request::Request;
 use scene::raster::box_cells;
-use scene::{Frame, GridSpec, VoxelGrid};
+use scene::{Extent, Frame, VoxelGrid, Window};
 
 /// Within this distance of a removed or changed box its class is not restored: it may have been a part of the box, m.
 const SCRAPS_M: f64 = 1.2;
@@ -22,18 +22,18 @@ pub fn keep_unchanged(
     decoded: &VoxelGrid,
     generated: &mut VoxelGrid,
 ) -> usize {
-    let mut gone = vec![0u32; GridSpec::COLUMNS]; // a bit per class
+    let mut gone = vec![0u32; Window::COLUMNS]; // a bit per class
     for (id, b) in &frame.source.boxes {
         if frame.boxes.get(id) != Some(b) {
-            box_cells(scene::Extent::WINDOW, b, SCRAPS_M, |x, y| {
-                gone[x * GridSpec::NY + y] |= 1 << b.class.id()
+            box_cells(Extent::WINDOW, b, SCRAPS_M, |x, y| {
+                gone[x * Window::NY + y] |= 1 << b.class.id()
             });
         }
     }
     let mut count = 0;
     for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-        if request.edited(c) || inpaint.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL) {
+        let (x, y) = (c / Window::NY, c % Window::NY);
+        if request.edited(c) || inpaint.has_column(Extent::WINDOW, [x, y]) {
             continue;
         }
         let (source, before) = (frame.source.occupancy.column(x, y), decoded.column(x, y));
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(found, expected);
         // Where something new is asked for, nothing of the source comes back.
         let mut inpaint = InpaintMask::default();
-        inpaint.set_columns(&[[90, 90], [91, 90]], true);
+        inpaint.set_columns(Extent::WINDOW, &[[90, 90], [91, 90]], true);
         let mut found = generated.clone();
         assert_eq!(
             keep_unchanged(&frame, &region, &inpaint, &request, &decoded, &mut found),

@@ -7,7 +7,7 @@ use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::column_heights;
 use nets::scenery::{self, CELLS, NAMED, NUMBERS, SceneryCondition, SceneryNet, columns_of};
 use numeric::philox::{Stream, normal_field};
-use scene::{Background, BevLayer, Class, GridSpec, Scene, VoxelGrid, draft, infer, raster};
+use scene::{Background, BevLayer, Class, Scene, VoxelGrid, Window, draft, infer, raster};
 
 /// Steps of the sampler.
 const STEPS: usize = 16;
@@ -75,7 +75,7 @@ fn extrude(numbers: &[f64], cell: usize, condition: &SceneryCondition, grid: &mu
     }
     for c in columns_of(cell) {
         let road = condition.bev[c] & BevLayer::DrivableArea.bit() != 0;
-        let column = grid.column_mut(c / GridSpec::NY, c % GridSpec::NY);
+        let column = grid.column_mut(c / Window::NY, c % Window::NY);
         for (class, base, top) in &parts {
             let base = if road { (*base).max(CLEARANCE) } else { *base };
             if road && *class == Class::Manmade {
@@ -84,7 +84,7 @@ fn extrude(numbers: &[f64], cell: usize, condition: &SceneryCondition, grid: &mu
             let bins = base..*top;
             for z in bins
                 .map(|z| usize::from(condition.ground[c] + z))
-                .filter(|z| *z < GridSpec::NZ)
+                .filter(|z| *z < Window::NZ)
             {
                 if column[z] == Class::FREE {
                     column[z] = class.id();

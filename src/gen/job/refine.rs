@@ -107,7 +107,7 @@ impl Denoiser for Refining<'_> {
 mod tests {
     use super::*;
     use nets::{LATENT, SIDE};
-    use scene::GridSpec;
+    use scene::Window;
 
     /// Labels of a few cells, by windows of their own, and nothing around them; the same again; without steps the coarse decoder's.
     #[test]
@@ -131,7 +131,7 @@ mod tests {
         );
         assert!(found.iter_set().count() > 0);
         for (x, y, _, _) in found.iter_set() {
-            let per_cell = GridSpec::NX / SIDE;
+            let per_cell = Window::NX / SIDE;
             assert!(cells[x / per_cell * SIDE + y / per_cell], "({x}, {y})");
         }
         let none = decode_refined(
@@ -157,8 +157,8 @@ mod tests {
         let rectangle = |x: usize, y: usize| (10..20).contains(&x) && (10..20).contains(&y);
         let bend = |x: usize, y: usize| rectangle(x, y) && (x < 12 || y < 12);
         let (part, whole) = (refined(&bend), refined(&rectangle));
-        let per_cell = GridSpec::NX / SIDE;
-        for (x, y) in (0..GridSpec::COLUMNS).map(|c| (c / GridSpec::NY, c % GridSpec::NY)) {
+        let per_cell = Window::NX / SIDE;
+        for (x, y) in (0..Window::COLUMNS).map(|c| (c / Window::NY, c % Window::NY)) {
             let same = part.column(x, y) == whole.column(x, y);
             assert!(same || !bend(x / per_cell, y / per_cell), "({x}, {y})");
         }

@@ -3,16 +3,16 @@
 
 use nets::pieces::pieces;
 use scene::raster::box_cells;
-use scene::{Frame, GridSpec, SceneBox};
+use scene::{Extent, Frame, SceneBox, Window};
 
 /// Latent cells along x and along y.
 pub const CELLS_PER_SIDE: usize = 50;
 /// Latent cells in all.
 pub const CELLS: usize = CELLS_PER_SIDE * CELLS_PER_SIDE;
 /// Columns along one side of a latent cell.
-pub const COLUMNS_PER_CELL: usize = GridSpec::NX / CELLS_PER_SIDE;
+pub const COLUMNS_PER_CELL: usize = Window::NX / CELLS_PER_SIDE;
 /// How far the voxels of an object may stand out of its box: one voxel.
-const OVERHANG_M: f64 = GridSpec::VOXEL_M;
+const OVERHANG_M: f64 = Window::VOXEL_M;
 
 /// Columns of the grid to be inpainted, and the latent cells to be generated for them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,21 +29,21 @@ pub struct Region {
 impl Region {
     /// Nothing.
     pub fn empty() -> Self {
-        Self::of_columns(vec![false; GridSpec::COLUMNS])
+        Self::of_columns(vec![false; Window::COLUMNS])
     }
 
     /// Everything.
     pub fn full() -> Self {
-        Self::of_columns(vec![true; GridSpec::COLUMNS])
+        Self::of_columns(vec![true; Window::COLUMNS])
     }
 
     /// Exactly these columns, `[x][y]`. Panics unless there are 40,000.
     pub fn of_columns(columns: Vec<bool>) -> Self {
-        assert_eq!(columns.len(), GridSpec::COLUMNS, "one flag per column");
+        assert_eq!(columns.len(), Window::COLUMNS, "one flag per column");
         let mut touched = vec![false; CELLS];
         let mut bounds: Option<([usize; 2], [usize; 2])> = None;
         for (i, _) in columns.iter().enumerate().filter(|(_, c)| **c) {
-            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            let (x, y) = (i / Window::NY, i % Window::NY);
             touched[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL] = true;
             let (lo, hi) = bounds.get_or_insert(([x, y], [x, y]));
             *lo = [lo[0].min(x), lo[1].min(y)];
@@ -70,14 +70,14 @@ impl Region {
             .zip(source.layout.cells())
             .map(|(now, before)| now != before)
             .collect();
-        let mut footprints = vec![false; GridSpec::COLUMNS]; // of changed boxes, without overhang
+        let mut footprints = vec![false; Window::COLUMNS]; // of changed boxes, without overhang
         let mut unchanged = Vec::new();
         let mut mark = |b: &SceneBox| {
-            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                changed[x * GridSpec::NY + y] = true
+            box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                changed[x * Window::NY + y] = true
             });
-            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-                footprints[x * GridSpec::NY + y] = true
+            box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+                footprints[x * Window::NY + y] = true
             });
         };
         for (id, now) in &frame.boxes {
@@ -88,28 +88,28 @@ impl Region {
         }
         // Columns that hold voxels of a removed box. Boxes inferred from labels may overlap others, so they may also lie in
         // the footprint of an unchanged box.
-        let mut left = vec![false; GridSpec::COLUMNS];
+        let mut left = vec![false; Window::COLUMNS];
         for (id, before) in &source.boxes {
             if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
                 mark(before);
-                box_cells(scene::Extent::WINDOW, before, 0.0, |x, y| {
-                    left[x * GridSpec::NY + y] |= source.occupancy.column(x, y).contains(&before.class.id());
+                box_cells(Extent::WINDOW, before, 0.0, |x, y| {
+                    left[x * Window::NY + y] |= source.occupancy.column(x, y).contains(&before.class.id());
                 });
             }
         }
         if !changed.contains(&true) {
             return Self::empty();
         }
-        let mut columns = dilate(&changed, GridSpec::NX, halo_columns);
+        let mut columns = dilate(&changed, Window::NX, halo_columns);
         for b in unchanged {
-            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-                let i = x * GridSpec::NY + y;
+            box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+                let i = x * Window::NY + y;
                 let own = || source.occupancy.column(x, y).contains(&b.class.id());
                 columns[i] &= left[i] && !own();
             });
             // Overhanging voxels of its class belong to it as well, except under a changed box.
-            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                let i = x * GridSpec::NY + y;
+            box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                let i = x * Window::NY + y;
                 if !footprints[i] && source.occupancy.column(x, y).contains(&b.class.id()) {
                     columns[i] = false;
                 }
@@ -130,7 +130,7 @@ impl Region {
 
     /// Share of all columns, 0 to 1.
     pub fn share(&self) -> f64 {
-        self.column_count() as f64 / GridSpec::COLUMNS as f64
+        self.column_count() as f64 / Window::COLUMNS as f64
     }
 
     /// Number of latent cells.
@@ -141,7 +141,7 @@ impl Region {
     /// Extent along x and y, m; zero if empty.
     pub fn extent_m(&self) -> [f64; 2] {
         self.bounds.map_or([0.0; 2], |(lo, hi)| {
-            [0, 1].map(|a| (hi[a] - lo[a] + 1) as f64 * GridSpec::VOXEL_M)
+            [0, 1].map(|a| (hi[a] - lo[a] + 1) as f64 * Window::VOXEL_M)
         })
     }
 
@@ -150,10 +150,10 @@ impl Region {
         let mut out = Vec::new();
         for cells in pieces(&self.cells, 0) {
             let columns = self.columns.iter().enumerate().filter(|(i, c)| {
-                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                let (x, y) = (i / Window::NY, i % Window::NY);
                 **c && cells[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL]
             });
-            let places = columns.map(|(i, _)| [i / GridSpec::NY, i % GridSpec::NY]);
+            let places = columns.map(|(i, _)| [i / Window::NY, i % Window::NY]);
             out.extend(places.fold(None, |bounds: Option<([usize; 2], [usize; 2])>, at| {
                 let (lo, hi) = bounds.unwrap_or((at, at));
                 Some((
@@ -168,7 +168,7 @@ impl Region {
     /// Columns of the region within `width` columns of its border. The edge of the grid is no border.
     pub fn seam(&self, width: usize) -> Vec<bool> {
         let outside: Vec<bool> = self.columns.iter().map(|c| !c).collect();
-        let near_outside = dilate(&outside, GridSpec::NX, width);
+        let near_outside = dilate(&outside, Window::NX, width);
         let pairs = self.columns.iter().zip(near_outside);
         pairs.map(|(inside, near)| *inside && near).collect()
     }
@@ -246,9 +246,9 @@ pub(super) mod tests {
         assert_eq!(pieces(&cells, 3).len(), 2);
         assert!(pieces(&vec![false; CELLS], 3).is_empty());
         assert_eq!(pieces(&vec![true; 100 * 100], 3).len(), 1, "of the fine latent");
-        let mut columns = vec![false; GridSpec::COLUMNS];
-        columns[8 * GridSpec::NY + 9] = true;
-        columns[180 * GridSpec::NY + 190] = true;
+        let mut columns = vec![false; Window::COLUMNS];
+        columns[8 * Window::NY + 9] = true;
+        columns[180 * Window::NY + 190] = true;
         let parts = Region::of_columns(columns).parts();
         assert_eq!(parts, [([8, 9], [8, 9]), ([180, 190], [180, 190])]);
     }
@@ -266,8 +266,8 @@ pub(super) mod tests {
     }
 
     pub fn random_grid(dice: &mut Dice) -> VoxelGrid {
-        let mut dense = vec![Class::FREE; GridSpec::VOXELS];
-        for column in dense.chunks_exact_mut(GridSpec::NZ) {
+        let mut dense = vec![Class::FREE; Window::VOXELS];
+        for column in dense.chunks_exact_mut(Window::NZ) {
             column[0] = 11 + dice.below(4) as u8;
             let height = dice.below(24).saturating_sub(8);
             let label = dice.below(17) as u8;
@@ -280,14 +280,14 @@ pub(super) mod tests {
     pub fn frame_with(boxes: &[SceneBox]) -> Frame {
         let mut grid = VoxelGrid::new();
         let mut layout = BevLayout::default();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 grid.set(x, y, 0, Class::DriveableSurface.id());
                 layout.set(BevLayer::DrivableArea, x, y, (60..140).contains(&y));
             }
         }
         for b in boxes {
-            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
+            box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
                 (0..5).for_each(|z| grid.set(x, y, z, b.class.id()));
             });
         }
@@ -296,9 +296,7 @@ pub(super) mod tests {
 
     pub fn cells_of(b: &SceneBox, margin_m: f64) -> Vec<usize> {
         let mut out = Vec::new();
-        box_cells(scene::Extent::WINDOW, b, margin_m, |x, y| {
-            out.push(x * GridSpec::NY + y)
-        });
+        box_cells(Extent::WINDOW, b, margin_m, |x, y| out.push(x * Window::NY + y));
         out
     }
 
@@ -330,7 +328,7 @@ pub(super) mod tests {
             let region = Region::of_edit(frame, 2);
             let all = cells_of(b, OVERHANG_M).into_iter().all(|c| region.columns[c]);
             let expected = region.columns.iter().enumerate().all(|(c, on)| {
-                let cell = c / GridSpec::NY / 4 * CELLS_PER_SIDE + c % GridSpec::NY / 4;
+                let cell = c / Window::NY / 4 * CELLS_PER_SIDE + c % Window::NY / 4;
                 !on || region.cells[cell]
             });
             all && expected && region.share() < 0.02
@@ -376,7 +374,7 @@ pub(super) mod tests {
         wide.class = Class::Trailer;
         wide.size_m.y = 5.0; // over y of 0.3 to 5.3: a third of the car
         let mut frame = frame_with(&[gone]);
-        let [x, y] = GridSpec::column_at(5.0, 0.6).expect("inside");
+        let [x, y] = Window::column_at(5.0, 0.6).expect("inside");
         frame.occupancy.set(x, y, 4, Class::Trailer.id());
         let boxes = [gone, wide].map(|b| (b.id, b));
         let mut frame = Frame::new(frame.layout.clone(), boxes.into(), frame.occupancy.clone());
@@ -388,11 +386,11 @@ pub(super) mod tests {
             .collect();
         assert_eq!(
             outside,
-            [x * GridSpec::NY + y],
+            [x * Window::NY + y],
             "only where the trailer shows itself"
         );
-        let ground_of_the_other = GridSpec::column_at(5.0, 4.0).expect("inside");
-        assert!(!region.columns[ground_of_the_other[0] * GridSpec::NY + ground_of_the_other[1]]);
+        let ground_of_the_other = Window::column_at(5.0, 4.0).expect("inside");
+        assert!(!region.columns[ground_of_the_other[0] * Window::NY + ground_of_the_other[1]]);
     }
 
     #[test]
@@ -415,14 +413,14 @@ pub(super) mod tests {
         let result = composite(&frame.source.occupancy, &bare, &region, &frame.painted);
         for kept in [&b, &c] {
             for i in cells_of(kept, 0.0) {
-                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                let (x, y) = (i / Window::NY, i % Window::NY);
                 assert_eq!(result.column(x, y), frame.source.occupancy.column(x, y));
             }
         }
         for i in cells_of(&a, 0.0) {
             assert!(
                 !result
-                    .column(i / GridSpec::NY, i % GridSpec::NY)
+                    .column(i / Window::NY, i % Window::NY)
                     .contains(&Class::Car.id())
             );
         }

@@ -6,10 +6,10 @@ use glam::DVec3;
 use super::region::Region;
 use scene::grid::NOT_PAINTED;
 use scene::raster::box_cells;
-use scene::{Class, Frame, GridSpec, SceneBox, VoxelGrid, draft};
+use scene::{Class, Extent, Frame, SceneBox, VoxelGrid, Window, draft};
 
 /// How far the voxels of an object may stand out of its box: one voxel.
-pub const OVERHANG_M: f64 = GridSpec::VOXEL_M;
+pub const OVERHANG_M: f64 = Window::VOXEL_M;
 const OBJECTS: usize = Class::OBJECTS.len();
 
 /// Which voxels and columns of a frame the user has asked something for.
@@ -26,29 +26,29 @@ pub struct Request<'a> {
 impl<'a> Request<'a> {
     /// From a frame and its source.
     pub fn of(frame: &'a Frame) -> Self {
-        let mut heights = vec![[0; OBJECTS]; GridSpec::COLUMNS];
+        let mut heights = vec![[0; OBJECTS]; Window::COLUMNS];
         for b in frame.boxes.values() {
             let Some(slot) = slot(b.class.id()) else { continue };
             let bins = bins_of(b);
-            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                let height = &mut heights[x * GridSpec::NY + y][slot];
+            box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                let height = &mut heights[x * Window::NY + y][slot];
                 *height = bins.max(*height);
             });
         }
-        let (mut left, mut edited) = (vec![false; GridSpec::COLUMNS], vec![false; GridSpec::COLUMNS]);
+        let (mut left, mut edited) = (vec![false; Window::COLUMNS], vec![false; Window::COLUMNS]);
         let source = &*frame.source;
         for (id, b) in &source.boxes {
             if frame.boxes.get(id) != Some(b) {
-                box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                    left[x * GridSpec::NY + y] = true
+                box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                    left[x * Window::NY + y] = true
                 });
             }
         }
         edited.copy_from_slice(&left);
         for (id, b) in &frame.boxes {
             if source.boxes.get(id) != Some(b) {
-                box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                    edited[x * GridSpec::NY + y] = true
+                box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                    edited[x * Window::NY + y] = true
                 });
             }
         }
@@ -66,7 +66,7 @@ impl<'a> Request<'a> {
 
     /// True if this label at this voxel belongs to a box of the frame, or was painted by the user.
     pub fn holds(&self, x: usize, y: usize, z: usize, label: u8) -> bool {
-        let boxed = slot(label).is_some_and(|s| z < usize::from(self.heights[x * GridSpec::NY + y][s]));
+        let boxed = slot(label).is_some_and(|s| z < usize::from(self.heights[x * Window::NY + y][s]));
         boxed || self.frame.painted.get(x, y, z) != NOT_PAINTED
     }
 
@@ -90,7 +90,7 @@ impl<'a> Request<'a> {
     ) {
         let source = &self.frame.source.occupancy;
         for (c, _) in region.columns.iter().enumerate().filter(|(_, c)| **c) {
-            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let (x, y) = (c / Window::NY, c % Window::NY);
             let labels = source.column(x, y).iter().zip(after.column(x, y));
             for (z, (before, now)) in labels.enumerate() {
                 if now != before && stands(*now) && !self.holds(x, y, z, *now) {
@@ -109,7 +109,7 @@ pub fn stands(label: u8) -> bool {
 /// Voxels that a box accounts for: those of its class in its columns and a voxel around them, up to a voxel above it.
 pub fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> usize {
     let (mut count, bins) = (0, usize::from(bins_of(b)));
-    box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
+    box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
         let column = grid.column(x, y)[..bins].iter();
         count += column.filter(|l| **l == b.class.id()).count();
     });
@@ -124,9 +124,9 @@ fn slot(label: u8) -> Option<usize> {
 /// Bins from the lowest one up to a voxel above the box's top.
 fn bins_of(b: &SceneBox) -> u8 {
     let top_m = b.center_m.z + b.size_m.z / 2.0 + OVERHANG_M;
-    let bins = GridSpec::to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z.ceil();
+    let bins = Window::to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z.ceil();
     // A box under the ground is drawn one voxel high.
-    bins.clamp(1.0, GridSpec::NZ as f64) as u8
+    bins.clamp(1.0, Window::NZ as f64) as u8
 }
 
 #[cfg(test)]
@@ -140,8 +140,8 @@ pub(crate) mod tests {
     /// A road over the whole map with two cars, of which the second was just removed.
     pub fn removal() -> Frame {
         let mut layout = BevLayout::default();
-        for c in 0..GridSpec::COLUMNS {
-            layout.set(BevLayer::DrivableArea, c / GridSpec::NY, c % GridSpec::NY, true);
+        for c in 0..Window::COLUMNS {
+            layout.set(BevLayer::DrivableArea, c / Window::NY, c % Window::NY, true);
         }
         let cars = [car(1, -10.0, 0.0, 0.0), car(2, 10.0, 0.0, 0.0)];
         let before = draft::draft(&layout, cars.iter());
@@ -156,16 +156,16 @@ pub(crate) mod tests {
         let mut frame = removal();
         frame.painted.set(5, 5, 5, Class::Vegetation.id());
         let request = Request::of(&frame);
-        let [x, y] = GridSpec::column_at(-10.0, 0.0).expect("inside");
+        let [x, y] = Window::column_at(-10.0, 0.0).expect("inside");
         assert!(request.holds(x, y, 3, Class::Car.id()));
         assert!(!request.holds(x, y, 3, Class::Truck.id()), "a car was asked for");
         assert!(!request.holds(x, y, 12, Class::Car.id()), "far above its roof");
         assert!(!request.holds(x, y + 9, 3, Class::Car.id()), "beside it");
         assert!(request.holds(5, 5, 5, Class::Vegetation.id()));
-        assert!(!request.left_by_a_box(x * GridSpec::NY + y) && !request.edited(x * GridSpec::NY + y));
-        let [x, y] = GridSpec::column_at(10.0, 0.0).expect("inside");
+        assert!(!request.left_by_a_box(x * Window::NY + y) && !request.edited(x * Window::NY + y));
+        let [x, y] = Window::column_at(10.0, 0.0).expect("inside");
         assert!(!request.holds(x, y, 3, Class::Car.id()));
-        assert!(request.left_by_a_box(x * GridSpec::NY + y) && request.edited(x * GridSpec::NY + y));
+        assert!(request.left_by_a_box(x * Window::NY + y) && request.edited(x * Window::NY + y));
         let mut found = Vec::new();
         let mut after = VoxelGrid::new();
         after.set(x, y, 6, Class::Vegetation.id());

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use scene::draft::{box_columns, ground_bin};
-use scene::{BevLayout, GridSpec, SceneBox};
+use scene::{BevLayout, Extent, SceneBox, Window};
 
 /// Where the drive's sensor was, ego frame, m.
 const SENSORS_X_M: [f64; 7] = [-30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0];
@@ -16,7 +16,7 @@ const FACES: [[i64; 3]; 5] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 
 
 /// The voxels of a box's draft that such a drive sees, `[x, y, z]`, from the ground of `layout` up.
 pub fn seen_voxels(layout: &BevLayout, b: &SceneBox) -> Vec<[usize; 3]> {
-    let columns: HashMap<[usize; 2], [usize; 2]> = box_columns(scene::Extent::WINDOW, b)
+    let columns: HashMap<[usize; 2], [usize; 2]> = box_columns(Extent::WINDOW, b)
         .into_iter()
         .map(|(x, y, layers)| ([x, y], [ground_bin(layout, x, y).min(layers - 1), layers]))
         .collect();
@@ -27,12 +27,12 @@ pub fn seen_voxels(layout: &BevLayout, b: &SceneBox) -> Vec<[usize; 3]> {
         span.is_some_and(|[ground, layers]| (*ground as i64..*layers as i64).contains(&z))
     };
     let seen = |[x, y, z]: [usize; 3]| {
-        let center = GridSpec::center(x, y, z);
+        let center = Window::center(x, y, z);
         FACES.iter().any(|face| {
             let beside = [x as i64 + face[0], y as i64 + face[1], z as i64 + face[2]];
             let normal = DVec3::new(face[0] as f64, face[1] as f64, face[2] as f64);
             let faces =
-                |x_m: &f64| normal.dot(DVec3::new(*x_m, 0.0, SENSOR_Z_M) - center) > GridSpec::VOXEL_M / 2.0;
+                |x_m: &f64| normal.dot(DVec3::new(*x_m, 0.0, SENSOR_Z_M) - center) > Window::VOXEL_M / 2.0;
             !solid(beside) && SENSORS_X_M.iter().any(faces)
         })
     };
@@ -63,7 +63,7 @@ mod tests {
             label: Default::default(),
         };
         let voxels = seen_voxels(&BevLayout::default(), &bus);
-        let solid: usize = box_columns(scene::Extent::WINDOW, &bus).iter().map(|c| c.2).sum();
+        let solid: usize = box_columns(Extent::WINDOW, &bus).iter().map(|c| c.2).sum();
         assert!(
             voxels.len() > solid / 8 && voxels.len() < solid / 3,
             "{} of {solid}",

@@ -239,7 +239,7 @@ mod tests {
             panic!("{event:?}");
         };
         assert_eq!(
-            (event.id, result.key, result.rev(), result.frame),
+            (event.id, result.key.clone(), result.rev(), result.frame),
             (id, asked.key(), asked.scene.rev, asked.frame())
         );
         // Another frame of the same state is another result.

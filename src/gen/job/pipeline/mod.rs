@@ -6,6 +6,7 @@ mod network;
 mod round_trip;
 mod source;
 mod standing;
+mod window;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
@@ -30,7 +31,7 @@ use diffusion::solver::Sampler;
 use nets::{DecoderInput, DitCondition, GROUPS, OccModels, tokens_of};
 use network::{Condition, Network, density_of_source};
 use numeric::philox::{Stream, normal_field};
-use scene::{BevLayout, BoxId, GridSpec, Scene, SceneBox, VoxelGrid};
+use scene::{BevLayout, BoxId, Extent, Scene, SceneBox, VoxelGrid, Window};
 use source::{Source, stored_for};
 use standing::Standing;
 
@@ -126,8 +127,8 @@ impl OccPipeline {
         let vae = &self.models.vae;
         let latent = match self.draft.take() {
             Some((last, mut latent)) => {
-                let columns = (0..GridSpec::COLUMNS).map(|c| {
-                    let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+                let columns = (0..Window::COLUMNS).map(|c| {
+                    let (x, y) = (c / Window::NY, c % Window::NY);
                     last.column(x, y) != draft.column(x, y)
                 });
                 let changed = Region::of_columns(columns.collect());
@@ -211,8 +212,10 @@ impl OccPipeline {
     /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
-        let condition = self.condition_of_source(&job.scene);
-        self.source(&job.scene, &condition, &job.params, &mut report, ctx)?;
+        let cut = window::cut(job);
+        let scene = cut.as_ref().map_or(&job.scene, |cut| &cut.scene);
+        let condition = self.condition_of_source(scene);
+        self.source(scene, &condition, &job.params, &mut report, ctx)?;
         Ok(report.network_calls)
     }
 
@@ -322,7 +325,7 @@ impl OccPipeline {
         self.inpaint(job, region, &job.params.inpaint, report, ctx)
     }
 
-    /// Regenerates a region of the job's frame, whatever was edited in it.
+    /// Regenerates a region of the window of the job's frame, whatever was edited in it.
     pub fn inpaint_region(
         &mut self,
         job: &Job,
@@ -332,9 +335,13 @@ impl OccPipeline {
         job.params.check()?;
         // All of the region may get new content.
         let mut mask = InpaintMask::default();
-        let columns = region.columns.iter().enumerate().filter(|(_, c)| **c);
-        columns.for_each(|(c, _)| mask.set_columns(&[[c / GridSpec::NY, c % GridSpec::NY]], true));
-        self.inpaint(job, region, &mask, GenReport::default(), ctx)
+        let columns = Extent::WINDOW.all_columns().zip(&region.columns);
+        columns
+            .filter(|(_, held)| **held)
+            .for_each(|(column, _)| mask.set_columns(Extent::WINDOW, &[column], true));
+        window::in_window(job, ctx, |job, ctx| {
+            self.inpaint(job, region, &mask, GenReport::default(), ctx)
+        })
     }
 
     fn inpaint(
@@ -494,9 +501,9 @@ impl Pipeline for OccPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         job.params.check()?;
         ctx.check()?;
-        match job.params.region {
+        window::in_window(job, ctx, |job, ctx| match job.params.region {
             RegionMode::Full => self.generate(job, ctx),
             RegionMode::Auto => self.edit(job, ctx),
-        }
+        })
     }
 }

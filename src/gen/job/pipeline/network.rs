@@ -8,7 +8,7 @@ use crate::contract::{GenError, Named};
 use diffusion::solver::{Branch, Denoiser};
 use nets::{ColumnHeights, DecoderInput, KeysValues, Middle, OccModels, Prepared, column_heights};
 use nn::Precision;
-use scene::{BevLayout, BoxId, Density, Frame, SceneBox, VoxelGrid, draft, raster};
+use scene::{BevLayout, BoxId, Density, Extent, Frame, SceneBox, VoxelGrid, draft, raster};
 
 /// Keys and values by training step (its bits).
 pub type StepKeysValues = BTreeMap<u64, KeysValues>;
@@ -72,7 +72,7 @@ impl Condition {
         }
         Self {
             bev: raster::bev_channels(layout, boxes.values()),
-            heading: raster::headings(scene::Extent::WINDOW, boxes.values()),
+            heading: raster::headings(Extent::WINDOW, boxes.values()),
             named,
             given: standing.is_some(),
             columns: column_heights(&bare, &draft),

@@ -238,7 +238,7 @@ impl OccPipeline {
         let params = GenParams {
             guidance: 1.0,
             reuse_steps: 1,
-            ..*params
+            ..params.clone()
         };
         self.network(condition, None, mask, context, &params)
     }

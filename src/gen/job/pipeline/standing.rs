@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use scene::background::Columns;
-use scene::{Background, BevLayout, Class, GridSpec, Pose, Relief, Scene, VoxelGrid};
+use scene::{Background, BevLayout, Class, Extent, Pose, Relief, Scene, VoxelGrid, Window};
 
 /// The voxels of a frame's background, kept from one job to the next: most edits leave it alone.
 #[derive(Clone)]
@@ -31,12 +31,9 @@ impl Standing {
             return Some(last.clone());
         }
         let mut columns = Columns::new();
-        for thing in scene
-            .background
-            .in_extent(scene::Extent::WINDOW, &frame.world_from_ego)
-        {
+        for thing in scene.background.in_extent(Extent::WINDOW, &frame.world_from_ego) {
             for (at, labels) in thing.columns(layout) {
-                let all = columns.entry(at).or_insert([Class::FREE; GridSpec::NZ]);
+                let all = columns.entry(at).or_insert([Class::FREE; Window::NZ]);
                 let taken = labels.iter().zip(all).filter(|(label, _)| **label != Class::FREE);
                 taken.for_each(|(label, to)| *to = *label);
             }
@@ -93,8 +90,8 @@ mod tests {
             let mut full = bare.clone();
             standing.stand_in(&mut full);
             let (mut both, mut either) = (0, 0);
-            for (x, y) in (0..GridSpec::COLUMNS).map(|c| (c / GridSpec::NY, c % GridSpec::NY)) {
-                for z in 0..GridSpec::NZ {
+            for (x, y) in (0..Window::COLUMNS).map(|c| (c / Window::NY, c % Window::NY)) {
+                for z in 0..Window::NZ {
                     let of = |grid: &VoxelGrid| Class::from_id(grid.get(x, y, z));
                     let stands = |c: Option<Class>| matches!(c, Some(Class::Manmade | Class::Vegetation));
                     let (here, there) = (stands(of(&full)), stands(of(&frame.occupancy)));
