@@ -70,7 +70,7 @@ pub struct ChecksInput<'a> {
 const WAIVED_TITLE: f32 = 30.0;
 const WAIVED_LIST: f32 = 94.0;
 
-/// Draws the panel. What the finding means that is under the pointer, else that was clicked last.
+/// Draws the panel. Returns the marks of the finding under the pointer, else of the one that was clicked last.
 pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) -> Option<FindingMarks> {
     let mut pointed = Pointed {
         clicked: ui.data(|d| d.get_temp(clicked_id())).unwrap_or_default(),
