@@ -27,7 +27,7 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
         .collect();
     let top_m = old.center_m.z + old.size_m.z / 2.0 + MARGIN_M;
     let mut emptied = Vec::new();
-    box_cells(old, MARGIN_M, |x, y| {
+    box_cells(scene::Extent::WINDOW, old, MARGIN_M, |x, y| {
         if others.iter().any(|b| outside_m(b, x, y) <= outside_m(old, x, y)) {
             return;
         }
@@ -60,7 +60,7 @@ fn background(source_label: u8) -> u8 {
 
 /// Stamps the voxels of a box in the rough profile of its class, in place of what was there.
 pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
-    for (x, y, layers) in box_columns(b) {
+    for (x, y, layers) in box_columns(scene::Extent::WINDOW, b) {
         let painted = *frame.painted.column(x, y);
         let ground = ground_bin(&frame.layout, x, y).min(layers - 1);
         for (z, locked) in painted.iter().enumerate().take(layers).skip(ground) {

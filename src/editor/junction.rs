@@ -56,11 +56,11 @@ impl Ways {
         let mut directions = vec![DVec2::ZERO; GridSpec::COLUMNS];
         for pair in lines.flat_map(|l| l.windows(2)) {
             let direction = (pair[1] - pair[0]).normalize_or_zero();
-            raster::line_cells(pair, GridSpec::VOXEL_M, |x, y| {
+            raster::line_cells(scene::Extent::WINDOW, pair, GridSpec::VOXEL_M, |x, y| {
                 directions[x * GridSpec::NY + y] = direction;
             });
         }
-        let nearest = nearest_source(|c| directions[c] != DVec2::ZERO)?;
+        let nearest = nearest_source(scene::Extent::WINDOW, |c| directions[c] != DVec2::ZERO)?;
         Some(Self { directions, nearest })
     }
 
@@ -201,7 +201,7 @@ fn drop_outlines(layout: &mut BevLayout, area: &Area) {
     let is_gone = |l: &Polyline| {
         let (mut all, mut within) = (0, 0);
         if l.kind == PolylineKind::PedCrossing {
-            raster::polygon_cells(&l.points_m, |x, y| {
+            raster::polygon_cells(scene::Extent::WINDOW, &l.points_m, |x, y| {
                 all += 1;
                 within += usize::from(area.holds([x, y]));
             });

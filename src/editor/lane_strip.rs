@@ -57,7 +57,9 @@ impl LaneStrip {
         let band = |from_m: f64, to_m: f64| {
             let mut points_m = offset_line(&middle_m, from_m);
             points_m.extend(offset_line(&middle_m, to_m).iter().rev());
-            Shape::Polygon { points_m }.cells().unwrap_or_default()
+            Shape::Polygon { points_m }
+                .cells(scene::Extent::WINDOW)
+                .unwrap_or_default()
         };
         let junction = junction::crossed(layout, &middle_m, &band(half_m + walk_m, -half_m - walk_m));
         let area = Area::new(&junction);

@@ -20,7 +20,7 @@ pub fn of_stroke(points_m: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
         points_m: points_m.to_vec(),
         width_m,
     };
-    let border = border(&stroke.cells().ok()?)?;
+    let border = border(&stroke.cells(scene::Extent::WINDOW).ok()?)?;
     let simple = TOLERANCES_M
         .iter()
         .map(|tolerance_m| simplified(&border, *tolerance_m))

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::immediate::refill_ground;
-use scene::background::{Columns, in_grid};
+use scene::background::{Columns, in_extent};
 use scene::draft::ground_bin;
 use scene::grid::NOT_PAINTED;
 use scene::raster::polygon_cells;
@@ -129,14 +129,15 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
     scene.rev = SceneRev::fresh();
     for frame in &mut scene.frames {
         let frame = Arc::make_mut(frame);
+        let extent = frame.extent();
         let (gone, come) = (
-            in_grid(&gone, &frame.world_from_ego),
-            in_grid(&come, &frame.world_from_ego),
+            in_extent(extent, &gone, &frame.world_from_ego),
+            in_extent(extent, &come, &frame.world_from_ego),
         );
         if gone.is_empty() && come.is_empty() {
             continue;
         }
-        let kept = after.in_grid(&frame.world_from_ego);
+        let kept = after.in_extent(extent, &frame.world_from_ego);
         let Frame {
             layout,
             occupancy,
@@ -164,7 +165,9 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
 pub(super) fn clear_scenery(scene: &mut Scene, cells: Option<&[[usize; 2]]>) {
     let all = || (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
     let cells = cells.map_or_else(|| all().collect(), <[_]>::to_vec);
-    let kept = scene.background.in_grid(&scene.frame().world_from_ego);
+    let kept = scene
+        .background
+        .in_extent(scene::Extent::WINDOW, &scene.frame().world_from_ego);
     let mut frame = Frame::clone(scene.frame());
     let source = Arc::make_mut(&mut frame.source);
     let grids = [
@@ -227,7 +230,7 @@ fn clear_columns(
 pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -> Vec<bool> {
     let mut out = vec![false; GridSpec::COLUMNS];
     let changed = [only_in(before, after), only_in(after, before)].concat();
-    for thing in in_grid(&changed, &frame.world_from_ego) {
+    for thing in in_extent(frame.extent(), &changed, &frame.world_from_ego) {
         let own = thing.columns(&frame.layout);
         for [x, y] in with_margin(&own).into_iter().chain(grown_over(&thing)) {
             out[x * GridSpec::NY + y] = true;
@@ -336,7 +339,7 @@ fn with_margin(own: &Columns) -> BTreeSet<[usize; 2]> {
 fn grown_over(thing: &Thing) -> Vec<[usize; 2]> {
     let mut out = Vec::new();
     if let Form::Shrubs(shrubs) = &thing.form {
-        polygon_cells(&shrubs.outline_m, |x, y| out.push([x, y]));
+        polygon_cells(scene::Extent::WINDOW, &shrubs.outline_m, |x, y| out.push([x, y]));
     }
     out
 }

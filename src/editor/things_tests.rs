@@ -63,7 +63,10 @@ fn columns_changed(a: &VoxelGrid, b: &VoxelGrid) -> Vec<DVec2> {
 /// A building raised, a tree row deleted, a hedge drawn: only their own ground changes, and undo brings all back.
 #[test]
 fn edits_of_things_are_local_and_undoable() {
-    for relief in [Relief::FLAT, Relief::from_fn(|p| 0.03 * p.x + 0.02 * p.y)] {
+    for relief in [
+        Relief::FLAT,
+        Relief::from_fn(scene::Extent::WINDOW, |p| 0.03 * p.x + 0.02 * p.y),
+    ] {
         let mut doc = Document::new(scene(relief));
         let empty = doc.scene().frame().occupancy.clone();
         let row: Vec<Form> = (0..5).map(|i| tree(-20.0 + 6.0 * f64::from(i), -9.0)).collect();

@@ -1,12 +1,12 @@
 //! A frame made ready for camera pictures, as plain numbers: what the renderers on processor and graphics card share.
 //! `sensors::appearance` fills it, `viewport::appearance` draws from it.
 
-use super::grid::GridSpec;
+use super::grid::Window;
 
 /// Voxels of the field along x, with a free ring around.
-pub const NX: usize = GridSpec::NX + 2;
+pub const NX: usize = Window::NX + 2;
 /// Along y.
-pub const NY: usize = GridSpec::NY + 2;
+pub const NY: usize = Window::NY + 2;
 /// Along z, with room above the grid.
 pub const NZ: usize = 46;
 /// Columns and rows of cells in a block.
@@ -14,7 +14,7 @@ pub const BLOCK: usize = 8;
 /// Blocks along x and along y.
 pub const BLOCKS: usize = (NX - 1).div_ceil(BLOCK);
 /// Edge of a block, m.
-pub const BLOCK_M: f32 = (BLOCK as f64 * GridSpec::VOXEL_M) as f32;
+pub const BLOCK_M: f32 = (BLOCK as f64 * Window::VOXEL_M) as f32;
 /// Corner of the blocks, m: half a voxel and the ring outside the grid.
 pub const BLOCKS_FROM_M: f32 = -40.2;
 /// The field's surface.

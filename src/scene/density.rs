@@ -1,7 +1,7 @@
 //! What a frame is made of, in four numbers: a condition of the generation, and what its sliders mean.
 //! Twin of `named` in `training/data.py`.
 
-use super::{BevLayer, Class, GridSpec, VoxelGrid};
+use super::{BevLayer, Class, VoxelGrid};
 
 /// Man-made things that stay below this bin, 2.2 m above the ground, are clutter; others are buildings.
 const LOW: usize = 8;
@@ -22,9 +22,11 @@ pub struct Density {
 impl Density {
     /// Of a frame's labels; `bev` are its layout's bits per column, `[x][y]`.
     pub fn of(grid: &VoxelGrid, bev: &[u32]) -> Self {
+        let (extent, columns) = (grid.extent(), grid.extent().columns());
         let [mut off_road, mut vegetation, mut building, mut clutter, mut any] = [0u32; 5];
-        for (c, bits) in bev.iter().enumerate().take(GridSpec::COLUMNS) {
-            let column = grid.column(c / GridSpec::NY, c % GridSpec::NY);
+        for (c, bits) in bev.iter().enumerate().take(columns) {
+            let [x, y] = extent.column(c);
+            let column = grid.column(x, y);
             let holds = |class: Class| column.contains(&class.id());
             any += u32::from(column.iter().any(|l| *l != Class::FREE));
             if bits & BevLayer::DrivableArea.bit() != 0 {
@@ -41,7 +43,7 @@ impl Density {
             vegetation: part(2.0, vegetation),
             building: part(1.6, building),
             clutter: part(6.0, clutter),
-            completeness: any as f32 / GridSpec::COLUMNS as f32,
+            completeness: any as f32 / columns as f32,
         }
     }
 }
@@ -49,17 +51,18 @@ impl Density {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Window;
 
     #[test]
     fn counts_columns_off_the_road() {
         let road = BevLayer::DrivableArea.bit();
         let mut grid = VoxelGrid::new();
         assert_eq!(
-            Density::of(&grid, &vec![road; GridSpec::COLUMNS]),
+            Density::of(&grid, &vec![road; Window::COLUMNS]),
             Density::default()
         );
-        let mut bev = vec![road; GridSpec::COLUMNS];
-        bev[..100 * GridSpec::NY].fill(0);
+        let mut bev = vec![road; Window::COLUMNS];
+        bev[..100 * Window::NY].fill(0);
         for x in 0..100 {
             for y in 0..50 {
                 grid.set(x, y, 3, Class::Vegetation.id());

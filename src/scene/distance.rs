@@ -1,12 +1,12 @@
-//! Exact distance transform on the grid's columns (Felzenszwalb and Huttenlocher 2012, "Distance Transforms of
+//! Exact distance transform on the columns of a map (Felzenszwalb and Huttenlocher 2012, "Distance Transforms of
 //! Sampled Functions"), with the nearest source cell.
 
-use super::GridSpec;
+use super::Extent;
 
 /// For every column `[x][y]` the index of the nearest column in `source`; `None` if there is no source.
 /// Ties go to the lower index along each axis.
-pub fn nearest_source(source: impl Fn(usize) -> bool) -> Option<Vec<u32>> {
-    let (nx, ny) = (GridSpec::NX, GridSpec::NY);
+pub fn nearest_source(extent: Extent, source: impl Fn(usize) -> bool) -> Option<Vec<u32>> {
+    let (nx, ny) = (extent.nx(), extent.ny());
     // Along y: the nearest source of the same row, both ways.
     let mut in_row = vec![u32::MAX; nx * ny];
     for x in 0..nx {
@@ -68,9 +68,9 @@ pub fn nearest_source(source: impl Fn(usize) -> bool) -> Option<Vec<u32>> {
 
 /// Distance from every column's centre to the border of the set, m: negative inside, positive outside; beyond the
 /// grid belongs to neither. 1000 m and more where there is no border.
-pub fn signed_distance_m(inside: impl Fn(usize) -> bool) -> Vec<f32> {
+pub fn signed_distance_m(extent: Extent, inside: impl Fn(usize) -> bool) -> Vec<f32> {
     const NO_BORDER_M: f32 = 1000.0;
-    let ny = GridSpec::NY;
+    let ny = extent.ny();
     let distance = |from: usize, to: u32| {
         let (dx, dy) = (from / ny, from % ny);
         let (dx, dy) = (
@@ -78,10 +78,13 @@ pub fn signed_distance_m(inside: impl Fn(usize) -> bool) -> Vec<f32> {
             dy as f32 - (to as usize % ny) as f32,
         );
         // Between a cell of the set and one beside it runs the border, half a cell from both centres.
-        ((dx * dx + dy * dy).sqrt() - 0.5) * GridSpec::VOXEL_M as f32
+        ((dx * dx + dy * dy).sqrt() - 0.5) * Extent::VOXEL_M as f32
     };
-    let (set, rest) = (nearest_source(&inside), nearest_source(|c| !inside(c)));
-    (0..GridSpec::COLUMNS)
+    let (set, rest) = (
+        nearest_source(extent, &inside),
+        nearest_source(extent, |c| !inside(c)),
+    );
+    (0..extent.columns())
         .map(|c| match (inside(c), &set, &rest) {
             (true, _, Some(rest)) => -distance(c, rest[c]),
             (false, Some(set), _) => distance(c, set[c]),
@@ -97,29 +100,37 @@ mod tests {
 
     #[test]
     fn equals_brute_force() {
-        let ny = GridSpec::NY;
+        let ny = Extent::WINDOW.ny();
         let source = |c: usize| (c * 2_654_435_761) % 9973 < 12;
-        let sources: Vec<usize> = (0..GridSpec::COLUMNS).filter(|c| source(*c)).collect();
+        let sources: Vec<usize> = (0..Extent::WINDOW.columns()).filter(|c| source(*c)).collect();
         assert!(sources.len() > 10);
-        let found = nearest_source(source).expect("there are sources");
+        let found = nearest_source(Extent::WINDOW, source).expect("there are sources");
         let square = |a: usize, b: usize| {
             let d = |p: usize, q: usize| (p as i64 - q as i64).pow(2);
             d(a / ny, b / ny) + d(a % ny, b % ny)
         };
-        for c in (0..GridSpec::COLUMNS).step_by(37) {
+        for c in (0..Extent::WINDOW.columns()).step_by(37) {
             let best = sources.iter().map(|s| square(c, *s)).min();
             assert_eq!(Some(square(c, found[c] as usize)), best, "column {c}");
         }
-        assert!(nearest_source(|_| false).is_none());
+        assert!(nearest_source(Extent::WINDOW, |_| false).is_none());
     }
 
     #[test]
     fn signs_and_borders() {
         let square = |c: usize| (90..110).contains(&(c / 200)) && (90..110).contains(&(c % 200));
-        let d = signed_distance_m(square);
+        let d = signed_distance_m(Extent::WINDOW, square);
         assert!((d[100 * 200 + 90] + 0.2).abs() < 1e-6 && (d[100 * 200 + 89] - 0.2).abs() < 1e-6);
         assert!((d[100 * 200 + 100] + 3.8).abs() < 1e-6, "{}", d[100 * 200 + 100]);
-        assert!(signed_distance_m(|_| false).iter().all(|v| *v == 1000.0));
-        assert!(signed_distance_m(|_| true).iter().all(|v| *v == -1000.0));
+        assert!(
+            signed_distance_m(Extent::WINDOW, |_| false)
+                .iter()
+                .all(|v| *v == 1000.0)
+        );
+        assert!(
+            signed_distance_m(Extent::WINDOW, |_| true)
+                .iter()
+                .all(|v| *v == -1000.0)
+        );
     }
 }

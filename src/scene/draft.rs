@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::raster::box_cells;
-use super::{BevLayer, BevLayout, Class, GridSpec, Relief, SceneBox, VoxelGrid};
+use super::{BevLayer, BevLayout, Class, Extent, Relief, SceneBox, VoxelGrid};
 
 /// Class of the ground under a layout cell (bits of [`BevLayer`]): road and car park are driveable
 /// surface, sidewalk and crossings beside the road are sidewalk, all else is terrain.
@@ -20,14 +20,14 @@ pub fn ground_class(cell: u32) -> Class {
     }
 }
 
-/// Columns and heights that a box occupies by the rough profile of its class, as
+/// Columns of a map and heights that a box occupies by the rough profile of its class, as
 /// (x, y, number of voxels from bin 0 upward; at least 1), in the vertical convention of the Occ3D labels:
 /// objects reach down to the bin of the ground, their tops stay where they are.
-pub fn box_columns(b: &SceneBox) -> Vec<(usize, usize, usize)> {
+pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
     let bottom_z = b.center_m.z - b.size_m.z / 2.0;
     let mut out = Vec::new();
-    box_cells(b, 0.0, |x, y| {
-        let p = GridSpec::center(x, y, 0);
+    box_cells(extent, b, 0.0, |x, y| {
+        let p = extent.center(x, y, 0);
         let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z));
         let along = local.x / b.size_m.x; // -0.5 rear to 0.5 front
         let share = match b.class {
@@ -40,10 +40,10 @@ pub fn box_columns(b: &SceneBox) -> Vec<(usize, usize, usize)> {
         };
         let top_m = bottom_z + share * b.size_m.z;
         // A layer counts once a sixth of it is filled.
-        let top = GridSpec::to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z - 1.0 / 6.0;
+        let top = extent.to_voxel_units(DVec3::new(0.0, 0.0, top_m)).z - 1.0 / 6.0;
         // A box floating above the ground still shows at least one voxel; NaN shows none.
         if top.is_finite() {
-            let layers = (top.floor() + 1.0).clamp(1.0, GridSpec::NZ as f64);
+            let layers = (top.floor() + 1.0).clamp(1.0, Extent::NZ as f64);
             out.push((x, y, layers as usize));
         }
     });
@@ -61,14 +61,13 @@ pub fn ground_bin(layout: &BevLayout, x: usize, y: usize) -> usize {
 /// The draft of a whole frame: ground in the bin of its height in every column (bin 0 without relief), objects in place of
 /// the ground.
 pub fn draft<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> VoxelGrid {
-    let mut grid = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            grid.column_mut(x, y)[ground_bin(layout, x, y)] = ground_class(layout.cell(x, y)).id();
-        }
+    let extent = layout.extent();
+    let mut grid = VoxelGrid::over(extent);
+    for [x, y] in extent.all_columns() {
+        grid.column_mut(x, y)[ground_bin(layout, x, y)] = ground_class(layout.cell(x, y)).id();
     }
     for b in boxes {
-        for (x, y, layers) in box_columns(b) {
+        for (x, y, layers) in box_columns(extent, b) {
             let ground = ground_bin(layout, x, y).min(layers - 1);
             grid.column_mut(x, y)[ground..layers].fill(b.class.id());
         }
@@ -100,7 +99,7 @@ mod tests {
         assert_eq!(grid.get(100, 100, 0), Class::DriveableSurface.id());
         assert_eq!(grid.get(100, 101, 0), Class::Sidewalk.id());
         assert_eq!(grid.get(0, 0, 0), Class::Terrain.id());
-        let columns = box_columns(&car);
+        let columns = box_columns(Extent::WINDOW, &car);
         assert!((44..70).contains(&columns.len()), "{} columns", columns.len());
         let tallest = columns.iter().map(|c| c.2).max();
         assert_eq!(tallest, Some(7)); // top at 1.7 m: bin 6 is filled to 0.3 m

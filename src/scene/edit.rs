@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-use crate::grid::GridSpec;
+use crate::grid::Extent;
 use crate::shape::Shape;
 use crate::{
     BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Polyline, SceneBox, SensorRig, ThingId,
@@ -286,15 +286,12 @@ pub enum EditError {
         expected: usize,
     },
     /// An index beyond the grid.
-    #[error(
-        "cell {cell:?} is outside the grid of {} x {} x {}",
-        GridSpec::NX,
-        GridSpec::NY,
-        GridSpec::NZ
-    )]
+    #[error("cell {cell:?} is outside the grid of {extent}")]
     CellOutside {
         /// The index: x, y and perhaps z.
         cell: Vec<usize>,
+        /// The grid.
+        extent: Extent,
     },
     /// A shape that misses the grid or every cell centre.
     #[error("the shape covers no cell of the grid")]

@@ -3,50 +3,70 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{BoxId, GridSpec};
+use super::{BoxId, Extent};
 
 /// Set beside a bit per observed bin of a column: it is known which were. A column of 0 says nothing.
-pub const KNOWN: u32 = 1 << GridSpec::NZ;
+pub const KNOWN: u32 = 1 << Extent::NZ;
 
-/// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]`, one bit per bin.
+/// Voxels that no sensor of a data set observed: free there means unknown. One word per column `[x][y]` of a map, one
+/// bit per bin.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unobserved(Arc<[u16]>);
+pub struct Unobserved {
+    extent: Extent,
+    words: Arc<[u16]>,
+}
 
 impl Unobserved {
-    /// From what was observed, `[x][y][z]`; `None` unless there is one flag per voxel.
+    /// From what was observed of a window, `[x][y][z]`; `None` unless there is one flag per voxel.
     pub fn from_observed(observed: &[bool]) -> Option<Self> {
         let word = |column: &[bool]| {
             let bits = column.iter().enumerate().filter(|(_, seen)| !**seen);
             bits.fold(0, |word, (z, _)| word | 1 << z)
         };
-        (observed.len() == GridSpec::VOXELS)
-            .then(|| Self(observed.chunks_exact(GridSpec::NZ).map(word).collect()))
+        (observed.len() == Extent::WINDOW.voxels()).then(|| Self {
+            extent: Extent::WINDOW,
+            words: observed.chunks_exact(Extent::NZ).map(word).collect(),
+        })
     }
 
-    /// From its words; `None` unless there is one per column.
-    pub fn from_words(words: Vec<u16>) -> Option<Self> {
-        (words.len() == GridSpec::COLUMNS).then(|| Self(words.into()))
+    /// From the words of a map; `None` unless there is one per column.
+    pub fn from_words(extent: Extent, words: Vec<u16>) -> Option<Self> {
+        (words.len() == extent.columns()).then(|| Self {
+            extent,
+            words: words.into(),
+        })
+    }
+
+    /// The part of it that lies in another extent; all is observed where this one has no columns.
+    pub fn crop(&self, extent: Extent) -> Self {
+        if extent == self.extent {
+            return self.clone();
+        }
+        Self {
+            extent,
+            words: extent.crop(&self.extent, &self.words, 0).into(),
+        }
     }
 
     /// One word per column, `[x][y]`.
     pub fn words(&self) -> &[u16] {
-        &self.0
+        &self.words
     }
 
     /// What was observed: per column `[x][y]` one bit per bin and [`KNOWN`].
     pub fn observed(&self) -> Vec<u32> {
-        self.0.iter().map(|word| u32::from(!word) | KNOWN).collect()
+        self.words.iter().map(|word| u32::from(!word) | KNOWN).collect()
     }
 
     /// Share of a column's bins that nothing observed, 0 to 1.
     pub fn share(&self, x: usize, y: usize) -> f64 {
-        f64::from(self.0[x * GridSpec::NY + y].count_ones()) / GridSpec::NZ as f64
+        f64::from(self.words[self.extent.index(x, y)].count_ones()) / Extent::NZ as f64
     }
 
     /// Share of all voxels.
     pub fn total(&self) -> f64 {
-        let bits: u32 = self.0.iter().map(|w| w.count_ones()).sum();
-        f64::from(bits) / GridSpec::VOXELS as f64
+        let bits: u32 = self.words.iter().map(|w| w.count_ones()).sum();
+        f64::from(bits) / self.extent.voxels() as f64
     }
 }
 
@@ -74,21 +94,25 @@ impl Inferred {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Window;
 
     #[test]
     fn unobserved_is_what_was_not_observed() {
-        let mut observed = vec![true; GridSpec::VOXELS];
-        observed[(3 * GridSpec::NY + 5) * GridSpec::NZ + 2] = false;
-        observed[(3 * GridSpec::NY + 5) * GridSpec::NZ + 15] = false;
+        let mut observed = vec![true; Window::VOXELS];
+        observed[(3 * Window::NY + 5) * Window::NZ + 2] = false;
+        observed[(3 * Window::NY + 5) * Window::NZ + 15] = false;
         let found = Unobserved::from_observed(&observed).expect("one flag per voxel");
-        assert_eq!(found.words()[3 * GridSpec::NY + 5], 1 << 2 | 1 << 15);
+        assert_eq!(found.words()[3 * Window::NY + 5], 1 << 2 | 1 << 15);
         assert_eq!((found.share(3, 5), found.share(3, 6)), (0.125, 0.0));
         let told = found.observed();
-        assert_eq!(told[3 * GridSpec::NY + 5], KNOWN | 0x7ffb);
+        assert_eq!(told[3 * Window::NY + 5], KNOWN | 0x7ffb);
         assert_eq!(told[0], KNOWN | 0xffff);
-        assert_eq!(found.total(), 2.0 / GridSpec::VOXELS as f64);
-        assert_eq!(Unobserved::from_words(found.words().to_vec()), Some(found));
+        assert_eq!(found.total(), 2.0 / Window::VOXELS as f64);
+        assert_eq!(
+            Unobserved::from_words(Extent::WINDOW, found.words().to_vec()),
+            Some(found)
+        );
         assert_eq!(Unobserved::from_observed(&observed[1..]), None);
-        assert_eq!(Unobserved::from_words(vec![0; 3]), None);
+        assert_eq!(Unobserved::from_words(Extent::WINDOW, vec![0; 3]), None);
     }
 }

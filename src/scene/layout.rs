@@ -1,11 +1,11 @@
-//! The bird's-eye-view layout: map layers on the grid's columns, and the polylines behind them.
+//! The bird's-eye-view layout: map layers on the columns of a map, and the polylines behind them.
 
 use std::sync::Arc;
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::{BevLayer, GridSpec, Relief};
+use super::{BevLayer, Extent, Relief};
 
 /// What a polyline means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -36,7 +36,8 @@ pub struct Polyline {
 /// Map layers as one bit per [`BevLayer`] and cell (layers 0 to 7; boxes bring the others), and polylines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BevLayout {
-    cells: Arc<Vec<u32>>, // [x][y], GridSpec::COLUMNS
+    extent: Extent,
+    cells: Arc<Vec<u32>>, // [x][y]
     /// Lane centres, dividers, stop lines and crossings.
     pub polylines: Arc<Vec<Polyline>>,
     /// Height of the ground under it.
@@ -44,29 +45,87 @@ pub struct BevLayout {
 }
 
 impl Default for BevLayout {
+    /// An empty window.
     fn default() -> Self {
-        Self {
-            cells: Arc::new(vec![0; GridSpec::COLUMNS]),
-            polylines: Arc::default(),
-            relief: Relief::FLAT,
-        }
+        Self::over(Extent::WINDOW)
     }
 }
 
 impl BevLayout {
     const MAP_BITS: u32 = 0xff;
 
-    /// From cells `[x][y]` on flat ground; bits of object layers are dropped. Errors with the length found if it is not 40,000.
-    pub fn from_cells(mut cells: Vec<u32>, polylines: Vec<Polyline>) -> Result<Self, usize> {
-        if cells.len() != GridSpec::COLUMNS {
+    /// An empty map on flat ground.
+    pub fn over(extent: Extent) -> Self {
+        Self {
+            extent,
+            cells: Arc::new(vec![0; extent.columns()]),
+            polylines: Arc::default(),
+            relief: Relief::FLAT,
+        }
+    }
+
+    /// A window from cells `[x][y]` on flat ground; bits of object layers are dropped. Errors with the length found if it is
+    /// not 40,000.
+    pub fn from_cells(cells: Vec<u32>, polylines: Vec<Polyline>) -> Result<Self, usize> {
+        Self::from_cells_over(Extent::WINDOW, cells, polylines)
+    }
+
+    /// From cells `[x][y]` of a map on flat ground; bits of object layers are dropped. Errors with the length found if it is
+    /// another one.
+    pub fn from_cells_over(
+        extent: Extent,
+        mut cells: Vec<u32>,
+        polylines: Vec<Polyline>,
+    ) -> Result<Self, usize> {
+        if cells.len() != extent.columns() {
             return Err(cells.len());
         }
         cells.iter_mut().for_each(|c| *c &= Self::MAP_BITS);
         Ok(Self {
+            extent,
             cells: Arc::new(cells),
             polylines: Arc::new(polylines),
             relief: Relief::FLAT,
         })
+    }
+
+    /// Which part of the ground it covers.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// The part of it that lies in another extent, with all polylines; no layer is set and the ground goes on level where
+    /// this one has no columns.
+    pub fn crop(&self, extent: Extent) -> Self {
+        if extent == self.extent {
+            return self.clone();
+        }
+        Self {
+            extent,
+            cells: Arc::new(extent.crop(&self.extent, &self.cells, 0)),
+            polylines: self.polylines.clone(),
+            relief: self.relief.crop(extent),
+        }
+    }
+
+    /// Takes over cells and heights of another layout wherever both have columns, and its polylines.
+    pub fn paste(&mut self, other: &Self) {
+        if other.extent == self.extent {
+            self.clone_from(other);
+            return;
+        }
+        self.extent.paste(
+            Arc::make_mut(&mut self.cells).as_mut_slice(),
+            &other.extent,
+            &other.cells,
+        );
+        self.polylines = other.polylines.clone();
+        self.relief.paste(self.extent, &other.relief, other.extent);
+    }
+
+    /// Sets the height of the ground in one column, m; the caller keeps it finite and within the limit.
+    pub fn set_height(&mut self, x: usize, y: usize, height_m: f32) {
+        self.relief.set(self.extent, x, y, height_m);
     }
 
     /// True if both hold their cells in the same memory.
@@ -81,7 +140,7 @@ impl BevLayout {
 
     /// Bits of one cell. Panics outside the grid.
     pub fn cell(&self, x: usize, y: usize) -> u32 {
-        self.cells[x * GridSpec::NY + y]
+        self.cells[self.extent.index(x, y)]
     }
 
     /// True if `layer` is set in the cell.
@@ -95,7 +154,7 @@ impl BevLayout {
         let old = self.cell(x, y);
         let new = if value { old | bit } else { old & !bit };
         if new != old {
-            Arc::make_mut(&mut self.cells)[x * GridSpec::NY + y] = new;
+            Arc::make_mut(&mut self.cells)[self.extent.index(x, y)] = new;
         }
     }
 

@@ -43,7 +43,9 @@ pub use classes::{BevLayer, Class};
 pub use conditions::{Conditions, Sun, TimeOfDay, Weather};
 pub use density::Density;
 pub use edit::{Edit, EditError};
-pub use grid::{GridSpec, VoxelGrid, VoxelPaint};
+#[doc(hidden)]
+pub use grid::Window as GridSpec; // until every caller has its new name
+pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use numeric::splitmix as draw;
@@ -109,7 +111,7 @@ impl Frame {
     /// Waivers that a frame holds at most.
     pub const MAX_WAIVERS: usize = 10_000;
 
-    /// A frame whose occupancy is its own source.
+    /// A frame whose occupancy is its own source. Layout and occupancy have the same extent.
     pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, occupancy: VoxelGrid) -> Self {
         let source = Arc::new(SourceFrame {
             layout: layout.clone(),
@@ -120,16 +122,45 @@ impl Frame {
             time_s: 0.0,
             world_from_ego: Pose::IDENTITY,
             boxes,
+            painted: VoxelPaint::over(layout.extent()),
             layout,
             occupancy,
-            painted: VoxelPaint::new(),
             inferred: Inferred::default(),
             waivers: Arc::default(),
             source,
         }
     }
 
-    /// All 18 BEV channels, one bit per [`BevLayer`] and cell, row-major `[x][y]`, 200 x 200:
+    /// Which part of the ground its layout and its grids cover.
+    pub fn extent(&self) -> Extent {
+        self.layout.extent()
+    }
+
+    /// The part of it that lies in another extent. Boxes, lines and waivers stay, wherever they are. Costs pointers alone
+    /// if the extent is its own.
+    pub fn crop(&self, extent: Extent) -> Self {
+        if extent == self.extent() {
+            return self.clone();
+        }
+        let source = SourceFrame {
+            layout: self.source.layout.crop(extent),
+            boxes: self.source.boxes.clone(),
+            occupancy: self.source.occupancy.crop(extent),
+        };
+        Self {
+            layout: self.layout.crop(extent),
+            occupancy: self.occupancy.crop(extent),
+            painted: self.painted.crop(extent),
+            inferred: Inferred {
+                unobserved: self.inferred.unobserved.as_ref().map(|u| u.crop(extent)),
+                ..self.inferred.clone()
+            },
+            source: Arc::new(source),
+            ..self.clone()
+        }
+    }
+
+    /// All 18 BEV channels, one bit per [`BevLayer`] and cell, row-major `[x][y]`:
     /// the layout's map layers and the footprints of the boxes.
     pub fn bev_channels(&self) -> Vec<u32> {
         raster::bev_channels(&self.layout, self.boxes.values())

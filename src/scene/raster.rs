@@ -2,13 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, SceneBox};
+use super::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, SceneBox};
 
-/// Cells whose centre may lie in the given ego-frame rectangle, cut to the grid; `None` if none can.
-fn cell_range(min: DVec2, max: DVec2) -> Option<([usize; 2], [usize; 2])> {
-    let lo = GridSpec::to_voxel_units(min.extend(0.0));
-    let hi = GridSpec::to_voxel_units(max.extend(0.0));
-    let n = [GridSpec::NX as f64, GridSpec::NY as f64];
+/// Cells whose centre may lie in the given ego-frame rectangle, cut to the map; `None` if none can.
+fn cell_range(extent: Extent, min: DVec2, max: DVec2) -> Option<([usize; 2], [usize; 2])> {
+    let lo = extent.to_voxel_units(min.extend(0.0));
+    let hi = extent.to_voxel_units(max.extend(0.0));
+    let n = [extent.nx() as f64, extent.ny() as f64];
     let (mut from, mut to) = ([0; 2], [0; 2]);
     for axis in 0..2 {
         // Written so that NaN fails too.
@@ -21,11 +21,11 @@ fn cell_range(min: DVec2, max: DVec2) -> Option<([usize; 2], [usize; 2])> {
     Some((from, to))
 }
 
-fn for_cells(min: DVec2, max: DVec2, mut visit: impl FnMut(usize, usize, DVec2)) {
-    if let Some((from, to)) = cell_range(min, max) {
+fn for_cells(extent: Extent, min: DVec2, max: DVec2, mut visit: impl FnMut(usize, usize, DVec2)) {
+    if let Some((from, to)) = cell_range(extent, min, max) {
         for x in from[0]..=to[0] {
             for y in from[1]..=to[1] {
-                visit(x, y, GridSpec::center(x, y, 0).truncate());
+                visit(x, y, extent.center(x, y, 0).truncate());
             }
         }
     }
@@ -34,13 +34,13 @@ fn for_cells(min: DVec2, max: DVec2, mut visit: impl FnMut(usize, usize, DVec2))
 /// Visits the cells of a box's footprint grown by `margin_m`: those whose centre lies inside, and
 /// always the cell under the box's own centre, so that a box below one cell is not lost.
 /// A box with NaN visits nothing.
-pub fn box_cells(b: &SceneBox, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
+pub fn box_cells(extent: Extent, b: &SceneBox, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
     let reach = b.size_m.truncate() / 2.0 + DVec2::splat(margin_m);
     let radius = reach.length();
     let center = b.center_m.truncate();
-    let own = GridSpec::column_at(center.x, center.y);
+    let own = extent.column_at(center.x, center.y);
     let mut own_seen = false;
-    for_cells(center - radius, center + radius, |x, y, p| {
+    for_cells(extent, center - radius, center + radius, |x, y, p| {
         let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z));
         // Half-open, so that an edge on a row of cell centres counts once.
         let within = |v: f64, r: f64| -r <= v && v < r;
@@ -58,9 +58,9 @@ pub fn box_cells(b: &SceneBox, margin_m: f64, mut visit: impl FnMut(usize, usize
 }
 
 /// Visits the cells whose centre lies in a disc, and the cell under its centre.
-pub fn disc_cells(center_m: DVec2, radius_m: f64, mut visit: impl FnMut(usize, usize)) {
-    let own = GridSpec::column_at(center_m.x, center_m.y);
-    for_cells(center_m - radius_m, center_m + radius_m, |x, y, p| {
+pub fn disc_cells(extent: Extent, center_m: DVec2, radius_m: f64, mut visit: impl FnMut(usize, usize)) {
+    let own = extent.column_at(center_m.x, center_m.y);
+    for_cells(extent, center_m - radius_m, center_m + radius_m, |x, y, p| {
         if p.distance_squared(center_m) <= radius_m * radius_m || own == Some([x, y]) {
             visit(x, y);
         }
@@ -68,19 +68,19 @@ pub fn disc_cells(center_m: DVec2, radius_m: f64, mut visit: impl FnMut(usize, u
 }
 
 /// Visits the cells whose centre lies inside a closed polygon (even-odd rule).
-pub fn polygon_cells(points_m: &[DVec2], mut visit: impl FnMut(usize, usize)) {
+pub fn polygon_cells(extent: Extent, points_m: &[DVec2], mut visit: impl FnMut(usize, usize)) {
     if points_m.len() < 3 || points_m.iter().any(|p| !p.is_finite()) {
         return;
     }
     let min = points_m.iter().copied().reduce(DVec2::min).expect("three points");
     let max = points_m.iter().copied().reduce(DVec2::max).expect("three points");
-    let Some((from, to)) = cell_range(min, max) else {
+    let Some((from, to)) = cell_range(extent, min, max) else {
         return;
     };
     // One scan line per row of cell centres: crossings are sorted, cells between pairs are inside.
     let mut crossings = Vec::new();
     for x in from[0]..=to[0] {
-        let line = GridSpec::center(x, 0, 0).x;
+        let line = extent.center(x, 0, 0).x;
         crossings.clear();
         for (i, a) in points_m.iter().enumerate() {
             let b = points_m[(i + 1) % points_m.len()];
@@ -90,9 +90,9 @@ pub fn polygon_cells(points_m: &[DVec2], mut visit: impl FnMut(usize, usize)) {
         }
         crossings.sort_by(f64::total_cmp);
         for pair in crossings.chunks_exact(2) {
-            let lo = (GridSpec::to_voxel_units(DVec3::new(0.0, pair[0], 0.0)).y - 0.5).ceil();
-            let hi = (GridSpec::to_voxel_units(DVec3::new(0.0, pair[1], 0.0)).y - 0.5).floor();
-            for y in lo.max(0.0) as i64..=hi.min(GridSpec::NY as f64 - 1.0) as i64 {
+            let lo = (extent.to_voxel_units(DVec3::new(0.0, pair[0], 0.0)).y - 0.5).ceil();
+            let hi = (extent.to_voxel_units(DVec3::new(0.0, pair[1], 0.0)).y - 0.5).floor();
+            for y in lo.max(0.0) as i64..=hi.min(extent.ny() as f64 - 1.0) as i64 {
                 visit(x, y as usize);
             }
         }
@@ -101,9 +101,14 @@ pub fn polygon_cells(points_m: &[DVec2], mut visit: impl FnMut(usize, usize)) {
 
 /// Visits the cells whose centre lies within `half_width_m` of an open polyline. Zero-length
 /// segments are skipped, vertices that are not finite end their segments. Every cell is visited once.
-pub fn line_cells(points_m: &[DVec2], half_width_m: f64, mut visit: impl FnMut(usize, usize)) {
+pub fn line_cells(
+    extent: Extent,
+    points_m: &[DVec2],
+    half_width_m: f64,
+    mut visit: impl FnMut(usize, usize),
+) {
     // The short segments of a wide bend overlap almost wholly.
-    let mut seen = vec![false; GridSpec::COLUMNS];
+    let mut seen = vec![false; extent.columns()];
     for pair in points_m.windows(2) {
         let (a, b) = (pair[0], pair[1]);
         let d = b - a;
@@ -111,17 +116,22 @@ pub fn line_cells(points_m: &[DVec2], half_width_m: f64, mut visit: impl FnMut(u
         if !(length_squared.is_finite() && length_squared > 0.0) {
             continue;
         }
-        for_cells(a.min(b) - half_width_m, a.max(b) + half_width_m, |x, y, p| {
-            let seen = &mut seen[x * GridSpec::NY + y];
-            if *seen {
-                return;
-            }
-            let t = ((p - a).dot(d) / length_squared).clamp(0.0, 1.0);
-            if p.distance_squared(a + d * t) <= half_width_m * half_width_m {
-                *seen = true;
-                visit(x, y);
-            }
-        });
+        for_cells(
+            extent,
+            a.min(b) - half_width_m,
+            a.max(b) + half_width_m,
+            |x, y, p| {
+                let seen = &mut seen[extent.index(x, y)];
+                if *seen {
+                    return;
+                }
+                let t = ((p - a).dot(d) / length_squared).clamp(0.0, 1.0);
+                if p.distance_squared(a + d * t) <= half_width_m * half_width_m {
+                    *seen = true;
+                    visit(x, y);
+                }
+            },
+        );
     }
 }
 
@@ -138,9 +148,11 @@ pub fn draw_polyline(layout: &mut BevLayout, line: &Polyline) {
         PolylineKind::PedCrossing => BevLayer::PedCrossing,
     };
     if line.kind == PolylineKind::PedCrossing {
-        polygon_cells(&line.points_m, |x, y| cells.push((x, y)));
+        polygon_cells(layout.extent(), &line.points_m, |x, y| cells.push((x, y)));
     } else {
-        line_cells(&line.points_m, HALF_LINE_M, |x, y| cells.push((x, y)));
+        line_cells(layout.extent(), &line.points_m, HALF_LINE_M, |x, y| {
+            cells.push((x, y))
+        });
     }
     for (x, y) in cells {
         layout.set(layer, x, y, true);
@@ -149,10 +161,10 @@ pub fn draw_polyline(layout: &mut BevLayout, line: &Polyline) {
 
 /// All 18 channels as bits, `[x][y]`: the layout's map layers and the boxes' footprints.
 pub fn bev_channels<'a>(layout: &BevLayout, boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<u32> {
-    let mut cells = layout.cells().to_vec();
+    let (extent, mut cells) = (layout.extent(), layout.cells().to_vec());
     for b in boxes {
         if let Some(layer) = BevLayer::of_object(b.class) {
-            box_cells(b, 0.0, |x, y| cells[x * GridSpec::NY + y] |= layer.bit());
+            box_cells(extent, b, 0.0, |x, y| cells[extent.index(x, y)] |= layer.bit());
         }
     }
     cells
@@ -163,12 +175,12 @@ pub const HEADINGS: u8 = 240;
 
 /// The heading of the object in every column, `[x][y]`: 0 where there is none, else 1 +
 /// yaw / (2 pi / [`HEADINGS`]), rounded. A later box covers an earlier one.
-pub fn headings<'a>(boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<u8> {
-    let mut cells = vec![0; GridSpec::COLUMNS];
+pub fn headings<'a>(extent: Extent, boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<u8> {
+    let mut cells = vec![0; extent.columns()];
     for b in boxes.filter(|b| BevLayer::of_object(b.class).is_some()) {
         let turns = (b.yaw_rad / std::f64::consts::TAU).rem_euclid(1.0);
         let code = 1 + (turns * f64::from(HEADINGS)).round() as u8 % HEADINGS;
-        box_cells(b, 0.0, |x, y| cells[x * GridSpec::NY + y] = code);
+        box_cells(extent, b, 0.0, |x, y| cells[extent.index(x, y)] = code);
     }
     cells
 }
@@ -192,7 +204,7 @@ mod tests {
 
     fn cells(b: &SceneBox) -> Vec<(usize, usize)> {
         let mut out = Vec::new();
-        box_cells(b, 0.0, |x, y| out.push((x, y)));
+        box_cells(crate::Extent::WINDOW, b, 0.0, |x, y| out.push((x, y)));
         out
     }
 
@@ -207,13 +219,17 @@ mod tests {
             (3.0 * TAU, 1),
         ] {
             let b = car([1.0, 2.0, 0.0], [4.0, 2.0, 2.0], yaw);
-            let found = headings([b].iter());
+            let found = headings(crate::Extent::WINDOW, [b].iter());
             assert_eq!(found.iter().max(), Some(&code), "yaw {yaw}");
             let set = found.iter().filter(|c| **c != 0).count();
             assert_eq!(set, cells(&b).len());
         }
         let nowhere = car([1.0, 2.0, 0.0], [4.0, 2.0, 2.0], f64::NAN);
-        assert!(headings([nowhere].iter()).iter().all(|c| *c == 0));
+        assert!(
+            headings(crate::Extent::WINDOW, [nowhere].iter())
+                .iter()
+                .all(|c| *c == 0)
+        );
     }
 
     /// Row 35 of the extremes table.
@@ -239,7 +255,7 @@ mod tests {
         );
         assert_eq!(
             cells(&car([0.0; 3], [1e6, 1e6, 1e6], 0.5)).len(),
-            GridSpec::COLUMNS
+            crate::Window::COLUMNS
         );
         for bad in [f64::NAN, f64::INFINITY] {
             assert!(cells(&car([bad, 0.0, 0.0], [1.0; 3], 0.0)).is_empty());
@@ -253,7 +269,7 @@ mod tests {
     fn row_36_polyline() {
         let draw = |points: &[DVec2]| {
             let mut out = std::collections::BTreeSet::new();
-            line_cells(points, 0.3, |x, y| {
+            line_cells(crate::Extent::WINDOW, points, 0.3, |x, y| {
                 out.insert((x, y));
             });
             out
@@ -269,6 +285,7 @@ mod tests {
         assert!(!draw(&spiral).is_empty());
         let mut square = 0;
         polygon_cells(
+            crate::Extent::WINDOW,
             &[
                 DVec2::new(0.0, 0.0),
                 DVec2::new(4.0, 0.0),

@@ -20,11 +20,13 @@ fn street() -> RoadMap {
     };
     let mut lines = vec![line(0.0, false), line(3.5, false), line(7.0, true)];
     let middle: Vec<DVec2> = lines[1].points_m.clone();
-    line_cells(&middle, 5.25, |x, y| {
+    line_cells(crate::Extent::WINDOW, &middle, 5.25, |x, y| {
         layout.set(BevLayer::DrivableArea, x, y, true)
     });
     let walk = [(-44.0, -1.75), (44.0, -1.75), (44.0, -4.0), (-44.0, -4.0)].map(DVec2::from);
-    polygon_cells(&walk, |x, y| layout.set(BevLayer::Walkway, x, y, true));
+    polygon_cells(crate::Extent::WINDOW, &walk, |x, y| {
+        layout.set(BevLayer::Walkway, x, y, true)
+    });
     let outline = [(20.0, 8.75), (20.0, -1.75), (23.0, -1.75), (23.0, 8.75)]
         .map(DVec2::from)
         .to_vec();

@@ -1,15 +1,21 @@
-//! The height of the ground: one number per column of the grid, metres above z = 0 of the ego frame.
+//! The height of the ground: one number per column of the map, metres above z = 0 of the ego frame.
 
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
-use super::{GridSpec, Pose};
+use super::{Extent, Pose};
 
 /// Height of the ground over the grid. Flat ground costs nothing; a snapshot costs a pointer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Relief {
-    heights_m: Option<Arc<Vec<f32>>>, // [x][y], GridSpec::COLUMNS; none is flat
+    heights: Option<Heights>, // none is flat
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Heights {
+    extent: Extent,
+    m: Arc<Vec<f32>>, // [x][y]
 }
 
 impl Relief {
@@ -17,98 +23,133 @@ impl Relief {
     pub const LIMIT_M: f32 = 200.0;
 
     /// Ground at z = 0 everywhere.
-    pub const FLAT: Self = Self { heights_m: None };
+    pub const FLAT: Self = Self { heights: None };
 
-    /// From heights at the centres of the columns, `[x][y]`, 40,000 numbers in m of the ego frame.
+    /// From heights at the centres of the columns of a map, `[x][y]`, in m of the ego frame.
     /// Errors in one line on another count, a number that is not finite or one beyond [`LIMIT_M`](Self::LIMIT_M).
-    pub fn from_heights(heights_m: Vec<f32>) -> Result<Self, String> {
-        if heights_m.len() != GridSpec::COLUMNS {
+    pub fn from_heights(extent: Extent, heights_m: Vec<f32>) -> Result<Self, String> {
+        if heights_m.len() != extent.columns() {
             return Err(format!(
                 "relief: {} heights, expected {}",
                 heights_m.len(),
-                GridSpec::COLUMNS
+                extent.columns()
             ));
         }
         if let Some(i) = heights_m
             .iter()
             .position(|h| h.is_nan() || h.abs() > Self::LIMIT_M)
         {
+            let [x, y] = extent.column(i);
             return Err(format!(
-                "relief: height {} in column ({}, {}), expected a number within {} m",
+                "relief: height {} in column ({x}, {y}), expected a number within {} m",
                 heights_m[i],
-                i / GridSpec::NY,
-                i % GridSpec::NY,
                 Self::LIMIT_M
             ));
         }
         let flat = heights_m.iter().all(|h| *h == 0.0);
         Ok(Self {
-            heights_m: (!flat).then(|| Arc::new(heights_m)),
+            heights: (!flat).then(|| Heights {
+                extent,
+                m: Arc::new(heights_m),
+            }),
         })
     }
 
     /// From a height at every point of the ground, m; what is not finite counts as 0, the rest is cut to the limit.
-    pub fn from_fn(height_m: impl Fn(DVec2) -> f64) -> Self {
-        let heights = (0..GridSpec::COLUMNS).map(|c| {
-            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+    pub fn from_fn(extent: Extent, height_m: impl Fn(DVec2) -> f64) -> Self {
+        let heights = extent.all_columns().map(|[x, y]| {
+            let p = extent.center(x, y, 0).truncate();
             let h = height_m(p) as f32;
             let h = if h.is_finite() { h } else { 0.0 };
             h.clamp(-Self::LIMIT_M, Self::LIMIT_M)
         });
-        Self::from_heights(heights.collect()).unwrap_or_default()
+        Self::from_heights(extent, heights.collect()).unwrap_or_default()
     }
 
     /// True if the ground is at z = 0 everywhere.
     pub fn is_flat(&self) -> bool {
-        self.heights_m.is_none()
+        self.heights.is_none()
     }
 
     /// Heights at the centres of the columns, `[x][y]`, m; `None` if flat.
     pub fn heights_m(&self) -> Option<&[f32]> {
-        self.heights_m.as_deref().map(Vec::as_slice)
+        self.heights.as_ref().map(|h| h.m.as_slice())
+    }
+
+    /// Which part of the ground it covers; `None` if flat.
+    pub fn extent(&self) -> Option<Extent> {
+        self.heights.as_ref().map(|h| h.extent)
+    }
+
+    /// The part of it that lies in another extent; the ground goes on level where this one has no columns.
+    pub fn crop(&self, extent: Extent) -> Self {
+        match &self.heights {
+            Some(h) if h.extent != extent => Self::from_fn(extent, |p| self.height_m(p)),
+            _ => self.clone(),
+        }
+    }
+
+    /// Takes over the heights of another relief wherever both have columns. The extents are those of the layouts: a flat
+    /// relief has none of its own.
+    pub fn paste(&mut self, extent: Extent, other: &Self, of: Extent) {
+        if self.is_flat() && other.is_flat() {
+            return;
+        }
+        let all = |relief: &Self, extent: Extent| match relief.heights_m() {
+            Some(heights) => heights.to_vec(),
+            None => vec![0.0; extent.columns()],
+        };
+        let mut heights = all(self, extent);
+        extent.paste(&mut heights, &of, &all(other, of));
+        *self = Self::from_heights(extent, heights).unwrap_or_default();
     }
 
     /// True if both hold their heights in the same memory, or both are flat.
     pub fn shares(&self, other: &Self) -> bool {
-        match (&self.heights_m, &other.heights_m) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        match (&self.heights, &other.heights) {
+            (Some(a), Some(b)) => Arc::ptr_eq(&a.m, &b.m),
             (a, b) => a.is_none() && b.is_none(),
         }
     }
 
     /// Height at the centre of a column, m. Panics outside the grid.
     pub fn column_m(&self, x: usize, y: usize) -> f64 {
-        match &self.heights_m {
-            Some(h) => f64::from(h[x * GridSpec::NY + y]),
+        match &self.heights {
+            Some(h) => f64::from(h.m[h.extent.index(x, y)]),
             None => 0.0,
         }
     }
 
-    /// Sets the height of one column, m; the caller keeps it finite and within the limit.
-    pub fn set(&mut self, x: usize, y: usize, height_m: f32) {
+    /// Sets the height of one column of a map, m; the caller keeps it finite and within the limit.
+    pub fn set(&mut self, extent: Extent, x: usize, y: usize, height_m: f32) {
         if self.is_flat() && height_m == 0.0 {
             return;
         }
-        let heights = self
-            .heights_m
-            .get_or_insert_with(|| Arc::new(vec![0.0; GridSpec::COLUMNS]));
-        Arc::make_mut(heights)[x * GridSpec::NY + y] = height_m;
+        let heights = self.heights.get_or_insert_with(|| Heights {
+            extent,
+            m: Arc::new(vec![0.0; extent.columns()]),
+        });
+        Arc::make_mut(&mut heights.m)[extent.index(x, y)] = height_m;
     }
 
     /// Height at a point of the ego frame, m: bilinear between column centres, continued level outside the grid; 0 for NaN.
     pub fn height_m(&self, p: DVec2) -> f64 {
-        let Some(heights) = &self.heights_m else {
+        let Some(Heights { extent, m }) = &self.heights else {
             return 0.0;
         };
-        let u = GridSpec::to_voxel_units(p.extend(0.0)).truncate() - DVec2::splat(0.5);
+        let u = extent.to_voxel_units(p.extend(0.0)).truncate() - DVec2::splat(0.5);
         if u.is_nan() {
             return 0.0;
         }
-        let last = [GridSpec::NX - 1, GridSpec::NY - 1];
+        let last = [extent.nx() - 1, extent.ny() - 1];
         let (x, y) = (u.x.clamp(0.0, last[0] as f64), u.y.clamp(0.0, last[1] as f64));
-        let (x0, y0) = ((x as usize).min(last[0] - 1), (y as usize).min(last[1] - 1));
+        let (x0, y0) = (
+            (x as usize).min(last[0].saturating_sub(1)),
+            (y as usize).min(last[1].saturating_sub(1)),
+        );
         let (tx, ty) = (x - x0 as f64, y - y0 as f64);
-        let at = |i: usize, j: usize| f64::from(heights[i * GridSpec::NY + j]);
+        // A map one column wide has no next one.
+        let at = |i: usize, j: usize| f64::from(m[extent.index(i.min(last[0]), j.min(last[1]))]);
         let low = at(x0, y0) * (1.0 - tx) + at(x0 + 1, y0) * tx;
         let high = at(x0, y0 + 1) * (1.0 - tx) + at(x0 + 1, y0 + 1) * tx;
         low * (1.0 - ty) + high * ty
@@ -133,7 +174,7 @@ impl Relief {
         let mut t = 0.0;
         while t < limit {
             // Half of the height above the ground: no ground rises more steeply over a voxel than a wall, which is met then.
-            let next = (t + unit * (gap_m / 2.0).max(GridSpec::VOXEL_M / 2.0)).min(limit);
+            let next = (t + unit * (gap_m / 2.0).max(Extent::VOXEL_M / 2.0)).min(limit);
             gap_m = above_m(next);
             if gap_m < 0.0 {
                 let (mut near, mut far) = (t, next);
@@ -157,7 +198,7 @@ impl Relief {
         if self.is_flat() {
             return DVec3::Z;
         }
-        let h = GridSpec::VOXEL_M;
+        let h = Extent::VOXEL_M;
         let dx = self.height_m(p + DVec2::X * h) - self.height_m(p - DVec2::X * h);
         let dy = self.height_m(p + DVec2::Y * h) - self.height_m(p - DVec2::Y * h);
         DVec3::new(-dx, -dy, 2.0 * h).normalize_or(DVec3::Z)
@@ -187,8 +228,8 @@ impl Relief {
 
     /// Bin of the grid that holds this height, cut to the grid.
     pub fn physical_bin(height_m: f64) -> usize {
-        let z = GridSpec::to_voxel_units(DVec3::new(0.0, 0.0, height_m)).z;
-        z.floor().clamp(0.0, (GridSpec::NZ - 1) as f64) as usize
+        let z = Extent::WINDOW.to_voxel_units(DVec3::new(0.0, 0.0, height_m)).z;
+        z.floor().clamp(0.0, (Extent::NZ - 1) as f64) as usize
     }
 }
 
@@ -204,7 +245,7 @@ mod tests {
         assert_eq!(Relief::FLAT.met_by(origin, down, 10.0), None);
         assert_eq!(Relief::FLAT.met_by(origin, DVec3::X, 100.0), None);
         // On a grade of 5 % it is met at 1.5 = (0.1 + 0.05) t.
-        let grade = Relief::from_fn(|p| 0.05 * p.x);
+        let grade = Relief::from_fn(Extent::WINDOW, |p| 0.05 * p.x);
         let t = grade.met_by(origin, down, 100.0).expect("ground ahead");
         assert!((t - 10.0).abs() < 1e-3, "{t}");
         assert_eq!(
@@ -216,7 +257,9 @@ mod tests {
             assert_eq!(grade.met_by(origin, DVec3::splat(bad), 100.0), None);
         }
         // A wall 3 m high, a column thick, is not jumped over.
-        let wall = Relief::from_fn(|p| if (20.0..20.5).contains(&p.x) { 3.0 } else { 0.01 });
+        let wall = Relief::from_fn(Extent::WINDOW, |p| {
+            if (20.0..20.5).contains(&p.x) { 3.0 } else { 0.01 }
+        });
         let t = wall
             .met_by(origin, DVec3::new(1.0, 0.0, -0.01), 100.0)
             .expect("a wall");
@@ -225,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_slope_is_read_back_between_and_beyond_the_columns() {
-        let relief = Relief::from_fn(|p| 0.05 * p.x - 0.02 * p.y);
+        let relief = Relief::from_fn(Extent::WINDOW, |p| 0.05 * p.x - 0.02 * p.y);
         for p in [DVec2::ZERO, DVec2::new(12.34, -7.0), DVec2::new(-39.7, 39.7)] {
             assert!(
                 (relief.height_m(p) - (0.05 * p.x - 0.02 * p.y)).abs() < 1e-5,
@@ -249,18 +292,18 @@ mod tests {
     #[test]
     fn flat_ground_is_free_and_bad_heights_are_refused() {
         assert!(
-            Relief::from_heights(vec![0.0; GridSpec::COLUMNS])
+            Relief::from_heights(Extent::WINDOW, vec![0.0; Extent::WINDOW.columns()])
                 .expect("sound")
                 .is_flat()
         );
-        assert!(Relief::from_heights(vec![0.0; 7]).is_err());
-        let mut heights = vec![0.0; GridSpec::COLUMNS];
+        assert!(Relief::from_heights(Extent::WINDOW, vec![0.0; 7]).is_err());
+        let mut heights = vec![0.0; Extent::WINDOW.columns()];
         heights[9] = f32::NAN;
-        assert!(Relief::from_heights(heights.clone()).is_err());
+        assert!(Relief::from_heights(Extent::WINDOW, heights.clone()).is_err());
         heights[9] = 1e6;
-        let error = Relief::from_heights(heights).expect_err("too high");
+        let error = Relief::from_heights(Extent::WINDOW, heights).expect_err("too high");
         assert!(error.contains("column (0, 9)"), "{error}");
-        assert!(Relief::from_fn(|_| f64::NAN).is_flat());
+        assert!(Relief::from_fn(Extent::WINDOW, |_| f64::NAN).is_flat());
     }
 
     #[test]

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::distance::{nearest_source, signed_distance_m};
 use super::graph::LaneRole;
-use super::{BevLayer, BevLayout, GridSpec, PolylineKind};
+use super::{BevLayer, BevLayout, Extent, PolylineKind};
 
 /// Half of the width that a lane is taken to have, m.
 pub const HALF_LANE_M: f64 = 1.75;
@@ -68,6 +68,7 @@ pub struct RoadMap {
     pub junctions_m: Vec<DVec2>,
     /// Where the ego's side of the road ends and the other begins, as an offset from the ego lane (left is positive), m.
     pub middle_m: f64,
+    extent: Extent,
     cells: Vec<u32>,
     distance_m: [OnceLock<Vec<f32>>; AREAS.len()], // when first asked for
     nearest: Option<Vec<u32>>,                     // cell with the nearest lane sample
@@ -85,6 +86,7 @@ const AREAS: [BevLayer; 4] = [
 impl RoadMap {
     /// Reads a layout. Points that are not finite are dropped.
     pub fn new(layout: &BevLayout) -> Self {
+        let extent = layout.extent();
         let mut lanes = joined(layout);
         let ego_lane = ego_lane(&lanes);
         let axis: Vec<DVec2> = match ego_lane {
@@ -92,15 +94,15 @@ impl RoadMap {
             None => (-40..=40).map(|x| DVec2::new(f64::from(x), 0.0)).collect(),
         };
         let middle_m = assign_roles(&mut lanes, ego_lane, &axis);
-        let mut sample_of = vec![(u32::MAX, 0); GridSpec::COLUMNS];
+        let mut sample_of = vec![(u32::MAX, 0); extent.columns()];
         for (i, lane) in lanes.iter().enumerate() {
             for (k, p) in lane.points_m.iter().enumerate() {
-                if let Some([x, y]) = GridSpec::column_at(p.x, p.y) {
-                    sample_of[x * GridSpec::NY + y] = (i as u32, k as u32);
+                if let Some([x, y]) = extent.column_at(p.x, p.y) {
+                    sample_of[extent.index(x, y)] = (i as u32, k as u32);
                 }
             }
         }
-        let nearest = nearest_source(|c| sample_of[c].0 != u32::MAX);
+        let nearest = nearest_source(extent, |c| sample_of[c].0 != u32::MAX);
         let mut crossings: Vec<CrossingArea> = Vec::new();
         for (i, line) in layout.polylines.iter().enumerate() {
             let sound = line.points_m.len() >= 3 && line.points_m.iter().all(|p| p.is_finite());
@@ -113,15 +115,16 @@ impl RoadMap {
                 });
             }
         }
-        crossings.retain(|c| c.center_m.abs().max_element() < 40.0);
+        crossings.retain(|c| is_within(extent, c.center_m, 0.0));
         crossings.sort_by(|a, b| a.center_m.length().total_cmp(&b.center_m.length()));
-        let junctions_m = junctions(&lanes);
+        let junctions_m = junctions(extent, &lanes);
         Self {
             lanes,
             ego_lane,
             crossings,
             junctions_m,
             middle_m,
+            extent,
             cells: layout.cells().to_vec(),
             distance_m: Default::default(),
             nearest,
@@ -129,13 +132,14 @@ impl RoadMap {
         }
     }
 
-    fn column(p: DVec2) -> Option<usize> {
-        GridSpec::column_at(p.x, p.y).map(|[x, y]| x * GridSpec::NY + y)
+    fn column(&self, p: DVec2) -> Option<usize> {
+        let [x, y] = self.extent.column_at(p.x, p.y)?;
+        Some(self.extent.index(x, y))
     }
 
     /// True if the layer is set under the point; false outside the grid.
     pub fn has(&self, layer: BevLayer, p: DVec2) -> bool {
-        Self::column(p).is_some_and(|c| self.cells[c] & layer.bit() != 0)
+        self.column(p).is_some_and(|c| self.cells[c] & layer.bit() != 0)
     }
 
     /// True on ground that vehicles may stand on: road or car park.
@@ -150,18 +154,18 @@ impl RoadMap {
 
     /// Distance to the border of an area (0 road, 1 car park, 2 walkway, 3 crossing), m: negative inside.
     pub fn from_area_m(&self, area: usize, p: DVec2) -> f64 {
-        let (Some(cell), Some(kept)) = (Self::column(p), self.distance_m.get(area)) else {
+        let (Some(cell), Some(kept)) = (self.column(p), self.distance_m.get(area)) else {
             return 1000.0;
         };
         let bit = AREAS[area].bit();
-        let distances = kept.get_or_init(|| signed_distance_m(|c| self.cells[c] & bit != 0));
+        let distances = kept.get_or_init(|| signed_distance_m(self.extent, |c| self.cells[c] & bit != 0));
         f64::from(distances[cell])
     }
 
     /// The nearest place on any lane, found through the nearest sample: exact to a few decimetres.
     /// `None` outside the grid or without lanes.
     pub fn nearest_lane(&self, p: DVec2) -> Option<LanePoint> {
-        let cell = self.nearest.as_ref()?[Self::column(p)?];
+        let cell = self.nearest.as_ref()?[self.column(p)?];
         let (lane, point) = self.sample_of[cell as usize];
         let points = &self.lanes[lane as usize].points_m;
         let (from, to) = (
@@ -435,8 +439,14 @@ fn assign_roles(lanes: &mut [Lane], ego: Option<usize>, axis: &[DVec2]) -> f64 {
     }
 }
 
+/// True inside a map, that far from its sides.
+fn is_within(extent: Extent, p: DVec2, margin_m: f64) -> bool {
+    let (min, max) = (extent.min_m().truncate(), extent.max_m().truncate());
+    p.cmpgt(min + margin_m).all() && p.cmplt(max - margin_m).all()
+}
+
 /// Places where lanes of different directions cross, one for each 15 m, the nearest first.
-fn junctions(lanes: &[Lane]) -> Vec<DVec2> {
+fn junctions(extent: Extent, lanes: &[Lane]) -> Vec<DVec2> {
     const STRIDE: usize = 3;
     const APART_M: f64 = 15.0;
     let segments: Vec<(usize, DVec2, DVec2)> = lanes
@@ -446,7 +456,7 @@ fn junctions(lanes: &[Lane]) -> Vec<DVec2> {
             let thin: Vec<DVec2> = lane.points_m.iter().copied().step_by(STRIDE).collect();
             thin.windows(2).map(|w| (i, w[0], w[1])).collect::<Vec<_>>()
         })
-        .filter(|(_, a, _)| a.abs().max_element() < 38.0)
+        .filter(|(_, a, _)| is_within(extent, *a, 2.0))
         .collect();
     let mut places: Vec<(DVec2, f64)> = Vec::new(); // sum and count
     for (k, (i, a, b)) in segments.iter().enumerate() {

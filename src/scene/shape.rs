@@ -4,7 +4,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use crate::edit::EditError;
-use crate::{GridSpec, raster};
+use crate::{Extent, raster};
 
 /// An area on the ground, ego frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,29 +44,29 @@ impl Shape {
     /// Half the width of the thinnest stroke, m: just over half a cell, so that a diagonal stays connected.
     const MIN_HALF_WIDTH_M: f64 = 0.21;
 
-    /// The cells `[x, y]` that the shape covers, sorted, each once. The part outside the grid is cut
+    /// The cells `[x, y]` of a map that the shape covers, sorted, each once. The part outside the map is cut
     /// off (explicit cells outside are an error). Errors: numbers that are not finite or negative,
     /// too few points, or no cell at all.
-    pub fn cells(&self) -> Result<Vec<[usize; 2]>, EditError> {
+    pub fn cells(&self, extent: Extent) -> Result<Vec<[usize; 2]>, EditError> {
         // One bit a cell: a wide stroke of many points visits the same cells again and again.
-        let mut covered = vec![false; GridSpec::COLUMNS];
-        let mut visit = |x: usize, y: usize| covered[x * GridSpec::NY + y] = true;
+        let mut covered = vec![false; extent.columns()];
+        let mut visit = |x: usize, y: usize| covered[extent.index(x, y)] = true;
         match self {
             Self::Disc { center_m, radius_m } => {
                 finite("center_m", &[*center_m])?;
                 not_negative("radius_m", *radius_m)?;
-                raster::disc_cells(*center_m, *radius_m, visit);
+                raster::disc_cells(extent, *center_m, *radius_m, visit);
             }
             Self::Rect { min_m, max_m } => {
                 finite("min_m", &[*min_m])?;
                 finite("max_m", &[*max_m])?;
                 let (a, b) = (min_m.min(*max_m), min_m.max(*max_m));
-                raster::polygon_cells(&[a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)], visit);
+                raster::polygon_cells(extent, &[a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)], visit);
             }
             Self::Polygon { points_m } => {
                 at_least("points_m", points_m.len(), 3)?;
                 finite("points_m", points_m)?;
-                raster::polygon_cells(points_m, visit);
+                raster::polygon_cells(extent, points_m, visit);
             }
             Self::Line { points_m, width_m } => {
                 at_least("points_m", points_m.len(), 1)?;
@@ -74,21 +74,24 @@ impl Shape {
                 not_negative("width_m", *width_m)?;
                 let half_m = (width_m / 2.0).max(Self::MIN_HALF_WIDTH_M);
                 // Round ends; also all there is if the pointer did not move.
-                raster::disc_cells(points_m[0], half_m, &mut visit);
-                raster::line_cells(points_m, half_m, visit);
+                raster::disc_cells(extent, points_m[0], half_m, &mut visit);
+                raster::line_cells(extent, points_m, half_m, visit);
             }
             Self::Cells(list) => {
                 at_least("cells", list.len(), 1)?;
                 for &[x, y] in list {
-                    if x >= GridSpec::NX || y >= GridSpec::NY {
-                        return Err(EditError::CellOutside { cell: vec![x, y] });
+                    if !extent.holds(x, y) {
+                        return Err(EditError::CellOutside {
+                            cell: vec![x, y],
+                            extent,
+                        });
                     }
                     visit(x, y);
                 }
             }
         }
         let cells = covered.iter().enumerate().filter(|(_, c)| **c);
-        let cells: Vec<[usize; 2]> = cells.map(|(i, _)| [i / GridSpec::NY, i % GridSpec::NY]).collect();
+        let cells: Vec<[usize; 2]> = cells.map(|(i, _)| extent.column(i)).collect();
         match cells.is_empty() {
             true => Err(EditError::NoCell),
             false => Ok(cells),
@@ -144,12 +147,12 @@ mod tests {
             min_m: v(2.0, 4.0),
             max_m: v(0.0, 0.0), // corners in any order
         };
-        assert_eq!(rect.cells().expect("inside").len(), 5 * 10);
+        assert_eq!(rect.cells(Extent::WINDOW).expect("inside").len(), 5 * 10);
         let disc = Shape::Disc {
             center_m: v(0.0, 0.0),
             radius_m: 8.0,
         };
-        let area_m2 = disc.cells().expect("inside").len() as f64 * 0.16;
+        let area_m2 = disc.cells(Extent::WINDOW).expect("inside").len() as f64 * 0.16;
         assert!(
             (area_m2 / (64.0 * std::f64::consts::PI) - 1.0).abs() < 0.01,
             "{area_m2}"
@@ -158,7 +161,10 @@ mod tests {
             min_m: v(-1e9, -1e9),
             max_m: v(1e9, 1e9),
         };
-        assert_eq!(everything.cells().expect("cut").len(), GridSpec::COLUMNS);
+        assert_eq!(
+            everything.cells(Extent::WINDOW).expect("cut").len(),
+            Extent::WINDOW.columns()
+        );
     }
 
     #[test]
@@ -167,12 +173,12 @@ mod tests {
             points_m: vec![v(1.1, 1.1); 3],
             width_m: 0.0,
         };
-        assert_eq!(click.cells(), Ok(vec![[102, 102]]));
+        assert_eq!(click.cells(Extent::WINDOW), Ok(vec![[102, 102]]));
         let diagonal = Shape::Line {
             points_m: vec![v(0.1, 0.1), v(9.9, 7.3)],
             width_m: 0.0,
         };
-        let cells = diagonal.cells().expect("inside");
+        let cells = diagonal.cells(Extent::WINDOW).expect("inside");
         let touches =
             |a: &[usize; 2], b: &[usize; 2]| a != b && a[0].abs_diff(b[0]) <= 1 && a[1].abs_diff(b[1]) <= 1;
         assert!(cells.iter().all(|a| cells.iter().any(|b| touches(a, b))));
@@ -181,7 +187,7 @@ mod tests {
 
     #[test]
     fn bad_shapes_are_named() {
-        let text = |shape: Shape| shape.cells().expect_err("bad").to_string();
+        let text = |shape: Shape| shape.cells(Extent::WINDOW).expect_err("bad").to_string();
         let nan = Shape::Disc {
             center_m: v(f64::NAN, 0.0),
             radius_m: 1.0,

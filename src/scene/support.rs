@@ -1,6 +1,6 @@
 //! Groups of voxels that touch each other, and what of the occupancy stands on the ground.
 
-use crate::{Class, GridSpec, Unobserved, VoxelGrid};
+use crate::{Class, Extent, Unobserved, VoxelGrid};
 
 /// Bins in which the ground may lie: bin 0 in the labels' convention, bin 2 where it really is.
 const GROUND_BINS: u16 = 0b111;
@@ -9,9 +9,9 @@ const WIDE_GROUND: usize = 100;
 
 /// One word per column `[x][y]`, one bit per bin that is not free.
 pub fn occupied(grid: &VoxelGrid) -> Vec<u16> {
-    let mut out = vec![0; GridSpec::COLUMNS];
+    let mut out = vec![0; grid.extent().columns()];
     for (x, y, z, _) in grid.iter_set() {
-        out[x * GridSpec::NY + y] |= 1 << z;
+        out[grid.extent().index(x, y)] |= 1 << z;
     }
     out
 }
@@ -21,16 +21,16 @@ pub fn by_class(grid: &VoxelGrid) -> Vec<Vec<u16>> {
     let mut out = vec![Vec::new(); Class::COUNT];
     for (x, y, z, label) in grid.iter_set() {
         if let Some(words) = out.get_mut(usize::from(label)) {
-            words.resize(GridSpec::COLUMNS, 0u16);
-            words[x * GridSpec::NY + y] |= 1 << z;
+            words.resize(grid.extent().columns(), 0u16);
+            words[grid.extent().index(x, y)] |= 1 << z;
         }
     }
     out
 }
 
 /// One word per column, one bit per bin that holds ground.
-pub fn ground(by_class: &[Vec<u16>]) -> Vec<u16> {
-    let mut out = vec![0; GridSpec::COLUMNS];
+pub fn ground(extent: Extent, by_class: &[Vec<u16>]) -> Vec<u16> {
+    let mut out = vec![0; extent.columns()];
     let grounds = Class::ALL.iter().filter(|c| c.is_ground());
     for words in grounds.filter_map(|c| by_class.get(usize::from(c.id()))) {
         out.iter_mut().zip(words).for_each(|(out, word)| *out |= word);
@@ -43,28 +43,28 @@ pub const CROWN: usize = 8;
 
 /// What of `occupied` stands: what is connected to the ground bins, or to wide ground that lies higher, through voxels
 /// that touch by a face, an edge or a corner.
-pub fn supported(occupied: &[u16], ground: &[u16]) -> Vec<u16> {
-    let out = reached(occupied, |_| 0);
+pub fn supported(extent: Extent, occupied: &[u16], ground: &[u16]) -> Vec<u16> {
+    let out = reached(extent, occupied, |_| 0);
     // A hill that meets the lowest bins nowhere is no less ground.
     let mut high = Vec::new();
     for (c, (ground, out)) in ground.iter().zip(&out).enumerate() {
-        high.extend(bins_set(c, ground & !out));
+        high.extend(bins_set(extent, c, ground & !out));
     }
     if high.len() < WIDE_GROUND {
         return out;
     }
     let mut seeds = out.clone();
-    for group in groups(high).iter().filter(|g| g.len() >= WIDE_GROUND) {
+    for group in groups(extent, high).iter().filter(|g| g.len() >= WIDE_GROUND) {
         group
             .iter()
-            .for_each(|[x, y, z]| seeds[x * GridSpec::NY + y] |= 1 << z);
+            .for_each(|[x, y, z]| seeds[extent.index(*x, *y)] |= 1 << z);
     }
-    reached(occupied, |c| seeds[c])
+    reached(extent, occupied, |c| seeds[c])
 }
 
 /// What of `occupied` is connected to the ground bins or to the seeds of a column, through voxels that touch by a face, an
 /// edge or a corner.
-pub fn reached(occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
+pub fn reached(extent: Extent, occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
     let start = |(c, bits): (usize, &u16)| match *bits {
         0 => 0,
         bits => fill(bits & (GROUND_BINS | seeds(c)), bits),
@@ -76,7 +76,7 @@ pub fn reached(occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
         .collect();
     while let Some(c) = queue.pop() {
         let reach = out[c] | out[c] << 1 | out[c] >> 1;
-        for near in neighbours(c) {
+        for near in neighbours(extent, c) {
             let gained = fill(out[near] | reach & occupied[near], occupied[near]);
             if gained != out[near] {
                 out[near] = gained;
@@ -88,11 +88,12 @@ pub fn reached(occupied: &[u16], seeds: impl Fn(usize) -> u16) -> Vec<u16> {
 }
 
 /// The voxels of a column that a word names.
-pub fn bins_set(column: usize, mut word: u16) -> impl Iterator<Item = [usize; 3]> {
+pub fn bins_set(extent: Extent, column: usize, mut word: u16) -> impl Iterator<Item = [usize; 3]> {
+    let [x, y] = extent.column(column);
     std::iter::from_fn(move || {
         let z = word.trailing_zeros() as usize;
         word &= word.wrapping_sub(1);
-        (z < GridSpec::NZ).then_some([column / GridSpec::NY, column % GridSpec::NY, z])
+        (z < Extent::NZ).then_some([x, y, z])
     })
 }
 
@@ -108,41 +109,42 @@ fn fill(mut bits: u16, within: u16) -> u16 {
 }
 
 /// The up to eight columns around one.
-pub fn neighbours(column: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (column / GridSpec::NY, column % GridSpec::NY);
-    let xs = x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1);
-    let ys = y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1);
-    xs.flat_map(move |i| ys.clone().map(move |j| i * GridSpec::NY + j))
+pub fn neighbours(extent: Extent, column: usize) -> impl Iterator<Item = usize> {
+    let [x, y] = extent.column(column);
+    let xs = x.saturating_sub(1)..=(x + 1).min(extent.nx() - 1);
+    let ys = y.saturating_sub(1)..=(y + 1).min(extent.ny() - 1);
+    xs.flat_map(move |i| ys.clone().map(move |j| extent.index(i, j)))
         .filter(move |c| *c != column)
 }
 
 /// Connected groups of voxels (26 neighbours) among the given ones; the groups in the order of their first voxel,
 /// voxels in order within each.
-pub fn groups(mut cells: Vec<[usize; 3]>) -> Vec<Vec<[usize; 3]>> {
+pub fn groups(extent: Extent, mut cells: Vec<[usize; 3]>) -> Vec<Vec<[usize; 3]>> {
     cells.sort_unstable();
-    let mut left = vec![0u16; GridSpec::COLUMNS];
+    let mut left = vec![0u16; extent.columns()];
     for &[x, y, z] in &cells {
-        left[x * GridSpec::NY + y] |= 1 << z;
+        left[extent.index(x, y)] |= 1 << z;
     }
     let mut out = Vec::new();
     for first in cells {
         let [x, y, z] = first;
-        if left[x * GridSpec::NY + y] >> z & 1 == 0 {
+        if left[extent.index(x, y)] >> z & 1 == 0 {
             continue;
         }
-        left[x * GridSpec::NY + y] &= !(1 << z);
+        left[extent.index(x, y)] &= !(1 << z);
         let mut group = vec![first];
         let mut next = 0;
         while next < group.len() {
             let [x, y, z] = group[next];
             next += 1;
-            let own = x * GridSpec::NY + y;
+            let own = extent.index(x, y);
             let reach = 1u16 << z | (1u16 << z) << 1 | (1u16 << z) >> 1;
-            for c in neighbours(own).chain([own]) {
+            for c in neighbours(extent, own).chain([own]) {
                 let taken = left[c] & reach;
                 left[c] &= !taken;
-                let bins = (0..GridSpec::NZ).filter(|k| taken >> k & 1 == 1);
-                group.extend(bins.map(|k| [c / GridSpec::NY, c % GridSpec::NY, k]));
+                let [x, y] = extent.column(c);
+                let bins = (0..Extent::NZ).filter(|k| taken >> k & 1 == 1);
+                group.extend(bins.map(|k| [x, y, k]));
             }
         }
         group.sort_unstable();
@@ -168,10 +170,10 @@ pub fn main_class(grid: &VoxelGrid, cells: &[[usize; 3]]) -> Class {
 /// they stand on their own), or by voxels below that no sensor observed.
 pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, group: &[[usize; 3]]) -> bool {
     let is_object = |[x, y, z]: [usize; 3]| Class::from_id(grid.get(x, y, z)).is_some_and(Class::is_object);
-    let at_edge = |cell: [usize; 3]| reaches_side(&[cell]) || cell[2] + 1 == GridSpec::NZ;
+    let at_edge = |cell: [usize; 3]| reaches_side(grid.extent(), &[cell]) || cell[2] + 1 == Extent::NZ;
     let unknown_below = |[x, y, z]: [usize; 3]| {
         let words = unobserved.map(Unobserved::words);
-        z > 0 && words.is_some_and(|w| w[x * GridSpec::NY + y] >> (z - 1) & 1 == 1)
+        z > 0 && words.is_some_and(|w| w[grid.extent().index(x, y)] >> (z - 1) & 1 == 1)
     };
     !group
         .iter()
@@ -179,9 +181,8 @@ pub fn is_known_to_float(grid: &VoxelGrid, unobserved: Option<&Unobserved>, grou
 }
 
 /// May something beyond the sides of the grid hold it?
-pub fn reaches_side(group: &[[usize; 3]]) -> bool {
-    let at_side =
-        |[x, y, _]: &[usize; 3]| *x == 0 || *y == 0 || x + 1 == GridSpec::NX || y + 1 == GridSpec::NY;
+pub fn reaches_side(extent: Extent, group: &[[usize; 3]]) -> bool {
+    let at_side = |[x, y, _]: &[usize; 3]| *x == 0 || *y == 0 || x + 1 == extent.nx() || y + 1 == extent.ny();
     group.iter().any(at_side)
 }
 
@@ -224,7 +225,7 @@ mod tests {
         put(&mut grid, &[[10, 10, 11], [10, 11, 11]]);
         put(&mut grid, &[[199, 199, 6]]);
         let all = occupied(&grid);
-        let stands = supported(&all, &ground(&by_class(&grid)));
+        let stands = supported(Extent::WINDOW, &all, &ground(Extent::WINDOW, &by_class(&grid)));
         assert_eq!(stands[13 * 200 + 11], 1 << 8 | 1 << 7);
         assert_eq!(stands[10 * 200 + 10], (1 << 9) - 1);
         assert_eq!(stands[199 * 200 + 199], 0);
@@ -242,7 +243,11 @@ mod tests {
         }
         (6..9).for_each(|z| grid.set(100, 100, z, Class::Manmade.id()));
         (0..9).for_each(|x| grid.set(x, 10, 5, Class::Sidewalk.id()));
-        let stands = supported(&occupied(&grid), &ground(&by_class(&grid)));
+        let stands = supported(
+            Extent::WINDOW,
+            &occupied(&grid),
+            &ground(Extent::WINDOW, &by_class(&grid)),
+        );
         assert_eq!(stands[100 * 200 + 100], 0b1111 << 5);
         assert_eq!(stands[4 * 200 + 10], 0);
     }
@@ -251,13 +256,13 @@ mod tests {
     fn groups_are_apart_and_whole() {
         let cells = vec![[5, 5, 5], [0, 0, 0], [6, 6, 6], [0, 1, 0], [8, 5, 5]];
         assert_eq!(
-            groups(cells),
+            groups(Extent::WINDOW, cells),
             [
                 vec![[0, 0, 0], [0, 1, 0]],
                 vec![[5, 5, 5], [6, 6, 6]],
                 vec![[8, 5, 5]]
             ]
         );
-        assert!(groups(Vec::new()).is_empty());
+        assert!(groups(Extent::WINDOW, Vec::new()).is_empty());
     }
 }

@@ -23,7 +23,7 @@ fn an_imported_frame_is_marked_and_survives_saving() {
     let mut scene = imported();
     let mut words = vec![0u16; GridSpec::COLUMNS];
     words[..700].fill(0xa001);
-    scene.frame_mut().inferred.unobserved = Unobserved::from_words(words);
+    scene.frame_mut().inferred.unobserved = Unobserved::from_words(scene::Extent::WINDOW, words);
     let frame = scene.frame();
     assert!(frame.inferred.layout && frame.inferred.any());
     assert_eq!(

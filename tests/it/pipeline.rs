@@ -89,7 +89,7 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
         (5, 10)
     );
     let (mut all, mut gone) = (0, 0);
-    box_cells(&car, 0.0, |x, y| {
+    box_cells(scene::Extent::WINDOW, &car, 0.0, |x, y| {
         for (old, new) in before.column(x, y).iter().zip(first.occupancy.column(x, y)) {
             all += i32::from(*old == Class::Car.id());
             let left = *new == Class::FREE || Class::from_id(*new).is_some_and(Class::is_ground);

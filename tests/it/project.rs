@@ -562,9 +562,9 @@ fn background_and_relief_come_back_and_version_1_opens() {
     });
     scene.background = Arc::new(background);
     let frame = Arc::make_mut(&mut scene.frames[1]);
-    frame.layout.relief = Relief::from_fn(|p| 0.031 * p.x - 0.4);
+    frame.layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| 0.031 * p.x - 0.4);
     let frame = Arc::make_mut(&mut scene.frames[2]);
-    Arc::make_mut(&mut frame.source).layout.relief = Relief::from_fn(|p| 0.01 * p.y);
+    Arc::make_mut(&mut frame.source).layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| 0.01 * p.y);
     let bytes = loom::to_bytes(&scene).expect("sound");
     let back = loom::from_bytes(&bytes).expect("its own");
     assert_eq!(back.background, scene.background);

@@ -48,7 +48,7 @@ pub fn seen(scene: &Scene) -> Seen {
     let lidar_returns = lidar::rig_sweep(&frame.occupancy, &scene.rig).map(|sweep| {
         let mut near: Vec<Vec<&SceneBox>> = vec![Vec::new(); GridSpec::COLUMNS];
         for b in sound.values() {
-            box_cells(b, MARGIN_M + GridSpec::VOXEL_M, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, MARGIN_M + GridSpec::VOXEL_M, |x, y| {
                 near[x * GridSpec::NY + y].push(b)
             });
         }

@@ -17,7 +17,7 @@ use editor::part::{Part, changed_by_class};
 use job::inpaint::InpaintMask;
 use job::region::COLUMNS_PER_CELL;
 use job::{GenParams, RegionMode};
-use scene::background::in_grid;
+use scene::background::in_extent;
 use scene::raster::box_cells;
 use scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
 use widgets::theme;
@@ -364,11 +364,11 @@ fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
     let mut columns = vec![false; GridSpec::COLUMNS];
     let mut set = |x: usize, y: usize| columns[x * GridSpec::NY + y] = true;
     for b in state.chosen().iter().filter_map(|id| frame.boxes.get(id)) {
-        box_cells(b, GridSpec::VOXEL_M, &mut set);
+        box_cells(scene::Extent::WINDOW, b, GridSpec::VOXEL_M, &mut set);
     }
     let things = state.tools.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
-    for thing in in_grid(things, &frame.world_from_ego) {
+    for thing in in_extent(frame.extent(), things, &frame.world_from_ego) {
         authoring::scenery_around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
     }
     columns

@@ -73,7 +73,7 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
             }
         }
         Edit::PaintBev { layer, shape, value } => {
-            let mut cells = shape.cells()?;
+            let mut cells = shape.cells(scene::Extent::WINDOW)?;
             if !value {
                 junction::cut_lines(&mut source.layout, *layer, &cells);
             }

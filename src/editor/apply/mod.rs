@@ -61,7 +61,8 @@ impl Apply for Edit {
                 }
             }
             Self::ClearScenery { shape } => {
-                let cells = shape.as_ref().map(Shape::cells).transpose()?;
+                let extent = scene.frame().extent();
+                let cells = shape.as_ref().map(|s| s.cells(extent)).transpose()?;
                 things::clear_scenery(scene, cells.as_deref());
             }
             edit if edit.is_of_things() => {

@@ -10,14 +10,14 @@ use scene::{Edit, EditError, Frame, GridSpec, SourceFrame, VoxelGrid, VoxelPaint
 pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
     match edit {
         Edit::PaintVoxels { cells, class } => {
-            check_voxels(cells)?;
+            check_voxels(scene::Extent::WINDOW, cells)?;
             for &[x, y, z] in cells {
                 frame.painted.set(x, y, z, class.id());
                 frame.occupancy.set(x, y, z, class.id());
             }
         }
         Edit::UnlockVoxels { cells } => {
-            check_voxels(cells)?;
+            check_voxels(scene::Extent::WINDOW, cells)?;
             for &[x, y, z] in cells {
                 frame.painted.set(x, y, z, NOT_PAINTED);
             }
@@ -42,11 +42,14 @@ pub(crate) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) {
     });
 }
 
-fn check_voxels(cells: &[[usize; 3]]) -> Result<(), EditError> {
+fn check_voxels(extent: scene::Extent, cells: &[[usize; 3]]) -> Result<(), EditError> {
     at_least("cells", cells.len(), 1)?;
-    let outside = |c: &&[usize; 3]| c[0] >= GridSpec::NX || c[1] >= GridSpec::NY || c[2] >= GridSpec::NZ;
+    let outside = |c: &&[usize; 3]| !extent.holds(c[0], c[1]) || c[2] >= scene::Extent::NZ;
     match cells.iter().find(outside) {
-        Some(c) => Err(EditError::CellOutside { cell: c.to_vec() }),
+        Some(c) => Err(EditError::CellOutside {
+            cell: c.to_vec(),
+            extent,
+        }),
         None => Ok(()),
     }
 }

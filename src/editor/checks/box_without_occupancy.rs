@@ -13,7 +13,7 @@ const MARGIN_M: f64 = 0.3;
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let grid = &context.frame.occupancy;
     for b in &context.boxes {
-        let columns = box_columns(b);
+        let columns = box_columns(scene::Extent::WINDOW, b);
         // A box outside the grid cannot have voxels.
         if columns.is_empty() || voxels(grid, b) > 0 {
             continue;
@@ -49,7 +49,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 pub fn voxels(grid: &VoxelGrid, b: &SceneBox) -> usize {
     let top_m = b.center_m.z + b.size_m.z / 2.0 + GridSpec::VOXEL_M;
     let mut count = 0;
-    box_cells(b, MARGIN_M, |x, y| {
+    box_cells(scene::Extent::WINDOW, b, MARGIN_M, |x, y| {
         let column = grid.column(x, y).iter().enumerate();
         count += column
             .filter(|(z, l)| {

@@ -14,9 +14,9 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let bits = context.bits();
     let mut cells = Vec::new();
     for (c, (all, stands)) in bits.occupied.iter().zip(&bits.supported).enumerate() {
-        cells.extend(bins_set(c, all & !stands));
+        cells.extend(bins_set(scene::Extent::WINDOW, c, all & !stands));
     }
-    let mut groups: Vec<_> = groups(cells)
+    let mut groups: Vec<_> = groups(scene::Extent::WINDOW, cells)
         .into_iter()
         .filter(|g| is_known_to_float(&frame.occupancy, frame.inferred.unobserved.as_ref(), g))
         .collect();

@@ -180,9 +180,9 @@ impl Context<'_> {
         self.bits.get_or_init(|| {
             let by_class = support::by_class(&self.frame.occupancy);
             let occupied = support::occupied(&self.frame.occupancy);
-            let ground = support::ground(&by_class);
+            let ground = support::ground(scene::Extent::WINDOW, &by_class);
             Bits {
-                supported: support::supported(&occupied, &ground),
+                supported: support::supported(scene::Extent::WINDOW, &occupied, &ground),
                 by_class,
                 occupied,
                 ground,

@@ -18,7 +18,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     // Bit per class: columns in which it is explained by a box.
     let mut explained = vec![0u32; GridSpec::COLUMNS];
     for b in &context.boxes {
-        box_cells(b, MARGIN_M, |x, y| {
+        box_cells(scene::Extent::WINDOW, b, MARGIN_M, |x, y| {
             explained[x * GridSpec::NY + y] |= 1 << b.class.id()
         });
     }
@@ -32,7 +32,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let mut groups: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     for class in Class::OBJECTS {
         let cells = std::mem::take(&mut left[class as usize]);
-        let of_class = support::groups(cells).into_iter();
+        let of_class = support::groups(scene::Extent::WINDOW, cells).into_iter();
         groups.extend(of_class.filter(|g| g.len() >= LEAST_VOXELS).map(|g| (class, g)));
     }
     if groups.len() > MOST {

@@ -56,7 +56,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 /// What is wrong with a vehicle's place, if anything is.
 fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
     let (mut cells, mut on) = (0usize, 0usize);
-    box_cells(b, 0.0, |x, y| {
+    box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
         cells += 1;
         on += usize::from(layout.cell(x, y) & ROAD != 0);
     });
@@ -74,7 +74,7 @@ fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
 fn is_off_paved(layout: &BevLayout, b: &SceneBox) -> bool {
     let paved = ROAD | BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
     let (mut cells, mut on) = (0usize, false);
-    box_cells(b, 0.0, |x, y| {
+    box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
         cells += 1;
         on |= layout.cell(x, y) & paved != 0;
     });

@@ -46,16 +46,17 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         .zip(&runs)
         .map(|(all, run)| all & !run)
         .collect();
-    let after = supported(&without, &bits.ground);
+    let after = supported(scene::Extent::WINDOW, &without, &bits.ground);
     let mut cells = Vec::new();
     for c in 0..GridSpec::COLUMNS {
         cells.extend(bins_set(
+            scene::Extent::WINDOW,
             c,
             runs[c] | (bits.supported[c] & !after[c] & without[c]),
         ));
     }
     let is_low = |[x, y, z]: &&[usize; 3]| low[x * GridSpec::NY + y] >> z & 1 == 1;
-    let mut groups = groups(cells);
+    let mut groups = groups(scene::Extent::WINDOW, cells);
     groups.retain(|g| g.iter().filter(is_low).count() >= LEAST_VOXELS);
     groups.sort_by_key(|g| std::cmp::Reverse(g.len()));
     let rest = groups.split_off(groups.len().min(LISTED));

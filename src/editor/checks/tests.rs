@@ -166,7 +166,7 @@ fn a_box_needs_voxels_and_voxels_need_a_box() {
     let mut scene = street(&traffic());
     let emptied = |scene: &mut Scene, b: &SceneBox| {
         let frame = scene.frame_mut();
-        for (x, y, layers) in scene::draft::box_columns(b) {
+        for (x, y, layers) in scene::draft::box_columns(scene::Extent::WINDOW, b) {
             frame.occupancy.column_mut(x, y)[..layers].fill(Class::FREE);
             frame.occupancy.set(x, y, 0, Class::DriveableSurface.id());
         }

@@ -18,9 +18,9 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let bits = context.bits();
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     // What stands takes the place of the ground's own voxel, in whatever bin the ground lies beside it.
-    let ground = ground(&bits.by_class);
+    let ground = ground(scene::Extent::WINDOW, &bits.by_class);
     let beside: Vec<u16> = (0..GridSpec::COLUMNS)
-        .map(|c| neighbours(c).fold(0, |word, n| word | ground[n]))
+        .map(|c| neighbours(scene::Extent::WINDOW, c).fold(0, |word, n| word | ground[n]))
         .collect();
     let standing = |c: &&Class| **c != Class::Free && !c.is_ground();
     for class in Class::ALL.iter().filter(standing) {
@@ -29,12 +29,20 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             continue;
         }
         // Held from below: in the ground, or on a voxel of another class.
-        let rests = reached(own, |c| beside[c] | (bits.occupied[c] & !own[c]) << 1);
+        let rests = reached(scene::Extent::WINDOW, own, |c| {
+            beside[c] | (bits.occupied[c] & !own[c]) << 1
+        });
         let mut cells = Vec::new();
         for c in 0..GridSpec::COLUMNS {
-            cells.extend(bins_set(c, own[c] & !rests[c] & bits.supported[c]));
+            cells.extend(bins_set(
+                scene::Extent::WINDOW,
+                c,
+                own[c] & !rests[c] & bits.supported[c],
+            ));
         }
-        let large = groups(cells).into_iter().filter(|g| g.len() >= LEAST_VOXELS);
+        let large = groups(scene::Extent::WINDOW, cells)
+            .into_iter()
+            .filter(|g| g.len() >= LEAST_VOXELS);
         let known =
             large.filter(|g| is_known_to_float(&frame.occupancy, frame.inferred.unobserved.as_ref(), g));
         parts.extend(known.map(|g| (*class, g)));

@@ -287,7 +287,7 @@ pub(super) fn locked(layer: BevLayer) -> Response {
 
 /// Shows the shape painted; shapes beside the grid paint nothing, which is no error to show.
 pub(super) fn show(layer: BevLayer, shape: Shape, value: bool) -> Response {
-    match shape.cells() {
+    match shape.cells(scene::Extent::WINDOW) {
         Ok(_) => Response::act(Act::Preview(vec![Edit::PaintBev { layer, shape, value }])),
         Err(_) => Response::none(),
     }
@@ -313,7 +313,7 @@ fn layer_at(frame: &Frame, hand: &Hand, at_m: DVec2) -> Option<BevLayer> {
 /// The highest voxel of each column in a disc: what a brush on the ground would cover.
 fn tops_in_disc(frame: &Frame, center_m: DVec2, radius_m: f64) -> Vec<[usize; 3]> {
     let mut cells = Vec::new();
-    disc_cells(center_m, radius_m, |x, y| {
+    disc_cells(scene::Extent::WINDOW, center_m, radius_m, |x, y| {
         let column = frame.occupancy.column(x, y);
         cells.push([x, y, column.iter().rposition(|v| *v != Class::FREE).unwrap_or(0)]);
     });
@@ -461,7 +461,10 @@ impl Brush {
             out.push(Mark::Ribbon(points_m, hand.street.width_m(), role));
         } else if points_m.len() >= 3 {
             let area = Shape::Polygon { points_m };
-            out.push(Mark::Columns(area.cells().unwrap_or_default(), role));
+            out.push(Mark::Columns(
+                area.cells(scene::Extent::WINDOW).unwrap_or_default(),
+                role,
+            ));
             let closed = line.iter().copied().chain([line[0]]);
             out.push(Mark::Dashed(closed.collect(), role));
         }

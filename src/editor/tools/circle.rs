@@ -93,7 +93,7 @@ impl Circle {
             return Response::none();
         };
         disc.radius_m = disc.middle_m.distance(at_m);
-        disc.shown = disc.radius_m >= LEAST_M && disc.shape().cells().is_ok();
+        disc.shown = disc.radius_m >= LEAST_M && disc.shape().cells(scene::Extent::WINDOW).is_ok();
         match disc.shown {
             true => brush::show(disc.layer, disc.shape(), !disc.erase),
             false => Response::act(Act::Cancel),

@@ -89,7 +89,7 @@ fn read_frame<R: Read + Seek>(
         true => {
             let bytes = file.exactly(&name("unobserved.u16"), GridSpec::COLUMNS, 2, "columns")?;
             let words = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-            Unobserved::from_words(words.collect())
+            Unobserved::from_words(scene::Extent::WINDOW, words.collect())
         }
         false => None,
     };
@@ -161,5 +161,6 @@ fn read_relief<R: Read + Seek>(file: &mut Reader<R>, entry: &str) -> Result<Reli
     let heights = bytes
         .chunks_exact(4)
         .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    Relief::from_heights(heights.collect()).map_err(|e| ProjectError::Unsound(format!("{entry}: {e}")))
+    Relief::from_heights(scene::Extent::WINDOW, heights.collect())
+        .map_err(|e| ProjectError::Unsound(format!("{entry}: {e}")))
 }

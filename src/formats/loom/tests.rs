@@ -23,7 +23,7 @@ fn sample(version: u32) -> Scene {
         (90..110).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true));
     }
     if version >= 2 {
-        layout.relief = Relief::from_fn(|p| 0.03 * p.x);
+        layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| 0.03 * p.x);
     }
     let car = SceneBox {
         id: BoxId(4),

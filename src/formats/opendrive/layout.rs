@@ -171,7 +171,7 @@ impl Canvas {
 
     fn fill(&mut self, area_in_ego: &[DVec2], layers: &[BevLayer], in_junction: bool) -> bool {
         let mut cells = Vec::new();
-        polygon_cells(area_in_ego, |x, y| cells.push((x, y)));
+        polygon_cells(scene::Extent::WINDOW, area_in_ego, |x, y| cells.push((x, y)));
         self.budget = self.budget.saturating_sub(cells.len() / 8);
         for (x, y) in &cells {
             self.named[x * GridSpec::NY + y] = true;
@@ -185,7 +185,7 @@ impl Canvas {
 
     fn note_kind(&mut self, area_in_ego: &[DVec2], kind: LaneKind) {
         let (traffic, beside) = (&mut self.traffic, &mut self.beside);
-        polygon_cells(area_in_ego, |x, y| {
+        polygon_cells(scene::Extent::WINDOW, area_in_ego, |x, y| {
             let c = x * GridSpec::NY + y;
             traffic[c] |= kind.carries_traffic();
             beside[c] = beside[c].or(kind.beside_traffic());

@@ -135,7 +135,7 @@ fn covers(network: &RoadNetwork, window: &Window) -> Vec<Vec<Cover>> {
                 let lanes = near.iter().zip(&far).enumerate();
                 for (lane, (near, far)) in lanes.take(last).skip(first) {
                     let patch = Patch::new(window, [from, to], lane, [*near, *far]);
-                    polygon_cells(&patch.corners_m(), |x, y| {
+                    polygon_cells(scene::Extent::WINDOW, &patch.corners_m(), |x, y| {
                         *budget = budget.saturating_sub(1);
                         let height_m = patch.height_m(GridSpec::center(x, y, 0).truncate());
                         add(

@@ -32,7 +32,8 @@ pub(super) fn over(known_m: &[Option<f64>]) -> (Relief, f64) {
         m.clamp(f64::from(-Relief::LIMIT_M), f64::from(Relief::LIMIT_M)) as f32
     };
     // All finite and cut: nothing that is refused.
-    let relief = Relief::from_heights(heights.iter().map(cut).collect()).unwrap_or_default();
+    let relief =
+        Relief::from_heights(scene::Extent::WINDOW, heights.iter().map(cut).collect()).unwrap_or_default();
     (relief, ego)
 }
 

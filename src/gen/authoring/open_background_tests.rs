@@ -16,7 +16,7 @@ const WORLDS: u64 = 20;
 
 fn cells(outline_m: &[DVec2]) -> BTreeSet<usize> {
     let mut out = BTreeSet::new();
-    polygon_cells(outline_m, |x, y| {
+    polygon_cells(scene::Extent::WINDOW, outline_m, |x, y| {
         out.insert(x * GridSpec::NY + y);
     });
     out
@@ -46,10 +46,10 @@ fn covered(things: &Background, class: Class) -> BTreeSet<usize> {
             }
         };
         for solid in &solids {
-            fill(solid, |_, _| true, |x, y, _, _| add(x, y));
+            fill(scene::Extent::WINDOW, solid, |_, _| true, |x, y, _, _| add(x, y));
         }
         if let Form::Shrubs(s) = &thing.form {
-            polygon_cells(&s.outline_m, &mut add);
+            polygon_cells(scene::Extent::WINDOW, &s.outline_m, &mut add);
         }
     }
     out
@@ -141,7 +141,7 @@ fn things_are_found_in_simulated_labels() {
         let near = |list: &[(DVec2, f64)], p: DVec2| list.iter().any(|(q, _)| q.distance(p) < 1.5);
         for (p, radius) in &known {
             let mut voxels = 0;
-            disc_cells(*p, *radius, |x, y| {
+            disc_cells(scene::Extent::WINDOW, *p, *radius, |x, y| {
                 voxels += seen(&(x * GridSpec::NY + y), Class::Vegetation)
             });
             if voxels >= 25 && p.abs().max_element() < 39.0 {

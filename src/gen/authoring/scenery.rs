@@ -190,7 +190,7 @@ impl Paved {
         let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         let [mut driven, mut all] = [held(road), held(road | BevLayer::Walkway.bit())];
         for b in frame.boxes.values() {
-            box_cells(b, 0.0, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
                 driven[x * GridSpec::NY + y] = true;
                 all[x * GridSpec::NY + y] = true;
             });

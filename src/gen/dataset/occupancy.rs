@@ -59,7 +59,7 @@ pub fn occupancy_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevL
         observed: observed.chunks_exact(GridSpec::NZ).map(bits).collect(),
         draft: draft::draft(&world.layout, world.boxes.values()),
         bev: raster::bev_channels(&world.layout, world.boxes.values()),
-        heading: raster::headings(world.boxes.values()),
+        heading: raster::headings(scene::Extent::WINDOW, world.boxes.values()),
     }
 }
 
@@ -71,7 +71,7 @@ impl OccupancyFrame {
         Self {
             draft: draft::draft(&layout, boxes.values()),
             bev: raster::bev_channels(&layout, boxes.values()),
-            heading: raster::headings(boxes.values()),
+            heading: raster::headings(scene::Extent::WINDOW, boxes.values()),
             dense: labels.clone(),
             labels,
             observed: vec![0; GridSpec::COLUMNS],

@@ -312,10 +312,10 @@ pub fn paint(lanes: &[Vec<DVec2>]) -> BevLayout {
     let mut walk = BTreeSet::new();
     let mut lines = Vec::new();
     for points in lanes.iter().filter(|l| l.iter().all(|p| p.is_finite())) {
-        line_cells(points, HALF_M, |x, y| {
+        line_cells(scene::Extent::WINDOW, points, HALF_M, |x, y| {
             road.insert((x, y));
         });
-        line_cells(points, HALF_M + WALK_M, |x, y| {
+        line_cells(scene::Extent::WINDOW, points, HALF_M + WALK_M, |x, y| {
             walk.insert((x, y));
         });
         lines.push(Polyline {

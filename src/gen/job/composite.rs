@@ -124,9 +124,14 @@ mod tests {
                     let layer = BevLayer::MAP[dice.below(8)];
                     let on = dice.below(2) == 0;
                     let mut cells = Vec::new();
-                    disc_cells(DVec2::new(x, y), dice.within(0.1, 4.0), |x, y| {
-                        cells.push((x, y));
-                    });
+                    disc_cells(
+                        scene::Extent::WINDOW,
+                        DVec2::new(x, y),
+                        dice.within(0.1, 4.0),
+                        |x, y| {
+                            cells.push((x, y));
+                        },
+                    );
                     cells
                         .iter()
                         .for_each(|(x, y)| frame.layout.set(layer, *x, *y, on));

@@ -73,7 +73,9 @@ impl InpaintMask {
     /// The cells that an outline of the ego frame, m, goes around or touches by the centre of a column.
     pub fn of_outline(points_m: &[DVec2]) -> Self {
         let mut mask = Self::default();
-        polygon_cells(points_m, |x, y| mask.set_columns(&[[x, y]], true));
+        polygon_cells(scene::Extent::WINDOW, points_m, |x, y| {
+            mask.set_columns(&[[x, y]], true)
+        });
         mask
     }
 
@@ -124,7 +126,9 @@ pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
         .values()
         .filter(|b| frame.source.boxes.get(&b.id) == Some(b));
     for b in kept {
-        box_cells(b, GridSpec::VOXEL_M, |x, y| columns[x * GridSpec::NY + y] = false);
+        box_cells(scene::Extent::WINDOW, b, GridSpec::VOXEL_M, |x, y| {
+            columns[x * GridSpec::NY + y] = false
+        });
     }
     for (column, edited) in columns.iter_mut().zip(edited.columns) {
         *column |= edited;

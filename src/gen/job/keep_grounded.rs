@@ -54,17 +54,21 @@ pub fn keep_grounded(
     // Whether something stands depends on what is around the region too.
     let whole = composite(source, generated, region, &frame.painted);
     let occupied = occupied(&whole);
-    let stands = support::supported(&occupied, &support::ground(&by_class(&whole)));
+    let stands = support::supported(
+        scene::Extent::WINDOW,
+        &occupied,
+        &support::ground(scene::Extent::WINDOW, &by_class(&whole)),
+    );
     let hanging = occupied.iter().zip(&stands).enumerate();
     let hanging = hanging
-        .flat_map(|(c, (all, stands))| bins_set(c, all & !stands))
+        .flat_map(|(c, (all, stands))| bins_set(scene::Extent::WINDOW, c, all & !stands))
         .collect();
-    for group in groups(hanging) {
+    for group in groups(scene::Extent::WINDOW, hanging) {
         let new: Vec<_> = group.iter().copied().filter(|c| is_new(&whole, *c)).collect();
         let class = main_class(&whole, &group);
         let is_crown = class == Class::Vegetation && group.len() >= CROWN;
         // Something at the top of the grid may go on above it and be held there; a tree may not.
-        let needs_stem = all && is_crown && !reaches_side(&group);
+        let needs_stem = all && is_crown && !reaches_side(scene::Extent::WINDOW, &group);
         let floats = needs_stem || is_known_to_float(&whole, frame.inferred.unobserved.as_ref(), &group);
         if new.is_empty() || !floats {
             continue;
@@ -90,7 +94,7 @@ pub fn keep_grounded(
 fn without_box(frame: &Frame, region: &Region, generated: &VoxelGrid) -> Vec<[usize; 3]> {
     let mut explained = vec![0u32; GridSpec::COLUMNS];
     for b in frame.boxes.values() {
-        box_cells(b, MARGIN_M, |x, y| {
+        box_cells(scene::Extent::WINDOW, b, MARGIN_M, |x, y| {
             explained[x * GridSpec::NY + y] |= 1 << b.class.id()
         });
     }

@@ -77,7 +77,7 @@ fn held_share(grid: &VoxelGrid) -> f64 {
 
 /// Share of a box's columns that hold its class, 0 to 1.
 fn filled(grid: &VoxelGrid, b: &SceneBox) -> f64 {
-    let columns = draft::box_columns(b);
+    let columns = draft::box_columns(scene::Extent::WINDOW, b);
     let there = columns
         .iter()
         .filter(|(x, y, _)| grid.column(*x, *y).contains(&b.class.id()));
@@ -136,7 +136,7 @@ fn held_ground(column: &[u8; GridSpec::NZ], bin: usize) -> bool {
 /// Puts a box in if its columns hold much less of it than the `usual` share: with its old voxels if it moved, else as its
 /// draft (in hollow frames only the part of the draft that a sensor can see).
 fn put_in(frame: &Frame, region: &Region, b: &SceneBox, usual: &Usual, generated: &mut VoxelGrid) -> bool {
-    let mut columns = draft::box_columns(b);
+    let mut columns = draft::box_columns(scene::Extent::WINDOW, b);
     columns.retain(|(x, y, _)| region.columns[x * GridSpec::NY + y]);
     let there = columns
         .iter()
@@ -181,7 +181,7 @@ fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generat
     let (source, class) = (&frame.source.occupancy, new.class.id());
     // Labels reach down to the ground below the box.
     let rise_m = new.center_m.z - old.center_m.z;
-    box_cells(new, 0.0, |x, y| {
+    box_cells(scene::Extent::WINDOW, new, 0.0, |x, y| {
         if !region.columns[x * GridSpec::NY + y] {
             return;
         }
@@ -211,10 +211,12 @@ fn carry(frame: &Frame, region: &Region, old: &SceneBox, new: &SceneBox, generat
 fn clear(frame: &Frame, region: &Region, removed: &SceneBox, generated: &mut VoxelGrid) -> bool {
     let mut owned = vec![false; GridSpec::COLUMNS]; // by boxes of the class that are there now
     for b in frame.boxes.values().filter(|b| b.class == removed.class) {
-        box_cells(b, OVERHANG_M, |x, y| owned[x * GridSpec::NY + y] = true);
+        box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
+            owned[x * GridSpec::NY + y] = true
+        });
     }
     let mut cleared = false;
-    box_cells(removed, OVERHANG_M, |x, y| {
+    box_cells(scene::Extent::WINDOW, removed, OVERHANG_M, |x, y| {
         let i = x * GridSpec::NY + y;
         if owned[i] || !region.columns[i] || !generated.column(x, y).contains(&removed.class.id()) {
             return;
@@ -335,7 +337,7 @@ mod tests {
         let layout = BevLayout::default();
         let mut labels = draft::draft(&layout, [].into_iter());
         // One side of the car was seen.
-        for (x, y, layers) in draft::box_columns(&before) {
+        for (x, y, layers) in draft::box_columns(scene::Extent::WINDOW, &before) {
             if GridSpec::center(x, y, 0).y > 0.0 {
                 (0..layers).for_each(|z| labels.set(x, y, z, Class::Car.id()));
             }
@@ -364,7 +366,10 @@ mod tests {
         assert!(!ys.is_empty() && ys.iter().all(|y| *y <= 0.3));
         // A third of the columns is what labels usually hold, and enough.
         let mut sparse = draft::draft(&frame.layout, [].into_iter());
-        for (x, y, _) in draft::box_columns(&after).into_iter().step_by(3) {
+        for (x, y, _) in draft::box_columns(scene::Extent::WINDOW, &after)
+            .into_iter()
+            .step_by(3)
+        {
             sparse.set(x, y, 2, Class::Car.id());
         }
         let same = sparse.clone();
@@ -375,7 +380,10 @@ mod tests {
     #[test]
     fn a_new_box_is_hollow_among_labels_and_solid_in_a_complete_world() {
         let new = car(1, 10.0);
-        let solid: usize = draft::box_columns(&new).iter().map(|c| c.2).sum();
+        let solid: usize = draft::box_columns(scene::Extent::WINDOW, &new)
+            .iter()
+            .map(|c| c.2)
+            .sum();
         let complete = draft::draft(&BevLayout::default(), [].into_iter());
         let mut labels = VoxelGrid::new();
         for (x, y, z, label) in complete.iter_set().filter(|v| (v.0 + v.1) % 3 == 0) {
@@ -398,7 +406,7 @@ mod tests {
     #[test]
     fn on_a_slope_nothing_is_put_below_the_ground() {
         let mut layout = BevLayout::default();
-        layout.relief = scene::Relief::from_fn(|p| 2.0 + 0.04 * p.x);
+        layout.relief = scene::Relief::from_fn(scene::Extent::WINDOW, |p| 2.0 + 0.04 * p.x);
         let mut new = car(1, 10.0);
         new.center_m.z += 2.4;
         let empty = draft::draft(&layout, [].into_iter());

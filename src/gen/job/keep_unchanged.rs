@@ -25,7 +25,7 @@ pub fn keep_unchanged(
     let mut gone = vec![0u32; GridSpec::COLUMNS]; // a bit per class
     for (id, b) in &frame.source.boxes {
         if frame.boxes.get(id) != Some(b) {
-            box_cells(b, SCRAPS_M, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, SCRAPS_M, |x, y| {
                 gone[x * GridSpec::NY + y] |= 1 << b.class.id()
             });
         }

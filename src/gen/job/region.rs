@@ -73,8 +73,12 @@ impl Region {
         let mut footprints = vec![false; GridSpec::COLUMNS]; // of changed boxes, without overhang
         let mut unchanged = Vec::new();
         let mut mark = |b: &SceneBox| {
-            box_cells(b, OVERHANG_M, |x, y| changed[x * GridSpec::NY + y] = true);
-            box_cells(b, 0.0, |x, y| footprints[x * GridSpec::NY + y] = true);
+            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                changed[x * GridSpec::NY + y] = true
+            });
+            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+                footprints[x * GridSpec::NY + y] = true
+            });
         };
         for (id, now) in &frame.boxes {
             match source.boxes.get(id) {
@@ -88,7 +92,7 @@ impl Region {
         for (id, before) in &source.boxes {
             if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
                 mark(before);
-                box_cells(before, 0.0, |x, y| {
+                box_cells(scene::Extent::WINDOW, before, 0.0, |x, y| {
                     left[x * GridSpec::NY + y] |= source.occupancy.column(x, y).contains(&before.class.id());
                 });
             }
@@ -98,13 +102,13 @@ impl Region {
         }
         let mut columns = dilate(&changed, GridSpec::NX, halo_columns);
         for b in unchanged {
-            box_cells(b, 0.0, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
                 let i = x * GridSpec::NY + y;
                 let own = || source.occupancy.column(x, y).contains(&b.class.id());
                 columns[i] &= left[i] && !own();
             });
             // Overhanging voxels of its class belong to it as well, except under a changed box.
-            box_cells(b, OVERHANG_M, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
                 let i = x * GridSpec::NY + y;
                 if !footprints[i] && source.occupancy.column(x, y).contains(&b.class.id()) {
                     columns[i] = false;
@@ -283,7 +287,7 @@ pub(super) mod tests {
             }
         }
         for b in boxes {
-            box_cells(b, OVERHANG_M, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
                 (0..5).for_each(|z| grid.set(x, y, z, b.class.id()));
             });
         }
@@ -292,7 +296,9 @@ pub(super) mod tests {
 
     pub fn cells_of(b: &SceneBox, margin_m: f64) -> Vec<usize> {
         let mut out = Vec::new();
-        box_cells(b, margin_m, |x, y| out.push(x * GridSpec::NY + y));
+        box_cells(scene::Extent::WINDOW, b, margin_m, |x, y| {
+            out.push(x * GridSpec::NY + y)
+        });
         out
     }
 

@@ -30,7 +30,7 @@ impl<'a> Request<'a> {
         for b in frame.boxes.values() {
             let Some(slot) = slot(b.class.id()) else { continue };
             let bins = bins_of(b);
-            box_cells(b, OVERHANG_M, |x, y| {
+            box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
                 let height = &mut heights[x * GridSpec::NY + y][slot];
                 *height = bins.max(*height);
             });
@@ -39,13 +39,17 @@ impl<'a> Request<'a> {
         let source = &*frame.source;
         for (id, b) in &source.boxes {
             if frame.boxes.get(id) != Some(b) {
-                box_cells(b, OVERHANG_M, |x, y| left[x * GridSpec::NY + y] = true);
+                box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                    left[x * GridSpec::NY + y] = true
+                });
             }
         }
         edited.copy_from_slice(&left);
         for (id, b) in &frame.boxes {
             if source.boxes.get(id) != Some(b) {
-                box_cells(b, OVERHANG_M, |x, y| edited[x * GridSpec::NY + y] = true);
+                box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
+                    edited[x * GridSpec::NY + y] = true
+                });
             }
         }
         let layouts = frame.layout.cells().iter().zip(source.layout.cells());
@@ -105,7 +109,7 @@ pub fn stands(label: u8) -> bool {
 /// Voxels that a box accounts for: those of its class in its columns and a voxel around them, up to a voxel above it.
 pub fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> usize {
     let (mut count, bins) = (0, usize::from(bins_of(b)));
-    box_cells(b, OVERHANG_M, |x, y| {
+    box_cells(scene::Extent::WINDOW, b, OVERHANG_M, |x, y| {
         let column = grid.column(x, y)[..bins].iter();
         count += column.filter(|l| **l == b.class.id()).count();
     });

@@ -16,7 +16,7 @@ const FACES: [[i64; 3]; 5] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 
 
 /// The voxels of a box's draft that such a drive sees, `[x, y, z]`, from the ground of `layout` up.
 pub fn seen_voxels(layout: &BevLayout, b: &SceneBox) -> Vec<[usize; 3]> {
-    let columns: HashMap<[usize; 2], [usize; 2]> = box_columns(b)
+    let columns: HashMap<[usize; 2], [usize; 2]> = box_columns(scene::Extent::WINDOW, b)
         .into_iter()
         .map(|(x, y, layers)| ([x, y], [ground_bin(layout, x, y).min(layers - 1), layers]))
         .collect();
@@ -63,7 +63,7 @@ mod tests {
             label: Default::default(),
         };
         let voxels = seen_voxels(&BevLayout::default(), &bus);
-        let solid: usize = box_columns(&bus).iter().map(|c| c.2).sum();
+        let solid: usize = box_columns(scene::Extent::WINDOW, &bus).iter().map(|c| c.2).sum();
         assert!(
             voxels.len() > solid / 8 && voxels.len() < solid / 3,
             "{} of {solid}",

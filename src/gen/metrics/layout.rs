@@ -279,7 +279,7 @@ pub fn diversity(layouts: &[BTreeMap<u32, SceneBox>]) -> Diversity {
         .map(|boxes| {
             let mut set = BTreeSet::new();
             for b in boxes.values() {
-                box_cells(b, 0.0, |x, y| {
+                box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
                     set.insert(x * GridSpec::NY + y);
                 });
             }

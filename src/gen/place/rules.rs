@@ -567,7 +567,9 @@ impl Placer<'_> {
             _ => u32::MAX,
         };
         if allowed != u32::MAX {
-            box_cells(b, 0.0, |x, y| on &= self.map.layout.cell(x, y) & allowed != 0);
+            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+                on &= self.map.layout.cell(x, y) & allowed != 0
+            });
         }
         if !on {
             return false;

@@ -340,7 +340,7 @@ pub(crate) fn remove_voxels(
         GroundHeight::AsLabelled => bottom,
         GroundHeight::Physical => bottom - SMEAR_M - HEIGHT_MARGIN_M,
     };
-    box_cells(b, margin_m, |x, y| {
+    box_cells(scene::Extent::WINDOW, b, margin_m, |x, y| {
         for z in 0..GridSpec::NZ {
             let middle = GridSpec::center(x, y, z).z;
             if (bottom..top).contains(&middle) && grid.get(x, y, z) == b.class.id() {

@@ -328,7 +328,7 @@ mod tests {
     #[test]
     fn lines_and_road_follow_the_relief() {
         let mut layout = BevLayout::default();
-        layout.relief = Relief::from_fn(|p| 0.1 * p.x.max(0.0));
+        layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| 0.1 * p.x.max(0.0));
         for (x, y) in (100..200).flat_map(|x| (95..105).map(move |y| (x, y))) {
             layout.set(BevLayer::DrivableArea, x, y, true);
         }

@@ -163,7 +163,9 @@ mod tests {
     #[test]
     fn rays_meet_uneven_ground_where_it_is() {
         let mut layout = BevLayout::default();
-        layout.relief = Relief::from_fn(|p| 0.06 * p.x + 0.8 * (p.y / 9.0).sin() - 0.3);
+        layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| {
+            0.06 * p.x + 0.8 * (p.y / 9.0).sin() - 0.3
+        });
         let world = super::super::World::with_background(layout, Default::default(), Default::default(), 5);
         let mut draw = Draw::new(2, "rays over hills");
         let mut met = 0;

@@ -426,20 +426,28 @@ impl Plan {
             let line = offset_line(&s.axis, middle);
             if s.walk_m > 0.0 {
                 let reach = half + s.parking_m + s.walk_m;
-                paint(BevLayer::Walkway, &|f| line_cells(&line, reach, f));
+                paint(BevLayer::Walkway, &|f| {
+                    line_cells(scene::Extent::WINDOW, &line, reach, f)
+                });
             }
             if s.parking_m > 0.0 {
                 paint(BevLayer::CarparkArea, &|f| {
-                    line_cells(&line, half + s.parking_m, f)
+                    line_cells(scene::Extent::WINDOW, &line, half + s.parking_m, f)
                 });
             }
-            paint(BevLayer::DrivableArea, &|f| line_cells(&line, half, f));
+            paint(BevLayer::DrivableArea, &|f| {
+                line_cells(scene::Extent::WINDOW, &line, half, f)
+            });
         }
         for apron in &self.aprons {
-            paint(BevLayer::DrivableArea, &|f| polygon_cells(apron, f));
+            paint(BevLayer::DrivableArea, &|f| {
+                polygon_cells(scene::Extent::WINDOW, apron, f)
+            });
         }
         for lot in &self.lots {
-            paint(BevLayer::CarparkArea, &|f| polygon_cells(lot, f));
+            paint(BevLayer::CarparkArea, &|f| {
+                polygon_cells(scene::Extent::WINDOW, lot, f)
+            });
         }
         // One surface per cell: road over car park over sidewalk; islands are none of them.
         for x in 0..GridSpec::NX {

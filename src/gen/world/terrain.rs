@@ -95,7 +95,7 @@ impl Terrain {
         let at_ego = road(DVec2::ZERO);
         let stairs = Stairs::drawn(&mut draw, &to_paved);
         let valley = draw.range(12.0, 26.0);
-        Relief::from_fn(|p| {
+        Relief::from_fn(scene::Extent::WINDOW, |p| {
             let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
                 return 0.0;
             };

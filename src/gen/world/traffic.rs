@@ -72,7 +72,9 @@ impl Placer<'_> {
             label: BoxLabel::default(),
         };
         let taken = &mut self.taken;
-        box_cells(&ego, 0.0, |x, y| taken[x * GridSpec::NY + y] = true);
+        box_cells(scene::Extent::WINDOW, &ego, 0.0, |x, y| {
+            taken[x * GridSpec::NY + y] = true
+        });
     }
 
     /// Adds the box unless it leaves the grid, overlaps another or `on` refuses a cell of it.
@@ -110,11 +112,13 @@ impl Placer<'_> {
         }
         let mut free = true;
         let mut cells = Vec::new();
-        box_cells(&b, self.clearance_m, |x, y| {
+        box_cells(scene::Extent::WINDOW, &b, self.clearance_m, |x, y| {
             free &= !self.taken[x * GridSpec::NY + y];
             cells.push(x * GridSpec::NY + y);
         });
-        box_cells(&b, 0.0, |x, y| free &= on(self.layout.cell(x, y)));
+        box_cells(scene::Extent::WINDOW, &b, 0.0, |x, y| {
+            free &= on(self.layout.cell(x, y))
+        });
         if free {
             cells.into_iter().for_each(|c| self.taken[c] = true);
             self.boxes.insert(b.id, b);
@@ -345,7 +349,7 @@ mod tests {
             for b in boxes.values() {
                 assert_eq!(b.problem(), None);
                 cars += usize::from(b.class == Class::Car);
-                box_cells(b, 0.0, |x, y| {
+                box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
                     let cell = &mut owner[x * GridSpec::NY + y];
                     assert!(cell.is_none(), "boxes {cell:?} and {:?} overlap", b.id);
                     *cell = Some(b.id);
@@ -364,7 +368,7 @@ mod tests {
         let mut seen = 0;
         for seed in 0..6 {
             let mut layout = template::any_layout(seed);
-            layout.relief = scene::Relief::from_fn(|p| 0.12 * p.x);
+            layout.relief = scene::Relief::from_fn(scene::Extent::WINDOW, |p| 0.12 * p.x);
             for b in place(&layout, seed, &TrafficSpec::NORMAL).values() {
                 let low = b.center_m.z - b.size_m.z / 2.0;
                 assert!((low - 0.12 * b.center_m.x).abs() < 1e-3, "{b:?}");

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::Thing;
 use crate::draft::ground_bin;
 use crate::solid::fill::{fill, smear_down};
-use crate::{BevLayout, Class, GridSpec};
+use crate::{BevLayout, Class, Extent};
 
 /// Labels by column `[x, y]`; free where a thing leaves a bin alone.
-pub type Columns = BTreeMap<[usize; 2], [u8; GridSpec::NZ]>;
+pub type Columns = BTreeMap<[usize; 2], [u8; Extent::NZ]>;
 
 impl Thing {
     /// Its voxels in the Occ3D convention, from the bin of the ground upward, on the relief of a layout of the same frame.
@@ -18,10 +18,11 @@ impl Thing {
         let mut columns = Columns::new();
         for solid in &solids {
             fill(
+                layout.extent(),
                 solid,
                 |_, _| true,
                 |x, y, z, _| {
-                    let column = columns.entry([x, y]).or_insert([Class::FREE; GridSpec::NZ]);
+                    let column = columns.entry([x, y]).or_insert([Class::FREE; Extent::NZ]);
                     column[z] = solid.class.id();
                 },
             );

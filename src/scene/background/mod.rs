@@ -16,7 +16,7 @@ use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::solid::Solid;
-use super::{Class, GridSpec, Pose};
+use super::{Class, Extent, Pose};
 
 pub use bridge::Bridge;
 pub use building::{Building, Facade, Roof, STOREY_M};
@@ -255,9 +255,9 @@ impl Background {
         self.things.values().map(moved).collect()
     }
 
-    /// Its things in the ego frame of a pose, as far as they reach into the grid.
-    pub fn in_grid(&self, world_from_ego: &Pose) -> Vec<Thing> {
-        in_grid(self.iter(), world_from_ego)
+    /// Its things in the ego frame of a pose, as far as they reach into a map.
+    pub fn in_extent(&self, extent: Extent, world_from_ego: &Pose) -> Vec<Thing> {
+        in_extent(extent, self.iter(), world_from_ego)
     }
 
     /// What is wrong with it, in one line; `None` if it is sound.
@@ -275,8 +275,13 @@ impl Background {
     }
 }
 
-/// Things in the ego frame of a pose, as far as they reach into the grid.
-pub fn in_grid<'a>(things: impl IntoIterator<Item = &'a Thing>, world_from_ego: &Pose) -> Vec<Thing> {
+/// Things in the ego frame of a pose, as far as they reach into a map.
+pub fn in_extent<'a>(
+    extent: Extent,
+    things: impl IntoIterator<Item = &'a Thing>,
+    world_from_ego: &Pose,
+) -> Vec<Thing> {
+    let (from, to) = (extent.min_m().truncate(), extent.max_m().truncate());
     let to_ego = world_from_ego.inverse();
     let moved = things.into_iter().map(|t| Thing {
         form: t.form.in_frame(&to_ego),
@@ -284,7 +289,7 @@ pub fn in_grid<'a>(things: impl IntoIterator<Item = &'a Thing>, world_from_ego: 
     });
     let reaches_in = |t: &Thing| {
         let (lo, hi) = t.form.bounds_m();
-        lo.max_element() < GridSpec::MAX_M[0] && hi.min_element() > GridSpec::MIN_M[0]
+        lo.cmplt(to).all() && hi.cmpgt(from).all()
     };
     moved.filter(reaches_in).collect()
 }

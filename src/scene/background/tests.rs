@@ -63,6 +63,7 @@ fn voxels(thing: &Thing, ground_m: f64) -> BTreeSet<[usize; 3]> {
     let mut out = BTreeSet::new();
     for solid in &solids {
         fill(
+            crate::Extent::WINDOW,
             solid,
             |_, _| true,
             |x, y, z, _| {
@@ -98,7 +99,7 @@ fn every_kind_is_sound_stands_on_the_ground_and_reaches_its_height() {
         let tip = if name == "tree" { 3 } else { 1 };
         assert!(highest + tip >= top.min(15), "{name}: {highest} below {top}");
         for [x, y, _] in &on_ground {
-            let p = crate::GridSpec::center(*x, *y, 0).truncate();
+            let p = crate::Window::center(*x, *y, 0).truncate();
             assert!(
                 p.cmpge(lo - 0.4).all() && p.cmple(hi + 0.4).all(),
                 "{name} reaches beyond its bounds at {p}"

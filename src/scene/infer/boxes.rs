@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::{BoxId, BoxLabel, Class, Frame, GridSpec, Relief, SceneBox, VoxelGrid};
+use crate::{BoxId, BoxLabel, Class, Frame, Relief, SceneBox, VoxelGrid, Window};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
 /// A component this many times as long or wide as the class usually is holds several objects.
 const SEVERAL: f64 = 1.6;
 /// Objects are two voxels taller in these labels than they are: the ground lies in bin 0.
-const SMEAR_M: f64 = 2.0 * GridSpec::VOXEL_M;
+const SMEAR_M: f64 = 2.0 * Window::VOXEL_M;
 
 /// A box for every object in the labels, [`Frame::MAX_BOXES`] at most. Which end of it is the front is a guess.
 pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
@@ -43,7 +43,7 @@ pub fn boxes_around(class: Class, voxels: &[[usize; 3]]) -> Vec<SceneBox> {
     let component = Component {
         points_m: columns
             .iter()
-            .map(|&[x, y]| GridSpec::center(x, y, 0).truncate())
+            .map(|&[x, y]| Window::center(x, y, 0).truncate())
             .collect(),
         top: voxels.iter().map(|v| v[2]).max().unwrap_or(0),
     };
@@ -63,19 +63,17 @@ struct Component {
 /// Connected columns (8 neighbours) that hold a class; small ones are left out.
 fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Component> {
     let height = |c: usize| {
-        let column = labels.column(c / GridSpec::NY, c % GridSpec::NY);
+        let column = labels.column(c / Window::NY, c % Window::NY);
         let top = column.iter().rposition(|l| *l == class.id())?;
-        Some(top.saturating_sub(Relief::label_bin(
-            relief.column_m(c / GridSpec::NY, c % GridSpec::NY),
-        )))
+        Some(top.saturating_sub(Relief::label_bin(relief.column_m(c / Window::NY, c % Window::NY))))
     };
     let voxels = |c: usize| {
-        let column = labels.column(c / GridSpec::NY, c % GridSpec::NY);
+        let column = labels.column(c / Window::NY, c % Window::NY);
         column.iter().filter(|l| **l == class.id()).count()
     };
-    let mut seen = vec![false; GridSpec::COLUMNS];
+    let mut seen = vec![false; Window::COLUMNS];
     let mut out = Vec::new();
-    for start in 0..GridSpec::COLUMNS {
+    for start in 0..Window::COLUMNS {
         if seen[start] || height(start).is_none() {
             continue;
         }
@@ -83,11 +81,11 @@ fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Componen
         let mut part = vec![start];
         let mut next = 0;
         while next < part.len() {
-            let (x, y) = (part[next] / GridSpec::NY, part[next] % GridSpec::NY);
+            let (x, y) = (part[next] / Window::NY, part[next] % Window::NY);
             next += 1;
-            for x in x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1) {
-                for y in y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1) {
-                    let near = x * GridSpec::NY + y;
+            for x in x.saturating_sub(1)..=(x + 1).min(Window::NX - 1) {
+                for y in y.saturating_sub(1)..=(y + 1).min(Window::NY - 1) {
+                    let near = x * Window::NY + y;
                     if height(near).is_some() && !std::mem::replace(&mut seen[near], true) {
                         part.push(near);
                     }
@@ -95,7 +93,7 @@ fn components(labels: &VoxelGrid, class: Class, relief: &Relief) -> Vec<Componen
             }
         }
         if part.iter().map(|c| voxels(*c)).sum::<usize>() >= LEAST_VOXELS {
-            let center = |c: &usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let center = |c: &usize| Window::center(c / Window::NY, c % Window::NY, 0).truncate();
             out.push(Component {
                 points_m: part.iter().map(center).collect(),
                 top: part.iter().filter_map(|c| height(*c)).max().unwrap_or(0),
@@ -144,7 +142,7 @@ fn around(points: &[DVec2]) -> (DVec2, DVec2, f64) {
     let mut yaw = headings
         .min_by(|a, b| least(a).total_cmp(&least(b)))
         .unwrap_or(0.0);
-    if points.len() as f64 * GridSpec::VOXEL_M.powi(2) > FILLED * least(&yaw) {
+    if points.len() as f64 * Window::VOXEL_M.powi(2) > FILLED * least(&yaw) {
         yaw = heading_of_moments(points);
     }
     let (center, size) = extent(points, yaw);
@@ -171,7 +169,7 @@ fn extent(points: &[DVec2], yaw: f64) -> (DVec2, DVec2) {
     let middle = (low + high) / 2.0;
     (
         along * middle.x + along.perp() * middle.y,
-        high - low + DVec2::splat(GridSpec::VOXEL_M),
+        high - low + DVec2::splat(Window::VOXEL_M),
     )
 }
 
@@ -207,10 +205,10 @@ fn split(class: Class, component: &Component) -> Vec<Rectangle> {
         }
     };
     // Cells of an object: at least a voxel each way, so that small things are not cut to crumbs.
-    let cell = usual.max(DVec2::splat(2.0 * GridSpec::VOXEL_M));
+    let cell = usual.max(DVec2::splat(2.0 * Window::VOXEL_M));
     let (columns, rows) = (count(size.x, cell.x), count(size.y, cell.y));
     let height_m =
-        ((component.top + 1) as f64 * GridSpec::VOXEL_M - SMEAR_M).clamp(0.5 * typical.z, 2.0 * typical.z);
+        ((component.top + 1) as f64 * Window::VOXEL_M - SMEAR_M).clamp(0.5 * typical.z, 2.0 * typical.z);
     let mut out = Vec::new();
     for i in 0..columns as usize {
         for j in 0..rows as usize {
@@ -276,8 +274,8 @@ mod tests {
     fn painted(objects: &[SceneBox]) -> VoxelGrid {
         let mut labels = VoxelGrid::new();
         for b in objects {
-            let top = ((b.size_m.z + SMEAR_M) / GridSpec::VOXEL_M).round() as usize;
-            box_cells(b, 0.0, |x, y| {
+            let top = ((b.size_m.z + SMEAR_M) / Window::VOXEL_M).round() as usize;
+            box_cells(crate::Extent::WINDOW, b, 0.0, |x, y| {
                 (0..top).for_each(|z| labels.set(x, y, z, b.class.id()))
             });
         }

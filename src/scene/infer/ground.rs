@@ -1,6 +1,6 @@
 //! Map layers from ground labels.
 
-use crate::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+use crate::{BevLayer, BevLayout, Class, VoxelGrid, Window};
 
 /// Columns around a gap that must be road on opposite sides for it to be road: 3.2 m bridges a car's width.
 const REACH: usize = 8;
@@ -19,9 +19,9 @@ pub fn layout(labels: &VoxelGrid) -> BevLayout {
         let open: Vec<bool> = columns(labels)
             .map(|c| !c.iter().any(|l| Class::from_id(*l).is_some_and(Class::is_ground)))
             .collect();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                let at = x * GridSpec::NY + y;
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
+                let at = x * Window::NY + y;
                 if seen[at] || (open[at] && between(&seen, x, y)) {
                     layout.set(layer, x, y, true);
                 }
@@ -31,8 +31,8 @@ pub fn layout(labels: &VoxelGrid) -> BevLayout {
     layout
 }
 
-fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8; GridSpec::NZ]> {
-    (0..GridSpec::COLUMNS).map(|c| labels.column(c / GridSpec::NY, c % GridSpec::NY))
+fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8; Window::NZ]> {
+    (0..Window::COLUMNS).map(|c| labels.column(c / Window::NY, c % Window::NY))
 }
 
 /// True if something set lies on both sides along x, along y or along a diagonal.
@@ -40,8 +40,8 @@ fn between(seen: &[bool], x: usize, y: usize) -> bool {
     let meets = |dx: isize, dy: isize| {
         (1..=REACH as isize).any(|i| {
             let (x, y) = (x as isize + i * dx, y as isize + i * dy);
-            let inside = (0..GridSpec::NX as isize).contains(&x) && (0..GridSpec::NY as isize).contains(&y);
-            inside && seen[x as usize * GridSpec::NY + y as usize]
+            let inside = (0..Window::NX as isize).contains(&x) && (0..Window::NY as isize).contains(&y);
+            inside && seen[x as usize * Window::NY + y as usize]
         })
     };
     [(1, 0), (0, 1), (1, 1), (1, -1)]

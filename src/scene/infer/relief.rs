@@ -1,6 +1,6 @@
 //! The height of the ground from labels: where ground classes lie above the lowest bin, a slope is read from them.
 
-use crate::{Class, GridSpec, Relief, VoxelGrid};
+use crate::{Class, Relief, VoxelGrid, Window};
 
 /// Share of the ground's columns that must lie higher than flat ground does, or the ground is called flat.
 const UNEVEN_SHARE: f64 = 0.03;
@@ -12,9 +12,9 @@ const RADIUS: usize = 3;
 
 /// Heights of the ground, m; [`Relief::FLAT`] where all of it lies in the bins of flat ground.
 pub fn relief(labels: &VoxelGrid) -> Relief {
-    let (mut known, mut uneven, mut ground) = (vec![f32::NAN; GridSpec::COLUMNS], 0, 0);
+    let (mut known, mut uneven, mut ground) = (vec![f32::NAN; Window::COLUMNS], 0, 0);
     for (c, height) in known.iter_mut().enumerate() {
-        let column = labels.column(c / GridSpec::NY, c % GridSpec::NY);
+        let column = labels.column(c / Window::NY, c % Window::NY);
         let found = column.iter().enumerate().find_map(|(z, l)| {
             Class::from_id(*l)
                 .filter(|class| class.is_ground())
@@ -30,16 +30,16 @@ pub fn relief(labels: &VoxelGrid) -> Relief {
         } else {
             0.0
         };
-        *height = (bin as f64 * GridSpec::VOXEL_M) as f32 - above;
+        *height = (bin as f64 * Window::VOXEL_M) as f32 - above;
     }
     if (uneven as f64) < UNEVEN_SHARE * f64::from(ground.max(1)) {
         return Relief::FLAT;
     }
-    let mut heights = filled(&known, GridSpec::NX, GridSpec::NY);
+    let mut heights = filled(&known, Window::NX, Window::NY);
     for _ in 0..PASSES {
         heights = blurred(&heights);
     }
-    Relief::from_heights(heights).unwrap_or_default()
+    Relief::from_heights(crate::Extent::WINDOW, heights).unwrap_or_default()
 }
 
 /// Unknown cells (NaN) get the mean of what is known around them, from the nearest scale that knows any.
@@ -70,7 +70,7 @@ fn filled(cells: &[f32], nx: usize, ny: usize) -> Vec<f32> {
 
 /// Means over a square around each column.
 fn blurred(heights: &[f32]) -> Vec<f32> {
-    let (nx, ny) = (GridSpec::NX, GridSpec::NY);
+    let (nx, ny) = (Window::NX, Window::NY);
     let along = |values: &[f32], stride: usize, n: usize, place: fn(usize) -> usize| -> Vec<f32> {
         (0..values.len())
             .map(|i| {
@@ -81,8 +81,8 @@ fn blurred(heights: &[f32]) -> Vec<f32> {
             })
             .collect()
     };
-    let rows = along(heights, 1, ny, |i| i % GridSpec::NY);
-    along(&rows, ny, nx, |i| i / GridSpec::NY)
+    let rows = along(heights, 1, ny, |i| i % Window::NY);
+    along(&rows, ny, nx, |i| i / Window::NY)
 }
 
 #[cfg(test)]
@@ -92,12 +92,12 @@ mod tests {
 
     fn sloped(grade: f64, hole: bool) -> VoxelGrid {
         let mut grid = VoxelGrid::new();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 if hole && (130..150).contains(&x) && (60..90).contains(&y) {
                     continue;
                 }
-                let p = GridSpec::center(x, y, 0);
+                let p = Window::center(x, y, 0);
                 grid.set(x, y, Relief::label_bin(grade * p.x), Class::DriveableSurface.id());
             }
         }

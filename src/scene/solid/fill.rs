@@ -1,15 +1,15 @@
-//! Solids to voxels: which voxels of the grid a solid fills, and how much of each.
+//! Solids to voxels: which voxels of a map a solid fills, and how much of each.
 
 use glam::DVec3;
 
 use super::Solid;
-use crate::{Class, GridSpec};
+use crate::{Class, Extent};
 
 /// Labels are extended downward by so many bins in the Occ3D convention.
 pub const SMEAR: usize = 2;
 
 /// Extends what stands in a column downward by [`SMEAR`] bins, as far as there is free space: the Occ3D convention.
-pub fn smear_down(column: &mut [u8; GridSpec::NZ]) {
+pub fn smear_down(column: &mut [u8; Extent::NZ]) {
     let solid = *column;
     for (z, class) in solid.iter().enumerate().filter(|(_, c)| **c != Class::FREE) {
         for down in 1..=SMEAR.min(z) {
@@ -34,19 +34,20 @@ const NEEDED: u8 = 9;
 /// Visits every voxel that the solid fills, with the number of the voxel's 27 samples inside it: those a third full, or
 /// touched at all if the solid is thinner than a voxel. `column` says which columns count.
 pub fn fill(
+    extent: Extent,
     solid: &Solid,
     mut column: impl FnMut(usize, usize) -> bool,
     mut visit: impl FnMut(usize, usize, usize, u8),
 ) {
     let solid = &solid.at_least(THINNEST_M);
     let reach = solid.reach();
-    let lo = GridSpec::to_voxel_units(solid.center - reach);
-    let hi = GridSpec::to_voxel_units(solid.center + reach);
-    let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    let lo = extent.to_voxel_units(solid.center - reach);
+    let hi = extent.to_voxel_units(solid.center + reach);
+    let n = extent.shape();
     let span = |axis: usize| {
         (lo[axis].floor().max(0.0) as usize)..(hi[axis].ceil().clamp(0.0, n[axis] as f64) as usize)
     };
-    let thin = reach.min_element() < GridSpec::VOXEL_M * 0.75;
+    let thin = reach.min_element() < Extent::VOXEL_M * 0.75;
     let needed = if thin { 1 } else { NEEDED };
     for x in span(0) {
         for y in span(1) {
@@ -61,7 +62,7 @@ pub fn fill(
                         y as f64 + f(i / SAMPLES % SAMPLES),
                         z as f64 + f(i / SAMPLES.pow(2)),
                     );
-                    u8::from(solid.contains(GridSpec::from_voxel_units(u)))
+                    u8::from(solid.contains(extent.from_voxel_units(u)))
                 };
                 let corners: u8 = CORNERS.map(sample).iter().sum();
                 // Without pores a voxel whose corners are all inside is full; a third of one needs a corner or the middle.

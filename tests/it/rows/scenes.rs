@@ -65,7 +65,7 @@ fn row_36_strokes() {
         let repeated: Vec<DVec2> = points.iter().flat_map(|p| [*p; 3]).collect();
         let cells = |points: &[DVec2]| {
             let mut out = BTreeSet::new();
-            line_cells(points, 0.3, |x, y| {
+            line_cells(scene::Extent::WINDOW, points, 0.3, |x, y| {
                 out.insert((x, y));
             });
             out
@@ -78,7 +78,7 @@ fn row_36_strokes() {
             .collect(),
         width_m: 1e6,
     };
-    assert_eq!(wide.cells().expect("all of it").len(), GridSpec::COLUMNS);
+    assert_eq!(wide.cells(scene::Extent::WINDOW).expect("all of it").len(), GridSpec::COLUMNS);
 }
 
 /// Row 52: every ray of a revolution is unique and of unit length, with any mount, sector and speed.

@@ -72,7 +72,7 @@ impl Condition {
         }
         Self {
             bev: raster::bev_channels(layout, boxes.values()),
-            heading: raster::headings(boxes.values()),
+            heading: raster::headings(scene::Extent::WINDOW, boxes.values()),
             named,
             given: standing.is_some(),
             columns: column_heights(&bare, &draft),

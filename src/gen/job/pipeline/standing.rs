@@ -31,7 +31,10 @@ impl Standing {
             return Some(last.clone());
         }
         let mut columns = Columns::new();
-        for thing in scene.background.in_grid(&frame.world_from_ego) {
+        for thing in scene
+            .background
+            .in_extent(scene::Extent::WINDOW, &frame.world_from_ego)
+        {
             for (at, labels) in thing.columns(layout) {
                 let all = columns.entry(at).or_insert([Class::FREE; GridSpec::NZ]);
                 let taken = labels.iter().zip(all).filter(|(label, _)| **label != Class::FREE);

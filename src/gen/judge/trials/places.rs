@@ -41,10 +41,10 @@ pub fn on_free_road(frame: &Frame, class: Class, moved: Option<SceneBox>, seed: 
             label: BoxLabel::default(),
         };
         let mut free = placed.footprint().iter().all(|c| c.abs().max_element() < 38.0) && a.length() > 6.0;
-        box_cells(&placed, 0.8, |x, y| {
+        box_cells(scene::Extent::WINDOW, &placed, 0.8, |x, y| {
             free &= cells[x * GridSpec::NY + y] & objects == 0
         });
-        box_cells(&placed, 0.0, |x, y| {
+        box_cells(scene::Extent::WINDOW, &placed, 0.0, |x, y| {
             free &= frame.layout.has(BevLayer::DrivableArea, x, y)
         });
         if free {
@@ -70,7 +70,7 @@ pub fn verge(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
                 .iter()
                 .any(|(x, y)| is_road(*x, *y));
         let mut cells = Vec::new();
-        disc_cells(GridSpec::center(x, y, 0).truncate(), 2.0, |x, y| {
+        disc_cells(scene::Extent::WINDOW, GridSpec::center(x, y, 0).truncate(), 2.0, |x, y| {
             if bare(x, y) {
                 cells.push([x, y]);
             }
@@ -104,7 +104,7 @@ pub fn across_the_road(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
         let across = (b - a).normalize_or_zero().perp();
         let mut found = Vec::new();
         for i in -20..=20 {
-            disc_cells(a + across * (f64::from(i) * 0.4), 1.5, |x, y| {
+            disc_cells(scene::Extent::WINDOW, a + across * (f64::from(i) * 0.4), 1.5, |x, y| {
                 if road_only(x, y) {
                     found.push([x, y]);
                 }

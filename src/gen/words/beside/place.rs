@@ -35,7 +35,9 @@ impl Ground {
             taken: vec![false; GridSpec::COLUMNS],
         };
         for b in boxes.values() {
-            box_cells(b, 0.4, |x, y| out.taken[x * GridSpec::NY + y] = true);
+            box_cells(scene::Extent::WINDOW, b, 0.4, |x, y| {
+                out.taken[x * GridSpec::NY + y] = true
+            });
         }
         for thing in things.iter() {
             out.take(&thing.form);
@@ -48,11 +50,11 @@ impl Ground {
         let taken = &mut self.taken;
         let take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
         match form {
-            Form::Building(b) => polygon_cells(&b.outline_m, take),
-            Form::Line(l) => line_cells(&l.points_m, l.width_m / 2.0 + 0.2, take),
-            Form::Bridge(b) => line_cells(&b.points_m, b.width_m / 2.0, take),
-            Form::Tree(t) => disc_cells(t.position_m, 1.0, take),
-            Form::Post(p) => disc_cells(p.position_m, 0.6, take),
+            Form::Building(b) => polygon_cells(scene::Extent::WINDOW, &b.outline_m, take),
+            Form::Line(l) => line_cells(scene::Extent::WINDOW, &l.points_m, l.width_m / 2.0 + 0.2, take),
+            Form::Bridge(b) => line_cells(scene::Extent::WINDOW, &b.points_m, b.width_m / 2.0, take),
+            Form::Tree(t) => disc_cells(scene::Extent::WINDOW, t.position_m, 1.0, take),
+            Form::Post(p) => disc_cells(scene::Extent::WINDOW, p.position_m, 0.6, take),
             // Other things may grow or stand among shrubs.
             Form::Shrubs(_) => {}
         }
@@ -78,14 +80,18 @@ impl Ground {
     /// True if a disc is free and off the paved ground.
     pub fn has_room(&self, p: DVec2, radius_m: f64) -> bool {
         let mut free = p.abs().max_element() < BORDER_M - radius_m;
-        disc_cells(p, radius_m, |x, y| free &= self.is_free(x, y, 0.3));
+        disc_cells(scene::Extent::WINDOW, p, radius_m, |x, y| {
+            free &= self.is_free(x, y, 0.3)
+        });
         free
     }
 
     /// True if an outline is free, off the paved ground and in the grid.
     pub fn has_room_for(&self, outline_m: &[DVec2]) -> bool {
         let mut free = outline_m.iter().all(|p| p.abs().max_element() < BORDER_M);
-        polygon_cells(outline_m, |x, y| free &= self.is_free(x, y, 0.4));
+        polygon_cells(scene::Extent::WINDOW, outline_m, |x, y| {
+            free &= self.is_free(x, y, 0.4)
+        });
         free
     }
 

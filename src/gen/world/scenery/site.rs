@@ -77,7 +77,9 @@ impl<'a> Site<'a> {
         let paved = road | BevLayer::Walkway.bit();
         let mut box_cell = vec![false; GridSpec::COLUMNS];
         for b in boxes.values() {
-            box_cells(b, 0.0, |x, y| box_cell[x * GridSpec::NY + y] = true);
+            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+                box_cell[x * GridSpec::NY + y] = true
+            });
         }
         let cells = layout.cells();
         Self {
@@ -157,7 +159,9 @@ impl<'a> Site<'a> {
             return false;
         }
         let mut free = true;
-        disc_cells(p, radius_m, |x, y| free &= !self.taken[x * GridSpec::NY + y]);
+        disc_cells(scene::Extent::WINDOW, p, radius_m, |x, y| {
+            free &= !self.taken[x * GridSpec::NY + y]
+        });
         free
     }
 
@@ -165,7 +169,7 @@ impl<'a> Site<'a> {
     pub fn free_outline(&self, outline_m: &[DVec2], gap_m: f64) -> bool {
         let mut free = true;
         let gap = (gap_m / GridSpec::VOXEL_M) as f32;
-        polygon_cells(outline_m, |x, y| {
+        polygon_cells(scene::Extent::WINDOW, outline_m, |x, y| {
             let c = x * GridSpec::NY + y;
             free &= !self.taken[c] && self.to_paved[c] > gap && self.to_box[c] > 2.0;
         });
@@ -179,15 +183,25 @@ impl<'a> Site<'a> {
         match &form {
             Form::Building(b) => {
                 let n = b.outline_m.len();
-                polygon_cells(&b.outline_m, &mut take);
+                polygon_cells(scene::Extent::WINDOW, &b.outline_m, &mut take);
                 let ring: Vec<DVec2> = (0..=n).map(|i| b.outline_m[i % n]).collect();
-                line_cells(&ring, margin_m, &mut take);
+                line_cells(scene::Extent::WINDOW, &ring, margin_m, &mut take);
             }
-            Form::Shrubs(s) => polygon_cells(&s.outline_m, &mut take),
-            Form::Line(l) => line_cells(&l.points_m, l.width_m / 2.0 + margin_m, &mut take),
-            Form::Bridge(b) => line_cells(&b.points_m, b.width_m / 2.0 + margin_m, &mut take),
-            Form::Tree(t) => disc_cells(t.position_m, margin_m, &mut take),
-            Form::Post(p) => disc_cells(p.position_m, margin_m, &mut take),
+            Form::Shrubs(s) => polygon_cells(scene::Extent::WINDOW, &s.outline_m, &mut take),
+            Form::Line(l) => line_cells(
+                scene::Extent::WINDOW,
+                &l.points_m,
+                l.width_m / 2.0 + margin_m,
+                &mut take,
+            ),
+            Form::Bridge(b) => line_cells(
+                scene::Extent::WINDOW,
+                &b.points_m,
+                b.width_m / 2.0 + margin_m,
+                &mut take,
+            ),
+            Form::Tree(t) => disc_cells(scene::Extent::WINDOW, t.position_m, margin_m, &mut take),
+            Form::Post(p) => disc_cells(scene::Extent::WINDOW, p.position_m, margin_m, &mut take),
         }
         self.out.add(form);
     }

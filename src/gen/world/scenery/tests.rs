@@ -28,7 +28,7 @@ fn scenery_is_sound_repeatable_and_off_the_road() {
             match &thing.form {
                 Form::Building(b) => {
                     counts[0] += 1;
-                    polygon_cells(&b.outline_m, |x, y| {
+                    polygon_cells(scene::Extent::WINDOW, &b.outline_m, |x, y| {
                         assert_eq!(
                             layout.cell(x, y) & paved,
                             0,

@@ -39,7 +39,9 @@ pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
 }
 
 fn mark(p: DVec2, seen: &mut [bool]) {
-    scene::raster::disc_cells(p, 1.3, |x, y| seen[x * GridSpec::NY + y] = true);
+    scene::raster::disc_cells(scene::Extent::WINDOW, p, 1.3, |x, y| {
+        seen[x * GridSpec::NY + y] = true
+    });
 }
 
 fn walk(site: &Site<'_>, from: DVec2, distance_m: f64, sign: f64, seen: &mut [bool]) -> Vec<DVec2> {

@@ -32,7 +32,7 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
     for s in world.solids() {
         let layer = BevLayer::of_object(s.class).map_or(0, BevLayer::bit);
         let counts = |x: usize, y: usize| layer == 0 || bev[x * GridSpec::NY + y] & layer != 0;
-        fill(s, counts, |x, y, z, votes| {
+        fill(scene::Extent::WINDOW, s, counts, |x, y, z, votes| {
             let cell = &mut best[(x * GridSpec::NY + y) * GridSpec::NZ + z];
             if votes > cell.0 {
                 *cell = (votes, s.class.id());

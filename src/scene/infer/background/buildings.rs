@@ -6,7 +6,7 @@ use super::columns::{Standing, closed, middle_m, parts};
 use super::rectangle::{Rectangle, split};
 use crate::background::{Building, Facade, Roof};
 use crate::raster::polygon_cells;
-use crate::{GridSpec, VoxelGrid};
+use crate::{VoxelGrid, Window};
 
 /// Columns lower than this are walls and fences, m.
 const LOWEST_M: f64 = 2.2;
@@ -29,14 +29,14 @@ const STEP_M: f64 = 1.0;
 
 /// Buildings of the labels; their columns are marked in `taken`.
 pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [bool]) -> Vec<Building> {
-    let tall: Vec<bool> = (0..GridSpec::COLUMNS)
+    let tall: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| manmade.top_m[c] >= LOWEST_M && manmade.count(c) >= 4)
         .collect();
     // Nothing was seen there: inside or behind something, or out of reach.
-    let hidden: Vec<bool> = (0..GridSpec::COLUMNS)
+    let hidden: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| {
             labels
-                .column(c / GridSpec::NY, c % GridSpec::NY)
+                .column(c / Window::NY, c % Window::NY)
                 .iter()
                 .all(|l| *l == crate::Class::FREE)
         })
@@ -49,8 +49,8 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
         }
         let fits = |r: &Rectangle, columns: &[usize]| {
             let (mut open, mut all) = (0, 0);
-            polygon_cells(&r.corners_m(), |x, y| {
-                let c = x * GridSpec::NY + y;
+            polygon_cells(crate::Extent::WINDOW, &r.corners_m(), |x, y| {
+                let c = x * Window::NY + y;
                 all += 1;
                 open += usize::from(!tall[c] && !hidden[c] && manmade.top_m[c] == 0.0);
             });
@@ -66,18 +66,22 @@ pub(super) fn buildings(labels: &VoxelGrid, manmade: &Standing, taken: &mut [boo
     pieces.retain(|(r, columns)| columns.len() >= FEWEST / 2 && 2.0 * r.half_m.x >= SHORTEST_M);
     pieces.sort_by_key(|(_, columns)| std::cmp::Reverse(columns.len()));
     for (rectangle, _) in &pieces {
-        polygon_cells(&rectangle.corners_m(), |x, y| taken[x * GridSpec::NY + y] = true);
+        polygon_cells(crate::Extent::WINDOW, &rectangle.corners_m(), |x, y| {
+            taken[x * Window::NY + y] = true
+        });
     }
     let mut out = Vec::new();
     for (rectangle, columns) in pieces {
         let may = |p: DVec2| {
-            GridSpec::column_at(p.x, p.y).is_some_and(|[x, y]| {
-                let c = x * GridSpec::NY + y;
+            Window::column_at(p.x, p.y).is_some_and(|[x, y]| {
+                let c = x * Window::NY + y;
                 !taken[c] && (hidden[c] || manmade.top_m[c] > 0.0)
             })
         };
         let deep = deepened(rectangle, &may);
-        polygon_cells(&deep.corners_m(), |x, y| taken[x * GridSpec::NY + y] = true);
+        polygon_cells(crate::Extent::WINDOW, &deep.corners_m(), |x, y| {
+            taken[x * Window::NY + y] = true
+        });
         columns.iter().for_each(|c| taken[*c] = true);
         let top = top_m(&columns, manmade);
         out.push(Building {
@@ -99,7 +103,7 @@ fn top_m(columns: &[usize], manmade: &Standing) -> f64 {
 
 /// Where along a rectangle the height changes for good, from its middle, m.
 fn height_step(r: &Rectangle, columns: &[usize], manmade: &Standing) -> Option<f64> {
-    let slot_m = 2.0 * GridSpec::VOXEL_M;
+    let slot_m = 2.0 * Window::VOXEL_M;
     let slots = (2.0 * r.half_m.x / slot_m) as usize;
     let mut tops = vec![0.0_f64; slots + 1];
     for c in columns {
@@ -144,7 +148,7 @@ fn by_height(r: Rectangle, columns: Vec<usize>, manmade: &Standing) -> Vec<(Rect
 fn deepened(r: Rectangle, may: &dyn Fn(DVec2) -> bool) -> Rectangle {
     let (mut low, mut high) = (-r.half_m.y, r.half_m.y);
     let away_is_high = r.middle_m.dot(r.along.perp()) >= 0.0;
-    let step = GridSpec::VOXEL_M;
+    let step = Window::VOXEL_M;
     for is_high in [away_is_high, !away_is_high] {
         while high - low < USUAL_DEPTH_M {
             let next = if is_high { high + step } else { low - step };

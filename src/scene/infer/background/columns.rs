@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::draft::ground_bin;
-use crate::{BevLayout, Class, GridSpec, VoxelGrid};
+use crate::{BevLayout, Class, VoxelGrid, Window};
 
 /// Voxels of one class, column by column `[x][y]`, above the ground.
 pub(super) struct Standing {
@@ -16,16 +16,16 @@ pub(super) struct Standing {
 impl Standing {
     pub fn of(class: Class, labels: &VoxelGrid, layout: &BevLayout) -> Self {
         let mut out = Self {
-            top_m: vec![0.0; GridSpec::COLUMNS],
-            bins: vec![0; GridSpec::COLUMNS],
+            top_m: vec![0.0; Window::COLUMNS],
+            bins: vec![0; Window::COLUMNS],
         };
-        for c in 0..GridSpec::COLUMNS {
-            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        for c in 0..Window::COLUMNS {
+            let (x, y) = (c / Window::NY, c % Window::NY);
             let ground = ground_bin(layout, x, y);
             let column = labels.column(x, y);
-            for z in (ground + 1..GridSpec::NZ).filter(|z| column[*z] == class.id()) {
+            for z in (ground + 1..Window::NZ).filter(|z| column[*z] == class.id()) {
                 // Tops are where they are; only the undersides of these labels reach down.
-                let top = (z + 1) as f64 * GridSpec::VOXEL_M + GridSpec::MIN_M[2];
+                let top = (z + 1) as f64 * Window::VOXEL_M + Window::MIN_M[2];
                 out.top_m[c] = (top - layout.relief.column_m(x, y)).max(0.1);
                 out.bins[c] |= 1 << (z - ground);
             }
@@ -46,15 +46,15 @@ impl Standing {
 
 /// Middle of a column on the ground, m.
 pub(super) fn middle_m(c: usize) -> DVec2 {
-    GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate()
+    Window::center(c / Window::NY, c % Window::NY, 0).truncate()
 }
 
 /// The columns within `reach` of a column in x and y, itself among them.
 pub(super) fn around(c: usize, reach: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-    let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
-    let xs = x.saturating_sub(reach)..=(x + reach).min(GridSpec::NX - 1);
-    xs.flat_map(move |x| ys.clone().map(move |y| x * GridSpec::NY + y))
+    let (x, y) = (c / Window::NY, c % Window::NY);
+    let ys = y.saturating_sub(reach)..=(y + reach).min(Window::NY - 1);
+    let xs = x.saturating_sub(reach)..=(x + reach).min(Window::NX - 1);
+    xs.flat_map(move |x| ys.clone().map(move |y| x * Window::NY + y))
 }
 
 /// Columns that touch each other (8 neighbours), part by part.

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::columns::{Standing, middle_m, parts};
 use super::rectangle::{Rectangle, split};
 use crate::background::{Line, LineKind, Post, PostKind, Shrubs};
-use crate::{Form, GridSpec};
+use crate::{Form, Window};
 
 /// Most columns of a pole.
 const POLE: usize = 4;
@@ -70,7 +70,7 @@ fn top_m(columns: &[usize], of: &Standing) -> f64 {
 }
 
 fn share(r: &Rectangle, columns: &[usize]) -> f64 {
-    columns.len() as f64 * GridSpec::VOXEL_M.powi(2) / r.area_m2()
+    columns.len() as f64 * Window::VOXEL_M.powi(2) / r.area_m2()
 }
 
 fn is_filled(r: &Rectangle, columns: &[usize]) -> bool {
@@ -84,7 +84,7 @@ fn is_dense(r: &Rectangle, columns: &[usize]) -> bool {
 fn line(kind: LineKind, r: &Rectangle, top_m: f64) -> Form {
     let end = DVec2::new(r.half_m.x, 0.0);
     // Columns are wider than most lines: half a column on either side is theirs.
-    let width = (2.0 * r.half_m.y - GridSpec::VOXEL_M).max(kind.typical_m().1);
+    let width = (2.0 * r.half_m.y - Window::VOXEL_M).max(kind.typical_m().1);
     Form::Line(Line {
         kind,
         points_m: vec![r.ground(-end), r.ground(end)],

@@ -9,7 +9,7 @@ mod trees;
 
 use columns::{Standing, around};
 
-use crate::{Background, BevLayout, Class, Form, GridSpec, VoxelGrid};
+use crate::{Background, BevLayout, Class, Form, VoxelGrid, Window};
 
 /// Things of the labels, in the ego frame; ids count from 1, the largest kinds first. `layout` tells the height of the
 /// ground.
@@ -18,18 +18,18 @@ pub fn background(labels: &VoxelGrid, layout: &BevLayout) -> Background {
     let vegetation = Standing::of(Class::Vegetation, labels, layout);
     let mut forms = Vec::new();
 
-    let mut taken = vec![false; GridSpec::COLUMNS];
+    let mut taken = vec![false; Window::COLUMNS];
     let buildings = buildings::buildings(labels, &manmade, &mut taken);
     forms.extend(buildings.into_iter().map(Form::Building));
     // What is right beside a facade goes with the building.
-    let left: Vec<bool> = (0..GridSpec::COLUMNS)
+    let left: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| manmade.top_m[c] > 0.0 && !around(c, 1).any(|n| taken[n]))
         .collect();
     forms.extend(lines::walls_and_poles(&manmade, &left));
 
-    let mut crowns = vec![false; GridSpec::COLUMNS];
+    let mut crowns = vec![false; Window::COLUMNS];
     forms.extend(trees::trees(&vegetation, &mut crowns).into_iter().map(Form::Tree));
-    let left: Vec<bool> = (0..GridSpec::COLUMNS)
+    let left: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| vegetation.top_m[c] > 0.0 && !crowns[c])
         .collect();
     forms.extend(lines::hedges_and_shrubs(&vegetation, &left));

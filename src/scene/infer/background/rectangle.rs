@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::columns::middle_m;
-use crate::GridSpec;
+use crate::Window;
 
 /// Parts are cut at most this often, one within another.
 const DEEPEST: u32 = 6;
@@ -55,7 +55,7 @@ impl Rectangle {
         let middle = (low + high) / 2.0;
         Self {
             middle_m: along * middle.x + along.perp() * middle.y,
-            half_m: (high - low + DVec2::splat(GridSpec::VOXEL_M)) / 2.0,
+            half_m: (high - low + DVec2::splat(Window::VOXEL_M)) / 2.0,
             along,
         }
     }
@@ -120,7 +120,7 @@ fn best_cut(rectangle: &Rectangle, columns: &[usize]) -> Option<(Vec<usize>, Vec
                 let (min, max) = side.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(min, max), p| {
                     (min.min(*p), max.max(*p))
                 });
-                let size = max - min + DVec2::splat(GridSpec::VOXEL_M);
+                let size = max - min + DVec2::splat(Window::VOXEL_M);
                 if size.x > 0.0 { size.x * size.y } else { 0.0 }
             };
             let both = area(true) + area(false);

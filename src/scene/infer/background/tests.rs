@@ -13,15 +13,15 @@ struct Labels(VoxelGrid);
 impl Labels {
     fn new() -> Self {
         let mut grid = VoxelGrid::new();
-        for c in 0..GridSpec::COLUMNS {
-            grid.set(c / GridSpec::NY, c % GridSpec::NY, 0, Class::Terrain.id());
+        for c in 0..Window::COLUMNS {
+            grid.set(c / Window::NY, c % Window::NY, 0, Class::Terrain.id());
         }
         Self(grid)
     }
 
     fn stand(&mut self, x: usize, y: usize, class: Class, from_m: f64, to_m: f64) {
-        for z in 0..GridSpec::NZ {
-            let middle = GridSpec::center(0, 0, z).z;
+        for z in 0..Window::NZ {
+            let middle = Window::center(0, 0, z).z;
             if middle >= from_m && middle <= to_m {
                 self.0.set(x, y, z, class.id());
             }
@@ -31,7 +31,7 @@ impl Labels {
     fn line(&mut self, ends: [(f64, f64); 2], class: Class, to_m: f64) {
         let points = ends.map(|(x, y)| DVec2::new(x, y));
         let mut cells = Vec::new();
-        line_cells(&points, 0.25, |x, y| cells.push((x, y)));
+        line_cells(crate::Extent::WINDOW, &points, 0.25, |x, y| cells.push((x, y)));
         cells
             .into_iter()
             .for_each(|(x, y)| self.stand(x, y, class, -1.0, to_m));
@@ -54,7 +54,9 @@ fn nothing_gives_nothing() {
 fn two_facades_are_one_building() {
     let mut labels = Labels::new();
     let outline = [(10.0, 10.0), (24.0, 10.0), (24.0, 20.0), (10.0, 20.0)].map(|(x, y)| DVec2::new(x, y));
-    polygon_cells(&outline, |x, y| labels.0.set(x, y, 0, Class::FREE));
+    polygon_cells(crate::Extent::WINDOW, &outline, |x, y| {
+        labels.0.set(x, y, 0, Class::FREE)
+    });
     labels.line([(10.2, 10.2), (23.8, 10.2)], Class::Manmade, 4.0);
     labels.line([(10.2, 10.2), (10.2, 19.8)], Class::Manmade, 4.0);
     let found = labels.things();
@@ -73,7 +75,9 @@ fn two_facades_are_one_building() {
 fn a_step_in_height_parts_buildings() {
     let mut labels = Labels::new();
     let behind = [(-20.0, 8.2), (20.0, 8.2), (20.0, 18.0), (-20.0, 18.0)].map(|(x, y)| DVec2::new(x, y));
-    polygon_cells(&behind, |x, y| labels.0.set(x, y, 0, Class::FREE));
+    polygon_cells(crate::Extent::WINDOW, &behind, |x, y| {
+        labels.0.set(x, y, 0, Class::FREE)
+    });
     labels.line([(-19.8, 8.2), (0.0, 8.2)], Class::Manmade, 3.0);
     labels.line([(0.2, 8.2), (19.8, 8.2)], Class::Manmade, 5.0);
     let found = labels.things();
@@ -114,12 +118,18 @@ fn vegetation_becomes_trees_hedges_and_shrubs() {
     let mut labels = Labels::new();
     let places = [(10.0, 10.0), (13.4, 10.0), (-12.0, 14.0)].map(|(x, y)| DVec2::new(x, y));
     for p in places {
-        disc_cells(p, 1.8, |x, y| labels.stand(x, y, Class::Vegetation, 2.0, 4.6));
-        disc_cells(p, 0.25, |x, y| labels.stand(x, y, Class::Vegetation, -1.0, 4.6));
+        disc_cells(crate::Extent::WINDOW, p, 1.8, |x, y| {
+            labels.stand(x, y, Class::Vegetation, 2.0, 4.6)
+        });
+        disc_cells(crate::Extent::WINDOW, p, 0.25, |x, y| {
+            labels.stand(x, y, Class::Vegetation, -1.0, 4.6)
+        });
     }
     labels.line([(-30.0, -8.0), (-10.0, -8.0)], Class::Vegetation, 1.2);
     let patch = [(5.0, -20.0), (11.0, -20.0), (11.0, -15.0), (5.0, -15.0)].map(|(x, y)| DVec2::new(x, y));
-    polygon_cells(&patch, |x, y| labels.stand(x, y, Class::Vegetation, -1.0, 0.6));
+    polygon_cells(crate::Extent::WINDOW, &patch, |x, y| {
+        labels.stand(x, y, Class::Vegetation, -1.0, 0.6)
+    });
     let found = labels.things();
     let trees: Vec<&crate::background::Tree> = found
         .iter()

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::columns::{Standing, around, middle_m};
-use crate::GridSpec;
+use crate::Window;
 use crate::background::{Tree, TreeKind};
 use crate::distance::signed_distance_m;
 
@@ -23,7 +23,7 @@ const STEM: f64 = 100.0;
 
 /// Trees of the labels; the columns of their crowns are marked in `taken`.
 pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
-    let high: Vec<bool> = (0..GridSpec::COLUMNS)
+    let high: Vec<bool> = (0..Window::COLUMNS)
         .map(|c| vegetation.top_m[c] >= LOWEST_M)
         .collect();
     let mut left = high.clone();
@@ -36,7 +36,7 @@ pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
         }
         // Every high column belongs to the nearest of the new trees.
         let mut crowns: Vec<Vec<usize>> = vec![Vec::new(); seeds.len()];
-        for c in (0..GridSpec::COLUMNS).filter(|c| left[*c]) {
+        for c in (0..Window::COLUMNS).filter(|c| left[*c]) {
             let p = middle_m(c);
             let near = (0..seeds.len()).min_by(|a, b| {
                 let d = |i: usize| seeds[i].distance_squared(p);
@@ -50,9 +50,9 @@ pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
             trees.push(tree(*seed, crown, vegetation));
         }
         for tree in &trees {
-            let reach = tree.crown_radius_m + 0.5 * GridSpec::VOXEL_M;
-            crate::raster::disc_cells(tree.position_m, reach, |x, y| {
-                let c = x * GridSpec::NY + y;
+            let reach = tree.crown_radius_m + 0.5 * Window::VOXEL_M;
+            crate::raster::disc_cells(crate::Extent::WINDOW, tree.position_m, reach, |x, y| {
+                let c = x * Window::NY + y;
                 (left[c], taken[c]) = (false, true);
             });
         }
@@ -62,7 +62,7 @@ pub(super) fn trees(vegetation: &Standing, taken: &mut [bool]) -> Vec<Tree> {
 
 /// How much a column looks like the middle of a tree; 0 where there is no crown.
 fn scores(vegetation: &Standing, left: &[bool], with_stems: bool) -> Vec<f64> {
-    let deep = signed_distance_m(|c| left[c]);
+    let deep = signed_distance_m(crate::Extent::WINDOW, |c| left[c]);
     let crown = |c: usize| match left[c] {
         // Deep inside the crown, high and dense.
         true => {
@@ -72,12 +72,12 @@ fn scores(vegetation: &Standing, left: &[bool], with_stems: bool) -> Vec<f64> {
         }
         false => 0.0,
     };
-    let rough: Vec<f64> = (0..GridSpec::COLUMNS).map(crown).collect();
+    let rough: Vec<f64> = (0..Window::COLUMNS).map(crown).collect();
     let smooth = |c: usize| {
         let (sum, n) = around(c, 1).fold((0.0, 0), |(sum, n), near| (sum + rough[near], n + 1));
         sum / f64::from(n)
     };
-    (0..GridSpec::COLUMNS)
+    (0..Window::COLUMNS)
         .map(|c| match (left[c], with_stems && is_stem(vegetation, c)) {
             (false, _) => 0.0,
             (true, true) => smooth(c) + STEM,
@@ -122,7 +122,7 @@ fn peaks(scores: &[f64], trees: &[Tree]) -> Vec<DVec2> {
 fn tree(place_m: DVec2, crown: &[usize], vegetation: &Standing) -> Tree {
     let mut reach: Vec<f64> = crown.iter().map(|c| middle_m(*c).distance(place_m)).collect();
     reach.sort_by(f64::total_cmp);
-    let radius = reach[(reach.len() - 1) * 9 / 10] + 0.5 * GridSpec::VOXEL_M;
+    let radius = reach[(reach.len() - 1) * 9 / 10] + 0.5 * Window::VOXEL_M;
     let top = crown.iter().map(|c| vegetation.top_m[*c]).fold(0.0, f64::max);
     Tree {
         position_m: place_m,

@@ -29,7 +29,7 @@ fn labels_on(grade: f64, seed: u64, index: u64) -> VoxelGrid {
     let (world, seed) = world_of(seed, index, |_| None);
     let up = uphill(seed);
     let mut layout = world.layout;
-    layout.relief = Relief::from_fn(|p| grade * up.dot(p));
+    layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| grade * up.dot(p));
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
     let world = World::new(layout, boxes, seed);
     let rig = SensorRig::default();
