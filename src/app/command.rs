@@ -168,7 +168,7 @@ pub enum Command {
     Select(Option<BoxId>),
     /// Chooses the next (1) or previous (-1) box by id.
     SelectNext(i32),
-    /// Ends, in this order, what there is: a drag, an enlarged camera, the selection, the tool.
+    /// Ends one thing, the first of these that there is: a drag, an enlarged camera, chosen voxels, the tool, the selection.
     Escape,
     /// Takes another tool.
     Tool(ToolId),

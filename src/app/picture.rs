@@ -108,7 +108,9 @@ pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
     ];
     let mut boxes: Vec<Option<&SceneBox>> = vec![None; GridSpec::COLUMNS];
     for b in frame.boxes.values() {
-        box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| boxes[x * GridSpec::NY + y] = Some(b));
+        box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+            boxes[x * GridSpec::NY + y] = Some(b)
+        });
     }
     top_view(scale, |x, y| {
         if let Some(b) = boxes[x * GridSpec::NY + y] {

@@ -87,7 +87,8 @@ impl ToolState {
                     width_m: *width_m,
                 };
                 // A stroke beside the grid marks nothing.
-                self.region.set_columns(&stroke.cells(scene::Extent::WINDOW).unwrap_or_default(), on);
+                self.region
+                    .set_columns(&stroke.cells(scene::Extent::WINDOW).unwrap_or_default(), on);
                 return;
             }
             Area::All => {

@@ -119,7 +119,7 @@ pub trait Tool: Debug + Send {
     /// What the pointer looks like over a view.
     fn cursor(&self, sight: &Sight<'_>) -> Cursor;
 
-    /// Marks to draw over a view. Only the tool in hand is asked, and tools that want to be asked always.
+    /// Marks to draw over a view.
     fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
         let _ = sight;
         Vec::new()

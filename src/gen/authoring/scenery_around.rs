@@ -30,15 +30,40 @@ pub fn columns(form: &Form, margin_m: f64, mut visit: impl FnMut(usize, usize)) 
     let around = |outline_m: &[DVec2], visit: &mut dyn FnMut(usize, usize)| {
         polygon_cells(scene::Extent::WINDOW, outline_m, &mut *visit);
         let ring: Vec<DVec2> = outline_m.iter().chain(outline_m.first()).copied().collect();
-        line_cells(scene::Extent::WINDOW, &ring, margin_m + GridSpec::VOXEL_M / 2.0, visit);
+        line_cells(
+            scene::Extent::WINDOW,
+            &ring,
+            margin_m + GridSpec::VOXEL_M / 2.0,
+            visit,
+        );
     };
     match form {
         Form::Building(b) => around(&b.outline_m, &mut visit),
         Form::Shrubs(s) => around(&s.outline_m, &mut visit),
-        Form::Line(l) => line_cells(scene::Extent::WINDOW, &l.points_m, l.width_m / 2.0 + margin_m, visit),
-        Form::Bridge(b) => line_cells(scene::Extent::WINDOW, &b.points_m, b.width_m / 2.0 + margin_m, visit),
-        Form::Tree(t) => disc_cells(scene::Extent::WINDOW, t.position_m, t.crown_radius_m + margin_m, visit),
-        Form::Post(p) => disc_cells(scene::Extent::WINDOW, p.position_m, form.overhang_m() + margin_m, visit),
+        Form::Line(l) => line_cells(
+            scene::Extent::WINDOW,
+            &l.points_m,
+            l.width_m / 2.0 + margin_m,
+            visit,
+        ),
+        Form::Bridge(b) => line_cells(
+            scene::Extent::WINDOW,
+            &b.points_m,
+            b.width_m / 2.0 + margin_m,
+            visit,
+        ),
+        Form::Tree(t) => disc_cells(
+            scene::Extent::WINDOW,
+            t.position_m,
+            t.crown_radius_m + margin_m,
+            visit,
+        ),
+        Form::Post(p) => disc_cells(
+            scene::Extent::WINDOW,
+            p.position_m,
+            form.overhang_m() + margin_m,
+            visit,
+        ),
     }
 }
 

@@ -78,7 +78,10 @@ fn row_36_strokes() {
             .collect(),
         width_m: 1e6,
     };
-    assert_eq!(wide.cells(scene::Extent::WINDOW).expect("all of it").len(), GridSpec::COLUMNS);
+    assert_eq!(
+        wide.cells(scene::Extent::WINDOW).expect("all of it").len(),
+        GridSpec::COLUMNS
+    );
 }
 
 /// Row 52: every ray of a revolution is unique and of unit length, with any mount, sector and speed.

@@ -70,11 +70,16 @@ pub fn verge(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
                 .iter()
                 .any(|(x, y)| is_road(*x, *y));
         let mut cells = Vec::new();
-        disc_cells(scene::Extent::WINDOW, GridSpec::center(x, y, 0).truncate(), 2.0, |x, y| {
-            if bare(x, y) {
-                cells.push([x, y]);
-            }
-        });
+        disc_cells(
+            scene::Extent::WINDOW,
+            GridSpec::center(x, y, 0).truncate(),
+            2.0,
+            |x, y| {
+                if bare(x, y) {
+                    cells.push([x, y]);
+                }
+            },
+        );
         if beside && cells.len() >= 40 {
             return Some(cells);
         }
@@ -104,11 +109,16 @@ pub fn across_the_road(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
         let across = (b - a).normalize_or_zero().perp();
         let mut found = Vec::new();
         for i in -20..=20 {
-            disc_cells(scene::Extent::WINDOW, a + across * (f64::from(i) * 0.4), 1.5, |x, y| {
-                if road_only(x, y) {
-                    found.push([x, y]);
-                }
-            });
+            disc_cells(
+                scene::Extent::WINDOW,
+                a + across * (f64::from(i) * 0.4),
+                1.5,
+                |x, y| {
+                    if road_only(x, y) {
+                        found.push([x, y]);
+                    }
+                },
+            );
         }
         found.sort_unstable();
         found.dedup();

@@ -70,7 +70,10 @@ impl Brought {
                 .gone()
                 .filter(|old| old.class == b.class)
                 .map(|old| voxels_of(source, old)),
-            draft: draft::box_columns(scene::Extent::WINDOW, b).into_iter().map(from_ground).sum(),
+            draft: draft::box_columns(scene::Extent::WINDOW, b)
+                .into_iter()
+                .map(from_ground)
+                .sum(),
             networks: voxels_of(networks, b),
             shown: voxels_of(shown, b),
             shared: voxels_of(&both, b),
