@@ -1,5 +1,5 @@
-//! What a user can ask for, as values: panels, canvases and keys push commands, the application
-//! carries them out after the frame was drawn.
+//! Commands: all that a user can ask for, as values. Panes, canvases and keys push them; the application carries them out
+//! after the frame is drawn.
 
 use std::path::PathBuf;
 
@@ -32,7 +32,7 @@ pub enum Window {
     Export,
 }
 
-/// What is read, written or begun.
+/// Commands for files and scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileCommand {
     /// Starts a new scene.
@@ -114,7 +114,7 @@ pub enum GenerationCommand {
     Decide(Verdict),
     /// Ends a whole generation with what it shows now.
     StopHere,
-    /// Lets go of what was asked of the worker.
+    /// Cancels a job.
     Cancel {
         /// The generation that runs.
         running: bool,
@@ -133,11 +133,11 @@ pub enum GenerationCommand {
     Calibrate,
     /// Measures how far the last edit lies from the reference.
     Refine,
-    /// Stops either.
+    /// Stops these measurements.
     StopMeasuring,
 }
 
-/// One wish of the user.
+/// One command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Applies edits as one undo step of this name.
@@ -168,7 +168,7 @@ pub enum Command {
     Select(Option<BoxId>),
     /// Chooses the next (1) or previous (-1) box by id.
     SelectNext(i32),
-    /// Ends what is in hand: a drag, an enlarged camera, the selection, the tool.
+    /// Ends one thing, the first of these that there is: a drag, an enlarged camera, chosen voxels, the tool, the selection.
     Escape,
     /// Takes another tool.
     Tool(ToolId),

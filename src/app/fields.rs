@@ -1,4 +1,4 @@
-//! Rows of number fields: a caption and what it names, in the same places on every panel.
+//! Rows of number fields: a caption and what it names, in the same places on every pane.
 
 use egui::{DragValue, Ui};
 use glam::DVec3;

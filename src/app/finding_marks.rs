@@ -1,5 +1,5 @@
-//! What a finding of the checks means: its voxels, its box or its place, marked in the large views while it is pointed
-//! at or chosen in the list.
+//! Marks a finding of the checks in the large views: its voxels, its box or its place, while it is pointed at or chosen in
+//! the list.
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind};
 use glam::{DVec2, DVec3};
@@ -8,12 +8,12 @@ use super::canvas::ScreenMap;
 use editor::checks::Finding;
 use scene::{BoxId, Frame, GridSpec};
 
-/// Of the marks, in both views: no class and no layer has it.
+/// Colour of the marks in both views; no class and no layer has it.
 pub(super) const COLOR: [u8; 3] = [255, 70, 255];
 /// A mark smaller than this would be overlooked, points.
 const LEAST: f32 = 9.0;
 
-/// What is marked.
+/// The marks of one finding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FindingMarks {
     /// Voxels.

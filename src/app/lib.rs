@@ -1,4 +1,4 @@
-//! The program: the window with its panes, and the command line. It knows every other crate, and none knows it.
+//! The window with its panes. It knows every other room; only the command line knows it.
 
 mod bev_image;
 pub mod camera_views;

@@ -1,4 +1,4 @@
-//! Draws egui on the processor, without a window or a graphics card: for pictures of what a panel shows.
+//! Draws egui on the processor, without a window or a graphics card: for pictures of what a pane shows.
 
 use egui::epaint::{ImageData, Mesh, Primitive};
 use egui::{Color32, Context, Pos2, RawInput, Rect, TextureId, Ui, pos2};

@@ -1,5 +1,4 @@
-//! What the window shows and holds in hand, beside the document: tools, layers, options. Nothing
-//! here is saved with a scene.
+//! State of the window beside the document: the tool in hand, layers, options. Nothing here is saved with a scene.
 
 use std::ops::{Deref, DerefMut};
 
@@ -13,7 +12,7 @@ use viewport::LidarColorMode;
 use super::panes::id::PaneId;
 use super::tools::{Hand, ToolState, Toolbox};
 
-/// How the LiDAR sweep comes about.
+/// How the LiDAR sweep is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum LidarModel {
     /// Every ray to the first voxel.
@@ -107,7 +106,7 @@ pub struct UiState {
     pub plane_m: f64,
     /// Bit per camera that is not rendered.
     pub cameras_hidden: u32,
-    /// How the LiDAR sweep comes about.
+    /// How the LiDAR sweep is computed.
     pub lidar_model: LidarModel,
     /// How the present state is compared with the version before.
     pub compare: CompareMode,
@@ -115,7 +114,7 @@ pub struct UiState {
     pub holding_before: bool,
     /// Where the line of the wipe stands, 0 to 1.
     pub wipe_at: f32,
-    /// What the finding means that is pointed at or chosen among the checks; shown in both large views.
+    /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both large views.
     pub finding_marks: Option<std::sync::Arc<super::finding_marks::FindingMarks>>,
     /// The sensors' window is open.
     pub sensors_open: bool,
@@ -155,7 +154,7 @@ impl UiState {
         self.inspected = None;
     }
 
-    /// Edits as they are meant: corrections while the user corrects what was inferred.
+    /// The edits as they are; or as corrections while the user corrects what was inferred.
     pub fn as_meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
         let authored = |edit: &Edit| {
             matches!(

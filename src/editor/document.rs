@@ -1,4 +1,5 @@
-//! The only place a scene changes: edits as undo steps, drags as one step, results taken in place.
+//! The document: the only place where a scene changes. An edit is an undo step, a whole drag is one step, and a generated
+//! result goes into the step of its edit.
 
 use std::sync::Arc;
 
@@ -6,8 +7,8 @@ use scene::{Background, Scene, SceneRev, VoxelGrid};
 
 use scene::{Edit, EditError};
 
-/// A scene with its history. A step is a snapshot: copy-on-write makes it a few kilobytes.
-/// Deliberately absent: a way to get at the scene mutably.
+/// A scene with its history. Each step is a snapshot; copy-on-write makes that a few kilobytes.
+/// There is no mutable access to the scene, on purpose.
 #[derive(Debug)]
 pub struct Document {
     steps: Vec<Step>, // never empty; the first is the state that was opened
@@ -21,7 +22,7 @@ pub struct Document {
 struct Step {
     label: Label, // of the edit that led here
     scene: Arc<Scene>,
-    bytes: usize, // beside the step before; 0 for the first
+    bytes: usize, // not shared with the step before; 0 for the first
 }
 
 /// What an undo step is called.
@@ -57,7 +58,7 @@ impl Document {
         }
     }
 
-    /// What to draw and to generate from: the state shown, a drag in progress included.
+    /// The state that is shown, with the drag in progress: what is drawn and generated from.
     pub fn scene(&self) -> &Arc<Scene> {
         self.drag.as_ref().unwrap_or(&self.steps[self.at].scene)
     }
@@ -81,9 +82,8 @@ impl Document {
         Ok(())
     }
 
-    /// Shows the edit on top of the state in which the drag began; call it again with the whole
-    /// change so far whenever the pointer moves. The first call begins the drag. On error the
-    /// previous preview stays.
+    /// Shows the edit on top of the state in which the drag began. The first call begins the drag. Call it again whenever
+    /// the pointer moves, with the whole change since the beginning. On error the previous preview stays.
     pub fn preview(&mut self, edit: &Edit) -> Result<(), EditError> {
         self.preview_all(std::slice::from_ref(edit))
     }
@@ -202,9 +202,9 @@ impl Document {
         self.saved = SceneRev::fresh();
     }
 
-    /// Takes a generated occupancy of the state `rev` into that state, if it is the one shown: no new
-    /// undo step, the occupancy becomes the source of what comes, painted voxels keep what was
-    /// painted. Returns the state's new revision; later undo and redo visit the settled state.
+    /// Puts a generated occupancy into the step that is shown, if that is the state `rev` which it was generated for. It
+    /// becomes the occupancy and the source of the frame; painted voxels stay. No undo step is added. Returns the new
+    /// revision of the step.
     pub fn adopt(&mut self, rev: SceneRev, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
         let step = &mut self.steps[self.at];
         if self.drag.is_some() || step.scene.rev != rev {
@@ -219,7 +219,7 @@ impl Document {
         Ok(rev)
     }
 
-    /// The same as an undo step of its own: for a region that the user asked to inpaint.
+    /// Like [`Self::adopt`], but adds an undo step: for a region that the user asked to inpaint.
     pub fn adopt_as_step(
         &mut self,
         label: impl Into<Label>,
@@ -235,7 +235,7 @@ impl Document {
         Ok(self.settled_scene().rev)
     }
 
-    /// The same, with other things beside the roads, whose voxels are in the occupancy.
+    /// Like [`Self::adopt_as_step`], and replaces the things beside the roads, whose voxels are in the occupancy.
     pub fn adopt_with_things(
         &mut self,
         label: impl Into<Label>,
@@ -253,7 +253,7 @@ impl Document {
         Ok(self.settled_scene().rev)
     }
 
-    /// Shows a state that was kept elsewhere (a version), as an undo step; nothing if it is the one shown.
+    /// Shows a state that was kept elsewhere (a version), as an undo step. Does nothing if that state is shown already.
     pub fn restore(&mut self, label: impl Into<Label>, scene: &Scene) {
         self.drag = None;
         self.push(label.into(), scene.clone());
@@ -272,7 +272,7 @@ impl Document {
             scene.current = index;
             scene.rev = SceneRev::fresh();
             if was_saved {
-                self.saved = scene.rev; // looking is no change worth saving
+                self.saved = scene.rev; // showing another frame needs no saving
             }
         }
         true
@@ -299,7 +299,7 @@ impl Document {
         self.forget_oldest();
     }
 
-    /// Counts again what a step holds beside the one before it.
+    /// Counts again the bytes that a step does not share with the one before it.
     fn weigh(&mut self, index: usize) {
         if let Some([before, step]) = index.checked_sub(1).and_then(|i| self.steps.get_mut(i..=index)) {
             step.bytes = step.scene.bytes_beside(&before.scene);
@@ -310,7 +310,7 @@ impl Document {
         let (mut bytes, mut gone) = (self.history_bytes(), 0);
         let too_much = |bytes: usize, left: usize| bytes > self.limit_bytes || left > Self::MAX_STEPS;
         while gone + Self::LEAST_UNDO < self.at && too_much(bytes, self.steps.len() - gone) {
-            // The next one becomes the oldest, which counts nothing.
+            // The next step becomes the oldest one, whose bytes count as 0.
             bytes -= self.steps[gone + 1].bytes;
             gone += 1;
         }

@@ -1,5 +1,5 @@
-//! The rough effect of an edit on the voxels, shown in the same frame: boxes cleared or stamped,
-//! ground laid. Generation replaces it within moments. Painted voxels are locked and never touched.
+//! Makes an edit visible in the voxels at once: clears or stamps boxes, lays ground. Generation soon replaces this rough
+//! version. Painted voxels are locked and never touched.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +12,7 @@ use scene::{BevLayer, BevLayout, Class, Frame, GridSpec, SceneBox, VoxelGrid};
 const MARGIN_M: f64 = 0.6;
 /// Bins above the ground's own in which ground classes may lie in Occ3D labels: a kerb's second bin, a bumpy verge.
 const GROUND_BINS: usize = 2;
-/// How far a column without layout looks for ground to continue, columns.
+/// How far around a column without layout ground is searched for, columns.
 const MAX_REACH: usize = 24;
 
 /// Clears the voxels of a box that has just left `frame.boxes`, and lays ground where they stood.
@@ -49,8 +49,8 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
     refill_ground(&mut frame.occupancy, &frame.layout, &emptied);
 }
 
-/// What comes back where an object leaves: walls and plants that it was put on top of. Objects do
-/// not, their boxes may have gone since, and the ground follows the layout of today.
+/// The label that comes back where an object is removed: walls and plants of the source stay. Objects do not come back,
+/// because their boxes may be gone by now, nor does ground, which follows the present layout.
 fn background(source_label: u8) -> u8 {
     match Class::from_id(source_label) {
         Some(Class::Others | Class::Manmade | Class::Vegetation) => source_label,
@@ -90,7 +90,7 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
         if column[bin] != Class::FREE && !is_ground(column[bin]) {
             continue;
         }
-        // A kerb's second bin goes, or a road painted over a sidewalk would keep its rim.
+        // The second bin of a kerb is cleared too: a road painted over a sidewalk would keep its rim otherwise.
         for z in bin + 1..(bin + 1 + GROUND_BINS).min(GridSpec::NZ) {
             if is_ground(column[z]) && painted[z] == NOT_PAINTED {
                 column[z] = Class::FREE;
@@ -108,7 +108,7 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
 /// Lays ground in columns that were emptied: what the layout says, else what most of the
 /// nearest ground columns around have, else terrain.
 pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &[[usize; 2]]) {
-    // Looked up before any is laid, so that the order of the columns does not matter.
+    // First all classes are found, then the ground is laid, so that the order of the columns does not matter.
     let filled: Vec<u8> = emptied
         .iter()
         .map(|&[x, y]| match ground_class(layout.cell(x, y)) {

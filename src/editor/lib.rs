@@ -1,4 +1,4 @@
-//! How a scene changes: document, undo, picking, checks, and the arithmetic of the tools.
+//! How a scene changes: the document with undo, applying edits, tools, picking, and quality checks.
 
 pub mod apply;
 pub mod arrange;

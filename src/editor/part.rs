@@ -1,4 +1,4 @@
-//! Part of a result: some of what differs between two states of the voxels is taken, the rest stays as it was.
+//! Accepts a part of a result: takes some of the voxels that differ between two states, and leaves the rest as it was.
 
 use scene::{Class, GridSpec, VoxelGrid};
 
@@ -33,8 +33,8 @@ impl Part {
     }
 }
 
-/// Voxels that are of another class in `after`, or come or go, by the class that comes or (for what becomes free) goes;
-/// most first.
+/// How many voxels differ in `after`, by class, most first. A voxel counts for its new class, or for its old one if it
+/// becomes free.
 pub fn changed_by_class(before: &VoxelGrid, after: &VoxelGrid) -> Vec<(Class, usize)> {
     let mut counts = [0usize; 256];
     each_different(before, after, |_, _, old, new| {

@@ -1,4 +1,5 @@
-//! How a scene travels: what can be read is a table ([`import`]), and so is what can be written ([`export`]).
+//! Reads and writes files: `.loom` projects ([`loom`]), a table of formats that can be read ([`import`]) and a table of
+//! formats that can be written ([`export`]).
 
 pub mod atomic;
 pub mod box_list;

@@ -1,4 +1,4 @@
-//! What a scene is: plain data. No window, GPU, network, thread or file is known here.
+//! What a scene is, as plain data. This room knows no window, graphics card, network, thread or file.
 
 pub mod appearance;
 pub mod background;
@@ -56,21 +56,21 @@ pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, Persp
 pub use shape::Shape;
 pub use waiver::Waiver;
 
-/// Names one state of a scene: two scenes with the same `SceneRev` are equal.
-/// It travels in the snapshot, so undo brings it back. Compare for equality only.
+/// Identifies one state of a scene: two scenes with the same `SceneRev` are equal. It is part of the scene, so undo brings
+/// it back. Compare it for equality only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SceneRev(u64);
 
 impl SceneRev {
-    /// A revision that no scene of this process carries yet.
+    /// A revision that no scene of this process has yet.
     pub fn fresh() -> Self {
         static NEXT: AtomicU64 = AtomicU64::new(1);
         Self(NEXT.fetch_add(1, Ordering::Relaxed))
     }
 }
 
-/// The state that a frame's occupancy was last generated, imported or accepted in. What differs
-/// between it and the frame is what the next generation must inpaint; all else stays bit-identical.
+/// The state in which a frame's occupancy was last generated, imported or accepted. The next generation inpaints what
+/// differs between it and the frame; all else stays bit-identical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceFrame {
     /// Map layers and polylines the occupancy belongs to.
@@ -92,13 +92,14 @@ pub struct Frame {
     pub boxes: BTreeMap<BoxId, SceneBox>,
     /// Map layers and the polylines they come from.
     pub layout: BevLayout,
-    /// What is drawn and sensed now: the source with the user's immediate edits, or the last result.
+    /// The voxels that are shown and that the sensors see: the source with the rough version of the user's edits, or the
+    /// last result.
     pub occupancy: VoxelGrid,
     /// Voxels the user painted (or removed, painted as free): locked, generation keeps them.
     pub painted: VoxelPaint,
-    /// What of layout and boxes is a guess.
+    /// Which parts of layout and boxes are guesses of an import.
     pub inferred: Inferred,
-    /// Findings of the checks that the user lives with.
+    /// Findings of the checks that the user accepted.
     pub waivers: Arc<Vec<Waiver>>,
     /// See [`SourceFrame`].
     pub source: Arc<SourceFrame>,

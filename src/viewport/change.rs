@@ -1,5 +1,5 @@
-//! What of a picture has to be drawn again after a change of the scene: the rectangle that the changed part of space
-//! covers. The cost of an edit follows its size, also where the processor draws.
+//! Which part of a picture has to be drawn again after a change of the scene: the rectangle that the changed part of space
+//! covers. So a small edit is cheap, even if the processor draws.
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -50,14 +50,14 @@ pub(super) enum Change {
     /// Nothing.
     #[default]
     None,
-    /// What lies in these parts, and what is drawn around them up to so many pixels wide.
+    /// These parts of space, and a margin of so many pixels around them in the picture.
     Parts(Vec<(Part, f64)>),
     /// Anything.
     All,
 }
 
 impl Change {
-    /// Of one part with what is drawn around it, pixels.
+    /// One part, with a margin in pixels.
     pub fn part(part: Part, around_px: f64) -> Self {
         Self::Parts(vec![(part, around_px)])
     }
@@ -79,11 +79,11 @@ impl Change {
 /// Pixels of a picture: left, top, width, height.
 pub(super) type PixelRect = [u32; 4];
 
-/// Most of the picture is touched, or it cannot be told what is.
+/// Most of the picture is touched, or the touched part is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Whole;
 
-/// Share of a picture from which on it is drawn as a whole.
+/// If a larger share of a picture than this is touched, all of it is drawn.
 const MOST: f64 = 0.6;
 
 /// The pixels that a change touches in a picture of `size`, whose camera maps the ego frame by `clip_from_ego`. [`Whole`] if
@@ -120,7 +120,7 @@ pub(super) fn touched(
                 seen.1[axis] = seen.1[axis].max(px + around_px);
             }
         }
-        // What is beside the picture must not make the rectangle wider.
+        // Parts outside the picture must not make the rectangle larger.
         if seen.1[0] < 0.0 || seen.1[1] < 0.0 || seen.0[0] > w || seen.0[1] > h {
             continue;
         }

@@ -29,19 +29,19 @@ pub(super) fn all() -> Vec<Box<dyn Drawable>> {
 /// When something is drawn. A drawable may draw in several layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layer {
-    /// Before all, where only a part of a picture is drawn again.
+    /// First of all, if only a part of a picture is drawn again: clears that part.
     Erase,
-    /// What hides what is behind it.
+    /// Opaque things.
     Opaque,
-    /// What nothing opaque covers.
+    /// The background, where nothing opaque is.
     Backdrop,
     /// The plane on the ground.
     Ground,
-    /// What shows through opaque things, faintly.
+    /// Lines behind opaque things, faintly.
     Covered,
     /// Translucent rectangles.
     Fills,
-    /// Lines in sight.
+    /// Lines in front.
     Lines,
 }
 
@@ -66,7 +66,7 @@ pub(super) struct Gpu<'a> {
     pub shared: &'a Shared,
 }
 
-/// What a picture shows, with what several drawables would compute of it.
+/// The scene of a picture, and values of it that several drawables need.
 #[derive(Clone, Copy)]
 pub(super) struct Shown<'a> {
     pub scene: &'a ViewScene<'a>,
@@ -80,7 +80,7 @@ pub(super) struct Shown<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub camera: &'a ViewCamera,
-    /// Maps the ego frame to -1 to 1 of what is drawn, with room for the discs of returns.
+    /// Maps the ego frame to clip space (-1 to 1) of the part that is drawn, with room for the discs of LiDAR returns.
     pub clip: DMat4,
     pub uniforms: &'a FrameUniforms,
     pub options: &'a ViewOptions,
@@ -96,11 +96,11 @@ pub(super) trait Drawable: Debug + Send + Sync {
     /// Its name, that of its file and of its shader.
     fn name(&self) -> &'static str;
 
-    /// Takes over what is shown, and uploads what differs from the last time; what of the picture changes by that.
-    /// Nothing that is the same costs more than a comparison.
+    /// Takes over the scene and uploads what differs from the last one. Returns which part of the picture changes. What did
+    /// not change must cost no more than a comparison.
     fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change;
 
-    /// Makes its pipelines for so many samples per pixel, once.
+    /// Makes its pipelines for a number of samples per pixel, if they are not there yet.
     fn build(&mut self, gpu: Gpu<'_>, samples: u32);
 
     /// Draws its part of a layer.
@@ -120,12 +120,12 @@ pub(super) trait Drawable: Debug + Send + Sync {
 pub(super) struct Pipelines([Option<wgpu::RenderPipeline>; 2]);
 
 impl Pipelines {
-    /// Makes that for so many samples, unless it is there.
+    /// Makes the pipeline for a number of samples, if it is not there yet.
     pub fn build(&mut self, samples: u32, make: impl FnOnce() -> wgpu::RenderPipeline) {
         self.0[usize::from(samples > 1)].get_or_insert_with(make);
     }
 
-    /// Sets that for the view's samples; false if it was never made.
+    /// Sets the pipeline for the view's samples; false if it was never made.
     pub fn set(&self, pass: &mut wgpu::RenderPass<'_>, view: &View<'_>) -> bool {
         match &self.0[usize::from(view.samples > 1)] {
             Some(pipeline) => {

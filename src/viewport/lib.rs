@@ -1,4 +1,4 @@
-//! How a scene is drawn: wgpu, into an own colour and depth target, in the window and without one.
+//! Draws a scene with wgpu into its own colour and depth target, in the window and without one.
 //!
 //! [`Viewport::render`] draws only if something changed; [`Viewport::color_view`] is what the window
 //! shows (an egui native texture) and [`Viewport::render_to_image`] what a screenshot saves. All

@@ -1,4 +1,4 @@
-//! What one picture shows and how: borrowed by whoever draws it.
+//! What one picture shows, and how.
 
 use super::GROUND_TOP_M;
 use scene::{BoxId, LidarSweep, SceneBox, SensorRig, VoxelGrid};
@@ -30,7 +30,7 @@ impl Background {
     };
 }
 
-/// Where the layout shows as a plane on the ground.
+/// Where the layout is drawn as a plane on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayoutPlane {
     /// Nowhere.
@@ -52,7 +52,7 @@ pub struct ViewOptions {
     pub clip_above_m: Option<f64>,
     /// Thin lines between voxels.
     pub voxel_edges: bool,
-    /// Sun shadows and shading by the sky that is in sight.
+    /// Sun shadows, and shading by how much of the sky a place sees.
     pub shadows: bool,
     /// Road markings of the layout on ground voxels.
     pub markings: bool,
@@ -62,9 +62,9 @@ pub struct ViewOptions {
     pub layout_opacity: f32,
     /// Boxes as wire frames.
     pub boxes: bool,
-    /// How much lower boxes, ego vehicle and cameras are drawn than they are, m. Labels put the ground
-    /// 0.6 m below the physical one ([`GROUND_TOP_M`]), so this makes things stand on the drawn road;
-    /// whoever picks boxes in the view adds it to the ray's z first. 0 draws them where they are.
+    /// How much lower than they are boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m below the
+    /// physical one ([`GROUND_TOP_M`]), so with this things stand on the drawn road. Code that picks boxes in the view adds
+    /// it to the ray's z first. 0 draws them where they are.
     pub drop_m: f64,
     /// LiDAR returns.
     pub lidar: bool,

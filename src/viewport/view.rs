@@ -20,7 +20,7 @@ pub struct Viewport {
     drawn_rect: PixelRect,
 }
 
-/// What the picture was drawn from, as far as it is not in the drawables.
+/// The part of the input of the last picture that no drawable keeps.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
     uniforms: FrameUniforms,
@@ -94,7 +94,7 @@ impl Viewport {
         true
     }
 
-    /// What of the picture was drawn last, pixels: left, top, width, height of all of it or of what a change touched.
+    /// The rectangle of the picture that was drawn last, pixels: left, top, width, height.
     pub fn drawn_rect(&self) -> [u32; 4] {
         self.drawn_rect
     }
@@ -137,12 +137,12 @@ impl Viewport {
         self.draw(device, queue, target, (camera, &uniforms, scene.options), None);
     }
 
-    /// Makes the next [`Viewport::render`] draw in any case.
+    /// Makes the next [`Viewport::render`] draw even if nothing changed.
     pub(super) fn forget(&mut self) {
         self.drawn = None;
     }
 
-    /// Brings the drawables up to date; what of the picture that changes.
+    /// Brings the drawables up to date. Returns which part of the picture changes by that.
     fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &ViewScene<'_>) -> Change {
         let (marks, mut change) = (Marks::of(scene), Change::None);
         let gpu = Gpu {

@@ -54,7 +54,7 @@ impl Pane for Checks {
     }
 }
 
-/// What the panel shows.
+/// What the pane shows.
 pub struct ChecksInput<'a> {
     /// The newest findings, errors first; `None` before the first check is done.
     pub findings: Option<&'a [Finding]>,
@@ -70,7 +70,7 @@ pub struct ChecksInput<'a> {
 const WAIVED_TITLE: f32 = 30.0;
 const WAIVED_LIST: f32 = 94.0;
 
-/// Draws the panel. What the finding means that is under the pointer, else that was clicked last.
+/// Draws the pane. Returns the marks of the finding under the pointer, else of the one that was clicked last.
 pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) -> Option<FindingMarks> {
     let mut pointed = Pointed {
         clicked: ui.data(|d| d.get_temp(clicked_id())).unwrap_or_default(),

@@ -1,4 +1,4 @@
-//! The right panel: the chosen box in numbers, the list of boxes.
+//! The right pane: the chosen box in numbers, the list of boxes.
 
 use egui::{DragValue, Ui};
 use glam::DVec3;
@@ -47,7 +47,7 @@ impl Pane for Objects {
     }
 }
 
-/// Draws the panel.
+/// Draws the pane.
 pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, commands: &mut Vec<Command>) {
     let scene = document.scene();
     let frame = scene.frame();

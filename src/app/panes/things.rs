@@ -5,7 +5,7 @@ use egui::{Response, Ui};
 use crate::command::{Command, ViewCommand};
 use crate::fields::{caption, number};
 use crate::tools::ToolCommand;
-use crate::tools::panel::list;
+use crate::tools::option_rows::list;
 use crate::tools::things::building::{FACADES, ROOFS};
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, words};

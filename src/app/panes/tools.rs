@@ -1,4 +1,4 @@
-//! The left panel: options of the tool in hand, and the layers of the bird's-eye view.
+//! The left pane: options of the tool in hand, and the layers of the bird's-eye view.
 
 use egui::accesskit::Role;
 use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
@@ -11,7 +11,7 @@ use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::{UiState, Underlay};
 use crate::tools::things::ThingCommand;
-use crate::tools::{ToolCommand, panel};
+use crate::tools::{ToolCommand, option_rows};
 use editor::tools::brush;
 use scene::{BevLayer, BevLayout, Frame, GridSpec};
 use widgets::hint::caption;
@@ -48,7 +48,7 @@ impl Pane for Tools {
     }
 }
 
-/// Draws the panel.
+/// Draws the pane.
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         options(ui, frame, state, commands);
@@ -113,7 +113,7 @@ fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
 fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     ui.horizontal(|ui| {
         let mut on = value.is_some();
-        // A column of its own width: what a row asks for beyond the panel's would make the panel grow.
+        // A column of its own width: what a row asks for beyond the pane's would make the pane grow.
         let (rect, _) = ui.allocate_exact_size(vec2(104.0, theme::ROW), Sense::hover());
         let left = egui::Layout::left_to_right(egui::Align::Center);
         let mut column = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(left));
@@ -138,7 +138,7 @@ fn options(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<C
     state.region_m2 = state.tools.region.count() as f64 * REGION_CELL_M2;
     let id = state.tool;
     let settings = state.toolbox.tool(id).options(state);
-    for (setting, value) in panel::show(ui, &settings) {
+    for (setting, value) in option_rows::show(ui, &settings) {
         let UiState { toolbox, tools, .. } = state;
         let acts = toolbox.tool_mut(id).set(&mut tools.hand, frame, setting, value);
         carry_out(acts, commands);

@@ -41,7 +41,7 @@ impl Pane for Trade {
     }
 }
 
-/// Draws the panel. `params` are those of the next edit.
+/// Draws the pane. `params` are those of the next edit.
 pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical()
         .id_salt("trade")

@@ -1,5 +1,5 @@
-//! The application: owns document, worker, sensing and views; draws them, then carries out what the
-//! user asked for.
+//! The application. It owns the document, the worker, the sensors' threads and the views. In each frame it draws the
+//! window, then carries out the commands that the user gave in it.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -48,7 +48,7 @@ pub struct AppConfig {
     pub params: GenParams,
     /// How to generate everything.
     pub full_params: GenParams,
-    /// Send a job that edits nothing when a scene was opened, so that the pipeline can get ready.
+    /// When a scene was opened, send a job that edits nothing, so that the pipeline gets ready for the first edit.
     pub warm_up: bool,
     /// Opens files.
     pub open: OpenScene,
@@ -56,13 +56,13 @@ pub struct AppConfig {
     pub save: SaveScene,
     /// Makes new scenes.
     pub new_scene: NewScene,
-    /// Ask the system for file dialogs; false: only the path field.
+    /// Use the system's file dialogs; false: only a field for the path.
     pub native_dialogs: bool,
-    /// Where settings are kept; none: standard ones, kept nowhere.
+    /// File of the settings; none: standard settings, not saved.
     pub settings_file: Option<PathBuf>,
 }
 
-/// [`GenWorker`] wants a type; this is one for whatever the configuration makes.
+/// Any pipeline that the configuration makes, as one type for [`GenWorker`].
 struct AnyPipeline(Box<dyn Pipeline>);
 
 impl Pipeline for AnyPipeline {
@@ -78,14 +78,14 @@ pub struct SceneThreads {
     pub checking: Checking,
 }
 
-/// Windows that lie over the panes and keep something while they are open.
+/// Windows over the panes that have a state while they are open.
 #[derive(Default)]
 pub(crate) struct Overlays {
     pub palette: Palette,
     pub shortcuts: Shortcuts,
 }
 
-/// What frames need: the clock, how fast they are, the window's title.
+/// State for drawing frames: the clock, the time they took, the window's title.
 pub struct Frames {
     /// How fast the window is.
     pub perf: Perf,
@@ -96,13 +96,13 @@ pub struct Frames {
 
 /// The window's contents. Works without eframe and without a graphics device, for tests.
 pub struct SceneloomApp {
-    /// What is edited.
+    /// The scene with its history.
     pub document: Document,
     /// What the window shows and holds in hand.
     pub state: UiState,
     /// Messages.
     pub toasts: Toasts,
-    /// The scene's file, and what is read and written.
+    /// The scene's file, and reading and writing of files.
     pub files: Files,
     /// The worker and its results.
     pub generation: Generation,
@@ -119,7 +119,7 @@ pub struct SceneloomApp {
 }
 
 impl SceneloomApp {
-    /// Starts worker and sensing. Errors if the system gives no thread.
+    /// Starts the threads. Errors if the system gives none.
     pub fn new(
         config: AppConfig,
         render_state: Option<egui_wgpu::RenderState>,
@@ -143,7 +143,7 @@ impl SceneloomApp {
             start_open: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
             ..UiState::default()
         };
-        // On a software rasteriser a frame costs the time of a step of generation: fewer of them then.
+        // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn then.
         let view3d = View3d::new(render_state.clone());
         let mut versions = Versions::default();
         versions.push("As opened".into(), String::new(), Arc::new(config.scene.clone()));
@@ -155,7 +155,7 @@ impl SceneloomApp {
         let mut build = config.build_pipeline;
         let worker = GenWorker::spawn(move || build().map(AnyPipeline), Arc::new(wake.clone()))?;
         let tuning = Tuning::new(config.settings_file.as_deref());
-        // Whoever starts the window without settings names its parameters.
+        // Without a file of settings the configuration's parameters are used.
         let quality = tuning
             .presets
             .named(&settings.quality)
@@ -225,7 +225,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Everything that happens without drawing: news of the worker, of sensing, of files.
+    /// Does everything but drawing: takes updates of the worker, the sensors and the file threads.
     pub fn update(&mut self, ctx: &egui::Context) {
         self.threads.sensing.drain();
         if let Some(problem) = self.threads.sensing.take_problem() {
@@ -249,7 +249,7 @@ impl SceneloomApp {
         if let Some((purpose, path)) = self.files.dialogs.poll() {
             self.file_chosen(purpose, path, ctx);
         }
-        // The first picture comes first.
+        // The first picture is drawn before anything else starts.
         if self.frames.passes > 1 {
             self.schedule(ctx);
         }
@@ -260,7 +260,7 @@ impl SceneloomApp {
         self.keep_settings(ctx);
     }
 
-    /// Puts changed settings to use, and writes them two seconds later at most.
+    /// Applies changed settings, and writes them within two seconds.
     fn keep_settings(&mut self, ctx: &egui::Context) {
         if self.preferences.looks_changed() {
             theme::apply(ctx, self.preferences.settings.theme);
@@ -315,7 +315,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
 
 impl eframe::App for SceneloomApp {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        // A frame that is laid out twice comes here twice; it is one frame.
+        // egui may lay a frame out twice and call this twice; it counts as one frame.
         let first = ctx.current_pass_index() == 0;
         if first {
             self.frame_begins(frame.info().cpu_usage);

@@ -9,7 +9,7 @@ use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
 use super::toasts::Level;
 use crate::export::{ExportOptions, ExportProgress, Format, export_all};
-use crate::windows::export::{Asked, ExportInput, ExportPanel, export_window};
+use crate::windows::export::{Asked, ExportDialog, ExportInput, export_window};
 use editor::checks::{Severity, waive};
 
 type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
@@ -18,7 +18,7 @@ type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 #[derive(Default)]
 pub struct Exporting {
     /// What the dialog shows; `None` while it is closed.
-    pub panel: Option<ExportPanel>,
+    pub dialog: Option<ExportDialog>,
     running: Option<Running>,
 }
 
@@ -31,15 +31,15 @@ struct Running {
 impl SceneloomApp {
     /// Opens the dialog, or closes it.
     pub(crate) fn toggle_export(&mut self) {
-        self.files.exporting.panel = match self.files.exporting.panel.take() {
+        self.files.exporting.dialog = match self.files.exporting.dialog.take() {
             Some(_) => None,
-            None => Some(ExportPanel::new(&self.suggested("loom"))),
+            None => Some(ExportDialog::new(&self.suggested("loom"))),
         };
     }
 
     /// Draws the dialog and starts what it asks for.
     pub(crate) fn export_dialog(&mut self, ui: &egui::Ui) {
-        let Some(mut panel) = self.files.exporting.panel.take() else {
+        let Some(mut dialog) = self.files.exporting.dialog.take() else {
             return;
         };
         let findings = self.threads.checking.findings();
@@ -52,17 +52,17 @@ impl SceneloomApp {
             }),
         };
         let mut open = true;
-        let wanted = export_window(ui, &input, &mut panel, &mut open);
-        let path = PathBuf::from(panel.path.trim());
+        let wanted = export_window(ui, &input, &mut dialog, &mut open);
+        let path = PathBuf::from(dialog.path.trim());
         match wanted {
             Some(Asked::Write(formats)) => {
-                let mut options = panel.options.clone();
+                let mut options = dialog.options.clone();
                 options.shot.camera = self.views.view3d.camera;
-                panel.written.clone_from(&panel.path);
+                dialog.written.clone_from(&dialog.path);
                 self.start_export(formats, options, path, ui.ctx());
             }
             Some(Asked::Browse) => {
-                let purpose = match panel.fills_a_folder() {
+                let purpose = match dialog.fills_a_folder() {
                     true => Purpose::ExportFolder,
                     false => Purpose::ExportFile,
                 };
@@ -71,7 +71,7 @@ impl SceneloomApp {
             Some(Asked::Checks) => self.views.dock.open(crate::panes::id::PaneId::CHECKS),
             None => {}
         }
-        self.files.exporting.panel = open.then_some(panel);
+        self.files.exporting.dialog = open.then_some(dialog);
     }
 
     pub(super) fn start_export(

@@ -139,8 +139,8 @@ impl SceneloomApp {
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
             Purpose::ExportFile | Purpose::ExportFolder => {
-                if let Some(panel) = &mut self.files.exporting.panel {
-                    panel.path = path.display().to_string();
+                if let Some(dialog) = &mut self.files.exporting.dialog {
+                    dialog.path = path.display().to_string();
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! The worker, when it is asked, and what came of it.
+//! The worker, the scheduler that decides when it gets a job, and its results.
 
 use std::sync::Arc;
 
@@ -21,13 +21,13 @@ pub struct Generation {
     pub live: Live,
     /// The quality slider.
     pub tuning: Tuning,
-    /// Of the last generation.
+    /// Report of the last generation.
     pub receipt: Option<Receipt>,
-    /// What was generated so far.
+    /// The results so far.
     pub versions: Versions,
-    /// What came during a drag, and the label if it is a step.
+    /// A result that came during a drag, and its label if it becomes its own step.
     pub(crate) finished: Option<(Arc<GenResult>, Option<&'static str>)>,
-    /// What a running generation shows, and of which state.
+    /// Preview of a running generation, and its state.
     pub(crate) preview: Option<(SceneRev, Arc<Scene>)>,
     /// The state that a sentence made, and the one before.
     pub(crate) words: Option<(SceneRev, Arc<Scene>)>,
@@ -41,7 +41,7 @@ pub struct Generation {
 }
 
 impl Generation {
-    /// With nothing asked yet.
+    /// No job submitted yet.
     pub fn new(worker: GenWorker, live: Live, tuning: Tuning, versions: Versions) -> Self {
         Self {
             worker,
@@ -60,7 +60,7 @@ impl Generation {
         }
     }
 
-    /// News of the worker, in order; those of jobs that another has replaced are left out.
+    /// Updates of the worker, in order, without those of replaced jobs.
     pub(crate) fn news(&mut self) -> Vec<JobEvent> {
         let events: Vec<JobEvent> = self.worker.updates().try_iter().collect();
         events
@@ -87,7 +87,7 @@ impl Generation {
         true
     }
 
-    /// Lets go of everything that belongs to the scene that was open.
+    /// Forgets everything that belongs to the scene that was open.
     pub(crate) fn forget_scene(&mut self) {
         self.worker.cancel();
         self.live.reset();
@@ -95,7 +95,7 @@ impl Generation {
         self.tuning.reset();
     }
 
-    /// True while a whole generation of that state shows what comes, so that it can be stopped with that.
+    /// True while a whole generation of that state shows a preview, which the user may keep as the result.
     pub(crate) fn shows_what_comes(&self, rev: SceneRev) -> bool {
         let whole = |r: &Running| r.purpose == Purpose::Full && r.key.rev == rev && !r.cancelled;
         self.live.running.as_ref().is_some_and(whole)

@@ -1,4 +1,5 @@
-//! A result that the user asked for, beside what was there before: to be accepted, declined, or accepted in part.
+//! A result that the user asked for waits for a verdict: accept, decline, or accept a part. Meanwhile it is shown beside the
+//! state before.
 
 use std::sync::Arc;
 
@@ -34,7 +35,7 @@ pub enum Again {
 }
 
 impl Again {
-    /// What fixed all draws.
+    /// The seed.
     pub fn seed(&self) -> u64 {
         match self {
             Self::Generate(params) => params.seed,
@@ -43,21 +44,21 @@ impl Again {
     }
 }
 
-/// A result that waits for a verdict. Whoever goes on without one has accepted it.
+/// A result that waits for a verdict. A user who edits on without one has accepted it.
 pub struct Staged {
-    /// The state that shows it.
+    /// The state with the result.
     pub rev: SceneRev,
     /// The state before, one undo step back.
     pub before: Arc<Scene>,
-    /// How to make another one; none where another seed would make the same.
+    /// How to make it again with another seed; none if that would give the same.
     pub again: Option<Again>,
     changed: Vec<(Class, usize)>,
-    compare: CompareMode, // before it was shown beside the old
+    compare: CompareMode, // the user's, before both states were shown
 }
 
 impl SceneloomApp {
-    /// Shows the present state, one step after `before`, as a result that waits. If another one can be made in its place,
-    /// both states are shown side by side.
+    /// Makes the present state, one step after `before`, a result that waits. If another seed can give another result, both
+    /// states are shown side by side.
     pub(crate) fn stage(&mut self, before: Arc<Scene>, again: Option<Again>) {
         self.end_staging();
         let after = self.document.settled_scene();
@@ -83,13 +84,13 @@ impl SceneloomApp {
         self.generation.staged = Some(staged);
     }
 
-    /// The result that waits, if it is still what is shown.
+    /// The result that waits, if the document still shows it.
     pub fn staged(&self) -> Option<&Staged> {
         let rev = self.document.settled_scene().rev;
         self.generation.staged.as_ref().filter(|s| s.rev == rev)
     }
 
-    /// Lets go of a result that another state has replaced.
+    /// Forgets the result if another state is shown now.
     pub(crate) fn tidy_staging(&mut self) {
         if self.generation.staged.is_some() && self.staged().is_none() {
             self.end_staging();
@@ -98,7 +99,7 @@ impl SceneloomApp {
 
     fn end_staging(&mut self) -> Option<Staged> {
         let staged = self.generation.staged.take()?;
-        // A way to compare that the user chose meanwhile stays.
+        // If the user chose another way to compare meanwhile, that stays.
         if staged.again.is_some() && self.state.compare == CompareMode::Wipe {
             self.state.compare = staged.compare;
         }
@@ -143,7 +144,8 @@ impl SceneloomApp {
         }
     }
 
-    /// True for a scene of which nothing is known beside the roads: what networks invent alone is ragged and follows the seed.
+    /// True for a scene without anything beside the roads. There scenery is drawn first, because what the networks invent
+    /// alone is ragged.
     pub(crate) fn draws_scenery_first(&self) -> bool {
         let scene = self.document.settled_scene();
         scene.background.is_empty() && !scene.frame().inferred.background && !self.state.tools.things.locked
@@ -163,7 +165,7 @@ impl SceneloomApp {
         self.submit(scene, params);
     }
 
-    /// Takes scenery back that was drawn for a generation that did not come to an end.
+    /// Removes scenery that was drawn for a generation that did not finish.
     pub(crate) fn take_scenery_back(&mut self) {
         if let Some((rev, _)) = self.generation.drawn_first.take()
             && rev == self.document.settled_scene().rev
@@ -180,7 +182,7 @@ impl SceneloomApp {
         self.state.tools.scenery_draws += 1;
         let mut seed = self.document.settled_scene().seed;
         seed = seed.wrapping_add(self.state.tools.scenery_draws);
-        // Drawn again, it takes the place of what waits.
+        // A result that waits is replaced.
         if let Some(Again::Scenery(waits)) = self.staged().and_then(|s| s.again.clone()) {
             seed = waits.seed.wrapping_add(1);
             self.step_back();
@@ -197,7 +199,7 @@ impl SceneloomApp {
         self.put_scenery(wish, true);
     }
 
-    /// What draws scenery; none if that failed, which is said.
+    /// The network that draws scenery; none if it cannot be loaded, of which the user is told.
     fn scenery_edits(&mut self, wish: &SceneryWish, scene: &Scene) -> Option<Vec<Edit>> {
         let now_s = self.now_s();
         let failed = |e| {
@@ -207,7 +209,7 @@ impl SceneloomApp {
         wish.edits(scene).map_err(failed).ok()
     }
 
-    /// The state before, which is shown again.
+    /// Shows the state before again, and returns it.
     fn step_back(&mut self) -> Option<Arc<Scene>> {
         let staged = self.end_staging()?;
         self.generation.worker.cancel();
@@ -218,7 +220,7 @@ impl SceneloomApp {
 
     fn take_part(&mut self, taken: Taken) {
         if let Some(Again::Scenery(wish)) = self.staged().and_then(|s| s.again.clone()) {
-            // Things are whole or not there.
+            // A thing is taken whole or not at all.
             let region = self.state.tools.region;
             if self.step_back().is_some() {
                 self.put_scenery(SceneryWish { region, ..*wish }, false);

@@ -87,7 +87,7 @@ pub enum Measuring {
     Error,
 }
 
-/// State of the slider and its panel.
+/// State of the slider and its pane.
 pub struct Tuning {
     /// The presets, with this machine's times if they were measured.
     pub presets: Presets,

@@ -1,4 +1,4 @@
-//! News: what is asked of the worker, and what comes from it and from files.
+//! Submits jobs to the worker, and takes the updates of the worker and of the file threads.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -36,7 +36,7 @@ impl SceneloomApp {
             Advice::Cancel => self.generation.worker.cancel(),
             Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
         }
-        // Small pictures while they will not last; the large ones cost as much as the generation itself.
+        // Small pictures while the scene still changes: large ones take as long as the generation itself.
         let for_a_moment = self.document.is_dragging() || self.generation.live.running.is_some();
         let wanted = Wanted::of(&self.state);
         self.threads
@@ -85,7 +85,7 @@ impl SceneloomApp {
                         );
                         return;
                     }
-                    // What is inpainted by hand says nothing about the time of an edit.
+                    // A region that the user asked for says nothing about how long an edit takes.
                     if !full && running.key.params.strength == 0.0 {
                         self.generation
                             .live
@@ -144,7 +144,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Takes a result into the document, if it still shows the state it was made for.
+    /// Puts a result into the document, if the document still shows the state that it was made for.
     pub(crate) fn adopt(&mut self, result: &GenResult, own_step: Option<&'static str>) {
         self.generation.preview = None;
         let before = self.document.settled_scene().clone();
@@ -154,7 +154,7 @@ impl SceneloomApp {
             .take()
             .filter(|(rev, _)| *rev == result.rev());
         let own_step_label = own_step.filter(|_| drawn.is_none());
-        // A region that the user asked to inpaint is a step of its own; what follows an edit belongs to that edit.
+        // A region that the user asked to inpaint is its own step; the result of an edit goes into the edit's step.
         let adopted = match own_step_label {
             Some(label) => self
                 .document
@@ -200,7 +200,7 @@ impl SceneloomApp {
         }
     }
 
-    /// Takes what a whole generation shows now as its result.
+    /// Ends a whole generation with its last preview as the result.
     pub(crate) fn stop_here(&mut self) {
         let before = self.document.settled_scene().clone();
         let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.rev;

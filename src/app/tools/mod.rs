@@ -1,8 +1,8 @@
-//! What the window adds to the tools of the editor: what a user can ask beside the pointer, their options as a panel, and
-//! what they hold that the editor does not know. Nothing here knows the canvases, the panels or the application.
+//! What the window adds to the tools of the editor: what a user can ask beside the pointer, their options as rows of controls, and
+//! what they hold that the editor does not know. Nothing here knows the canvases, the panes or the application.
 
 pub mod command;
-pub mod panel;
+pub mod option_rows;
 mod state;
 pub mod things;
 

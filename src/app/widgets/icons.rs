@@ -184,7 +184,7 @@ pub fn segments<T: Copy + PartialEq>(ui: &mut Ui, chosen: &mut T, choices: &[(T,
     *chosen != before
 }
 
-/// Title of a section of a panel.
+/// Title of a section of a pane.
 pub fn section(ui: &mut Ui, title: &str) {
     ui.add_space(6.0);
     ui.label(

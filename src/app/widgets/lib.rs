@@ -1,4 +1,4 @@
-//! The window's look: colours and fonts, icons, small controls, and how it is drawn where the processor draws.
+//! Theme, fonts, icons and small controls of the window, and drawing of the window by a software rasteriser.
 
 pub mod chip;
 mod damage;

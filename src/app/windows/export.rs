@@ -32,7 +32,7 @@ pub enum Asked {
 
 /// What the user has chosen so far.
 #[derive(Clone, Debug)]
-pub struct ExportPanel {
+pub struct ExportDialog {
     /// What is exported; none: everything, into one folder.
     pub format: Option<Format>,
     /// How.
@@ -45,7 +45,7 @@ pub struct ExportPanel {
     stem: String,
 }
 
-impl ExportPanel {
+impl ExportDialog {
     /// With paths beside the scene's file.
     pub fn new(scene_file: &Path) -> Self {
         let stem = scene_file
@@ -53,7 +53,7 @@ impl ExportPanel {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        let mut panel = Self {
+        let mut dialog = Self {
             format: formats::export::all().first().copied(),
             written: String::new(),
             options: ExportOptions::default(),
@@ -61,8 +61,8 @@ impl ExportPanel {
             folder: scene_file.parent().unwrap_or(Path::new("")).to_path_buf(),
             stem,
         };
-        panel.path = panel.suggested();
-        panel
+        dialog.path = dialog.suggested();
+        dialog
     }
 
     /// A place for the chosen format: a file, or a folder for the formats that fill one.
@@ -85,7 +85,7 @@ impl ExportPanel {
 pub fn export_window(
     ui: &Ui,
     input: &ExportInput<'_>,
-    panel: &mut ExportPanel,
+    dialog: &mut ExportDialog,
     open: &mut bool,
 ) -> Option<Asked> {
     let mut asked = None;
@@ -97,21 +97,21 @@ pub fn export_window(
         .resizable(false)
         .show(ui.ctx(), |ui| {
             ui.set_width(500.0);
-            kinds(ui, panel);
+            kinds(ui, dialog);
             ui.separator();
-            options(ui, panel);
-            let folder = panel.fills_a_folder();
+            options(ui, dialog);
+            let folder = dialog.fills_a_folder();
             ui.horizontal(|ui| {
                 ui.label(if folder { "Folder" } else { "File" });
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     if input.browse && ui.button("Browse…").clicked() {
                         asked = Some(Asked::Browse);
                     }
-                    let field = egui::TextEdit::singleline(&mut panel.path).desired_width(f32::INFINITY);
+                    let field = egui::TextEdit::singleline(&mut dialog.path).desired_width(f32::INFINITY);
                     ui.add(field).accessible_name("Export path");
                 });
             });
-            let there = Path::new(panel.path.trim()).is_file() && panel.path != panel.written;
+            let there = Path::new(dialog.path.trim()).is_file() && dialog.path != dialog.written;
             if !folder && there {
                 ui.colored_label(
                     ui.visuals().warn_fg_color,
@@ -132,11 +132,11 @@ pub fn export_window(
             }
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let enabled = input.busy.is_none() && !panel.path.trim().is_empty();
+                let enabled = input.busy.is_none() && !dialog.path.trim().is_empty();
                 let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
                     let all = || formats::export::all().to_vec();
-                    asked = Some(Asked::Write(panel.format.map_or_else(all, |f| vec![f])));
+                    asked = Some(Asked::Write(dialog.format.map_or_else(all, |f| vec![f])));
                 }
                 if let Some(progress) = input.busy {
                     busy(ui, progress);
@@ -175,19 +175,19 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     }
 }
 
-fn kinds(ui: &mut Ui, panel: &mut ExportPanel) {
-    let before = panel.format;
+fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
+    let before = dialog.format;
     for format in formats::export::all() {
-        ui.radio_value(&mut panel.format, Some(*format), format.title);
+        ui.radio_value(&mut dialog.format, Some(*format), format.title);
     }
-    ui.radio_value(&mut panel.format, None, "Everything above, into one folder");
-    if panel.format != before {
-        panel.path = panel.suggested();
+    ui.radio_value(&mut dialog.format, None, "Everything above, into one folder");
+    if dialog.format != before {
+        dialog.path = dialog.suggested();
     }
 }
 
-fn options(ui: &mut Ui, panel: &mut ExportPanel) {
-    let (format, options) = (panel.format, &mut panel.options);
+fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
+    let (format, options) = (dialog.format, &mut dialog.options);
     let size = |ui: &mut Ui, size: &mut [u32; 2]| {
         ui.horizontal(|ui| {
             ui.label("Size");

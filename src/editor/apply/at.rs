@@ -4,7 +4,7 @@ use scene::{BoxId, Edit, EditError, Scene};
 
 use super::Apply;
 
-/// Applies [`Edit::At`]; other edits as they are. All or nothing.
+/// Applies [`Edit::At`] to the frames it names, and any other edit to the current frame. On error nothing has changed.
 pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
     let Edit::At {
         frame,
@@ -30,7 +30,7 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
 
 type Moment = (Option<usize>, Option<f64>, Option<BoxId>);
 
-/// Indices of the frames that are meant.
+/// Indices of the frames that the edit names.
 fn frames(scene: &Scene, moment: Moment, edit: &Edit) -> Result<Vec<usize>, EditError> {
     match moment {
         (Some(index), None, None) if index < scene.frames.len() => Ok(vec![index]),
@@ -63,7 +63,7 @@ fn at_time(scene: &Scene, time_s: f64) -> Result<usize, EditError> {
     Ok(nearest.unwrap_or(scene.current))
 }
 
-/// The frames that hold a track's box, for an edit that means the same in each of them.
+/// The frames that hold a track's box. Errors for edits that cannot be applied to several frames alike.
 fn of_track(scene: &Scene, track: BoxId, edit: &Edit) -> Result<Vec<usize>, EditError> {
     let id = match edit {
         Edit::RemoveBox { id } | Edit::LabelBox { id, .. } | Edit::SetBoxClass { id, .. } => *id,

@@ -1,16 +1,16 @@
-//! A run of edits of boxes: one copy of the frame for all of them, where each alone would copy and compare it.
+//! A run of edits of boxes. It copies and compares the frame once for all of them, not once for each.
 
 use super::apply_to;
 use scene::{BoxId, Edit, EditError, Frame, Scene, SceneBox};
 
-/// Applies edits of boxes in order; an error stops there, and what came before it stays.
+/// Applies edits of boxes in order and stops at the first error. The edits before it stay applied.
 pub(super) fn apply(run: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
     let mut frame = Frame::clone(scene.frame());
     let mut changed = false;
     for (done, edit) in run.iter().enumerate() {
         let before = touched(edit, &frame);
         if let Err(error) = apply_to(edit, &mut frame) {
-            // The frame may be half changed; those before it are applied again, to a new copy.
+            // The copy may be half changed: the edits before this one are applied again, to a new copy.
             apply(&run[..done], scene)?;
             return Err(error);
         }

@@ -62,7 +62,7 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
         Edit::LabelBox { id, label } => {
             let b = frame.boxes.get_mut(id).ok_or(EditError::UnknownBox { id: *id })?;
             b.label = *label;
-            // The source takes it over: a label is no change that waits for the networks.
+            // The source gets it too: a label needs no generation.
             if frame.source.boxes.get(id).is_some_and(|b| b.label != *label)
                 && let Some(b) = Arc::make_mut(&mut frame.source).boxes.get_mut(id)
             {
@@ -83,7 +83,7 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
 fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
     let taken: &BTreeMap<_, _> = &frame.boxes;
     if taken.contains_key(&BoxId(u32::MAX)) {
-        // `next_box_id` counts up from the highest; the lowest gap instead.
+        // No id above the highest is left: take the lowest free one.
         let above_zero = taken.keys().filter(|id| id.0 > 0);
         let free = (1..).zip(above_zero).find(|(free, id)| id.0 != *free);
         return free.map(|(id, _)| BoxId(id)).ok_or(EditError::NoIdLeft);
@@ -112,7 +112,7 @@ fn change_box(frame: &mut Frame, id: BoxId, change: impl FnOnce(&mut SceneBox)) 
     if new == old {
         return Ok(());
     }
-    // A box that is not sound leaves this copy of the frame half changed; the scene keeps the old one.
+    // On an error this copy of the frame may be half changed; the scene keeps the old frame.
     take_box(frame, id)?;
     immediate::clear_box(frame, &old);
     put_box(frame, new)

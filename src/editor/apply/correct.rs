@@ -43,12 +43,12 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
     Ok(true)
 }
 
-/// True if the waiver names that finding, to the millimetre where it has no box.
+/// True if the waiver is for that finding; a finding without a box must be at the same place, to the millimetre.
 fn same_finding(w: &Waiver, check: &str, box_id: Option<BoxId>, where_m: DVec3) -> bool {
     &*w.check == check && w.box_id == box_id && (box_id.is_some() || w.where_m.distance(where_m) < 1e-3)
 }
 
-/// Applies a change to what was authored, in the frame and in its source, and to no voxel.
+/// Applies a change of boxes or layers to the frame and to its source, and to no voxel.
 fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
     let before = frame.clone();
     apply_to(edit, frame)?;
@@ -61,7 +61,8 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
                 if before.boxes.get(id) == frame.boxes.get(id) {
                     continue;
                 }
-                // The source would take over the pending edit with the correction, and it would never be generated.
+                // The source would take over this box's pending edit together with the correction, and the edit would
+                // never be generated.
                 if before.boxes.get(id) != source.boxes.get(id) {
                     return Err(EditError::Unsettled(format!("box {}", id.0)));
                 }

@@ -1,4 +1,4 @@
-//! Applies edits: the authored data, and at once a rough version in the voxels.
+//! Applies edits: changes the data, and at once puts a rough version into the voxels.
 
 mod at;
 mod box_run;
@@ -9,21 +9,20 @@ mod voxels;
 
 use std::sync::Arc;
 
-use scene::{Edit, EditError, Frame, Scene, SensorRig, Shape};
+use scene::{Edit, EditError, Frame, Scene, SensorRig};
 
 use super::things;
 pub(crate) use voxels::adopt;
 
-/// Texts of words that a scene keeps, and letters of each.
+/// How many typed texts a scene keeps, and how many letters of each.
 const MOST_WORDS: usize = 200;
 const LONGEST_WORDS: usize = 2000;
 
 /// Applies edits to a scene.
 pub trait Apply {
-    /// Applies the change to the scene's current frame: the authored data and, at once, a rough
-    /// version in the voxels (a correction leaves them). All or nothing: on error the scene is as before. A change that
-    /// changes nothing leaves the revision as it is. The frame's `source` is touched by
-    /// [`Edit::AdoptResult`] and [`Edit::Correct`] only.
+    /// Applies the edit to the scene's current frame: changes the data and puts a rough version into the voxels (a
+    /// correction changes no voxels). On error the scene is as before. An edit that changes nothing keeps the revision.
+    /// Only [`Edit::AdoptResult`] and [`Edit::Correct`] change the frame's `source`.
     fn apply(&self, scene: &mut Scene) -> Result<(), EditError>;
 }
 
@@ -85,7 +84,7 @@ impl Apply for Edit {
     }
 }
 
-/// Applies edits in order; an error stops there. Things that are changed one after another are drawn once, at the end.
+/// Applies edits in order and stops at the first error. After a run of edits of things, their voxels are drawn once.
 pub fn apply_all(edits: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
     let goes_on =
         |a: &Edit, b: &Edit| a.is_of_things() && b.is_of_things() || a.is_of_a_box() && b.is_of_a_box();
@@ -110,7 +109,7 @@ pub fn apply_all(edits: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
     Ok(())
 }
 
-/// Applies an edit of a frame; one of the scene ([`Apply::apply`]) does nothing here.
+/// Applies an edit of a frame. Edits of the whole scene do nothing here; [`Apply::apply`] does them.
 fn apply_to(edit: &Edit, frame: &mut Frame) -> Result<(), EditError> {
     let parts = [boxes::apply, map::apply, voxels::apply, correct::apply];
     for apply in parts {

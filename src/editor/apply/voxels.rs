@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use scene::grid::NOT_PAINTED;
 use scene::shape::at_least;
-use scene::{Edit, EditError, Frame, GridSpec, SourceFrame, VoxelGrid, VoxelPaint};
+use scene::{Edit, EditError, Frame, SourceFrame, VoxelGrid, VoxelPaint};
 
 /// Applies an edit of voxels; `false` if it is about something else.
 pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {

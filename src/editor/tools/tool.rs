@@ -29,19 +29,19 @@ pub struct ToolDef {
     pub id: ToolId,
     /// For a person.
     pub title: &'static str,
-    /// What the bar says of its key.
+    /// Text of the tool bar for its key.
     pub key: &'static str,
     /// Name of its icon.
     pub icon: &'static str,
-    /// Where it stands.
+    /// Its part of the tool bar.
     pub group: Group,
-    /// It is a brush: the keys of its size do not raise things.
+    /// It is a brush: the keys for size change the brush, not the height of things.
     pub is_brush: bool,
-    /// It paints the map or voxels: its letters count even if something is chosen.
+    /// It paints the map or voxels: its letter keys work even if something is chosen.
     pub paints: bool,
     /// Actions that take it, one for each way of using it.
     pub shortcuts: &'static [Shortcut],
-    /// Makes one with nothing in hand.
+    /// Makes the tool, in its initial state.
     pub make: fn() -> Box<dyn Tool>,
 }
 
@@ -100,7 +100,7 @@ pub enum Cursor {
     Turn,
 }
 
-/// What the buttons do, in a few parts.
+/// What the mouse buttons do, in a few parts.
 pub type Hint = Vec<Cow<'static, str>>;
 
 /// Parts of a hint that do not change.
@@ -110,7 +110,7 @@ pub fn hint_of(parts: &[&'static str]) -> Hint {
 
 /// A state machine: what the pointer does with a tool in hand.
 pub trait Tool: Debug + Send {
-    /// Takes an event.
+    /// Handles an event.
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response;
 
     /// What buttons and held keys do, as they count in the view under the pointer.
@@ -119,7 +119,7 @@ pub trait Tool: Debug + Send {
     /// What the pointer looks like over a view.
     fn cursor(&self, sight: &Sight<'_>) -> Cursor;
 
-    /// What is drawn over a view. It is asked of the tool in hand, and of those that say so when others are.
+    /// Marks to draw over a view.
     fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
         let _ = sight;
         Vec::new()
@@ -150,14 +150,14 @@ pub trait Tool: Debug + Send {
         }
     }
 
-    /// Another tool comes to hand, or this one again.
+    /// Called when another tool is taken, or this one again.
     fn put_down(&mut self) {}
 
-    /// It is to be used another way: what was drawn point by point is dropped.
+    /// Called when the tool will be used in another way: drops the points set so far.
     fn restart(&mut self) {}
 }
 
-/// What a tool wants to hear beside the pointer.
+/// Which keys a tool wants beside the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wants {
     /// Nothing.

@@ -1,5 +1,5 @@
-//! Formats that are written: one file each, and one line of the table. The window's dialog and the command line both ask
-//! this table.
+//! Formats that can be written: one file here and one line of the table each. The window's dialog and the command line both
+//! use this table.
 
 pub mod boxes;
 pub mod depth;
@@ -40,7 +40,7 @@ pub struct Exporter {
     pub file_name: Option<&'static str>,
     /// What a file holds.
     pub holds: &'static [Holds],
-    /// What has to be made of the scene first: options for it are worth showing.
+    /// What must be made of the scene first; the dialog shows the options for it.
     pub needs: &'static [Product],
     /// The files of the scene's current frame. Errors in one line; nothing is written by then.
     pub write: fn(&Scene, &mut dyn Products) -> Result<Vec<OutFile>, FormatError>,
@@ -136,7 +136,7 @@ pub struct OutFile {
 }
 
 impl OutFile {
-    /// With a name made tidy: cameras are named by users.
+    /// Replaces characters of the name that a file may not have: users name cameras.
     fn new(name: &str, bytes: Vec<u8>) -> Self {
         let tidy = |c: char| {
             if c.is_alphanumeric() || "-_.".contains(c) {

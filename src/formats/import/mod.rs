@@ -1,5 +1,5 @@
-//! Formats that are read: one file each, and one line of the table. The window's dialog, what is dropped on the window and
-//! the command line all ask this table.
+//! Formats that can be read: one file here and one line of the table each. The window's dialog, files dropped on the window
+//! and the command line all use this table.
 
 pub mod boxes;
 mod cloud;
@@ -17,7 +17,7 @@ use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
 use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
-/// Every format that is read. What no other one claims is read as the last.
+/// Every format that can be read. A file that no other format recognises is read as the last one.
 const TABLE: [&Importer; 5] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,

@@ -1,5 +1,5 @@
-//! How a scene comes to be: from a file, a template, words, with what stands beside its roads. The window, the command line
-//! and the judge share it.
+//! Makes scenes: from a file, a template or words, and with scenery beside the roads. The window, the command line and the
+//! judge use it.
 
 pub mod memory;
 pub mod open;

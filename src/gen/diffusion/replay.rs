@@ -1,7 +1,7 @@
-//! Editing by trajectory replay: cells outside the mask follow the source's stored states, copied and
-//! never blended, cells inside are denoised again. What comes out is again a trajectory, so an adopted
-//! edit needs no inversion. Where a region is inpainted (SDEdit, Meng et al. 2021, arXiv 2108.01073), the source is no
-//! inverted trajectory but [`Trajectory::noised`]: cells outside show what they showed in training.
+//! Editing by trajectory replay. At each step, cells outside the mask are copied from the source's stored states, and cells
+//! inside are denoised. The result is again a trajectory, so the next edit of an adopted result needs no inversion. For
+//! inpainting from fresh noise (SDEdit, Meng et al. 2021, arXiv 2108.01073) the source is not an inverted trajectory but
+//! [`Trajectory::noised`]: cells outside then look as they did in training.
 
 use super::inversion::Trajectory;
 use super::solver::{Denoiser, Sampler, SolverError, StepView, check_finite, check_length};

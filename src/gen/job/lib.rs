@@ -1,4 +1,4 @@
-//! How a scene is generated: the job and its parts, the pipeline that does it, the worker that runs it.
+//! Generation: the job, the pipeline that does it, and the worker thread that runs it.
 
 pub mod close_holes;
 pub mod composite;

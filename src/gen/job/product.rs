@@ -17,7 +17,7 @@ use crate::guard::{Handed, Panicked, guarded};
 /// Called after every update, from the worker's thread: wakes the event loop.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// How many updates may wait for the receiver; beyond that only terminal updates are queued.
+/// How many updates may wait for the receiver; beyond that, updates on the way are dropped.
 pub(crate) const MOST_WAITING: usize = 64;
 
 /// One kind of thing that is made in the background. Lives on the worker's thread.

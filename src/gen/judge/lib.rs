@@ -1,5 +1,5 @@
-//! What the program is worth: suites over held-out worlds, trials of edits, the trade of speed for accuracy. The command line
-//! (`sceneloom eval`, `sceneloom trade`), the window's Calibrate and its Refine share it.
+//! Measures the program: suites over held-out worlds, trials of edits, the trade of speed for accuracy. The command line
+//! (`sceneloom eval`, `sceneloom trade`) and the window (Calibrate, Refine) both use it.
 
 pub mod held_out;
 pub mod machine;
@@ -12,13 +12,13 @@ pub mod suites;
 pub mod table;
 pub mod trials;
 
-/// Who is told how far a measurement has come.
+/// Receives how far a measurement is.
 pub trait Progress: Sync {
     /// `step` of `steps` of `stage` are done.
     fn at(&self, stage: &str, step: usize, steps: usize);
 }
 
-/// Nobody is told.
+/// Ignores progress.
 impl Progress for () {
     fn at(&self, _: &str, _: usize, _: usize) {}
 }

@@ -1,4 +1,4 @@
-//! One table of suites: what each measures, on how much, and which figures of its report are shown.
+//! The table of suites: what each measures, on how much data, and which figures of its report are shown.
 
 use serde_json::{Value, json};
 

@@ -23,7 +23,7 @@ pub mod two_sample;
 
 use thiserror::Error;
 
-/// Samples that no figure can be made from.
+/// Why a figure cannot be computed from the samples.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MetricError {
     /// Fewer than two samples.

@@ -48,7 +48,7 @@ fn fine_file() -> Result<WeightFile<'static>, WeightsError> {
     WeightFile::parse(FINE, assets::weights::OCC_VAE_FINE)
 }
 
-/// Names the weights in reports.
+/// Identifies the weights in reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelCard {
     /// Steps and samples they were trained on, as their files say.
@@ -63,7 +63,7 @@ pub struct OccModels {
     pub vae: OccVae,
     /// Latents from noise and a layout.
     pub dit: OccDit,
-    /// Draws what the coarse latent has no room for; a folder of weights may lack it.
+    /// The fine stage; a folder of weights may lack it.
     pub refiner: Option<Arc<Refiner>>,
     /// Which weights these are.
     pub card: ModelCard,
@@ -84,7 +84,7 @@ impl OccModels {
         Ok(MODELS.get_or_init(|| Arc::new(models)).clone())
     }
 
-    /// Those of a folder, or the bundled ones without one.
+    /// The weights of a folder; without a folder the bundled ones.
     pub fn of(folder: Option<&Path>) -> Result<Arc<Self>, WeightsError> {
         folder.map_or_else(Self::bundled, Self::from_dir)
     }

@@ -1,7 +1,7 @@
 //! Matrix products in eight bits: rows of the input and columns of the matrix are scaled to -127..=127 and summed up
 //! exactly as integers, so the answer has the same bits on every machine, with AVX-512 VNNI or without. The error is
-//! that of rounding alone: at most half a step of each factor (`row_17_int8_products`). The fast rung of
-//! `design/numerics.md`; the price of it is what `sceneloom trade` measures.
+//! that of rounding alone: at most half a step of each factor (`row_17_int8_products`). docs/trade.md has what it
+//! saves and costs, measured by `sceneloom trade`.
 
 use bytemuck::{Pod, Zeroable};
 

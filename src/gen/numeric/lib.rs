@@ -1,7 +1,7 @@
 //! Numbers that every room shares: random draws, hashes, quantiles. It knows no other room.
 //!
-//! Which generator: [`philox`] gives a number for a place (seed, purpose, cell), whoever asks and in whatever order: noise of
-//! the samplers. [`splitmix`] gives one number after another: worlds, tests.
+//! Which generator to use: [`philox`] computes a number from (seed, purpose, cell), in any order; the samplers take their
+//! noise from it. [`splitmix`] gives one number after another; worlds and tests use it.
 
 pub mod hash;
 pub mod philox;

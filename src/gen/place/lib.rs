@@ -1,4 +1,4 @@
-//! From a description to boxes on a map by rules: scene graph, road, and the best free place for every object.
+//! Makes boxes on a map from a description, by rules: a scene graph, a road, and the best free place for every object.
 
 pub mod beside_road;
 mod cost;

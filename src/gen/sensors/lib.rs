@@ -1,7 +1,7 @@
 //! Sensors computed from the voxels: exact LiDAR ray cast, splatted camera maps, their colours.
 //!
-//! The ego frame's grid is taken as it is: in Occ3D labels the road lies in bin 0 (top face at
-//! z = -0.6 m), so both sensors see it 0.6 m below the wheels, as the papers' renderers do.
+//! The grid is used as it is: in Occ3D labels the road lies in bin 0 (top face at z = -0.6 m), so LiDAR and cameras see it
+//! 0.6 m below the wheels, as in the renderers of the papers.
 
 pub mod appearance;
 pub mod backdrop;

@@ -1,6 +1,6 @@
-//! The trade of speed for accuracy: what a setting of the knobs costs and how far its result lies from a named
-//! reference, with intervals; the front of those settings that nothing beats; the presets of the quality slider.
-//! Protocol: `design/numerics.md`, section 6. What is measured, and how, is up to `app::trade`.
+//! The trade of speed for accuracy. Each setting of the knobs has a time and an error against a named reference, both with
+//! intervals. Settings that no other setting beats in both form the front; the presets of the quality slider lie on it.
+//! What is measured, and how, is in `judge::presets`; docs/trade.md has the results.
 
 mod front;
 mod interval;

@@ -1,6 +1,6 @@
-//! From words to what they ask: readers turn a text into a [`Reading`](reading::Reading), plain values that know no scene;
-//! the resolver finds the things that are meant in a scene and asks back; the executor carries out. `README.md` walks one
-//! sentence through.
+//! Understands texts. Two readers turn a text into a [`Reading`](reading::Reading), plain values that know no scene; the
+//! resolver finds the things in the scene that the text names, and asks back if several fit; the executor makes edits or a
+//! description. `README.md` follows one sentence through all of it.
 
 pub mod account;
 pub mod answer;

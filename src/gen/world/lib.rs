@@ -1,5 +1,5 @@
-//! Procedural driving worlds on top of a layout: analytic solids, finer than voxels, from which
-//! occupancy and sensor truth are made alike.
+//! Procedural driving worlds on a layout. They consist of exact solids, finer than voxels; both the occupancy and the true
+//! sensor data are made from these.
 
 mod ground;
 pub mod objects;
@@ -40,7 +40,7 @@ pub struct Surface {
     pub part: u8,
 }
 
-/// A sphere around a solid: most rays through its bin miss it, which this tells at little cost.
+/// A sphere around a solid: a cheap test that most rays through the solid's bin fail.
 #[derive(Clone, Copy)]
 struct Sphere {
     center: DVec3,
@@ -71,7 +71,7 @@ impl Sphere {
 
 const BIN_M: f64 = 4.0;
 const BINS: usize = 20;
-/// Instances of things of the background carry this bit, so that a bush never shares a number with a car.
+/// Set in the instance numbers of background things, so that a bush never has the number of a car.
 const THING_BIT: u32 = 1 << 31;
 
 /// A driving world of 80 x 80 m in the ego frame. The ego vehicle stands at the origin, the ground there is at z = 0.

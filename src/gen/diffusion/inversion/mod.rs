@@ -24,8 +24,8 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// A latent (`channels` numbers a cell, channel last) with one draw of noise, as much of it at each level as training puts
-    /// there: what a network that denoises a part of it is used to see around that part.
+    /// A latent (`channels` numbers per cell, channel last) with one draw of noise, mixed at each level as in training. A
+    /// network that denoises a part of it sees around that part what it saw in training.
     pub fn noised(clean: &[f64], levels: &[Level], channels: usize, seed: u64) -> Self {
         let noise = normal_field(seed, Stream::Region, clean.len() / channels, channels);
         let state = |level: &Level| {
@@ -53,7 +53,7 @@ impl Trajectory {
         self.latent().iter().map(|v| *v as f32).collect()
     }
 
-    /// Training steps at which a network was or is to be asked, noise first.
+    /// Training steps at which the network is evaluated, noise first.
     pub fn timesteps(&self) -> Vec<f64> {
         self.levels[..self.levels.len() - 1].iter().map(|l| l.t).collect()
     }
@@ -62,7 +62,7 @@ impl Trajectory {
 /// Damped fixed-point iteration on each inversion step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
-    /// Updates per step; 0 = plain inversion. Each costs one prediction, and one more measures the last.
+    /// Updates per step; 0 = plain inversion. Each takes one prediction, and one more measures the last update.
     pub iterations: usize,
     /// Share of the way to the proposed state that an update goes.
     pub damping: f64,

@@ -1,5 +1,5 @@
 //! Occupancy VAE: 200x200x16 labels to a latent of 50x50x8 (or 100x100x16, the fine one) and back. After
-//! UniScene's (design/models.md 5.1), rebuilt for a CPU: an embedding bag, columns that share their weights
+//! UniScene's, rebuilt for a CPU: an embedding bag, columns that share their weights
 //! at two or three levels of the top view (0.4, 0.8, 1.6 m), norms that look at one place only. Twin of
 //! `training/models/occ_vae.py`.
 
@@ -138,8 +138,8 @@ impl<B: Ops> OccVae<B> {
         Ok(latent)
     }
 
-    /// Renews the latents of some cells, those that [`encode`](Self::encode) would give; the others stay.
-    /// Computes only what those cells can see.
+    /// Computes the latents of some cells, as [`encode`](Self::encode) would; the others stay. Reads only what those cells
+    /// can see.
     pub fn encode_cells(
         &self,
         grid: &VoxelGrid,
@@ -201,7 +201,7 @@ impl<B: Ops> OccVae<B> {
         self.decode_with(latent, cells, DecoderInput::default())
     }
 
-    /// The same where more is known of the columns; networks that do not listen decode as without.
+    /// The same with a [`DecoderInput`]; networks that were trained without one ignore it.
     pub fn decode_with(
         &self,
         latent: &[f32],

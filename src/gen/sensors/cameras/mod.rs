@@ -1,4 +1,4 @@
-//! What cameras can show of a scene: one table of sources that the window, the export and the command line share.
+//! Camera sources: ways to make camera pictures of a scene. The window, the export and the command line share one table.
 //!
 //! A new source is one file with a type that implements [`CameraSource`], and one line in [`all`].
 
@@ -67,7 +67,7 @@ pub fn source(id: SourceId) -> Option<&'static dyn CameraSource> {
     all().iter().find(|s| s.id() == id).copied()
 }
 
-/// What of a scene decides a source's pictures, besides rig and seed.
+/// Parts of a scene. A source names those that its pictures depend on, besides rig and seed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// The voxels.
@@ -82,7 +82,7 @@ pub struct Needs {
     pub conditions: bool,
 }
 
-/// How much of the scene is made ready.
+/// Which part of the scene is prepared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
     /// What can be seen, for the window.
@@ -112,19 +112,19 @@ pub struct CameraInput<'a> {
 pub struct RenderOptions {
     /// Width and height in pixels; 0 gives an empty picture.
     pub size: [u32; 2],
-    /// Speed or beauty, where a source has both.
+    /// Fast or beautiful, if a source has both.
     pub quality: Quality,
 }
 
-/// A graphics card that can draw in place of the processor. Each method says so if it cannot.
+/// A graphics card that can draw instead of the processor. If it cannot, the method returns false or `None`.
 pub trait Card {
-    /// Takes a cloud up; false if the processor has to draw it.
+    /// Uploads a cloud; false if the processor has to draw it.
     fn set_cloud(&mut self, cloud: &GaussianCloud) -> bool;
     /// Maps of the cloud that was set last; `None` if the processor has to draw them.
     fn maps(&mut self, camera: &Camera, size: [u32; 2]) -> Option<CameraMaps>;
-    /// Takes up an appearance; false if the processor has to draw it.
+    /// Uploads an appearance; false if the processor has to draw it.
     fn set_appearance(&mut self, appearance: &Appearance) -> bool;
-    /// A picture of the appearance that was set last, which is `appearance`; `None` if the processor has to draw it.
+    /// A picture of `appearance`, which was uploaded last; `None` if the processor has to draw it.
     fn picture(
         &mut self,
         appearance: &Appearance,
@@ -136,14 +136,14 @@ pub trait Card {
 
 /// What a rendering may use, and whether it is still wanted.
 pub struct RenderContext<'a> {
-    /// The card that the scene was taken up to; `None`: the processor draws.
+    /// The card that the scene was uploaded to; `None`: the processor draws.
     pub card: Option<&'a mut dyn Card>,
     /// True once nobody waits for the picture any more.
     pub cancelled: &'a dyn Fn() -> bool,
 }
 
 impl RenderContext<'_> {
-    /// The processor draws, to the end.
+    /// The processor draws, and is never cancelled.
     pub fn processor() -> Self {
         Self {
             card: None,
@@ -169,7 +169,7 @@ pub trait CameraSource: Sync {
     /// What of the scene decides its pictures.
     fn needs(&self) -> Needs;
 
-    /// Where its pictures have the ground.
+    /// At which height its pictures show the ground.
     fn ground(&self) -> GroundHeight {
         GroundHeight::Physical
     }
@@ -196,7 +196,7 @@ pub trait PreparedCameras {
         false
     }
 
-    /// Takes it up to a graphics card; false if the processor has to draw it.
+    /// Uploads it to a graphics card; false if the processor has to draw it.
     fn upload(&self, _card: &mut dyn Card) -> bool {
         false
     }
@@ -220,7 +220,7 @@ impl<'a> Ready<'a> {
         }
     }
 
-    /// Takes it up to the card that `find` gives, which is asked only if a card can draw this; true if it will.
+    /// Uploads it to the card that `find` returns; `find` is called only if a card can draw this. True if the card will draw.
     pub fn upload_to<'c>(&self, find: impl FnOnce() -> Option<&'c mut (dyn Card + 'c)>) -> bool {
         self.scene.suits_card() && find().is_some_and(|card| self.scene.upload(card))
     }

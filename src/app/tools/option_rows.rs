@@ -1,4 +1,4 @@
-//! The options of a tool as a panel: each is drawn by what it is, whichever tool it belongs to.
+//! The options of a tool as rows of controls. Each kind of option is drawn alike for all tools.
 
 use egui::Ui;
 use egui::accesskit::Role;
