@@ -48,6 +48,11 @@ impl Unobserved {
         }
     }
 
+    /// Which part of the ground it covers.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
     /// One word per column, `[x][y]`.
     pub fn words(&self) -> &[u16] {
         &self.words

@@ -12,7 +12,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use scene::grid::{BrickGrid, NOT_PAINTED};
 use scene::message::{one_line, quoted};
-use scene::{BevLayer, BevLayout, Class, GridSpec, Polyline, VoxelGrid};
+use scene::{BevLayer, BevLayout, Class, Extent, Polyline, VoxelGrid};
 
 use super::{LARGEST_FILE, ProjectError};
 
@@ -65,7 +65,7 @@ impl Writer {
         grid: &BrickGrid<FILL>,
     ) -> Result<(), ProjectError> {
         let dense = grid.to_dense();
-        check_labels(entry, &dense, FILL)?;
+        check_labels(entry, grid.extent(), &dense, FILL)?;
         self.put(entry, &dense)
     }
 
@@ -166,44 +166,47 @@ impl<R: Read + Seek> Reader<R> {
     pub(super) fn layout(
         &mut self,
         entry: &str,
+        extent: Extent,
         polylines: Arc<Vec<Polyline>>,
     ) -> Result<BevLayout, ProjectError> {
-        let bytes = self.exactly(entry, GridSpec::COLUMNS, 4, "cells")?;
+        let bytes = self.exactly(entry, extent.columns(), 4, "cells")?;
         let words = bytes.chunks_exact(4);
         let cells: Vec<u32> = words
             .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
             .collect();
         let known = BevLayer::MAP.iter().fold(0, |bits, layer| bits | layer.bit());
         if let Some(at) = cells.iter().position(|c| c & !known != 0) {
+            let [x, y] = extent.column(at);
             return Err(ProjectError::Cell {
                 entry: entry.into(),
-                cell: format!("cell [{}, {}]", at / GridSpec::NY, at % GridSpec::NY),
+                cell: format!("cell [{x}, {y}]"),
                 found: cells[at],
                 expected: "bits of the eight map layers only",
             });
         }
-        let mut layout = BevLayout::from_cells(cells, Vec::new()).map_err(|found| ProjectError::Size {
-            entry: entry.into(),
-            expected: GridSpec::COLUMNS as u64,
-            found: found as u64,
-            unit: "cells",
-        })?;
+        let mut layout =
+            BevLayout::from_cells_over(extent, cells, Vec::new()).map_err(|found| ProjectError::Size {
+                entry: entry.into(),
+                expected: extent.columns() as u64,
+                found: found as u64,
+                unit: "cells",
+            })?;
         layout.polylines = polylines;
         Ok(layout)
     }
 
-    pub(super) fn labels(&mut self, entry: &str, fill: u8) -> Result<Vec<u8>, ProjectError> {
-        let dense = self.exactly(entry, GridSpec::VOXELS, 1, "voxels")?;
-        check_labels(entry, &dense, fill)?;
+    pub(super) fn labels(&mut self, entry: &str, extent: Extent, fill: u8) -> Result<Vec<u8>, ProjectError> {
+        let dense = self.exactly(entry, extent.voxels(), 1, "voxels")?;
+        check_labels(entry, extent, &dense, fill)?;
         Ok(dense)
     }
 
-    /// An occupancy grid that shares the bricks of `like` wherever the two are equal.
+    /// An occupancy grid of the extent of `like` that shares the bricks of `like` wherever the two are equal.
     pub(super) fn occupancy(&mut self, entry: &str, like: &VoxelGrid) -> Result<VoxelGrid, ProjectError> {
-        let dense = self.labels(entry, Class::FREE)?;
+        let extent = like.extent();
+        let dense = self.labels(entry, extent, Class::FREE)?;
         let mut grid = like.clone();
-        for (at, column) in dense.chunks_exact(GridSpec::NZ).enumerate() {
-            let (x, y) = (at / GridSpec::NY, at % GridSpec::NY);
+        for ([x, y], column) in extent.all_columns().zip(dense.chunks_exact(Extent::NZ)) {
             if grid.column(x, y) != column {
                 grid.column_mut(x, y).copy_from_slice(column);
             }
@@ -239,25 +242,21 @@ pub(super) fn within(what: &str, found: u64, limit: u64) -> Result<(), ProjectEr
     })
 }
 
-pub(super) fn wrong_voxels(entry: &str, found: u64) -> ProjectError {
+pub(super) fn wrong_voxels(entry: &str, extent: Extent, found: u64) -> ProjectError {
     ProjectError::Size {
         entry: entry.into(),
-        expected: GridSpec::VOXELS as u64,
+        expected: extent.voxels() as u64,
         found,
         unit: "voxels",
     }
 }
 
-pub(super) fn check_labels(entry: &str, dense: &[u8], fill: u8) -> Result<(), ProjectError> {
+pub(super) fn check_labels(entry: &str, extent: Extent, dense: &[u8], fill: u8) -> Result<(), ProjectError> {
     let wrong = |v: &u8| usize::from(*v) >= Class::COUNT && *v != fill;
     let Some(at) = dense.iter().position(wrong) else {
         return Ok(());
     };
-    let (x, y, z) = (
-        at / (GridSpec::NY * GridSpec::NZ),
-        at / GridSpec::NZ % GridSpec::NY,
-        at % GridSpec::NZ,
-    );
+    let ([x, y], z) = (extent.column(at / Extent::NZ), at % Extent::NZ);
     Err(ProjectError::Cell {
         entry: entry.into(),
         cell: format!("voxel [{x}, {y}, {z}]"),

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use scene::message::one_line;
-use scene::{Frame, Scene};
+use scene::{Frame, Relief, Scene};
 
 use super::archive::within;
 use super::{MAX_FRAMES, ProjectError};
@@ -43,6 +43,22 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
 }
 
 fn frame_problem(frame: &Frame) -> Option<String> {
+    let extent = frame.extent();
+    let relief = |relief: &Relief| relief.extent().is_none_or(|e| e == extent);
+    let agree = frame.occupancy.extent() == extent
+        && frame.painted.extent() == extent
+        && frame.source.layout.extent() == extent
+        && frame.source.occupancy.extent() == extent
+        && frame
+            .inferred
+            .unobserved
+            .as_ref()
+            .is_none_or(|u| u.extent() == extent)
+        && relief(&frame.layout.relief)
+        && relief(&frame.source.layout.relief);
+    if !agree {
+        return Some(format!("layout, occupancy and source are not all of {extent}"));
+    }
     if !frame.time_s.is_finite() {
         return Some(format!("time_s is {}, expected a finite number", frame.time_s));
     }

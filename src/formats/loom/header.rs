@@ -1,11 +1,11 @@
-//! `scene.json`: all of a scene but its grids, as version 3 keeps it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as version 4 keeps it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use scene::{BoxId, Conditions, Frame, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Waiver};
+use scene::{BoxId, Conditions, Extent, Frame, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Waiver};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -28,6 +28,9 @@ pub(super) struct SceneHeader {
 pub(super) struct FrameHeader {
     pub(super) time_s: f64,
     pub(super) world_from_ego: Pose,
+    /// Columns of its grids; absent for the networks' window.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) extent: Option<ExtentHeader>,
     pub(super) boxes: Vec<SceneBox>,
     pub(super) polylines: Arc<Vec<Polyline>>,
     /// Whether `relief.f32` is there.
@@ -40,6 +43,31 @@ pub(super) struct FrameHeader {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) waivers: Vec<Waiver>,
     pub(super) source: SourceHeader,
+}
+
+/// Columns that a frame's grids cover.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ExtentHeader {
+    /// The lower corner along x and y, counted from the ego frame's origin.
+    from: [i32; 2],
+    /// How many along x and y.
+    columns: [usize; 2],
+}
+
+impl ExtentHeader {
+    fn of(extent: Extent) -> Option<Self> {
+        let columns = [extent.nx(), extent.ny()];
+        (extent != Extent::WINDOW).then(|| Self {
+            from: extent.from(),
+            columns,
+        })
+    }
+
+    /// The extent; errors in one line if there is no such map.
+    pub(super) fn extent(&self) -> Result<Extent, String> {
+        Extent::new(self.from, self.columns)
+    }
 }
 
 /// What of an imported frame is a guess.
@@ -109,6 +137,7 @@ fn frame_header(frame: &Frame) -> FrameHeader {
     FrameHeader {
         time_s: frame.time_s,
         world_from_ego: frame.world_from_ego,
+        extent: ExtentHeader::of(frame.extent()),
         boxes: list(&frame.boxes),
         polylines: frame.layout.polylines.clone(),
         relief: !frame.layout.relief.is_flat(),

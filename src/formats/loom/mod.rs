@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `manifest.json` | `format`, `version`, `frames` |
 //! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background, and of each frame time, pose, boxes, polylines |
-//! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, 40,000 little-endian words |
-//! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, 40,000 little-endian numbers in m; only if it is not flat |
-//! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, 640,000 bytes |
+//! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, a little-endian word per column |
+//! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, little-endian numbers in m; only if it is not flat |
+//! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, a byte per voxel |
 //! | `frames/00000/painted.u8` | painted voxels, 255 where none; only if there are any |
 //! | `frames/00000/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
 //! | `frames/00000/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
+//!
+//! A frame has 200 x 200 columns around the ego vehicle, unless `scene.json` gives it another `extent`.
 //!
 //! The manifest's version selects what is done first: a file of an older version goes through the steps of [`migrate`],
 //! one per version, until it is as a file of this version. A newer version is refused.

@@ -1,7 +1,7 @@
 //! Names, version and limits of a project file.
 
 /// Version written.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 /// Frames a project may hold.
 pub const MAX_FRAMES: usize = 10_000;
 /// Largest project file that is written and read, bytes.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use scene::grid::NOT_PAINTED;
 use scene::{
-    Background, BoxId, Frame, GridSpec, Inferred, Relief, Scene, SceneBox, SceneRev, SourceFrame, Unobserved,
+    Background, BoxId, Extent, Frame, Inferred, Relief, Scene, SceneBox, SceneRev, SourceFrame, Unobserved,
     VoxelGrid, VoxelPaint,
 };
 
@@ -72,24 +72,31 @@ fn read_frame<R: Read + Seek>(
 ) -> Result<Frame, ProjectError> {
     let name = |part: &str| entry_name(index, part);
     let source = header.source;
-    let mut layout = file.layout(&name("layout.u32"), header.polylines)?;
+    let extent = match &header.extent {
+        None => Extent::WINDOW,
+        Some(extent) => extent
+            .extent()
+            .map_err(|e| ProjectError::Unsound(format!("scene.json: frame {index}: {e}")))?,
+    };
+    let mut layout = file.layout(&name("layout.u32"), extent, header.polylines)?;
     if header.relief {
-        layout.relief = read_relief(file, &name("relief.f32"))?;
+        layout.relief = read_relief(file, &name("relief.f32"), extent)?;
     }
-    let occupancy = file.occupancy(&name("occupancy.u8"), &VoxelGrid::new())?;
+    let occupancy = file.occupancy(&name("occupancy.u8"), &VoxelGrid::over(extent))?;
     let painted = match header.painted {
         true => {
             let entry = name("painted.u8");
-            let dense = file.labels(&entry, NOT_PAINTED)?;
-            VoxelPaint::from_dense(&dense).map_err(|found| wrong_voxels(&entry, found as u64))?
+            let dense = file.labels(&entry, extent, NOT_PAINTED)?;
+            VoxelPaint::from_dense_over(extent, &dense)
+                .map_err(|found| wrong_voxels(&entry, extent, found as u64))?
         }
-        false => VoxelPaint::new(),
+        false => VoxelPaint::over(extent),
     };
     let unobserved = match header.inferred.unobserved {
         true => {
-            let bytes = file.exactly(&name("unobserved.u16"), GridSpec::COLUMNS, 2, "columns")?;
+            let bytes = file.exactly(&name("unobserved.u16"), extent.columns(), 2, "columns")?;
             let words = bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]]));
-            Unobserved::from_words(scene::Extent::WINDOW, words.collect())
+            Unobserved::from_words(extent, words.collect())
         }
         false => None,
     };
@@ -102,7 +109,7 @@ fn read_frame<R: Read + Seek>(
     }
     let source_polylines = source.polylines.unwrap_or_else(|| layout.polylines.clone());
     let mut source_layout = match source.layout {
-        true => file.layout(&name("source_layout.u32"), source_polylines)?,
+        true => file.layout(&name("source_layout.u32"), extent, source_polylines)?,
         false => {
             let mut same_cells = layout.clone();
             same_cells.polylines = source_polylines;
@@ -110,7 +117,7 @@ fn read_frame<R: Read + Seek>(
         }
     };
     source_layout.relief = match source.relief {
-        true => read_relief(file, &name("source_relief.f32"))?,
+        true => read_relief(file, &name("source_relief.f32"), extent)?,
         false => layout.relief.clone(),
     };
     let source = SourceFrame {
@@ -156,11 +163,15 @@ fn unique(frame: usize, list: Vec<SceneBox>) -> Result<BTreeMap<BoxId, SceneBox>
     Ok(boxes)
 }
 
-fn read_relief<R: Read + Seek>(file: &mut Reader<R>, entry: &str) -> Result<Relief, ProjectError> {
-    let bytes = file.exactly(entry, GridSpec::COLUMNS, 4, "columns")?;
+fn read_relief<R: Read + Seek>(
+    file: &mut Reader<R>,
+    entry: &str,
+    extent: Extent,
+) -> Result<Relief, ProjectError> {
+    let bytes = file.exactly(entry, extent.columns(), 4, "columns")?;
     let heights = bytes
         .chunks_exact(4)
         .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    Relief::from_heights(scene::Extent::WINDOW, heights.collect())
+    Relief::from_heights(extent, heights.collect())
         .map_err(|e| ProjectError::Unsound(format!("{entry}: {e}")))
 }

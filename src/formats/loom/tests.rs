@@ -7,8 +7,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::background::{Background, Form, Tree, TreeKind};
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Conditions, Frame, Relief, Scene, SceneBox, SensorRig, TimeOfDay,
-    VoxelGrid, Weather,
+    BevLayer, BevLayout, BoxId, Class, Conditions, Extent, Frame, Relief, Scene, SceneBox, SensorRig,
+    TimeOfDay, VoxelGrid, Weather,
 };
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
@@ -18,12 +18,17 @@ use super::*;
 
 /// What the bundled file of a version holds.
 fn sample(version: u32) -> Scene {
-    let mut layout = BevLayout::default();
+    // Version 4 has maps of any extent.
+    let extent = match version {
+        4.. => Extent::new([-120, -100], [230, 203]).expect("sound"),
+        _ => Extent::WINDOW,
+    };
+    let mut layout = BevLayout::over(extent);
     for x in 20..180 {
         (90..110).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true));
     }
     if version >= 2 {
-        layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| 0.03 * p.x);
+        layout.relief = Relief::from_fn(layout.extent(), |p| 0.03 * p.x);
     }
     let car = SceneBox {
         id: BoxId(4),
@@ -34,7 +39,7 @@ fn sample(version: u32) -> Scene {
         velocity_mps: DVec2::new(3.0, 0.0),
         label: Default::default(),
     };
-    let mut occupancy = VoxelGrid::new();
+    let mut occupancy = VoxelGrid::over(extent);
     (0..100).for_each(|i| occupancy.set(50 + i, 95, i % 16, (i % 17) as u8));
     let mut frame = Frame::new(layout, [(car.id, car)].into(), occupancy);
     frame.painted.set(1, 2, 3, Class::Manmade.id());
@@ -162,7 +167,7 @@ fn of_version_0() -> Vec<u8> {
             text.replace(from, to).into_bytes()
         };
         match name.as_str() {
-            "manifest.json" => *content = text(content, "\"version\":3", "\"version\":0"),
+            "manifest.json" => *content = text(content, "\"version\":4", "\"version\":0"),
             "scene.json" => *content = text(content, "\"prompt\":", "\"style\":"),
             "frames/00000/occupancy.u8" => {
                 "frames/00000/grid.u8".clone_into(name);
@@ -196,15 +201,15 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2] = migrate::ALL;
-    let chain = [FROM_0, v1, v2];
+    let [v1, v2, v3] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.
-    let now = to_bytes(&sample(3)).expect("sound");
+    let now = to_bytes(&sample(VERSION)).expect("sound");
     assert_same(
         &read::read(Cursor::new(now), &chain).expect("the present version"),
-        &sample(3),
+        &sample(VERSION),
     );
     // What a step cannot take over is one line, and what it leaves lying is named.
     let mut entries = unpack(&of_version_0());
@@ -222,20 +227,54 @@ fn an_older_version_goes_through_every_step() {
 }
 
 #[test]
+fn a_map_that_is_none_is_refused_in_one_line() {
+    let bytes = to_bytes(&sample(VERSION)).expect("sound");
+    for (from, to, line) in [
+        (
+            "\"columns\":[230,203]",
+            "\"columns\":[230,0]",
+            "scene.json: frame 0: a map of 230 x 0 columns, expected sides of 1 to 8192",
+        ),
+        (
+            "\"columns\":[230,203]",
+            "\"columns\":[8192,8192]",
+            "scene.json: frame 0: a map of 8192 x 8192 columns",
+        ),
+        (
+            "\"columns\":[230,203]",
+            "\"columns\":[203,203]",
+            "entry \"frames/00000/layout.u32\" has the wrong size: expected 41209 cells",
+        ),
+        (
+            "\"from\":[-120,-100]",
+            "\"from\":[2147483647,-100]",
+            "scene.json: frame 0: a map from column [2147483647, -100]",
+        ),
+    ] {
+        let mut entries = unpack(&bytes);
+        let text = String::from_utf8(entries[1].1.clone()).expect("JSON");
+        assert!(text.contains(from), "{text}");
+        entries[1].1 = text.replace(from, to).into_bytes();
+        let found = from_bytes(&pack(&entries)).expect_err("no map").to_string();
+        assert!(found.starts_with(line) && found.lines().count() == 1, "{found}");
+    }
+}
+
+#[test]
 fn versions_that_nobody_knows_are_refused_in_one_line() {
     let line = from_bytes(&of_version_0())
         .expect_err("no step from 0")
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 3; open it with the sceneloom that wrote it"
+        "manifest.json: version is 0, expected 4; open it with the sceneloom that wrote it"
     );
-    for version in ["4", "4294967298", "18446744073709551615"] {
+    for version in ["5", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
         let bytes = pack(&[("manifest.json".to_owned(), manifest.into_bytes())]);
         let line = from_bytes(&bytes).expect_err("newer").to_string();
         assert!(
-            line.starts_with(&format!("manifest.json: version is {version}, expected 3;")),
+            line.starts_with(&format!("manifest.json: version is {version}, expected 4;")),
             "{line}"
         );
     }

@@ -1,6 +1,6 @@
 //! A scene into the entries of a project file.
 
-use scene::{BevLayout, GridSpec, Relief, Scene};
+use scene::{BevLayout, Scene};
 
 use super::archive::Writer;
 use super::check::check;
@@ -19,7 +19,7 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
         let name = |part: &str| entry_name(index, part);
         out.put(&name("layout.u32"), &layout_bytes(&frame.layout))?;
         if header.relief {
-            out.put(&name("relief.f32"), &relief_bytes(&frame.layout.relief))?;
+            out.put(&name("relief.f32"), &relief_bytes(&frame.layout))?;
         }
         out.labels(&name("occupancy.u8"), &frame.occupancy)?;
         if header.painted {
@@ -34,7 +34,7 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
             out.put(&name("source_layout.u32"), &layout_bytes(&frame.source.layout))?;
         }
         if header.source.relief {
-            let bytes = relief_bytes(&frame.source.layout.relief);
+            let bytes = relief_bytes(&frame.source.layout);
             out.put(&name("source_relief.f32"), &bytes)?;
         }
         if header.source.occupancy {
@@ -49,9 +49,9 @@ fn layout_bytes(layout: &BevLayout) -> Vec<u8> {
 }
 
 /// Heights of all columns; zeros if flat.
-fn relief_bytes(relief: &Relief) -> Vec<u8> {
-    match relief.heights_m() {
+fn relief_bytes(layout: &BevLayout) -> Vec<u8> {
+    match layout.relief.heights_m() {
         Some(heights) => heights.iter().flat_map(|h| h.to_le_bytes()).collect(),
-        None => vec![0; 4 * GridSpec::COLUMNS],
+        None => vec![0; 4 * layout.extent().columns()],
     }
 }

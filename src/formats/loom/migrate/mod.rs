@@ -4,6 +4,7 @@
 mod old_prompt;
 mod v1;
 mod v2;
+mod v3;
 
 use std::io::{Read, Seek};
 
@@ -32,7 +33,7 @@ pub enum Change {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 2] = [v1::TO_V2, v2::TO_V3];
+pub const ALL: [Migration; 3] = [v1::TO_V2, v2::TO_V3, v3::TO_V4];
 
 /// What a step may change.
 pub trait Entries {
