@@ -3,17 +3,15 @@
 
 use egui::{Color32, ColorImage};
 
-use scene::{BevLayer, BevLayout, Class, GridSpec, Unobserved, VoxelGrid};
+use scene::{BevLayer, BevLayout, Class, Extent, Unobserved, VoxelGrid};
 
 pub use editor::tools::DRAW_ORDER;
 
-/// Width and height in pixels of both pictures.
-pub const SIZE: [usize; 2] = [GridSpec::NY, GridSpec::NX];
-
-/// Column under a pixel: rows run against ego x, columns against ego y, so that forward is up.
-pub(super) fn column_of(pixel: usize) -> (usize, usize) {
-    let (row, col) = (pixel / GridSpec::NY, pixel % GridSpec::NY);
-    (GridSpec::NX - 1 - row, GridSpec::NY - 1 - col)
+/// A picture of a map, one pixel per column: rows run against ego x, pixels of a row against ego y, so that forward is up.
+pub(super) fn from_above(extent: Extent, pixel: impl Fn(usize, usize) -> Color32) -> ColorImage {
+    let [nx, ny] = [extent.nx(), extent.ny()];
+    let pixels = (0..nx).rev().flat_map(|x| (0..ny).rev().map(move |y| (x, y)));
+    ColorImage::new([ny, nx], pixels.map(|(x, y)| pixel(x, y)).collect())
 }
 
 /// Which map layers are drawn, and how much each hides of what lies below it.
@@ -43,8 +41,7 @@ pub fn layers(layout: &BevLayout, style: &LayerStyle, behind: Color32) -> ColorI
         let [r, g, b] = colors[k];
         Color32::from_rgba_unmultiplied(r, g, b, alpha)
     };
-    let pixel = |i: usize| {
-        let (x, y) = column_of(i);
+    from_above(layout.extent(), |x, y| {
         let cell = layout.cell(x, y) & style.shown;
         let mut here = (0..DRAW_ORDER.len()).filter(|k| cell & DRAW_ORDER[*k].bit() != 0);
         match solid {
@@ -54,8 +51,7 @@ pub fn layers(layout: &BevLayout, style: &LayerStyle, behind: Color32) -> ColorI
                 here.fold(behind, |below, k| below.blend(of(k, veiled(k))))
             }
         }
-    };
-    ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+    })
 }
 
 fn is_divider(layer: BevLayer) -> bool {
@@ -64,8 +60,7 @@ fn is_divider(layer: BevLayer) -> bool {
 
 /// The highest voxel of each column by class, brighter the higher it is; `behind` where there is none.
 pub fn occupancy(grid: &VoxelGrid, behind: Color32) -> ColorImage {
-    let pixel = |i: usize| {
-        let (x, y) = column_of(i);
+    from_above(grid.extent(), |x, y| {
         let column = grid.column(x, y);
         let Some(z) = column.iter().rposition(|v| *v != Class::FREE) else {
             return behind;
@@ -74,18 +69,15 @@ pub fn occupancy(grid: &VoxelGrid, behind: Color32) -> ColorImage {
         let light = 0.62 + 0.38 * (z as f32 / 11.0).min(1.0);
         let [r, g, b] = class.color().map(|c| (f32::from(c) * light) as u8);
         Color32::from_rgb(r, g, b)
-    };
-    ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+    })
 }
 
 /// A violet veil over what nothing observed, denser the more of a column that is.
 pub fn unobserved(mask: &Unobserved) -> ColorImage {
-    let pixel = |i: usize| {
-        let (x, y) = column_of(i);
+    from_above(mask.extent(), |x, y| {
         let alpha = (150.0 * mask.share(x, y)) as u8;
         Color32::from_rgba_unmultiplied(126, 87, 194, alpha)
-    };
-    ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+    })
 }
 
 /// A rectangle of pixels.
@@ -182,10 +174,13 @@ mod tests {
             (i32::from(half.to_array()[i]) - (i32::from(a) + i32::from(b)) / 2).abs() < 4
         };
         assert!((0..3).all(between) && half.is_opaque(), "{half:?}");
+        let map = Extent::new([-10, -3], [6, 4]).expect("sound");
+        let image = layers(&BevLayout::over(map), &solid(0xff), Color32::TRANSPARENT);
+        assert_eq!(image.size, [4, 6]);
         let mut grid = VoxelGrid::new();
         grid.set(0, 0, 15, Class::Car.id()); // behind, right
         let image = occupancy(&grid, Color32::BLACK);
         let [r, g, b] = Class::Car.color();
-        assert_eq!(image.pixels[GridSpec::COLUMNS - 1], Color32::from_rgb(r, g, b));
+        assert_eq!(image.pixels[199 * 200 + 199], Color32::from_rgb(r, g, b));
     }
 }

@@ -13,7 +13,7 @@ use glam::DVec2;
 use editor::pick;
 use editor::pick_things;
 use editor::tools::{Hand, region, select};
-use scene::{BevLayer, Class, GridSpec, LidarSweep, Scene, SceneBox, SceneRev, Thing};
+use scene::{BevLayer, Class, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerStyle};
 use super::canvas_draw::{
@@ -33,6 +33,8 @@ use widgets::theme;
 
 /// The bird's-eye view's own state.
 pub struct Canvas {
+    /// Of the map drawn last.
+    extent: scene::Extent,
     center_m: DVec2,
     scale: f64,                 // points per metre; 0 before the first fit
     fitted: Option<egui::Vec2>, // the pane that all of the grid was fitted into, until the user moves the map
@@ -71,8 +73,8 @@ pub struct CanvasInput<'a> {
 const SCALE: std::ops::RangeInclusive<f64> = 2.0..=120.0;
 /// Where nothing is painted.
 const GROUND: Color32 = Color32::from_rgb(29, 32, 37);
-/// Half the extent of the grid, m.
-const HALF_M: f64 = GridSpec::MAX_M[0];
+/// Room around the map when all of it is shown, m.
+const MARGIN_M: f64 = 2.0;
 
 impl Canvas {
     /// True while the pointer draws, moves or marks something.
@@ -84,6 +86,7 @@ impl Canvas {
 impl Default for Canvas {
     fn default() -> Self {
         Self {
+            extent: scene::Extent::WINDOW,
             center_m: DVec2::ZERO,
             scale: 0.0,
             fitted: None,
@@ -109,6 +112,10 @@ impl Canvas {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Bird's-eye view"));
+        let extent = input.scene.frame().extent();
+        if extent != self.extent {
+            (self.extent, self.fitted) = (extent, Some(egui::Vec2::ZERO));
+        }
         if self.scale == 0.0 || self.fitted.is_some_and(|size| size != rect.size()) {
             self.frame_all(rect);
         }
@@ -149,12 +156,19 @@ impl Canvas {
         self.draw(ui, &response, &map, &input, &state);
     }
 
-    /// Fits the whole grid into a pane.
+    /// Fits the whole map into a pane.
     pub fn frame_all(&mut self, rect: Rect) {
-        let side = f64::from(rect.width().min(rect.height()).max(80.0));
-        self.center_m = DVec2::ZERO;
-        self.scale = side / (2.0 * HALF_M + 4.0);
+        let (low, high) = self.corners_m();
+        let size = high - low + 2.0 * MARGIN_M;
+        let along = |points: f32, m: f64| f64::from(points.max(80.0)) / m;
+        self.center_m = (low + high) / 2.0;
+        self.scale = along(rect.height(), size.x).min(along(rect.width(), size.y));
         self.fitted = Some(rect.size());
+    }
+
+    /// Lower and upper corner of the map, ego frame, m.
+    fn corners_m(&self) -> (DVec2, DVec2) {
+        (self.extent.min_m().truncate(), self.extent.max_m().truncate())
     }
 
     /// Brings a box into the middle.
@@ -221,8 +235,9 @@ impl Canvas {
             self.center_m += DVec2::new(f64::from(d.y), f64::from(d.x)) / self.scale;
             self.fitted = None;
         }
-        let limit = DVec2::splat(HALF_M * 1.5);
-        self.center_m = self.center_m.clamp(-limit, limit);
+        let (low, high) = self.corners_m();
+        let beyond = (high - low) / 4.0;
+        self.center_m = self.center_m.clamp(low - beyond, high + beyond);
         (map.center_m, map.scale) = (self.center_m, self.scale);
         map
     }
@@ -236,7 +251,10 @@ impl Canvas {
         state: &UiState,
     ) {
         let painter = ui.painter();
-        let grid = map.rect_of(DVec2::splat(-HALF_M), DVec2::splat(HALF_M));
+        let grid = {
+            let (low, high) = self.corners_m();
+            map.rect_of(low, high)
+        };
         for strip in around(grid, map.rect) {
             painter.rect_filled(strip, 0.0, theme::CANVAS);
         }
@@ -340,6 +358,7 @@ impl Canvas {
             painter,
             view: map,
             map: Some(map),
+            extent: self.extent,
         };
         board.paint(ui, &marks);
         // A still answers no pointer.
@@ -408,8 +427,8 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let mut parts = vec![super::state::position_text(p_m)];
     let frame = scene.frame();
     parts.push(format!("{:.1} m away", p_m.length()));
-    let Some([x, y]) = GridSpec::column_at(p_m.x, p_m.y) else {
-        parts.push("outside the grid".into());
+    let Some([x, y]) = frame.extent().column_at(p_m.x, p_m.y) else {
+        parts.push("outside the map".into());
         return parts.join("  ·  ");
     };
     let cell = frame.layout.cell(x, y);

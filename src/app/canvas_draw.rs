@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use editor::pick;
 use editor::tools::select;
-use scene::{BevLayer, GridSpec, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
+use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
 use super::screen_map::ScreenMap;
 use super::state::UiState;
@@ -208,15 +208,15 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
     }
 }
 
-/// A dashed frame around what is still to be generated.
+/// A dashed frame around what is still to be generated, in columns of the networks' window.
 pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, unsettled: &[Bounds], generating: bool) {
     let color = if generating {
         theme::accent()
     } else {
         theme::warn()
     };
-    let corner = |c: [usize; 2]| GridSpec::center(c[0], c[1], 0).truncate();
-    let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+    let corner = |c: [usize; 2]| Extent::WINDOW.center(c[0], c[1], 0).truncate();
+    let half = DVec2::splat(Extent::VOXEL_M / 2.0);
     for (low, high) in unsettled {
         let rect = map.rect_of(corner(*low) - half, corner(*high) + half).expand(2.0);
         ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));

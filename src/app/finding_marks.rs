@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::canvas::ScreenMap;
 use editor::checks::Finding;
-use scene::{BoxId, Frame, GridSpec};
+use scene::{BoxId, Extent, Frame};
 
 /// Colour of the marks in both views; no class and no layer has it.
 pub(super) const COLOR: [u8; 3] = [255, 70, 255];
@@ -41,9 +41,9 @@ impl FindingMarks {
         let mut columns: Vec<[usize; 2]> = self.cells.iter().map(|[x, y, _]| [*x, *y]).collect();
         columns.sort_unstable();
         columns.dedup();
-        let half = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+        let half = DVec2::splat(Extent::VOXEL_M / 2.0);
         for [x, y] in columns {
-            let middle = GridSpec::center(x, y, 0).truncate();
+            let middle = frame.extent().center(x, y, 0).truncate();
             let cell = map.rect_of(middle - half, middle + half);
             painter.rect_filled(cell, 0.0, color.gamma_multiply(0.8));
             around = around.union(cell);

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Ui, 
 use glam::DVec2;
 
 use editor::tools::{At, Mark, Role, View};
-use scene::{BevLayer, GridSpec};
+use scene::{BevLayer, Extent};
 
 use super::canvas_draw::{BoxStyle, draw_box};
 use super::screen_map::{ScreenMap, pos};
@@ -28,6 +28,8 @@ pub(super) struct Board<'a> {
     pub view: &'a dyn View,
     /// The map, in the view from above.
     pub map: Option<&'a ScreenMap>,
+    /// Columns of the scene that is seen.
+    pub extent: Extent,
 }
 
 fn layer_color(layer: BevLayer) -> Color32 {
@@ -84,7 +86,7 @@ impl Board<'_> {
             Mark::Columns(cells, role) => {
                 if let Some(map) = self.map {
                     let color = self.color(*role).gamma_multiply(0.4);
-                    for [low_m, high_m] in runs(cells) {
+                    for [low_m, high_m] in runs(self.extent, cells) {
                         painter.rect_filled(map.rect_of(low_m, high_m), 0.0, color);
                     }
                 }
@@ -230,12 +232,13 @@ fn arrow(painter: &Painter, [from, to]: [Pos2; 2], color: Color32, hot: bool, sq
 }
 
 /// The cells to inpaint.
-pub(super) fn region(painter: &Painter, map: &ScreenMap, cells: impl Iterator<Item = [usize; 2]>) {
+pub(super) fn region(painter: &Painter, map: &ScreenMap, cells: impl Iterator<Item = [i32; 2]>) {
     const CELL_M: f64 = 1.6;
+    let window_m = Extent::WINDOW.min_m();
     for [i, j] in cells {
         let corner_m = DVec2::new(
-            GridSpec::MIN_M[0] + i as f64 * CELL_M,
-            GridSpec::MIN_M[1] + j as f64 * CELL_M,
+            window_m.x + f64::from(i) * CELL_M,
+            window_m.y + f64::from(j) * CELL_M,
         );
         let rect = map.rect_of(corner_m, corner_m + CELL_M);
         painter.rect_filled(rect.shrink(0.5), 0.0, theme::accent().gamma_multiply(0.28));
@@ -268,12 +271,12 @@ fn label(painter: &Painter, middle: Pos2, text: &str) {
     painter.galley(rect.min + vec2(3.0, 3.0), galley, theme::ON_CANVAS);
 }
 
-/// Sorted cells as few rectangles, corner to corner, ego frame, m.
-fn runs(cells: &[[usize; 2]]) -> Vec<[DVec2; 2]> {
+/// Sorted cells of a map as few rectangles, corner to corner, ego frame, m.
+fn runs(extent: Extent, cells: &[[usize; 2]]) -> Vec<[DVec2; 2]> {
     let corner = |x: usize, y: usize| {
         DVec2::new(
-            GridSpec::MIN_M[0] + x as f64 * GridSpec::VOXEL_M,
-            GridSpec::MIN_M[1] + y as f64 * GridSpec::VOXEL_M,
+            extent.min_m().x + x as f64 * Extent::VOXEL_M,
+            extent.min_m().y + y as f64 * Extent::VOXEL_M,
         )
     };
     let joined = cells.chunk_by(|a, b| a[0] == b[0] && a[1] + 1 == b[1]);
@@ -291,7 +294,7 @@ mod tests {
     #[test]
     fn cells_become_rectangles_that_cover_them() {
         let cells = [[3, 5], [3, 6], [3, 8], [4, 5]];
-        let rects = runs(&cells);
+        let rects = runs(Extent::WINDOW, &cells);
         assert_eq!(rects.len(), 3);
         let area: f64 = rects.iter().map(|[a, b]| (*b - *a).element_product()).sum();
         assert!((area - 4.0 * 0.16).abs() < 1e-9);
@@ -299,6 +302,6 @@ mod tests {
             (rects[0][0] - DVec2::new(-38.8, -38.0)).length() < 1e-9,
             "{rects:?}"
         );
-        assert!(runs(&[]).is_empty());
+        assert!(runs(Extent::WINDOW, &[]).is_empty());
     }
 }

@@ -3,7 +3,7 @@
 use anyhow::bail;
 
 use scene::raster::box_cells;
-use scene::{BevLayer, Class, Frame, GridSpec, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
+use scene::{BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
 use sensors::cameras::bounds;
 use sensors::{color, lidar};
 use viewport::{
@@ -73,15 +73,14 @@ impl Picture {
 }
 
 /// Fills grid cells seen from above: ego x is up, ego y is left.
-fn top_view(scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
-    let mut out = Picture::filled(GridSpec::NY * scale, GridSpec::NX * scale, [0; 3]);
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            let color = cell(x, y);
-            let (left, top) = ((GridSpec::NY - 1 - y) * scale, (GridSpec::NX - 1 - x) * scale);
-            for i in 0..scale * scale {
-                out.set(left + i % scale, top + i / scale, color);
-            }
+fn top_view(extent: Extent, scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
+    let [nx, ny] = [extent.nx(), extent.ny()];
+    let mut out = Picture::filled(ny * scale, nx * scale, [0; 3]);
+    for [x, y] in extent.all_columns() {
+        let color = cell(x, y);
+        let (left, top) = ((ny - 1 - y) * scale, (nx - 1 - x) * scale);
+        for i in 0..scale * scale {
+            out.set(left + i % scale, top + i / scale, color);
         }
     }
     out
@@ -106,14 +105,13 @@ pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
         RoadDivider,
         LaneDivider,
     ];
-    let mut boxes: Vec<Option<&SceneBox>> = vec![None; GridSpec::COLUMNS];
+    let extent = frame.extent();
+    let mut boxes: Vec<Option<&SceneBox>> = vec![None; extent.columns()];
     for b in frame.boxes.values() {
-        box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-            boxes[x * GridSpec::NY + y] = Some(b)
-        });
+        box_cells(extent, b, 0.0, |x, y| boxes[extent.index(x, y)] = Some(b));
     }
-    top_view(scale, |x, y| {
-        if let Some(b) = boxes[x * GridSpec::NY + y] {
+    top_view(extent, scale, |x, y| {
+        if let Some(b) = boxes[extent.index(x, y)] {
             return b.class.color();
         }
         let top = order.into_iter().rev().find(|l| frame.layout.has(*l, x, y));
@@ -123,9 +121,9 @@ pub fn layout_top(frame: &Frame, scale: usize) -> Picture {
 
 /// Occupancy from above: the class of the highest voxel, brighter with height.
 pub fn occupancy_top(grid: &VoxelGrid, scale: usize) -> Picture {
-    top_view(scale, |x, y| {
+    top_view(grid.extent(), scale, |x, y| {
         let column = grid.column(x, y);
-        let top = (0..GridSpec::NZ).rev().find(|z| column[*z] != Class::FREE);
+        let top = (0..Extent::NZ).rev().find(|z| column[*z] != Class::FREE);
         top.and_then(|z| Some((z, Class::from_id(column[z])?)))
             .map_or([20, 22, 27], |(z, class)| {
                 scaled(class.color(), 0.62 + 0.38 * z as f32 / 15.0)
@@ -155,12 +153,12 @@ pub fn plane_sheet(image: &MultiPlaneImage) -> Picture {
     Picture { width, height, rgba }
 }
 
-/// LiDAR returns from above, coloured by range.
-pub fn lidar_top(sweep: &LidarSweep, scale: usize) -> Picture {
-    let mut out = Picture::filled(GridSpec::NY * scale, GridSpec::NX * scale, [16, 18, 22]);
+/// LiDAR returns above a map, coloured by range.
+pub fn lidar_top(extent: Extent, sweep: &LidarSweep, scale: usize) -> Picture {
+    let mut out = Picture::filled(extent.ny() * scale, extent.nx() * scale, [16, 18, 22]);
     for p in &sweep.points {
         let [x, y, _] = p.position_in_ego.map(f64::from);
-        let u = GridSpec::to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
+        let u = extent.to_voxel_units(glam::DVec3::new(x, y, 0.0)) * scale as f64;
         let (px, py) = (out.width as f64 - u.y, out.height as f64 - u.x);
         if px >= 0.0 && py >= 0.0 {
             // Two pixels wide and never dark, so that a sparse ring shows.

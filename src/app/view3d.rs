@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use editor::pick::{self, Hit, Ray};
 use editor::pick_things;
 use editor::tools::{Mark, View, ViewKind, Wants, point_of, select};
-use scene::{BoxId, Class, GridSpec, LidarSweep, Scene, SceneBox};
+use scene::{BoxId, Class, LidarSweep, Scene, SceneBox};
 use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
@@ -179,6 +179,7 @@ impl View3d {
             painter: &painter,
             view: self,
             map: None,
+            extent: input.scene.frame().extent(),
         };
         board.paint(ui, &marks);
         response
@@ -539,7 +540,9 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
             }
             parts.push(format!("voxel {}, {}, {}", v.cell[0], v.cell[1], v.cell[2]));
         }
-        Hit::Ground { .. } if GridSpec::voxel_at(p).is_none() => parts.push("outside the grid".into()),
+        Hit::Ground { .. } if scene.frame().extent().voxel_at(p).is_none() => {
+            parts.push("outside the map".into());
+        }
         Hit::Ground { .. } => {}
     }
     parts.join("  ·  ")

@@ -12,7 +12,7 @@ use zip::ZipArchive;
 use super::input::{self, InputError};
 use super::npz::{self, Values as Npy};
 use scene::message::{one_line, quoted, shortened};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Names that the labels may have, in order of preference.
 const NAMES: [&str; 3] = ["semantics", "occ", "arr_0"];
@@ -20,7 +20,7 @@ const NAMES: [&str; 3] = ["semantics", "occ", "arr_0"];
 /// beside them.
 pub const LARGEST_FILE: u64 = 256 << 20;
 /// Largest array that is unpacked: eight bytes a voxel and a header.
-const LARGEST: u64 = 8 * GridSpec::VOXELS as u64 + 65_536;
+const LARGEST: u64 = 8 * Window::VOXELS as u64 + 65_536;
 /// Longest header of an array, bytes, and most brackets in it: its parser calls itself for each, and a file of nothing
 /// but brackets would end the program.
 const LONGEST_HEADER: usize = 4096;
@@ -92,9 +92,9 @@ pub fn read(bytes: &[u8]) -> Result<Occ3dFrame, Occ3dError> {
         name: quoted(&name, 80),
         problem: format!(
             "class {found} at voxel {}, {}, {}, expected 0 to {}",
-            i / (GridSpec::NY * GridSpec::NZ),
-            i / GridSpec::NZ % GridSpec::NY,
-            i % GridSpec::NZ,
+            i / (Window::NY * Window::NZ),
+            i / Window::NZ % Window::NY,
+            i % Window::NZ,
             Class::FREE
         ),
     };
@@ -141,7 +141,7 @@ pub fn frame_to_bytes(frame: &Occ3dFrame) -> Vec<u8> {
 fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2]) -> Vec<u8> {
     let array = |name, bytes| npz::Array {
         name,
-        shape: &[GridSpec::NX, GridSpec::NY, GridSpec::NZ],
+        shape: &[Window::NX, Window::NY, Window::NZ],
         values: Npy::U8(bytes),
     };
     let mut all = vec![array("semantics", labels.to_dense())];
@@ -177,7 +177,7 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3
     }
     let start = check_header(&bytes).map_err(problem)?;
     let npy = NpyFile::new(&bytes[..]).map_err(|e| problem(e.to_string()))?;
-    let expected = [GridSpec::NX as u64, GridSpec::NY as u64, GridSpec::NZ as u64];
+    let expected = [Window::NX as u64, Window::NY as u64, Window::NZ as u64];
     if npy.shape() != expected {
         return Err(problem(format!("shape {:?}, expected {expected:?}", npy.shape())));
     }
@@ -186,8 +186,8 @@ fn array(zip: &mut ZipArchive<Cursor<&[u8]>>, name: &str) -> Result<Values, Occ3
     }
     let dtype = npy.dtype().descr();
     if matches!(dtype.as_str(), "'|u1'" | "'|b1'") {
-        let values = bytes.get(start..start + GridSpec::VOXELS).map(<[u8]>::to_vec);
-        let wanted = GridSpec::VOXELS;
+        let values = bytes.get(start..start + Window::VOXELS).map(<[u8]>::to_vec);
+        let wanted = Window::VOXELS;
         let found = bytes.len().saturating_sub(start);
         return values
             .map(Values::Bytes)
@@ -259,7 +259,7 @@ mod tests {
     const SHAPE: &str = "(200, 200, 16)";
 
     fn labels() -> Vec<u8> {
-        let mut dense = vec![Class::FREE; GridSpec::VOXELS];
+        let mut dense = vec![Class::FREE; Window::VOXELS];
         dense[(3 * 200 + 7) * 16 + 2] = 4;
         dense
     }
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn reads_labels_and_masks_of_any_integer_type() {
         let wide = |v: &[u8]| -> Vec<u8> { v.iter().flat_map(|l| i64::from(*l).to_le_bytes()).collect() };
-        let mut mask = vec![0; GridSpec::VOXELS];
+        let mut mask = vec![0; Window::VOXELS];
         mask[5] = 1;
         let frame = read(&npz(&[
             ("mask_lidar", "|b1", SHAPE, mask.clone()),
@@ -291,7 +291,7 @@ mod tests {
         let bytes = to_bytes(&labels);
         assert_eq!(bytes, to_bytes(&labels));
         assert_eq!(read(&bytes).expect("a frame").labels, labels);
-        let masks = [3, 7].map(|n| Some((0..GridSpec::VOXELS).map(|i| i % n == 0).collect()));
+        let masks = [3, 7].map(|n| Some((0..Window::VOXELS).map(|i| i % n == 0).collect()));
         let [lidar_observed, camera_observed] = masks;
         let frame = Occ3dFrame {
             labels: labels.clone(),
@@ -316,7 +316,7 @@ mod tests {
                 "array semantics: class 23 at voxel 0, 1, 0, expected 0 to 17",
             ),
             (
-                npz(&[("semantics", "<f4", SHAPE, vec![0; 4 * GridSpec::VOXELS])]),
+                npz(&[("semantics", "<f4", SHAPE, vec![0; 4 * Window::VOXELS])]),
                 "array semantics: type '<f4', expected integers",
             ),
             (

@@ -32,6 +32,7 @@ pub mod support;
 pub mod variants;
 pub mod waiver;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -220,6 +221,16 @@ impl Scene {
     /// The frame being edited.
     pub fn frame(&self) -> &Arc<Frame> {
         &self.frames[self.current]
+    }
+
+    /// The scene with the frame being edited cut to the networks' window; itself if the frame is one. The revision stays.
+    pub fn in_window(&self) -> Cow<'_, Scene> {
+        if self.frame().extent() == Extent::WINDOW {
+            return Cow::Borrowed(self);
+        }
+        let mut scene = self.clone();
+        scene.frames[scene.current] = Arc::new(self.frame().crop(Extent::WINDOW));
+        Cow::Owned(scene)
     }
 
     /// The frame being edited, copied if it is shared, and a fresh revision.

@@ -5,8 +5,8 @@ use dataset::occupancy_frame;
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::{
-    CELLS, ColumnHeights, DecoderInput, DitCondition, KeysValues, Middle, OccDit, OccModels, OccVae, Window,
-    tokens_of,
+    CELLS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, Middle, OccDit, OccModels,
+    OccVae, tokens_of,
 };
 use nn::weights::WeightFile;
 use nn::{Ops, Precision};
@@ -165,7 +165,7 @@ fn refiner_and_scenery_agree_with_candle() {
         Refiner::on(candle(), file(assets::weights::REFINER), fine).expect("the shipped weights load");
     let mut cells = [false; CELLS];
     (300..310).for_each(|c| cells[c] = true);
-    let window = Window::around(&cells, 4).expect("ten cells");
+    let window = CellRect::around(&cells, 4).expect("ten cells");
     let fine = 4 * window.rows * window.columns * 16;
     let (state, rough, told) = (numbers(fine, 1), numbers(fine, 2), numbers(fine, 3));
     let rough = Rough {

@@ -165,7 +165,10 @@ impl SceneloomApp {
                 self.state.choose(&ids, Choose::Only);
             }
             Act::AddThings(forms) => self.add_things("Add", forms, Vec::new()),
-            Act::Mark(area, on) => self.state.tools.mark(&area, on),
+            Act::Mark(area, on) => self
+                .state
+                .tools
+                .mark(self.document.scene().frame().extent(), &area, on),
             Act::Note(text) => self.note(&text),
             Act::Ask(id) => {
                 let action = ACTIONS.iter().find(|a| a.id == id);

@@ -113,9 +113,9 @@ impl Gen {
                 Some(_) => RegionMode::Auto,
                 None => default.region,
             },
-            inpaint: match self.region {
-                Some(RegionArg::Rect(mask)) => mask,
-                _ => default.inpaint,
+            inpaint: match &self.region {
+                Some(RegionArg::Rect(mask)) => mask.clone(),
+                _ => default.inpaint.clone(),
             },
             inversion_iterations: self.inversion_iterations.unwrap_or(default.inversion_iterations),
             fine_steps: self.fine_steps.unwrap_or(default.fine_steps),

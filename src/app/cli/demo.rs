@@ -19,7 +19,7 @@ use formats::loom;
 use job::pipeline::OccPipeline;
 use job::{GenParams, Job};
 use nets::OccModels;
-use scene::{BevLayer, BoxId, Class, GridSpec, Scene};
+use scene::{BevLayer, BoxId, Class, Scene};
 use sensors::color;
 
 /// Arguments.
@@ -65,7 +65,7 @@ fn edits(scene: &Scene) -> Vec<(&'static str, Vec<Edit>)> {
     let edge = (2..95)
         .find(|y| !frame.layout.has(BevLayer::DrivableArea, 110, 100 - y))
         .unwrap_or(15);
-    let y_m = GridSpec::center(110, 100 - edge, 0).y - 1.5;
+    let y_m = frame.extent().center(110, 100 - edge, 0).y - 1.5;
     let line = Shape::Line {
         points_m: vec![DVec2::new(-38.0, y_m), DVec2::new(38.0, y_m)],
         width_m: 3.4,
@@ -143,7 +143,7 @@ impl Sink<'_> {
         let mut row = vec![
             picture::layout_top(frame, 2),
             picture::occupancy_top(&frame.occupancy, 2),
-            picture::lidar_top(&sweep, 2),
+            picture::lidar_top(frame.extent(), &sweep, 2),
         ];
         if let Some(view) = &mut self.view {
             let options = picture::ShotOptions {
@@ -184,7 +184,7 @@ impl Demo {
         let params = GenParams::default();
         let job = Job {
             scene: document.scene().clone(),
-            params,
+            params: params.clone(),
         };
         let calls = progress.with_ctx(|ctx| pipeline.prepare(&job, ctx))?;
         let invert_s = start.elapsed().as_secs_f64();
@@ -196,7 +196,7 @@ impl Demo {
             document
                 .apply_all(label, &with_conditions(&edits, seed))
                 .with_context(|| label.to_string())?;
-            let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
+            let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
             let wall_s = edit_start.elapsed().as_secs_f64();
             let stem = format!("{}_{}", i + 1, label.replace(' ', "_"));
             let after = sink.row(document.scene())?;

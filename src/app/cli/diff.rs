@@ -6,12 +6,13 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 
 use super::{Common, Outcome, output};
+use anyhow::anyhow;
 use app::open;
 use app::picture::{Picture, layout_top, lidar_top, occupancy_top};
 use editor::columns_between;
 use job::GenParams;
 use job::region::Region;
-use scene::{Background, BevLayer, Class, Frame, GridSpec, LidarSweep, Scene, SceneBox, SourceFrame, Thing};
+use scene::{Background, BevLayer, Class, Extent, Frame, LidarSweep, Scene, SceneBox, SourceFrame, Thing};
 use sensors::lidar;
 
 /// Arguments.
@@ -37,6 +38,14 @@ impl Diff {
     pub(super) fn run(self) -> Outcome {
         let (a, b) = (open::scene(&self.a)?, open::scene(&self.b)?);
         let (before, after) = (a.frame(), b.frame());
+        if before.extent() != after.extent() {
+            return Err(anyhow!(
+                "{} and {} are maps of different places or sizes, expected the same for both",
+                self.a.display(),
+                self.b.display()
+            )
+            .into());
+        }
         let mut report = Map::new();
         report.insert("boxes".into(), boxes(before, after));
         report.insert("layout".into(), layout(before, after));
@@ -44,10 +53,11 @@ impl Diff {
         // Where B's voxels may differ: what an edit from A to B would inpaint, and around things that differ.
         let of_things = columns_between(&a.background, &b.background, after);
         let region = Region::of_edit(&edited(before, after), GenParams::default().halo_columns as usize);
+        let region_columns = after.extent().crop(&Extent::WINDOW, &region.columns, false);
         let changed = changed_voxels(before, after);
         let inside = |(x, y, _): &(usize, usize, usize)| {
-            let column = x * GridSpec::NY + y;
-            region.columns[column] || of_things[column]
+            let column = after.extent().index(*x, *y);
+            region_columns[column] || of_things[column]
         };
         let changed_inside = changed.iter().filter(|v| inside(v)).count();
         report.insert("voxels_changed".into(), changed.len().into());
@@ -91,7 +101,10 @@ impl Diff {
                         occupancy_top(&after.occupancy, SCALE),
                         voxel_change(after, &changed),
                     ],
-                    vec![lidar_top(&sweeps.0, SCALE), lidar_top(&sweeps.1, SCALE)],
+                    vec![
+                        lidar_top(before.extent(), &sweeps.0, SCALE),
+                        lidar_top(after.extent(), &sweeps.1, SCALE),
+                    ],
                 ],
                 6,
             );
@@ -220,9 +233,9 @@ fn layout(before: &Frame, after: &Frame) -> Value {
 /// Voxels that differ, as indices.
 fn changed_voxels(before: &Frame, after: &Frame) -> Vec<(usize, usize, usize)> {
     let mut out = Vec::new();
-    for (x, y) in (0..GridSpec::NX).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y))) {
+    for [x, y] in after.extent().all_columns() {
         let (a, b) = (before.occupancy.column(x, y), after.occupancy.column(x, y));
-        out.extend((0..GridSpec::NZ).filter(|z| a[*z] != b[*z]).map(|z| (x, y, z)));
+        out.extend((0..Extent::NZ).filter(|z| a[*z] != b[*z]).map(|z| (x, y, z)));
     }
     out
 }
@@ -281,21 +294,22 @@ fn lidar_report(a: &Scene, b: &Scene, sweep_a: &LidarSweep, sweep_b: &LidarSweep
 fn layout_change(before: &Frame, after: &Frame) -> Picture {
     let (a, b) = (before.bev_channels(), after.bev_channels());
     marked(layout_top(after, SCALE), |x, y| {
-        let i = x * GridSpec::NY + y;
+        let i = after.extent().index(x, y);
         mark(b[i] & !a[i] != 0, a[i] & !b[i] != 0)
     })
 }
 
 /// The later occupancy, dark; columns bright that gained (blue) or lost voxels (orange), or both (yellow).
 fn voxel_change(after: &Frame, changed: &[(usize, usize, usize)]) -> Picture {
-    let mut flags = vec![(false, false); GridSpec::COLUMNS];
+    let extent = after.extent();
+    let mut flags = vec![(false, false); extent.columns()];
     for &(x, y, z) in changed {
         let now_free = after.occupancy.get(x, y, z) == Class::FREE;
-        let flag = &mut flags[x * GridSpec::NY + y];
+        let flag = &mut flags[extent.index(x, y)];
         *flag = (flag.0 | !now_free, flag.1 | now_free);
     }
     marked(occupancy_top(&after.occupancy, SCALE), |x, y| {
-        let (came, went) = flags[x * GridSpec::NY + y];
+        let (came, went) = flags[extent.index(x, y)];
         mark(came, went)
     })
 }
@@ -311,10 +325,11 @@ fn mark(came: bool, went: bool) -> Option<[u8; 3]> {
 }
 
 fn marked(mut picture: Picture, of: impl Fn(usize, usize) -> Option<[u8; 3]>) -> Picture {
+    let (width, height) = (picture.width, picture.height);
     for (at, pixel) in picture.rgba.chunks_exact_mut(4).enumerate() {
-        let (column, row) = (at % picture.width / SCALE, at / picture.width / SCALE);
+        let (column, row) = (at % width / SCALE, at / width / SCALE);
         // Ego x is up, ego y is left.
-        let cell = of(GridSpec::NX - 1 - row, GridSpec::NY - 1 - column);
+        let cell = of(height / SCALE - 1 - row, width / SCALE - 1 - column);
         for (channel, value) in pixel[..3].iter_mut().enumerate() {
             *value = cell.map_or(*value / 3, |color| color[channel]);
         }

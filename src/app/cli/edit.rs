@@ -61,13 +61,13 @@ impl EditCommand {
         let round_trip = if self.verify {
             let job = Job {
                 scene: before,
-                params,
+                params: params.clone(),
             };
             Some(progress.with_ctx(|ctx| pipeline.round_trip(&job, ctx))?)
         } else {
             None
         };
-        let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
+        let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
         let scene = document.scene();
         loom::save(&self.output, scene)?;
         let r = &result.report;

@@ -122,7 +122,7 @@ impl Eval {
             self.generation.params(GenParams::whole_scene())?,
             self.generation.params(GenParams::default())?,
         ];
-        let of = |suite: &Suite| self.options(suite, params);
+        let of = |suite: &Suite| self.options(suite, params.clone());
         let progress = Progress::new(&self.common);
         if self.suite == ALL || self.markdown {
             let chosen = SUITES

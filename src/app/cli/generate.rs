@@ -85,7 +85,7 @@ impl Generate {
         let params = self.generation.params(GenParams::whole_scene())?;
         let mut document = Document::new(scene);
         let drawn = !self.bare && draw_scenery(&mut document, &params)?;
-        let result = run_and_adopt(&mut document, &mut pipeline, params, &progress)?;
+        let result = run_and_adopt(&mut document, &mut pipeline, params.clone(), &progress)?;
         let scene = document.scene();
         loom::save(&self.output, scene)?;
         let (lidar_s, cameras_s) = sense(scene);

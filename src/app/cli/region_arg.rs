@@ -3,16 +3,16 @@
 use glam::DVec2;
 
 use job::inpaint::InpaintMask;
+use scene::Extent;
 
 /// What is regenerated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "one per run of the program")]
+#[derive(Clone, Debug, PartialEq)]
 pub enum RegionArg {
     /// What an edit touches.
     Auto,
     /// Everything, from fresh noise.
     Full,
-    /// What an edit touches, and the cells of a rectangle.
+    /// What an edit touches, and the cells of a rectangle in the networks' window.
     Rect(InpaintMask),
 }
 
@@ -34,9 +34,11 @@ impl std::str::FromStr for RegionArg {
         if numbers.iter().any(|n| !n.is_finite()) {
             return Err(wanted());
         }
-        let mask = InpaintMask::of_rect(DVec2::new(x0, y0), DVec2::new(x1, y1));
+        let mask = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(x0, y0), DVec2::new(x1, y1));
         match mask.is_empty() {
-            true => Err("the rectangle covers no cell of the grid".into()),
+            true => Err(
+                "the rectangle covers no cell of the networks' window, 80 m around the ego vehicle".into(),
+            ),
             false => Ok(Self::Rect(mask)),
         }
     }
@@ -50,7 +52,7 @@ mod tests {
     fn words_rectangles_and_what_is_neither() {
         assert_eq!("auto".parse(), Ok(RegionArg::Auto));
         assert_eq!("full".parse(), Ok(RegionArg::Full));
-        let rect = InpaintMask::of_rect(DVec2::new(-10.0, -5.0), DVec2::new(10.0, 5.0));
+        let rect = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(-10.0, -5.0), DVec2::new(10.0, 5.0));
         assert_eq!("-10, 5,10,-5".parse(), Ok(RegionArg::Rect(rect)));
         for bad in ["", "some", "1,2,3", "1,2,3,4,5", "1,2,3,nan", "100,100,200,200"] {
             assert!(bad.parse::<RegionArg>().is_err(), "{bad}");

@@ -59,9 +59,9 @@ impl Scenery {
                 bail!("{name} is {value}, expected 0 to 4");
             }
         }
-        let region = match self.region {
+        let region = match &self.region {
             None | Some(RegionArg::Full) => InpaintMask::default(),
-            Some(RegionArg::Rect(mask)) => mask,
+            Some(RegionArg::Rect(mask)) => mask.clone(),
             Some(RegionArg::Auto) => bail!("--region is auto, expected full or four numbers X0,Y0,X1,Y1"),
         };
         let by = match (self.by, self.setting) {

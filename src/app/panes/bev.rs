@@ -90,8 +90,9 @@ impl Pane for Bev {
             CompareMode::Difference => {
                 if let Some((difference, texture)) = cx.compare.difference(ui, scene) {
                     let entries = difference.legend();
-                    let far = glam::DVec2::splat(scene::GridSpec::MAX_M[0]);
-                    let grid = Rect::from_two_pos(map.to_screen(-far), map.to_screen(far));
+                    let extent = scene.frame().extent();
+                    let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
+                    let grid = Rect::from_two_pos(map.to_screen(low), map.to_screen(high));
                     let unit = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
                     let painter = ui.painter_at(area);
                     painter.image(texture, grid, unit, egui::Color32::WHITE);

@@ -10,7 +10,7 @@ use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
 use editor::Edit;
-use scene::{Class, GridSpec, LidarSweep, Scene, SceneBox};
+use scene::{Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::GROUND_TOP_M;
 use widgets::icons::Icon;
 use widgets::theme;
@@ -160,7 +160,7 @@ impl BoxViews {
             })
             .collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let side = (GridSpec::VOXEL_M * scale) as f32;
+        let side = (Extent::VOXEL_M * scale) as f32;
         for (_, at, color) in seen {
             let square = Rect::from_center_size(at, vec2(side, side));
             painter.rect_filled(square, 0.0, color.gamma_multiply(0.55));
@@ -319,21 +319,23 @@ fn voxels<'a>(
 ) -> impl Iterator<Item = (DVec3, Class)> + use<'a> {
     let (b, frame) = (*b, scene.frame());
     let far = reach.length();
+    let extent = frame.extent();
+    let min_m = extent.min_m();
     let cells = |center: f64, axis: usize, count: usize| {
-        let at = |v: f64| (v - GridSpec::MIN_M[axis]) / GridSpec::VOXEL_M;
+        let at = |v: f64| (v - min_m[axis]) / Extent::VOXEL_M;
         let low = at(center - far).floor().clamp(0.0, count as f64) as usize;
         let high = at(center + far).ceil().clamp(0.0, count as f64) as usize;
         low..high
     };
     let (xs, ys) = (
-        cells(b.center_m.x, 0, GridSpec::NX),
-        cells(b.center_m.y, 1, GridSpec::NY),
+        cells(b.center_m.x, 0, extent.nx()),
+        cells(b.center_m.y, 1, extent.ny()),
     );
     xs.flat_map(move |x| ys.clone().map(move |y| (x, y)))
-        .flat_map(move |(x, y)| (0..GridSpec::NZ).map(move |z| (x, y, z)))
+        .flat_map(move |(x, y)| (0..Extent::NZ).map(move |z| (x, y, z)))
         .filter_map(move |(x, y, z)| {
             let class = Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)?;
-            let center = |i: usize, axis: usize| GridSpec::MIN_M[axis] + (i as f64 + 0.5) * GridSpec::VOXEL_M;
+            let center = |i: usize, axis: usize| min_m[axis] + (i as f64 + 0.5) * Extent::VOXEL_M;
             let lift = if class.is_ground() { LIFT_M } else { 0.0 };
             let local = b.to_local(DVec3::new(center(x, 0), center(y, 1), center(z, 2) + lift));
             local.abs().cmple(reach).all().then_some((local, class))
@@ -376,10 +378,10 @@ mod tests {
         let scene = Scene::single("test", frame, std::sync::Arc::default(), 0);
         let top = |wanted: fn(Class) -> bool| {
             let heights = voxels(&scene, &b, b.size_m).filter(|(_, class)| wanted(*class));
-            heights.map(|(local, _)| local.z).fold(f64::MIN, f64::max) + GridSpec::VOXEL_M / 2.0
+            heights.map(|(local, _)| local.z).fold(f64::MIN, f64::max) + Extent::VOXEL_M / 2.0
         };
         let roof = top(|class| class == Class::Car);
-        assert!((roof - 0.85).abs() <= GridSpec::VOXEL_M, "{roof}");
+        assert!((roof - 0.85).abs() <= Extent::VOXEL_M, "{roof}");
         let ground = top(Class::is_ground);
         assert!((ground + 0.85).abs() < 1e-9, "{ground}");
     }

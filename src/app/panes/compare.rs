@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, CursorIcon, Rect, Sense, Stroke, Ui, pos2, vec2};
 
-use scene::{GridSpec, Scene, SceneRev, VoxelGrid};
+use scene::{Extent, Scene, SceneRev, VoxelGrid};
 
 use super::camera_strip::CameraStrip;
 use super::lidar::SweepPicture;
-use crate::bev_image::{SIZE, column_of};
+use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
 use crate::canvas::Canvas;
 use crate::sensing::Sensing;
@@ -34,24 +34,22 @@ pub struct Difference {
 pub(crate) const DIFFERENCE_COLORS: [[u8; 3]; 3] = [[70, 205, 110], [235, 70, 60], [240, 180, 60]];
 
 impl Difference {
-    /// Between two grids; columns that share their memory are passed over.
+    /// Between two grids, on the map of the later one.
     pub fn between(before: &VoxelGrid, after: &VoxelGrid) -> Self {
-        let mut out = Self::default();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                let (a, b) = (before.column(x, y), after.column(x, y));
-                if a == b {
-                    continue;
-                }
-                for z in (0..GridSpec::NZ).filter(|z| a[*z] != b[*z]) {
-                    let free = scene::Class::FREE;
-                    let of_kind = match (a[z] == free, b[z] == free) {
-                        (true, _) => &mut out.added,
-                        (_, true) => &mut out.removed,
-                        _ => &mut out.changed,
-                    };
-                    of_kind.push([x, y, z]);
-                }
+        let (before, mut out) = (before.crop(after.extent()), Self::default());
+        for [x, y] in after.extent().all_columns() {
+            let (a, b) = (before.column(x, y), after.column(x, y));
+            if a == b {
+                continue;
+            }
+            for z in (0..Extent::NZ).filter(|z| a[*z] != b[*z]) {
+                let free = scene::Class::FREE;
+                let of_kind = match (a[z] == free, b[z] == free) {
+                    (true, _) => &mut out.added,
+                    (_, true) => &mut out.removed,
+                    _ => &mut out.changed,
+                };
+                of_kind.push([x, y, z]);
             }
         }
         out
@@ -81,9 +79,8 @@ impl Difference {
 
     /// From above: green where something came, red where something went, amber where only classes changed.
     fn image(before: &VoxelGrid, after: &VoxelGrid) -> ColorImage {
-        let free = scene::Class::FREE;
-        let pixel = |i: usize| {
-            let (x, y) = column_of(i);
+        let (before, free) = (before.crop(after.extent()), scene::Class::FREE);
+        from_above(after.extent(), |x, y| {
             let (a, b) = (before.column(x, y), after.column(x, y));
             let any = |f: &dyn Fn(u8, u8) -> bool| a.iter().zip(b).any(|(a, b)| a != b && f(*a, *b));
             let kind = if any(&|a, b| a != free && b == free) {
@@ -97,8 +94,7 @@ impl Difference {
             };
             let [r, g, b] = DIFFERENCE_COLORS[kind];
             Color32::from_rgba_unmultiplied(r, g, b, 200)
-        };
-        ColorImage::new(SIZE, (0..GridSpec::COLUMNS).map(pixel).collect())
+        })
     }
 }
 

@@ -7,8 +7,8 @@ use glam::dvec2;
 use super::compare::tag;
 use crate::canvas::ScreenMap;
 use crate::shell::tuning::LastEdit;
-use scene::GridSpec;
-use scene::grid::{BRICK, BRICKS};
+use scene::Window;
+use scene::grid::{BRICK, bricks_along};
 use sensors::learned_caster::Sampled;
 
 /// Tokens along a side of the map.
@@ -19,7 +19,7 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
     let painter: Painter = ui.painter_at(area);
     let squares = |x: usize, y: usize, columns: usize| {
         let corner = |x: usize, y: usize| {
-            let at = |i: usize| GridSpec::MIN_M[0] + i as f64 * GridSpec::VOXEL_M;
+            let at = |i: usize| Window::MIN_M[0] + i as f64 * Window::VOXEL_M;
             map.to_screen(dvec2(at(x), at(y)))
         };
         Rect::from_two_pos(
@@ -28,7 +28,7 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
         )
     };
     let blue = Color32::from_rgb(70, 150, 255);
-    let side = GridSpec::NX / TOKENS;
+    let side = Window::NX / TOKENS;
     for token in &last.tokens {
         let rect = squares(token / TOKENS, token % TOKENS, side);
         painter.rect(
@@ -41,12 +41,13 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
     }
     let yellow = Color32::from_rgb(255, 200, 40).gamma_multiply(0.35);
     for (i, _) in last.region.columns.iter().enumerate().filter(|(_, c)| **c) {
-        painter.rect_filled(squares(i / GridSpec::NY, i % GridSpec::NY, 1), 0.0, yellow);
+        painter.rect_filled(squares(i / Window::NY, i % Window::NY, 1), 0.0, yellow);
     }
+    let bricks = bricks_along(scene::Extent::WINDOW);
     let green = Stroke::new(1.5, Color32::from_rgb(60, 220, 120));
     for brick in &last.bricks {
         painter.rect_stroke(
-            squares(brick / BRICKS, brick % BRICKS, BRICK),
+            squares(brick / bricks[1], brick % bricks[1], BRICK),
             0.0,
             green,
             StrokeKind::Inside,
@@ -62,7 +63,7 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
         TOKENS * TOKENS,
         last.report.region_columns,
         last.bricks.len(),
-        BRICKS * BRICKS,
+        bricks[0] * bricks[1],
     );
     if let Some(s) = sampled {
         let text = format!(

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::accesskit::Role;
 use egui::{Align2, Rect, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use scene::{BevLayer, Class, GridSpec, Scene};
+use scene::{BevLayer, Class, Extent, Scene};
 
 use super::camera_strip::thousands;
 use super::id::PaneId;
@@ -59,8 +59,8 @@ impl Counts {
         Self {
             voxels,
             boxes,
-            drivable_m2: cells as f64 * GridSpec::VOXEL_M * GridSpec::VOXEL_M,
-            occupied: set as f64 / GridSpec::VOXELS as f64,
+            drivable_m2: cells as f64 * Extent::VOXEL_M * Extent::VOXEL_M,
+            occupied: set as f64 / frame.extent().voxels() as f64,
             things: scene.background.len(),
         }
     }
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(counts.voxels, [(Class::Vegetation, 3), (Class::Car, 1)]);
         assert_eq!(counts.boxes, [(Class::Car, 1)].into());
         assert!((counts.drivable_m2 - 10.0 * 0.16).abs() < 1e-9);
-        assert!((counts.occupied * GridSpec::VOXELS as f64 - 4.0).abs() < 1e-9);
+        assert!((counts.occupied * Extent::WINDOW.voxels() as f64 - 4.0).abs() < 1e-9);
         assert_eq!(counts.things, 0);
     }
 }

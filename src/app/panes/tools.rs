@@ -13,7 +13,7 @@ use crate::state::{UiState, Underlay};
 use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, option_rows};
 use editor::tools::brush;
-use scene::{BevLayer, BevLayout, Frame, GridSpec};
+use scene::{BevLayer, BevLayout, Frame};
 use widgets::hint::caption;
 use widgets::icons::Icon;
 use widgets::icons::{self, section};
@@ -168,7 +168,7 @@ fn layer_row(
         if lock(ui, locked, &format!("Lock {label}")).clicked() {
             state.tools.layers_locked ^= layer.bit();
         }
-        let share = layout.count(layer) as f64 * 100.0 / GridSpec::COLUMNS as f64;
+        let share = layout.count(layer) as f64 * 100.0 / layout.extent().columns() as f64;
         let right = match share {
             0.0 => String::new(),
             s if s < 1.0 => "<1 %".to_owned(),

@@ -160,7 +160,9 @@ impl SceneloomApp {
             .presets
             .named(&settings.quality)
             .filter(|_| config.settings_file.is_some());
-        let params = quality.map_or(config.params, |preset| preset.knobs.on(config.params));
+        let params = quality.map_or(config.params.clone(), |preset| {
+            preset.knobs.on(config.params.clone())
+        });
         let dock = settings.dock.clone().and_then(Dock::from_kept);
         let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
         let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));

@@ -11,7 +11,7 @@ use editor::checks::{self, Finding, Seen};
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Worker};
 use scene::raster::box_cells;
-use scene::{BoxId, GridSpec, Scene, SceneBox, SceneRev};
+use scene::{BoxId, Extent, Scene, SceneBox, SceneRev};
 use sensors::lidar;
 use sensors::splat::PREVIEW_SIZE;
 
@@ -46,22 +46,20 @@ pub fn seen(scene: &Scene) -> Seen {
         pixels
     });
     let lidar_returns = lidar::rig_sweep(&frame.occupancy, &scene.rig).map(|sweep| {
-        let mut near: Vec<Vec<&SceneBox>> = vec![Vec::new(); GridSpec::COLUMNS];
+        let extent = frame.extent();
+        let mut near: Vec<Vec<&SceneBox>> = vec![Vec::new(); extent.columns()];
         for b in sound.values() {
-            box_cells(scene::Extent::WINDOW, b, MARGIN_M + GridSpec::VOXEL_M, |x, y| {
-                near[x * GridSpec::NY + y].push(b)
+            box_cells(extent, b, MARGIN_M + Extent::VOXEL_M, |x, y| {
+                near[extent.index(x, y)].push(b)
             });
         }
         let mut returns: BTreeMap<BoxId, u32> = BTreeMap::new();
         for point in &sweep.points {
             let p = DVec3::from_array(point.position_in_ego.map(f64::from));
-            let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
+            let Some([x, y]) = extent.column_at(p.x, p.y) else {
                 continue;
             };
-            for b in near[x * GridSpec::NY + y]
-                .iter()
-                .filter(|b| b.class == point.class)
-            {
+            for b in near[extent.index(x, y)].iter().filter(|b| b.class == point.class) {
                 let (local, half) = (b.to_local(p), b.size_m / 2.0 + DVec3::splat(MARGIN_M));
                 if local.truncate().abs().cmple(half.truncate()).all()
                     && (-half.z - SMEAR_M..=half.z).contains(&local.z)
@@ -203,13 +201,13 @@ mod tests {
         add(6.0, -0.5).apply(&mut scene).expect("sound");
         add(-30.0, 30.0).apply(&mut scene).expect("sound");
         // A bunker around the second one.
-        let [x, y] = GridSpec::column_at(-30.0, 30.0).expect("inside");
+        let [x, y] = Extent::WINDOW.column_at(-30.0, 30.0).expect("inside");
         let ring = |i: usize, j: usize| i.abs_diff(x).max(j.abs_diff(y));
         let mut cells = Vec::new();
         for (i, j) in (x - 5..=x + 5).flat_map(|i| (y - 5..=y + 5).map(move |j| (i, j))) {
             match ring(i, j) {
-                5 => cells.extend((0..GridSpec::NZ).map(|z| [i, j, z])),
-                _ => cells.push([i, j, GridSpec::NZ - 1]),
+                5 => cells.extend((0..Extent::NZ).map(|z| [i, j, z])),
+                _ => cells.push([i, j, Extent::NZ - 1]),
             }
         }
         let class = Class::Manmade;

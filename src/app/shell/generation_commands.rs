@@ -92,7 +92,7 @@ impl SceneloomApp {
         let Some(preset) = self.generation.tuning.presets.all.get(preset) else {
             return;
         };
-        self.generation.live.params = preset.knobs.on(self.generation.live.params);
+        self.generation.live.params = preset.knobs.on(self.generation.live.params.clone());
         self.preferences.settings.quality.clone_from(&preset.name);
         // The source's trajectory belongs to its settings.
         self.generation.live.source_changed();

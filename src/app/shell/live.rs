@@ -8,10 +8,10 @@ use super::guard::{self, Pace, Pause};
 use job::inpaint::InpaintMask;
 use job::region::{CELLS, COLUMNS_PER_CELL, Region};
 use job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
-use scene::{GridSpec, Scene, SceneRev};
+use scene::{Extent, Scene, SceneRev};
 
 /// Edge of a latent cell, m.
-const CELL_M: f64 = COLUMNS_PER_CELL as f64 * GridSpec::VOXEL_M;
+const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Extent::VOXEL_M;
 /// If runs take up to this long on average, there is no grace, s.
 const QUICK_S: f64 = 1.5;
 /// The grace after the last edit if runs are slower, s.
@@ -24,7 +24,7 @@ const WARM_UP_AFTER_S: f64 = 0.6;
 const REMEMBERED: usize = 10;
 
 /// What should happen now.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Advice {
     /// Nothing.
     Rest,
@@ -151,8 +151,8 @@ impl Live {
     /// Parameters for all of a scene, or for what was edited in it.
     pub fn params_for(&self, scene: &Scene, full: bool) -> GenParams {
         let (params, region) = match full {
-            true => (self.full_params, RegionMode::Full),
-            false => (self.params, RegionMode::Auto),
+            true => (self.full_params.clone(), RegionMode::Full),
+            false => (self.params.clone(), RegionMode::Auto),
         };
         GenParams {
             seed: scene.seed,
@@ -205,7 +205,7 @@ impl Live {
     }
 
     fn waits(&self, rev: SceneRev, touched: &Touched) -> bool {
-        self.on && !touched.is_empty && self.asked.is_none_or(|k| k.rev != rev)
+        self.on && !touched.is_empty && self.asked.clone().is_none_or(|k| k.rev != rev)
     }
 
     /// True if an edit waits to be generated automatically: for the end of a drag or of its grace.
@@ -265,7 +265,7 @@ impl Live {
         };
         // A source that was inpainted has to be inverted before it can be edited.
         self.cold = self.warm_up && (purpose == Purpose::Full || key.params.strength > 0.0);
-        self.asked = Some(key);
+        self.asked = Some(key.clone());
         self.paused = None;
         self.oldest_edit_s = None;
         self.running = Some(Running {
@@ -323,7 +323,7 @@ fn with_inpainted(touched: &Touched, inpaint: &InpaintMask) -> ([f64; 2], f64) {
     for axis in 0..2 {
         let along = || inpaint.cells().map(|cell| cell[axis]);
         if let (Some(low), Some(high)) = (along().min(), along().max()) {
-            extent_m[axis] = extent_m[axis].max((high + 1 - low) as f64 * CELL_M);
+            extent_m[axis] = extent_m[axis].max(f64::from(high + 1 - low) * CELL_M);
         }
     }
     let share = inpaint.count() as f64 / CELLS as f64;

@@ -15,11 +15,10 @@ use crate::state::UiState;
 use editor::Edit;
 use editor::part::{Part, changed_by_class};
 use job::inpaint::InpaintMask;
-use job::region::COLUMNS_PER_CELL;
 use job::{GenParams, RegionMode};
 use scene::background::in_extent;
 use scene::raster::box_cells;
-use scene::{Background, Class, GridSpec, Scene, SceneRev, Thing};
+use scene::{Background, Class, Extent, Scene, SceneRev, Thing};
 use widgets::theme;
 
 /// Classes that the menu of parts lists.
@@ -194,7 +193,7 @@ impl SceneloomApp {
             by: self.state.tools.drawer,
             green: times(self.state.named.vegetation, TYPICAL_VEGETATION),
             built: times(self.state.named.building, TYPICAL_BUILDING),
-            region: self.state.tools.region,
+            region: self.state.tools.region.clone(),
         };
         self.put_scenery(wish, true);
     }
@@ -221,7 +220,7 @@ impl SceneloomApp {
     fn take_part(&mut self, taken: Taken) {
         if let Some(Again::Scenery(wish)) = self.staged().and_then(|s| s.again.clone()) {
             // A thing is taken whole or not at all.
-            let region = self.state.tools.region;
+            let region = self.state.tools.region.clone();
             if self.step_back().is_some() {
                 self.put_scenery(SceneryWish { region, ..*wish }, false);
             }
@@ -230,7 +229,7 @@ impl SceneloomApp {
         let after = self.document.settled_scene().clone();
         let part = match taken {
             Taken::Class(class) => Part::Class(class),
-            Taken::Region => Part::Columns(columns_of_region(&self.state.tools.region)),
+            Taken::Region => Part::Columns(self.state.tools.region.columns(after.frame().extent())),
             Taken::Chosen => Part::Columns(columns_chosen(&self.state, &after)),
         };
         let Some(staged) = self.staged() else { return };
@@ -338,7 +337,7 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
             let to_ego = after.frame().world_from_ego.inverse();
             let mut inside = true;
             authoring::scenery_around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
-                inside &= columns[x * GridSpec::NY + y];
+                inside &= columns[before.frame().extent().index(x, y)];
             });
             inside
         }
@@ -348,28 +347,19 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
     before.background.iter().chain(came).cloned().collect()
 }
 
-fn columns_of_region(region: &InpaintMask) -> Vec<bool> {
-    let cell = |c: usize| [c / GridSpec::NY, c % GridSpec::NY].map(|v| v / COLUMNS_PER_CELL);
-    (0..GridSpec::COLUMNS)
-        .map(|c| {
-            let [i, j] = cell(c);
-            region.has(i, j)
-        })
-        .collect()
-}
-
 /// Where chosen boxes and things stand, and a voxel around them.
 fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
     let frame = scene.frame();
-    let mut columns = vec![false; GridSpec::COLUMNS];
-    let mut set = |x: usize, y: usize| columns[x * GridSpec::NY + y] = true;
+    let extent = frame.extent();
+    let mut columns = vec![false; extent.columns()];
+    let mut set = |x: usize, y: usize| columns[extent.index(x, y)] = true;
     for b in state.chosen().iter().filter_map(|id| frame.boxes.get(id)) {
-        box_cells(scene::Extent::WINDOW, b, GridSpec::VOXEL_M, &mut set);
+        box_cells(extent, b, Extent::VOXEL_M, &mut set);
     }
     let things = state.tools.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
-    for thing in in_extent(frame.extent(), things, &frame.world_from_ego) {
-        authoring::scenery_around::columns(&thing.form, GridSpec::VOXEL_M, &mut set);
+    for thing in in_extent(extent, things, &frame.world_from_ego) {
+        authoring::scenery_around::columns(&thing.form, Extent::VOXEL_M, &mut set);
     }
     columns
 }

@@ -151,7 +151,7 @@ impl Tuning {
         };
         let task = Task::Refine(Box::new(Refine {
             edited: last.edited.clone(),
-            params: last.params,
+            params: last.params.clone(),
             result: last.result.occupancy.clone(),
             reference: reference.clone(),
         }));
@@ -257,7 +257,7 @@ impl Tuning {
 
     /// Notes what became of an edit. `edited` is the scene with the edit, before its result came.
     pub fn note(&mut self, edited: Arc<Scene>, result: Arc<GenResult>, settled_s: f64) {
-        let (params, report) = (result.key.params, result.report.clone());
+        let (params, report) = (result.key.params.clone(), result.report.clone());
         self.stability.runs += 1;
         self.stability.fallbacks += usize::from(!report.notes.is_empty());
         self.stability.untouched_changed += report.untouched_voxels_changed;

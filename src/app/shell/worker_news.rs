@@ -192,7 +192,7 @@ impl SceneloomApp {
             match (own_step, words) {
                 (Some(_), _) => self.stage(
                     drawn.map_or(before, |(_, before)| before),
-                    Some(Again::Generate(Box::new(result.key.params))),
+                    Some(Again::Generate(Box::new(result.key.params.clone()))),
                 ),
                 (None, Some((_, before))) => self.stage(before, None),
                 (None, None) => {}
@@ -211,7 +211,7 @@ impl SceneloomApp {
             return;
         };
         running.cancelled = true;
-        let params = running.key.params;
+        let params = running.key.params.clone();
         let (step, steps) = running.progress.map_or((0, 0), |(_, step, steps)| (step, steps));
         self.generation.worker.cancel();
         let label = "Generate, stopped early";

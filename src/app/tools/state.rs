@@ -70,34 +70,34 @@ impl ToolState {
     /// Makes parameters inpaint the region.
     pub fn inpaint_region(&mut self, params: &mut GenParams) {
         self.times_inpainted += 1;
-        params.inpaint = self.region;
+        params.inpaint = self.region.clone();
         params.strength = self.region_strength;
         params.steps = params.steps.max(FEWEST_INPAINT_STEPS);
         params.seed = params.seed.wrapping_add(self.times_inpainted);
     }
 
-    /// Marks an area to inpaint, or takes the mark away.
-    pub fn mark(&mut self, area: &Area, on: bool) {
+    /// Marks an area of a map to inpaint, or takes the mark away.
+    pub fn mark(&mut self, extent: scene::Extent, area: &Area, on: bool) {
         let cells = match area {
-            Area::Rect(a_m, b_m) => InpaintMask::of_rect(*a_m, *b_m),
-            Area::Outline(points_m) => InpaintMask::of_outline(points_m),
+            Area::Rect(a_m, b_m) => InpaintMask::of_rect(extent, *a_m, *b_m),
+            Area::Outline(points_m) => InpaintMask::of_outline(extent, points_m),
             Area::Stroke(a_m, b_m, width_m) => {
                 let stroke = Shape::Line {
                     points_m: vec![*a_m, *b_m],
                     width_m: *width_m,
                 };
-                // A stroke beside the grid marks nothing.
+                // A stroke beside the map marks nothing.
                 self.region
-                    .set_columns(&stroke.cells(scene::Extent::WINDOW).unwrap_or_default(), on);
+                    .set_columns(extent, &stroke.cells(extent).unwrap_or_default(), on);
                 return;
             }
             Area::All => {
-                let corner_m = DVec2::splat(scene::GridSpec::MAX_M[0]);
-                InpaintMask::of_rect(-corner_m, corner_m)
+                let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
+                InpaintMask::of_rect(extent, low, high)
             }
         };
-        for [i, j] in cells.cells() {
-            self.region.set(i, j, on);
+        for cell in cells.cells() {
+            self.region.set(cell, on);
         }
     }
 }

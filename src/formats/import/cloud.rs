@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Points on the map, each as its voxel and class in one number.
 #[derive(Default)]
@@ -24,7 +24,7 @@ impl Cloud {
             self.not_finite += 1;
             return;
         }
-        let Some([x, y, z]) = GridSpec::voxel_at(at) else {
+        let Some([x, y, z]) = Window::voxel_at(at) else {
             self.elsewhere += 1;
             return;
         };
@@ -38,7 +38,7 @@ impl Cloud {
             }
             None => u32::from(Class::Others.id()),
         };
-        let voxel = (x * GridSpec::NY + y) * GridSpec::NZ + z;
+        let voxel = (x * Window::NY + y) * Window::NZ + z;
         self.voxels.push(voxel as u32 * CLASSES + class);
     }
 
@@ -64,9 +64,9 @@ impl Cloud {
             let Some(winner) = winner else { continue };
             let voxel = (winner[0] / CLASSES) as usize;
             let (x, y, z) = (
-                voxel / (GridSpec::NY * GridSpec::NZ),
-                voxel / GridSpec::NZ % GridSpec::NY,
-                voxel % GridSpec::NZ,
+                voxel / (Window::NY * Window::NZ),
+                voxel / Window::NZ % Window::NY,
+                voxel % Window::NZ,
             );
             grid.set(x, y, z, (winner[0] % CLASSES) as u8);
         }

@@ -1,7 +1,7 @@
 //! Tests of the reader of point clouds.
 
 use super::*;
-use scene::{Class, GridSpec};
+use scene::{Class, Window};
 
 /// Three points in two voxels and one beside the map, with labels.
 pub(super) fn sample() -> Vec<u8> {
@@ -39,7 +39,7 @@ fn a_cloud_becomes_voxels_with_the_class_of_most_points() {
     let found = loaded(&sample()).expect("sound");
     let grid = &found.scene.frame().occupancy;
     let at = |x, y, z| {
-        let [x, y, z] = GridSpec::voxel_at(DVec3::new(x, y, z)).expect("on the map");
+        let [x, y, z] = Window::voxel_at(DVec3::new(x, y, z)).expect("on the map");
         grid.get(x, y, z)
     };
     assert_eq!(

@@ -15,19 +15,19 @@ use super::things::Things;
 use super::xml::{Skipped, count};
 use super::{Road, RoadNetwork, tidy};
 use scene::raster::{draw_polyline, polygon_cells};
-use scene::{Background, BevLayer, BevLayout, Form, GridSpec, Polyline, PolylineKind};
+use scene::{Background, BevLayer, BevLayout, Extent, Form, Polyline, PolylineKind, Window};
 
 /// The square of the grid around the ego, and where it lies in the file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Window {
+pub(super) struct MapSquare {
     pub at_m: DVec2,
     /// Unit vector; rotating by it turns file axes to ego axes.
     pub ego_from_file: DVec2,
 }
 
-impl Window {
+impl MapSquare {
     /// Half the edge, m.
-    pub const HALF_M: f64 = GridSpec::MAX_M[0];
+    pub const HALF_M: f64 = Window::MAX_M[0];
     /// From the middle to a corner, m.
     pub const RADIUS_M: f64 = Self::HALF_M * std::f64::consts::SQRT_2;
 
@@ -66,7 +66,7 @@ pub struct LayoutImport {
 
 /// The grid while it is drawn.
 struct Canvas {
-    window: Window,
+    window: MapSquare,
     levels: Option<Levels>, // none if every road is flat
     layout: BevLayout,
     named: Vec<bool>,                  // cells on which some lane lies, drivable or not
@@ -84,7 +84,7 @@ impl RoadNetwork {
     /// Layers in the sense of the nuScenes map: drivable area is everything paved that is connected
     /// to a traffic lane; stop lines, crossings and dividers are also kept as polylines.
     pub fn to_layout(&self, at_m: DVec2, heading_rad: f64) -> LayoutImport {
-        let window = Window {
+        let window = MapSquare {
             at_m,
             ego_from_file: DVec2::from_angle(-heading_rad),
         };
@@ -97,10 +97,10 @@ impl RoadNetwork {
             window,
             levels,
             layout: BevLayout::default(),
-            named: vec![false; GridSpec::COLUMNS],
-            in_junction: vec![false; GridSpec::COLUMNS],
-            traffic: vec![false; GridSpec::COLUMNS],
-            beside: vec![None; GridSpec::COLUMNS],
+            named: vec![false; Window::COLUMNS],
+            in_junction: vec![false; Window::COLUMNS],
+            traffic: vec![false; Window::COLUMNS],
+            beside: vec![None; Window::COLUMNS],
             lines: Vec::new(),
             budget: BUDGET,
         };
@@ -151,7 +151,7 @@ impl RoadNetwork {
             lane_count,
             crossing_count,
             drivable_beside_traffic,
-            drivable_share: layout.count(BevLayer::DrivableArea) as f64 / GridSpec::COLUMNS as f64,
+            drivable_share: layout.count(BevLayer::DrivableArea) as f64 / Window::COLUMNS as f64,
             background,
             bridge_count,
             skipped,
@@ -171,11 +171,11 @@ impl Canvas {
 
     fn fill(&mut self, area_in_ego: &[DVec2], layers: &[BevLayer], in_junction: bool) -> bool {
         let mut cells = Vec::new();
-        polygon_cells(scene::Extent::WINDOW, area_in_ego, |x, y| cells.push((x, y)));
+        polygon_cells(Extent::WINDOW, area_in_ego, |x, y| cells.push((x, y)));
         self.budget = self.budget.saturating_sub(cells.len() / 8);
         for (x, y) in &cells {
-            self.named[x * GridSpec::NY + y] = true;
-            self.in_junction[x * GridSpec::NY + y] |= in_junction;
+            self.named[x * Window::NY + y] = true;
+            self.in_junction[x * Window::NY + y] |= in_junction;
             for layer in layers {
                 self.layout.set(*layer, *x, *y, true);
             }
@@ -185,8 +185,8 @@ impl Canvas {
 
     fn note_kind(&mut self, area_in_ego: &[DVec2], kind: LaneKind) {
         let (traffic, beside) = (&mut self.traffic, &mut self.beside);
-        polygon_cells(scene::Extent::WINDOW, area_in_ego, |x, y| {
-            let c = x * GridSpec::NY + y;
+        polygon_cells(Extent::WINDOW, area_in_ego, |x, y| {
+            let c = x * Window::NY + y;
             traffic[c] |= kind.carries_traffic();
             beside[c] = beside[c].or(kind.beside_traffic());
         });
@@ -198,7 +198,7 @@ impl Canvas {
         for (c, kind) in self.beside.iter().enumerate() {
             let drivable = self
                 .layout
-                .has(BevLayer::DrivableArea, c / GridSpec::NY, c % GridSpec::NY);
+                .has(BevLayer::DrivableArea, c / Window::NY, c % Window::NY);
             if let Some(kind) = kind.filter(|_| drivable && !self.traffic[c]) {
                 *out.entry(kind.to_owned()).or_default() += 1;
             }
@@ -213,7 +213,7 @@ impl Canvas {
         for section in &road.sections {
             let mut grounds = None;
             let mut budget = self.budget;
-            let (at_m, radius_m) = (self.window.at_m, Window::RADIUS_M);
+            let (at_m, radius_m) = (self.window.at_m, MapSquare::RADIUS_M);
             walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
                 if !self.is_on_ground(index, 0.5 * (from.s_m + to.s_m)) {
                     return None;
@@ -236,7 +236,7 @@ impl Canvas {
         for (kind, points) in follower.finish() {
             let points: Vec<DVec2> = points.iter().map(|p| self.to_ego(*p)).collect();
             self.lines.extend(
-                clipped(&points, Window::HALF_M)
+                clipped(&points, MapSquare::HALF_M)
                     .into_iter()
                     .map(|points_m| Polyline { kind, points_m }),
             );
@@ -288,14 +288,12 @@ impl Canvas {
                     Some(line) => {
                         let points: Vec<DVec2> = line.iter().map(|p| self.to_ego(*p)).collect();
                         self.lines
-                            .extend(
-                                clipped(&points, Window::HALF_M)
-                                    .into_iter()
-                                    .map(|points_m| Polyline {
-                                        kind: PolylineKind::StopLine,
-                                        points_m,
-                                    }),
-                            );
+                            .extend(clipped(&points, MapSquare::HALF_M).into_iter().map(|points_m| {
+                                Polyline {
+                                    kind: PolylineKind::StopLine,
+                                    points_m,
+                                }
+                            }));
                     }
                     None => count(skipped, "stop line without a lane"),
                 }
@@ -307,7 +305,7 @@ impl Canvas {
                 let area: Vec<DVec2> = area.iter().map(|p| self.to_ego(*p)).collect();
                 let min = area.iter().copied().fold(DVec2::INFINITY, DVec2::min);
                 let max = area.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-                if max.min_element() > -Window::HALF_M && min.max_element() < Window::HALF_M {
+                if max.min_element() > -MapSquare::HALF_M && min.max_element() < MapSquare::HALF_M {
                     areas.push(area);
                 }
             });
@@ -350,14 +348,14 @@ impl Canvas {
         tidy::fill_junction_holes(&mut drivable, &self.named, &self.in_junction);
         for (i, _) in drivable.iter().enumerate().filter(|(_, d)| **d) {
             self.layout
-                .set(BevLayer::DrivableArea, i / GridSpec::NY, i % GridSpec::NY, true);
+                .set(BevLayer::DrivableArea, i / Window::NY, i % Window::NY, true);
         }
     }
 
     /// In a junction the walkway of one connecting road lies under the lanes of another.
     fn roads_cover_walkways(&mut self) {
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 if self.layout.has(BevLayer::DrivableArea, x, y) {
                     self.layout.set(BevLayer::Walkway, x, y, false);
                 }
@@ -415,7 +413,7 @@ mod tests {
             lane(-5, "shoulder", 2.0),
         ];
         let found = layout(&wide.concat());
-        let columns = |m: f64| (m / GridSpec::VOXEL_M * GridSpec::NX as f64) as usize;
+        let columns = |m: f64| (m / Window::VOXEL_M * Window::NX as f64) as usize;
         let expected = [("shoulder", columns(2.0)), ("stop", columns(4.0))].map(|(k, n)| (k.to_owned(), n));
         assert_eq!(found.drivable_beside_traffic, expected.into());
         let more = found.layout.count(BevLayer::DrivableArea) - plain.layout.count(BevLayer::DrivableArea);

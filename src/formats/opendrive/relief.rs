@@ -1,6 +1,6 @@
 //! The ground between and beyond roads: a membrane stretched over the road surfaces, level at the edges of the window.
 
-use scene::{GridSpec, Relief};
+use scene::{Extent, Relief, Window};
 
 /// Heights below this are rounding, m.
 const TINY_M: f64 = 1e-4;
@@ -22,9 +22,9 @@ pub(super) fn over(known_m: &[Option<f64>]) -> (Relief, f64) {
     if known_m.iter().all(Option::is_none) || high - low <= TINY_M {
         return (Relief::FLAT, if low.is_finite() { low } else { 0.0 });
     }
-    let heights = membrane(GridSpec::NX, GridSpec::NY, known_m);
-    let at = |x: usize, y: usize| heights[x * GridSpec::NY + y];
-    let (x, y) = (GridSpec::NX / 2, GridSpec::NY / 2);
+    let heights = membrane(Window::NX, Window::NY, known_m);
+    let at = |x: usize, y: usize| heights[x * Window::NY + y];
+    let (x, y) = (Window::NX / 2, Window::NY / 2);
     let ego = 0.25 * (at(x - 1, y - 1) + at(x, y - 1) + at(x - 1, y) + at(x, y));
     let cut = |m: &f64| {
         let m = m - ego;
@@ -32,8 +32,7 @@ pub(super) fn over(known_m: &[Option<f64>]) -> (Relief, f64) {
         m.clamp(f64::from(-Relief::LIMIT_M), f64::from(Relief::LIMIT_M)) as f32
     };
     // All finite and cut: nothing that is refused.
-    let relief =
-        Relief::from_heights(scene::Extent::WINDOW, heights.iter().map(cut).collect()).unwrap_or_default();
+    let relief = Relief::from_heights(Extent::WINDOW, heights.iter().map(cut).collect()).unwrap_or_default();
     (relief, ego)
 }
 
@@ -81,13 +80,13 @@ mod tests {
     use glam::DVec2;
 
     fn known(height: impl Fn(DVec2) -> Option<f64>) -> Vec<Option<f64>> {
-        let at = |c: usize| height(GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate());
-        (0..GridSpec::COLUMNS).map(at).collect()
+        let at = |c: usize| height(Window::center(c / Window::NY, c % Window::NY, 0).truncate());
+        (0..Window::COLUMNS).map(at).collect()
     }
 
     #[test]
     fn level_ground_stays_flat() {
-        assert!(over(&vec![None; GridSpec::COLUMNS]).0.is_flat());
+        assert!(over(&vec![None; Window::COLUMNS]).0.is_flat());
         assert!(over(&known(|p| (p.y.abs() < 4.0).then_some(17.25))).0.is_flat());
     }
 

@@ -1,6 +1,6 @@
 //! Small gaps in drivable ground, closed. Grids are `[x][y]`, one flag per cell.
 
-use scene::GridSpec;
+use scene::Window;
 
 const SIDES: [(i64, i64); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
 const AROUND: [(i64, i64); 9] = [
@@ -62,11 +62,11 @@ pub(super) fn fill_junction_holes(drivable: &mut [bool], named: &[bool], in_junc
 
 /// The cells at these steps from one; `None` for those outside of the window.
 fn neighbours(cell: usize, steps: &[(i64, i64)]) -> impl Iterator<Item = Option<usize>> {
-    let (x, y) = ((cell / GridSpec::NY) as i64, (cell % GridSpec::NY) as i64);
+    let (x, y) = ((cell / Window::NY) as i64, (cell % Window::NY) as i64);
     steps.iter().map(move |(dx, dy)| {
         let (x, y) = (x + dx, y + dy);
-        let inside = (0..GridSpec::NX as i64).contains(&x) && (0..GridSpec::NY as i64).contains(&y);
-        inside.then(|| x as usize * GridSpec::NY + y as usize)
+        let inside = (0..Window::NX as i64).contains(&x) && (0..Window::NY as i64).contains(&y);
+        inside.then(|| x as usize * Window::NY + y as usize)
     })
 }
 
@@ -75,14 +75,14 @@ mod tests {
     use super::*;
 
     fn at(x: usize, y: usize) -> usize {
-        x * GridSpec::NY + y
+        x * Window::NY + y
     }
 
     #[test]
     fn cracks_close_and_named_cells_stay() {
-        let mut drivable = vec![true; GridSpec::COLUMNS];
-        let mut named = vec![false; GridSpec::COLUMNS];
-        for x in 0..GridSpec::NX {
+        let mut drivable = vec![true; Window::COLUMNS];
+        let mut named = vec![false; Window::COLUMNS];
+        for x in 0..Window::NX {
             for y in [20, 50, 80, 81, 82, 83] {
                 drivable[at(x, y)] = false;
             }
@@ -90,20 +90,17 @@ mod tests {
         }
         close_gaps(&mut drivable, &named);
         assert!(
-            (0..GridSpec::NX).all(|x| drivable[at(x, 20)]),
+            (0..Window::NX).all(|x| drivable[at(x, 20)]),
             "a crack closes, to the edge of the window"
         );
-        assert!((0..GridSpec::NX).all(|x| !drivable[at(x, 50)]), "a median stays");
-        assert!(
-            (0..GridSpec::NX).all(|x| !drivable[at(x, 81)]),
-            "a wide gap stays"
-        );
+        assert!((0..Window::NX).all(|x| !drivable[at(x, 50)]), "a median stays");
+        assert!((0..Window::NX).all(|x| !drivable[at(x, 81)]), "a wide gap stays");
     }
 
     #[test]
     fn only_small_holes_of_junctions_fill() {
-        let mut drivable = vec![true; GridSpec::COLUMNS];
-        let mut in_junction = vec![false; GridSpec::COLUMNS];
+        let mut drivable = vec![true; Window::COLUMNS];
+        let mut in_junction = vec![false; Window::COLUMNS];
         let hole = |grid: &mut Vec<bool>, x0: usize, size: usize| {
             (x0..x0 + size).for_each(|x| (50..50 + size).for_each(|y| grid[at(x, y)] = false));
         };
@@ -111,8 +108,8 @@ mod tests {
         hole(&mut drivable, 60, 5);
         hole(&mut drivable, 100, 20); // an island
         hole(&mut drivable, 195, 5); // cut by the window
-        (at(50, 0)..GridSpec::COLUMNS).for_each(|i| in_junction[i] = true);
-        fill_junction_holes(&mut drivable, &vec![false; GridSpec::COLUMNS], &in_junction);
+        (at(50, 0)..Window::COLUMNS).for_each(|i| in_junction[i] = true);
+        fill_junction_holes(&mut drivable, &vec![false; Window::COLUMNS], &in_junction);
         assert_eq!(
             [22, 62, 110, 197].map(|x| drivable[at(x, 52)]),
             [false, true, false, false]

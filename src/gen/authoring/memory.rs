@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::open;
 use formats::opendrive::{self, RoadNetwork};
 use graph_layout::memory::{Bank, Entry, RoadRef, VERSION};
-use scene::{BevLayer, BevLayout, GridSpec};
+use scene::{BevLayer, BevLayout, Window};
 use world::draw::{Draw, hash};
 use world::{template, traffic};
 
@@ -74,7 +74,7 @@ fn entry(seed: u64, index: u64, networks: &[(&str, RoadNetwork)]) -> Option<Entr
         let name = name.to_owned();
         (template::layout(&name, seed)?, RoadRef::Template { name, seed })
     };
-    let drivable = layout.count(BevLayer::DrivableArea) as f64 / GridSpec::COLUMNS as f64;
+    let drivable = layout.count(BevLayer::DrivableArea) as f64 / Window::COLUMNS as f64;
     let spec = traffic::TrafficSpec {
         vehicles: draw.range(0.1, 1.4),
         people: draw.range(0.1, 1.2),

@@ -9,15 +9,15 @@ use editor::{Document, Edit};
 use scene::infer;
 use scene::raster::{disc_cells, polygon_cells};
 use scene::solid::fill::fill;
-use scene::{Background, Class, Form, GridSpec, VoxelGrid};
+use scene::{Background, Class, Extent, Form, VoxelGrid, Window};
 use world::voxelize::{Drive, labels};
 
 const WORLDS: u64 = 20;
 
 fn cells(outline_m: &[DVec2]) -> BTreeSet<usize> {
     let mut out = BTreeSet::new();
-    polygon_cells(scene::Extent::WINDOW, outline_m, |x, y| {
-        out.insert(x * GridSpec::NY + y);
+    polygon_cells(Extent::WINDOW, outline_m, |x, y| {
+        out.insert(x * Window::NY + y);
     });
     out
 }
@@ -39,17 +39,17 @@ fn covered(things: &Background, class: Class) -> BTreeSet<usize> {
         let mut solids = Vec::new();
         thing.solids(&|_| 0.0, &mut solids);
         let mut add = |x: usize, y: usize| {
-            for x in x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1) {
-                for y in y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1) {
-                    out.insert(x * GridSpec::NY + y);
+            for x in x.saturating_sub(1)..=(x + 1).min(Window::NX - 1) {
+                for y in y.saturating_sub(1)..=(y + 1).min(Window::NY - 1) {
+                    out.insert(x * Window::NY + y);
                 }
             }
         };
         for solid in &solids {
-            fill(scene::Extent::WINDOW, solid, |_, _| true, |x, y, _, _| add(x, y));
+            fill(Extent::WINDOW, solid, |_, _| true, |x, y, _, _| add(x, y));
         }
         if let Form::Shrubs(s) = &thing.form {
-            polygon_cells(scene::Extent::WINDOW, &s.outline_m, &mut add);
+            polygon_cells(Extent::WINDOW, &s.outline_m, &mut add);
         }
     }
     out
@@ -107,7 +107,7 @@ fn things_are_found_in_simulated_labels() {
         assert_eq!(found, infer::background(&grid, &layout));
         assert_eq!(found.problem(), None);
         things += found.len();
-        let at = |c: &usize| grid.column(c / GridSpec::NY, c % GridSpec::NY);
+        let at = |c: &usize| grid.column(c / Window::NY, c % Window::NY);
         let seen = |c: &usize, class: Class| at(c)[1..].iter().filter(|l| **l == class.id()).count();
         let (known, guessed) = (outlines(&world.background), outlines(&found));
         let same = |a: &BTreeSet<usize>, b: &BTreeSet<usize>| {
@@ -122,7 +122,7 @@ fn things_are_found_in_simulated_labels() {
                     buildings.0 += 1;
                     // What of it goes with the thing that was found for it: the thing's columns and those right around.
                     let goes = |c: &usize| {
-                        let (x, y) = ((c / GridSpec::NY) as i64, (c % GridSpec::NY) as i64);
+                        let (x, y) = ((c / Window::NY) as i64, (c % Window::NY) as i64);
                         (-1..=1).any(|i| (-1..=1).any(|j| best.contains(&(((x + i) * 200 + y + j) as usize))))
                     };
                     for c in k {
@@ -141,8 +141,8 @@ fn things_are_found_in_simulated_labels() {
         let near = |list: &[(DVec2, f64)], p: DVec2| list.iter().any(|(q, _)| q.distance(p) < 1.5);
         for (p, radius) in &known {
             let mut voxels = 0;
-            disc_cells(scene::Extent::WINDOW, *p, *radius, |x, y| {
-                voxels += seen(&(x * GridSpec::NY + y), Class::Vegetation)
+            disc_cells(Extent::WINDOW, *p, *radius, |x, y| {
+                voxels += seen(&(x * Window::NY + y), Class::Vegetation)
             });
             if voxels >= 25 && p.abs().max_element() < 39.0 {
                 trees.1 += 1;
@@ -171,7 +171,7 @@ fn things_are_found_in_simulated_labels() {
             cover[i].1 += all.len();
             cover[i].0 += all
                 .iter()
-                .filter(|[x, y, _]| columns.contains(&(x * GridSpec::NY + y)))
+                .filter(|[x, y, _]| columns.contains(&(x * Window::NY + y)))
                 .count();
             gone[i].1 += all.len();
             gone[i].0 += all.len() - standing(after, class).len();

@@ -1,7 +1,7 @@
 //! Tests of imports: an import is a whole world, a furnished file stays as it is.
 
 use super::*;
-use scene::{BevLayer, Class, Form, GridSpec};
+use scene::{BevLayer, Class, Form, Window};
 
 /// A straight road of one lane on each side with these objects, written for this test.
 fn road(dir: &Path, objects: &str) -> PathBuf {
@@ -58,7 +58,7 @@ fn an_import_is_a_whole_world_unless_it_is_bare() {
     // The road climbs by 3 %, 1 m over 34 m: two bins up in the draft.
     let frame = bare.scene.frame();
     assert!((frame.layout.relief.height_m(DVec2::new(30.0, 0.0)) - 0.9).abs() < 0.01);
-    let [x, y] = GridSpec::column_at(30.0, 0.0).unwrap();
+    let [x, y] = Window::column_at(30.0, 0.0).unwrap();
     assert!(frame.layout.has(BevLayer::DrivableArea, x, y));
     assert_eq!(frame.occupancy.get(x, y, 0), Class::FREE);
     assert_eq!(frame.occupancy.get(x, y, 2), Class::DriveableSurface.id());

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::open;
 use formats::opendrive::RoadNetwork;
-use scene::{BevLayer, BevLayout, GridSpec};
+use scene::{BevLayer, BevLayout, Window};
 use world::draw::Draw;
 
 /// Share of the worlds that stand on imported roads.
@@ -39,7 +39,7 @@ impl Roads {
             let near = road.reference.at(draw.range(0.0, road.length_m())).position_m;
             let pose = network.pose_on_lane_near(near)?;
             let layout = network.to_layout(pose.position_m, pose.heading_rad).layout;
-            let drivable = layout.count(BevLayer::DrivableArea) as f64 / GridSpec::COLUMNS as f64;
+            let drivable = layout.count(BevLayer::DrivableArea) as f64 / Window::COLUMNS as f64;
             (drivable >= LEAST_DRIVABLE).then_some(layout)
         })
     }

@@ -5,10 +5,9 @@ use editor::{Edit, Shape};
 use job::GenError;
 use job::inpaint::InpaintMask;
 use job::network_scenery::drawn_scenery;
-use job::region::COLUMNS_PER_CELL;
 use nets::scenery::SceneryNet;
 use scene::raster::box_cells;
-use scene::{Background, BevLayer, Class, Form, GridSpec, Scene, ThingId};
+use scene::{Background, BevLayer, Class, Extent, Form, Scene, ThingId, Window};
 use world::scenery::{self, Setting, Side, Style};
 
 use super::scenery_around;
@@ -79,8 +78,8 @@ impl SceneryWish {
         let columns = self.columns();
         let whole = |form: &Form| {
             let mut inside = true;
-            scenery_around::columns(form, GridSpec::VOXEL_M, |x, y| {
-                inside &= columns[x * GridSpec::NY + y];
+            scenery_around::columns(form, Window::VOXEL_M, |x, y| {
+                inside &= columns[x * Window::NY + y];
             });
             inside
         };
@@ -104,8 +103,8 @@ impl SceneryWish {
         let merged = scenery_around::merged(stays, &drawn);
         let come = merged.iter().skip(known);
         let forms: Vec<Form> = come.map(|t| t.form.in_frame(&frame.world_from_ego)).collect();
-        let cells = (0..GridSpec::COLUMNS).filter(|c| columns[*c]);
-        let cells = cells.map(|c| [c / GridSpec::NY, c % GridSpec::NY]).collect();
+        let cells = (0..Window::COLUMNS).filter(|c| columns[*c]);
+        let cells = cells.map(|c| [c / Window::NY, c % Window::NY]).collect();
         let mut edits = Vec::new();
         if !ids.is_empty() {
             edits.push(Edit::RemoveThings { ids });
@@ -156,12 +155,10 @@ impl SceneryWish {
 
     /// `[x * NY + y]`: columns of the region.
     fn columns(&self) -> Vec<bool> {
-        (0..GridSpec::COLUMNS)
-            .map(|c| {
-                let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-                self.region.is_empty() || self.region.has(x / COLUMNS_PER_CELL, y / COLUMNS_PER_CELL)
-            })
-            .collect()
+        match self.region.is_empty() {
+            true => vec![true; Window::COLUMNS],
+            false => self.region.columns(Extent::WINDOW),
+        }
     }
 }
 
@@ -190,9 +187,9 @@ impl Paved {
         let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         let [mut driven, mut all] = [held(road), held(road | BevLayer::Walkway.bit())];
         for b in frame.boxes.values() {
-            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-                driven[x * GridSpec::NY + y] = true;
-                all[x * GridSpec::NY + y] = true;
+            box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+                driven[x * Window::NY + y] = true;
+                all[x * Window::NY + y] = true;
             });
         }
         Self { driven, all }
@@ -206,11 +203,11 @@ impl Paved {
             _ => (&self.all, None),
         };
         if let Some(at) = at {
-            return GridSpec::column_at(at.x, at.y).is_none_or(|[x, y]| !taken[x * GridSpec::NY + y]);
+            return Window::column_at(at.x, at.y).is_none_or(|[x, y]| !taken[x * Window::NY + y]);
         }
         let (mut on, mut columns) = (0, 0);
         scenery_around::columns(form, 0.0, |x, y| {
-            on += usize::from(taken[x * GridSpec::NY + y]);
+            on += usize::from(taken[x * Window::NY + y]);
             columns += 1;
         });
         on as f64 <= Self::MOST * f64::from(columns)
@@ -247,7 +244,7 @@ mod tests {
         let scene = open::from_template("straight", 7).expect("a template");
         let mut document = Document::new(scene);
         let before = document.scene().clone();
-        let region = InpaintMask::of_rect(DVec2::new(0.0, -40.0), DVec2::new(40.0, 40.0));
+        let region = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(0.0, -40.0), DVec2::new(40.0, 40.0));
         let wish = SceneryWish { region, ..wish(11) };
         document
             .apply_all("Draw scenery", &wish.edits(&before).expect("rules"))
@@ -258,7 +255,7 @@ mod tests {
         let columns = wish.columns();
         let mut changed = 0;
         for (c, inside) in columns.iter().enumerate() {
-            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let (x, y) = (c / Window::NY, c % Window::NY);
             let differs = old.column(x, y) != new.column(x, y);
             assert!(*inside || !differs, "column ({x}, {y}) lies outside");
             changed += usize::from(differs);
@@ -307,8 +304,8 @@ mod tests {
         let scene = open::from_template("straight", 7).expect("a template");
         let (frame, paved) = (scene.frame(), Paved::of(&scene));
         let centre = |c: usize| {
-            let column = DVec2::new((c / GridSpec::NY) as f64, (c % GridSpec::NY) as f64);
-            (column + 0.5) * GridSpec::VOXEL_M - 40.0
+            let column = DVec2::new((c / Window::NY) as f64, (c % Window::NY) as f64);
+            (column + 0.5) * Window::VOXEL_M - 40.0
         };
         let cells = frame.layout.cells();
         let found = |has: BevLayer, not: u32| {
@@ -347,11 +344,11 @@ mod tests {
     #[test]
     fn a_network_draws_in_a_region_and_keeps_the_road_free() {
         let scene = open::from_template("straight", 7).expect("a template");
-        let region = InpaintMask::of_rect(DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
+        let region = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(-40.0, -40.0), DVec2::new(10.0, 40.0));
         let by_network = |seed, green| SceneryWish {
             by: Drawer::Network,
             green,
-            region,
+            region: region.clone(),
             ..wish(seed)
         };
         let drawn = |wish: SceneryWish| {
@@ -365,7 +362,7 @@ mod tests {
         let bev = scene::raster::bev_channels(&scene.frame().layout, scene.frame().boxes.values());
         let (columns, mut come) = (by_network(5, 1.0).columns(), 0);
         for (c, inside) in columns.iter().enumerate() {
-            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let (x, y) = (c / Window::NY, c % Window::NY);
             let (before, after) = (old.column(x, y), new.column(x, y));
             assert!(*inside || before == after, "column ({x}, {y}) lies outside");
             let built = |column: &[u8]| column.contains(&Class::Manmade.id());

@@ -314,6 +314,7 @@ mod tests {
 
     use super::*;
     use editor::Document;
+    use scene::Extent;
     use scene::{Relief, SceneBox};
 
     /// What words add or move on a grade stands on its ground.
@@ -323,7 +324,7 @@ mod tests {
         let description = prompted.described.description;
         let mut scene = make("", &description, 3, &How::default()).scene;
         let frame = Arc::make_mut(&mut scene.frames[0]);
-        frame.layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| 0.06 * p.x);
+        frame.layout.relief = Relief::from_fn(Extent::WINDOW, |p| 0.06 * p.x);
         let above_m = |frame: &Frame, b: &SceneBox| {
             b.center_m.z - b.size_m.z / 2.0 - frame.layout.relief.height_m(b.center_m.truncate())
         };

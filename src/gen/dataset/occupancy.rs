@@ -4,7 +4,7 @@ use safetensors::tensor::Dtype;
 
 use super::shard::Shard;
 use scene::inferred::KNOWN;
-use scene::{BevLayout, GridSpec, SensorRig, VoxelGrid, draft, infer, raster};
+use scene::{BevLayout, Extent, SensorRig, VoxelGrid, Window, draft, infer, raster};
 use world::draw::hash;
 use world::terrain::Terrain;
 use world::voxelize::{Drive, Vertical, complete, observed_labels};
@@ -56,10 +56,10 @@ pub fn occupancy_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevL
     OccupancyFrame {
         dense: complete(&world, Vertical::Occ3d),
         labels,
-        observed: observed.chunks_exact(GridSpec::NZ).map(bits).collect(),
+        observed: observed.chunks_exact(Window::NZ).map(bits).collect(),
         draft: draft::draft(&world.layout, world.boxes.values()),
         bev: raster::bev_channels(&world.layout, world.boxes.values()),
-        heading: raster::headings(scene::Extent::WINDOW, world.boxes.values()),
+        heading: raster::headings(Extent::WINDOW, world.boxes.values()),
     }
 }
 
@@ -71,10 +71,10 @@ impl OccupancyFrame {
         Self {
             draft: draft::draft(&layout, boxes.values()),
             bev: raster::bev_channels(&layout, boxes.values()),
-            heading: raster::headings(scene::Extent::WINDOW, boxes.values()),
+            heading: raster::headings(Extent::WINDOW, boxes.values()),
             dense: labels.clone(),
             labels,
-            observed: vec![0; GridSpec::COLUMNS],
+            observed: vec![0; Window::COLUMNS],
         }
     }
 }
@@ -101,7 +101,7 @@ impl Shard for OccupancyFrame {
 }
 
 /// Shape of a grid.
-pub(super) const VOXELS: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+pub(super) const VOXELS: [usize; 3] = [Window::NX, Window::NY, Window::NZ];
 
 /// Voxels of some frames, one after another.
 pub(super) fn voxels<'a>(grids: impl Iterator<Item = &'a VoxelGrid>) -> Vec<u8> {

@@ -7,7 +7,7 @@ use crate::region::CELLS_PER_SIDE;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
 use nets::pieces::pieces;
 use nets::refiner::{Refiner, Rough};
-use nets::{CHANNELS, DecoderInput, OccModels, Window};
+use nets::{CHANNELS, CellRect, DecoderInput, OccModels};
 use numeric::philox::{Stream, normal};
 use scene::VoxelGrid;
 
@@ -37,7 +37,7 @@ pub fn decode_refined(
     let numbers = net.vae.config().latent;
     let mut fine = vec![0.0; 4 * cells.len() * numbers];
     for part in pieces(cells, AROUND) {
-        let Some(window) = Window::around(&part, AROUND) else {
+        let Some(window) = CellRect::around(&part, AROUND) else {
             continue;
         };
         let mut seen = vec![false; cells.len()];

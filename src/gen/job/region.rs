@@ -62,6 +62,9 @@ impl Region {
     ///
     /// Columns of boxes that did not change are left out, so that no untouched object is cut.
     pub fn of_edit(frame: &Frame, halo_columns: usize) -> Self {
+        if frame.extent() != Extent::WINDOW {
+            return Self::of_edit(&frame.crop(Extent::WINDOW), halo_columns);
+        }
         let source = &*frame.source;
         let mut changed: Vec<bool> = frame
             .layout

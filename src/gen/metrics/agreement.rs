@@ -1,6 +1,6 @@
 //! Does occupancy obey its layout? Columns that hold a class against columns that the layout sets.
 
-use scene::{BevLayer, Class, Frame, GridSpec, VoxelGrid};
+use scene::{BevLayer, Class, Frame, VoxelGrid, Window};
 
 /// IoU over BEV columns of what the layout asks for and what the occupancy holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -35,7 +35,7 @@ impl AgreementCount {
             .sum();
         let road_bits = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         for (c, cell) in frame.bev_channels().into_iter().enumerate() {
-            let column = occupancy.column(c / GridSpec::NY, c % GridSpec::NY);
+            let column = occupancy.column(c / Window::NY, c % Window::NY);
             let holds = |test: fn(Class) -> bool| column.iter().any(|v| Class::from_id(*v).is_some_and(test));
             let mut count = |pair: fn(&mut Self) -> &mut [u64; 2], wanted: bool, found: bool| {
                 pair(self)[0] += u64::from(wanted && found);

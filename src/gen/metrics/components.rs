@@ -1,12 +1,12 @@
 //! Voxels that hang together: groups of 26 neighbours, as flat indices of `[x][y][z]`.
 
-use scene::{GridSpec, VoxelGrid};
+use scene::{VoxelGrid, Window};
 
-const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+const N: [usize; 3] = [Window::NX, Window::NY, Window::NZ];
 
 /// Labels `[x][y][z]`, z fastest.
 pub fn flat(grid: &VoxelGrid) -> Vec<u8> {
-    let columns = (0..GridSpec::COLUMNS).map(|c| grid.column(c / GridSpec::NY, c % GridSpec::NY));
+    let columns = (0..Window::COLUMNS).map(|c| grid.column(c / Window::NY, c % Window::NY));
     columns.flatten().copied().collect()
 }
 
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn groups_touch_by_corners_and_end_at_gaps() {
         let at = |x: usize, y: usize, z: usize| (x * N[1] + y) * N[2] + z;
-        let mut inside = vec![false; GridSpec::VOXELS];
+        let mut inside = vec![false; Window::VOXELS];
         for voxel in [at(5, 5, 5), at(6, 6, 6), at(8, 6, 6), at(0, 199, 15), at(1, 0, 0)] {
             inside[voxel] = true;
         }

@@ -11,7 +11,7 @@ use serde::Deserialize;
 use nets::ModelError;
 use nets::encoder::Encoder;
 use nn::Cpu;
-use nn::map::Window;
+use nn::map::CellRect;
 use nn::weights::{WeightFile, WeightsError};
 use scene::VoxelGrid;
 
@@ -44,7 +44,7 @@ impl Extractor {
 
     /// The 192 features of every cell (4 x 4 columns) of a frame before they are pooled, 50 x 50 cells row by row.
     pub fn cells(&self, grid: &VoxelGrid) -> Result<Vec<Vec<f64>>, ModelError> {
-        let map = self.encoder.features(&Cpu, grid, Window::whole(self.side))?;
+        let map = self.encoder.features(&Cpu, grid, CellRect::whole(self.side))?;
         let cells = map.data.chunks_exact(map.width);
         Ok(cells
             .map(|cell| cell.iter().map(|v| f64::from(*v)).collect())
@@ -53,7 +53,7 @@ impl Extractor {
 
     /// The 192 features of a frame.
     pub fn features(&self, grid: &VoxelGrid) -> Result<Vec<f64>, ModelError> {
-        let map = self.encoder.features(&Cpu, grid, Window::whole(self.side))?;
+        let map = self.encoder.features(&Cpu, grid, CellRect::whole(self.side))?;
         let mut sums = vec![0.0; map.width];
         for cell in map.data.chunks_exact(map.width) {
             sums.iter_mut().zip(cell).for_each(|(s, v)| *s += f64::from(*v));

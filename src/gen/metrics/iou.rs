@@ -1,7 +1,7 @@
 //! Intersection over union of label grids, after Occ3D: free is excluded from the mean, and so is a
 //! class that neither grid has; how many classes were present is told beside the figure.
 
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Voxels counted per pair of true and predicted label; sums over frames, u64 so that it never saturates.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,8 +20,8 @@ impl Default for Confusion {
 impl Confusion {
     /// Counts every voxel of a pair of grids.
     pub fn add(&mut self, truth: &VoxelGrid, prediction: &VoxelGrid) {
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 for (t, p) in truth.column(x, y).iter().zip(prediction.column(x, y)) {
                     self.counts[*t as usize * Class::COUNT + *p as usize] += 1;
                 }

@@ -11,7 +11,7 @@ use numeric::quantile::quantile;
 use scene::raster::box_cells;
 use scene::relations::{STANDING_MPS, overlap_m};
 use scene::road_map::RoadMap;
-use scene::{Class, GridSpec, SceneBox};
+use scene::{Class, Extent, SceneBox, Window};
 
 /// Spread of one quantity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -279,8 +279,8 @@ pub fn diversity(layouts: &[BTreeMap<u32, SceneBox>]) -> Diversity {
         .map(|boxes| {
             let mut set = BTreeSet::new();
             for b in boxes.values() {
-                box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-                    set.insert(x * GridSpec::NY + y);
+                box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+                    set.insert(x * Window::NY + y);
                 });
             }
             set

@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 
 use super::components::{components, flat};
-use scene::{Class, GridSpec, Relief, VoxelGrid};
+use scene::{Class, Relief, VoxelGrid, Window};
 
-const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+const N: [usize; 3] = [Window::NX, Window::NY, Window::NZ];
 /// Distance in the flat `[x][y][z]` array to the next voxel along each axis.
-const STRIDE: [usize; 3] = [GridSpec::NY * GridSpec::NZ, GridSpec::NZ, 1];
+const STRIDE: [usize; 3] = [Window::NY * Window::NZ, Window::NZ, 1];
 /// Voxels from which a component of cars counts as a well-seen car.
 const WELL_SEEN: usize = 100;
 
@@ -64,9 +64,9 @@ impl OccupancyStatistics {
         }
         let road = counts[usize::from(Class::DriveableSurface.id())];
         self.ratio("driveable_voxels_per_frame", road, 1);
-        let columns = labels.chunks_exact(GridSpec::NZ);
+        let columns = labels.chunks_exact(Window::NZ);
         let held = columns.filter(|c| c.iter().any(|l| *l != Class::FREE)).count();
-        self.ratio("nonempty_column_fraction", held, GridSpec::COLUMNS);
+        self.ratio("nonempty_column_fraction", held, Window::COLUMNS);
     }
 
     fn neighbours(&mut self, labels: &[u8]) {
@@ -101,7 +101,7 @@ impl OccupancyStatistics {
 
     fn vertical(&mut self, labels: &[u8]) {
         let is_ground = |l: u8| Class::from_id(l).is_some_and(Class::is_ground);
-        for column in labels.chunks_exact(GridSpec::NZ) {
+        for column in labels.chunks_exact(Window::NZ) {
             // Runs of what is no ground and touches neither end: a lone hit shows as a run of three.
             let mut run = 0;
             for (z, label) in column.iter().enumerate() {
@@ -169,10 +169,10 @@ impl OccupancyStatistics {
             if car.len() < WELL_SEEN {
                 continue;
             }
-            let mut columns: Vec<usize> = car.iter().map(|at| at / GridSpec::NZ).collect();
+            let mut columns: Vec<usize> = car.iter().map(|at| at / Window::NZ).collect();
             columns.sort_unstable();
             columns.dedup();
-            let heights = || car.iter().map(|at| at % GridSpec::NZ);
+            let heights = || car.iter().map(|at| at % Window::NZ);
             let (low, high) = (heights().min().unwrap_or(0), heights().max().unwrap_or(0));
             self.ratio("car.voxels_per_well_seen_car", car.len(), 1);
             self.ratio(
@@ -209,8 +209,8 @@ fn label_at(labels: &[u8], place: [isize; 3]) -> u8 {
 /// Levelled labels without the columns whose ground lies below the grid's lowest bin: there no height is known.
 fn in_range(level: &[u8], relief: &Relief) -> Vec<u8> {
     let mut out = level.to_vec();
-    for (c, column) in out.chunks_exact_mut(GridSpec::NZ).enumerate() {
-        if relief.column_m(c / GridSpec::NY, c % GridSpec::NY) < -GridSpec::VOXEL_M / 2.0 {
+    for (c, column) in out.chunks_exact_mut(Window::NZ).enumerate() {
+        if relief.column_m(c / Window::NY, c % Window::NY) < -Window::VOXEL_M / 2.0 {
             column.fill(Class::FREE);
         }
     }
@@ -223,8 +223,8 @@ fn levelled(labels: &[u8], relief: &Relief) -> Vec<u8> {
     if relief.is_flat() {
         return out;
     }
-    for (c, column) in out.chunks_exact_mut(GridSpec::NZ).enumerate() {
-        let down = Relief::label_bin(relief.column_m(c / GridSpec::NY, c % GridSpec::NY));
+    for (c, column) in out.chunks_exact_mut(Window::NZ).enumerate() {
+        let down = Relief::label_bin(relief.column_m(c / Window::NY, c % Window::NY));
         column[..down].fill(Class::FREE);
         column.rotate_left(down);
     }
@@ -237,8 +237,8 @@ fn road_holes(labels: &[u8], radius: usize) -> (usize, usize) {
     let pad = 2 * radius;
     let (rows, columns) = (N[0] + 2 * pad, N[1] + 2 * pad);
     let mut road = vec![false; rows * columns];
-    for c in 0..GridSpec::COLUMNS {
-        let held = labels[c * GridSpec::NZ] == Class::DriveableSurface.id();
+    for c in 0..Window::COLUMNS {
+        let held = labels[c * Window::NZ] == Class::DriveableSurface.id();
         road[(c / N[1] + pad) * columns + c % N[1] + pad] = held;
     }
     let r = radius as isize;
@@ -263,10 +263,10 @@ fn road_holes(labels: &[u8], radius: usize) -> (usize, usize) {
     };
     let closed = grow(&grow(&road, true), false);
     let (mut holes, mut area) = (0, 0);
-    for c in 0..GridSpec::COLUMNS {
+    for c in 0..Window::COLUMNS {
         if closed[(c / N[1] + pad) * columns + c % N[1] + pad] {
             area += 1;
-            holes += usize::from(labels[c * GridSpec::NZ] == Class::FREE);
+            holes += usize::from(labels[c * Window::NZ] == Class::FREE);
         }
     }
     (holes, area)

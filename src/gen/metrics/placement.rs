@@ -14,7 +14,7 @@ use graph_layout::project::project;
 use numeric::quantile::median;
 use scene::graph::{NodeKind, SceneGraph};
 use scene::road_map::RoadMap;
-use scene::{BevLayout, GridSpec, SceneBox};
+use scene::{BevLayout, SceneBox, Window};
 use world::draw::{Draw, hash};
 
 /// A way to place the objects of a graph: boxes in the order of `PlacementReport::nodes`.
@@ -136,8 +136,8 @@ pub fn place_at_random(
             ..scene::relations::ego_box()
         };
         b.id = scene::BoxId(id);
-        let cell = [draw.below(GridSpec::NX), draw.below(GridSpec::NY)];
-        b.center_m = GridSpec::center(cell[0], cell[1], 0);
+        let cell = [draw.below(Window::NX), draw.below(Window::NY)];
+        b.center_m = Window::center(cell[0], cell[1], 0);
         b.center_m.z = b.size_m.z / 2.0;
         b.yaw_rad = draw.range(-3.1, 3.1);
         if object.state == Some(scene::graph::ObjectState::Moving) {

@@ -1,7 +1,7 @@
 //! What stands in each column of a draft and how high its ground is: what the transformer gets to know of the background.
 //! Twin of `columns_of` in `training/pack.py`.
 
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Groups of the background that can be given or left open: man-made, grown.
 pub const GROUPS: usize = 2;
@@ -19,7 +19,7 @@ pub struct ColumnHeights {
 /// Those of all columns, `[x][y]`: the ground of `draft`, the background of `full`, which is the draft with what stands beside
 /// the road in it.
 pub fn column_heights(draft: &VoxelGrid, full: &VoxelGrid) -> Vec<ColumnHeights> {
-    let columns = (0..GridSpec::COLUMNS).map(|c| (c / GridSpec::NY, c % GridSpec::NY));
+    let columns = (0..Window::COLUMNS).map(|c| (c / Window::NY, c % Window::NY));
     let heights = columns.map(|(x, y)| {
         let bins = |grid: &VoxelGrid, wanted: &dyn Fn(Class) -> bool| {
             let taken = |label: &u8| Class::from_id(*label).is_some_and(wanted);
@@ -43,13 +43,8 @@ mod tests {
     #[test]
     fn base_and_top_of_each_group_and_the_ground() {
         let mut draft = VoxelGrid::new();
-        for c in 0..GridSpec::COLUMNS {
-            draft.set(
-                c / GridSpec::NY,
-                c % GridSpec::NY,
-                2,
-                Class::DriveableSurface as u8,
-            );
+        for c in 0..Window::COLUMNS {
+            draft.set(c / Window::NY, c % Window::NY, 2, Class::DriveableSurface as u8);
         }
         let mut full = draft.clone();
         for z in 3..7 {
@@ -59,7 +54,7 @@ mod tests {
             full.set(x, y, z, Class::Vegetation as u8);
         }
         let found = column_heights(&draft, &full);
-        let at = |x: usize, y: usize| found[x * GridSpec::NY + y];
+        let at = |x: usize, y: usize| found[x * Window::NY + y];
         let heights = |standing, ground| ColumnHeights { standing, ground };
         assert_eq!(at(3, 4), heights([[4, 7], [10, 10]], 3));
         assert_eq!(at(5, 6), heights([[0, 0], [3, 4]], 3));

@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use super::ModelError;
 use nn::Cpu;
-use nn::map::{Map, Window};
+use nn::map::{CellRect, Map};
 use nn::ops::{Ops, OpsError};
 use nn::weights::{WeightFile, WeightsError};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Voxels of a column.
-pub const HEIGHT: usize = GridSpec::NZ;
+pub const HEIGHT: usize = Window::NZ;
 /// Classes that are not free; free is the last class.
 pub const OCCUPIED: usize = Class::FREE as usize;
 /// Places of a map that go through a linear layer in one piece.
@@ -86,9 +86,9 @@ impl<B: Ops> VoxelTable<B> {
         ops: &B,
         map: B::Tensor,
         grid: &VoxelGrid,
-        window: Window,
+        window: CellRect,
     ) -> Result<B::Tensor, ModelError> {
-        let per_cell = GridSpec::NX / window.side;
+        let per_cell = Window::NX / window.side;
         let corner = [window.x * per_cell, window.y * per_cell];
         let column = |row: usize, column: usize| grid.column(corner[0] + row, corner[1] + column);
         (0..window.rows * per_cell).into_par_iter().try_for_each(|row| {
@@ -149,8 +149,8 @@ impl<B: Ops> Encoder<B> {
     }
 
     /// Features of the cells of a window, as if nothing were around it.
-    pub fn features(&self, ops: &B, grid: &VoxelGrid, window: Window) -> Result<B::Tensor, ModelError> {
-        let per_cell = GridSpec::NX / window.side;
+    pub fn features(&self, ops: &B, grid: &VoxelGrid, window: CellRect) -> Result<B::Tensor, ModelError> {
+        let per_cell = Window::NX / window.side;
         let (rows, columns, width) = (window.rows * per_cell, window.columns * per_cell, self.width);
         let map = ops.upload(Map {
             data: vec![0.0; rows * columns * width],

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::encoder::{Level, PIECE};
 use super::occ_dit::timestep_embedding;
 use super::{CHANNELS, ModelError, OccVae, check_finite, check_length, fine_file};
-use nn::map::{Map, Window};
+use nn::map::{CellRect, Map};
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 
@@ -88,7 +88,7 @@ pub struct Rough<'a> {
     /// Coarse latents, `[x][y][8]`.
     pub coarse: &'a [f32],
     /// Which coarse cells these are.
-    pub window: Window,
+    pub window: CellRect,
 }
 
 impl Refiner {

@@ -12,7 +12,7 @@ use super::{ColumnHeights, ModelError, check_finite, check_length};
 use nn::map::Map;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
-use scene::GridSpec;
+use scene::Window;
 
 /// File name of the weights.
 pub const FILE: &str = "scenery.safetensors";
@@ -33,7 +33,7 @@ const LAYERS: usize = 8 + 1;
 /// What is said of a cell: layout, ground, whether it is drawn, what stands in it where it stays.
 const CONDITION: usize = LAYERS + 1 + 1 + NUMBERS;
 /// Columns along one side of a cell.
-const COLUMNS: usize = GridSpec::NX / SIDE;
+const COLUMNS: usize = Window::NX / SIDE;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -117,7 +117,7 @@ pub fn map_of(columns: &[ColumnHeights]) -> Vec<f32> {
 /// The columns of a cell.
 pub fn columns_of(cell: usize) -> impl Iterator<Item = usize> {
     let (x, y) = (cell / SIDE * COLUMNS, cell % SIDE * COLUMNS);
-    (0..COLUMNS * COLUMNS).map(move |i| (x + i / COLUMNS) * GridSpec::NY + y + i % COLUMNS)
+    (0..COLUMNS * COLUMNS).map(move |i| (x + i / COLUMNS) * Window::NY + y + i % COLUMNS)
 }
 
 /// A height of a map in bins above the ground.
@@ -248,8 +248,8 @@ impl SceneryCondition {
 
     /// State and condition, `[cell][number]`.
     fn features(&self, x: &[f32]) -> Result<Vec<f32>, ModelError> {
-        check_length("layout", self.bev.len(), GridSpec::COLUMNS)?;
-        check_length("ground", self.ground.len(), GridSpec::COLUMNS)?;
+        check_length("layout", self.bev.len(), Window::COLUMNS)?;
+        check_length("ground", self.ground.len(), Window::COLUMNS)?;
         check_length("drawn cells", self.drawn.len(), CELLS)?;
         check_length("what stands", self.stands.len(), CELLS * NUMBERS)?;
         check_finite("what stands", &self.stands)?;
@@ -262,7 +262,7 @@ impl SceneryCondition {
             out.extend((0..object).map(|layer| (bits >> layer & 1) as f32));
             out.push(f32::from(u8::from(bits >> object != 0)));
             let first = columns_of(cell).next().unwrap_or(0);
-            out.push(f32::from(self.ground[first]) / GridSpec::NZ as f32);
+            out.push(f32::from(self.ground[first]) / Window::NZ as f32);
             out.push(f32::from(u8::from(*drawn)));
             let stands = &self.stands[cell * NUMBERS..][..NUMBERS];
             out.extend(stands.iter().map(|v| if *drawn { 0.0 } else { *v }));

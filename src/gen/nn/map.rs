@@ -54,7 +54,7 @@ impl Map {
 
 /// A rectangle of latent cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
+pub struct CellRect {
     /// First cell along x.
     pub x: usize,
     /// First cell along y.
@@ -67,7 +67,7 @@ pub struct Window {
     pub side: usize,
 }
 
-impl Window {
+impl CellRect {
     /// The wanted cells of a square map and `reach` more on every side, cut to the map; `None` if none
     /// is wanted.
     pub fn around(cells: &[bool], reach: usize) -> Option<Self> {
@@ -150,11 +150,11 @@ mod tests {
     #[test]
     fn window_is_cut_to_the_map() {
         let mut cells = [false; CELLS];
-        assert_eq!(Window::around(&cells, 3), None);
+        assert_eq!(CellRect::around(&cells, 3), None);
         cells[SIDE + 10] = true;
         cells[4 * SIDE + 48] = true;
-        let window = Window::around(&cells, 3).expect("two cells");
-        let expected = Window {
+        let window = CellRect::around(&cells, 3).expect("two cells");
+        let expected = CellRect {
             x: 0,
             y: 7,
             rows: 8,

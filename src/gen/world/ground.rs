@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::draw::{Draw, Noise};
 use super::{BIN_M, BINS, Hit, scenery};
-use scene::{BevLayer, BevLayout, Class, GridSpec, Relief};
+use scene::{BevLayer, BevLayout, Class, Relief, Window};
 
 /// Height of a kerb above the road, m.
 const KERB_M: f64 = 0.24;
@@ -24,12 +24,12 @@ impl Ground {
     pub(super) fn new(layout: &BevLayout, seed: u64) -> Self {
         let relief = layout.relief.clone();
         let highest = |bin: usize| {
-            let columns = (BIN_M / GridSpec::VOXEL_M) as usize;
+            let columns = (BIN_M / Window::VOXEL_M) as usize;
             let from = [bin / BINS * columns, bin % BINS * columns];
             let mut most = f64::NEG_INFINITY;
             // One column more on each side: heights are blended between centres.
-            for x in from[0].saturating_sub(1)..(from[0] + columns + 1).min(GridSpec::NX) {
-                for y in from[1].saturating_sub(1)..(from[1] + columns + 1).min(GridSpec::NY) {
+            for x in from[0].saturating_sub(1)..(from[0] + columns + 1).min(Window::NX) {
+                for y in from[1].saturating_sub(1)..(from[1] + columns + 1).min(Window::NY) {
                     most = most.max(relief.column_m(x, y));
                 }
             }
@@ -38,7 +38,7 @@ impl Ground {
         let classes = classes(layout, seed);
         let (walk, open) = (Noise::new(seed), Noise::new(seed));
         let above = |(c, class): (usize, &Class)| {
-            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let p = Window::center(c / Window::NY, c % Window::NY, 0).truncate();
             let height_m = match class {
                 Class::Sidewalk => KERB_M + 0.05 * walk.at(p.x / 14.0, p.y / 14.0),
                 Class::Terrain => 0.08 + 0.1 * open.at(p.x / 9.0, p.y / 9.0),
@@ -59,15 +59,15 @@ impl Ground {
     }
 
     pub(super) fn class(&self, x: usize, y: usize) -> Class {
-        self.classes[x * GridSpec::NY + y]
+        self.classes[x * Window::NY + y]
     }
 
     /// Height at a point of the ego frame, m: the relief, kerbs and small bumps.
     pub(super) fn height_m(&self, p: DVec2) -> f64 {
-        let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
+        let Some([x, y]) = Window::column_at(p.x, p.y) else {
             return self.relief.height_m(p);
         };
-        self.relief.height_m(p) + f64::from(self.above_m[x * GridSpec::NY + y])
+        self.relief.height_m(p) + f64::from(self.above_m[x * Window::NY + y])
     }
 
     /// Where a ray meets ground without relief; `None` if there is relief.
@@ -122,7 +122,7 @@ impl Ground {
     }
 
     fn hit(&self, p: DVec3, range_m: f64) -> Option<Hit> {
-        let [x, y] = GridSpec::column_at(p.x, p.y)?;
+        let [x, y] = Window::column_at(p.x, p.y)?;
         (range_m > 0.0).then(|| Hit {
             range_m,
             class: self.class(x, y),
@@ -138,7 +138,7 @@ fn classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
     let to_road = draw
         .chance(0.25)
         .then(|| scenery::distance_cells(|c| has(layout.cells()[c], BevLayer::DrivableArea)));
-    let mut out = Vec::with_capacity(GridSpec::COLUMNS);
+    let mut out = Vec::with_capacity(Window::COLUMNS);
     for (c, &cell) in layout.cells().iter().enumerate() {
         out.push(
             if has(cell, BevLayer::DrivableArea) || has(cell, BevLayer::CarparkArea) {
@@ -158,14 +158,13 @@ fn classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Extent;
 
     /// On a slope the ray must end on the ground, and where a fine march says.
     #[test]
     fn rays_meet_uneven_ground_where_it_is() {
         let mut layout = BevLayout::default();
-        layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| {
-            0.06 * p.x + 0.8 * (p.y / 9.0).sin() - 0.3
-        });
+        layout.relief = Relief::from_fn(Extent::WINDOW, |p| 0.06 * p.x + 0.8 * (p.y / 9.0).sin() - 0.3);
         let world = super::super::World::with_background(layout, Default::default(), Default::default(), 5);
         let mut draw = Draw::new(2, "rays over hills");
         let mut met = 0;

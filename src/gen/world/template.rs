@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::draw::Draw;
 use scene::raster::{draw_polyline, line_cells, polygon_cells};
-use scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind};
+use scene::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, Window};
 
 /// Names that [`layout`] knows.
 pub const TEMPLATES: [&str; 8] = [
@@ -326,13 +326,13 @@ pub fn any_layout(seed: u64) -> BevLayout {
 fn transform(layout: &BevLayout, dx: f64, dy: f64, yaw: f64) -> BevLayout {
     let turn = DVec2::from_angle(yaw);
     let shift = DVec2::new(dx, dy);
-    let mut cells = vec![0; GridSpec::COLUMNS];
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            let p = turn.rotate(GridSpec::center(x, y, 0).truncate()) + shift;
+    let mut cells = vec![0; Window::COLUMNS];
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
+            let p = turn.rotate(Window::center(x, y, 0).truncate()) + shift;
             let p = p.clamp(DVec2::splat(-39.9), DVec2::splat(39.9));
-            let [sx, sy] = GridSpec::column_at(p.x, p.y).expect("clamped into the grid");
-            cells[x * GridSpec::NY + y] = layout.cell(sx, sy);
+            let [sx, sy] = Window::column_at(p.x, p.y).expect("clamped into the grid");
+            cells[x * Window::NY + y] = layout.cell(sx, sy);
         }
     }
     let back = DVec2::new(turn.x, -turn.y);
@@ -427,32 +427,30 @@ impl Plan {
             if s.walk_m > 0.0 {
                 let reach = half + s.parking_m + s.walk_m;
                 paint(BevLayer::Walkway, &|f| {
-                    line_cells(scene::Extent::WINDOW, &line, reach, f)
+                    line_cells(Extent::WINDOW, &line, reach, f)
                 });
             }
             if s.parking_m > 0.0 {
                 paint(BevLayer::CarparkArea, &|f| {
-                    line_cells(scene::Extent::WINDOW, &line, half + s.parking_m, f)
+                    line_cells(Extent::WINDOW, &line, half + s.parking_m, f)
                 });
             }
             paint(BevLayer::DrivableArea, &|f| {
-                line_cells(scene::Extent::WINDOW, &line, half, f)
+                line_cells(Extent::WINDOW, &line, half, f)
             });
         }
         for apron in &self.aprons {
             paint(BevLayer::DrivableArea, &|f| {
-                polygon_cells(scene::Extent::WINDOW, apron, f)
+                polygon_cells(Extent::WINDOW, apron, f)
             });
         }
         for lot in &self.lots {
-            paint(BevLayer::CarparkArea, &|f| {
-                polygon_cells(scene::Extent::WINDOW, lot, f)
-            });
+            paint(BevLayer::CarparkArea, &|f| polygon_cells(Extent::WINDOW, lot, f));
         }
         // One surface per cell: road over car park over sidewalk; islands are none of them.
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                let p = GridSpec::center(x, y, 0).truncate();
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
+                let p = Window::center(x, y, 0).truncate();
                 if self.islands.iter().any(|(c, r)| p.distance(*c) < *r) {
                     for layer in [BevLayer::DrivableArea, BevLayer::Walkway, BevLayer::CarparkArea] {
                         out.set(layer, x, y, false);

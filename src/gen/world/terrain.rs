@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::draw::{Draw, Noise};
 use super::scenery::distance_cells;
-use scene::{BevLayer, BevLayout, GridSpec, Relief};
+use scene::{BevLayer, BevLayout, Extent, Relief, Window};
 
 /// A lie of the land.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -95,11 +95,11 @@ impl Terrain {
         let at_ego = road(DVec2::ZERO);
         let stairs = Stairs::drawn(&mut draw, &to_paved);
         let valley = draw.range(12.0, 26.0);
-        Relief::from_fn(scene::Extent::WINDOW, |p| {
-            let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
+        Relief::from_fn(Extent::WINDOW, |p| {
+            let Some([x, y]) = Window::column_at(p.x, p.y) else {
                 return 0.0;
             };
-            let away_m = f64::from(to_paved[x * GridSpec::NY + y]) * GridSpec::VOXEL_M;
+            let away_m = f64::from(to_paved[x * Window::NY + y]) * Window::VOXEL_M;
             let width = match self {
                 Self::Terrace if stairs.are_at([x, y], p) => STAIRS_M,
                 _ => width,
@@ -141,9 +141,8 @@ impl<'a> Stairs<'a> {
     }
 
     fn are_at(&self, [x, y]: [usize; 2], p: DVec2) -> bool {
-        let at = |x: usize, y: usize| {
-            self.to_paved[x.min(GridSpec::NX - 1) * GridSpec::NY + y.min(GridSpec::NY - 1)]
-        };
+        let at =
+            |x: usize, y: usize| self.to_paved[x.min(Window::NX - 1) * Window::NY + y.min(Window::NY - 1)];
         let along_x = (at(x + 1, y) - at(x.saturating_sub(1), y)).abs();
         let along_y = (at(x, y + 1) - at(x, y.saturating_sub(1))).abs();
         // Across the way up.
@@ -181,10 +180,10 @@ mod tests {
     fn terraces_have_steps_and_stairs() {
         let straight = template::layout("straight", 3).expect("listed");
         let relief = Terrain::Terrace.relief(&straight, 3);
-        let edge = (0..GridSpec::NY)
+        let edge = (0..Window::NY)
             .rev()
             .find(|y| straight.cell(100, *y) & BevLayer::Walkway.bit() != 0);
-        let edge_m = GridSpec::center(100, edge.expect("a sidewalk"), 0).y;
+        let edge_m = Window::center(100, edge.expect("a sidewalk"), 0).y;
         let rise = |x: f64| {
             relief.height_m(DVec2::new(x, edge_m + 3.6)) - relief.height_m(DVec2::new(x, edge_m + 0.6))
         };

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use super::draw::Draw;
 use super::template::offset_line;
 use scene::raster::box_cells;
-use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, GridSpec, PolylineKind, SceneBox};
+use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, PolylineKind, SceneBox, Window};
 
 /// How much of everything, 1 = as on an ordinary city street.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub fn place(layout: &BevLayout, seed: u64, spec: &TrafficSpec) -> BTreeMap<BoxI
     let mut p = Placer {
         layout,
         draw: Draw::new(seed, "traffic"),
-        taken: vec![false; GridSpec::COLUMNS],
+        taken: vec![false; Window::COLUMNS],
         clearance_m: 0.35,
         boxes: BTreeMap::new(),
     };
@@ -72,9 +72,7 @@ impl Placer<'_> {
             label: BoxLabel::default(),
         };
         let taken = &mut self.taken;
-        box_cells(scene::Extent::WINDOW, &ego, 0.0, |x, y| {
-            taken[x * GridSpec::NY + y] = true
-        });
+        box_cells(Extent::WINDOW, &ego, 0.0, |x, y| taken[x * Window::NY + y] = true);
     }
 
     /// Adds the box unless it leaves the grid, overlaps another or `on` refuses a cell of it.
@@ -107,18 +105,16 @@ impl Placer<'_> {
         let inside = b.footprint().iter().all(|c| c.abs().max_element() < 39.5);
         // Where the ground leaves the grid, what stands on it would not be seen.
         let (low, high) = (b.center_m.z - size_m.z / 2.0, b.center_m.z + size_m.z / 2.0);
-        if !inside || low < GridSpec::MIN_M[2] || high > GridSpec::MAX_M[2] {
+        if !inside || low < Window::MIN_M[2] || high > Window::MAX_M[2] {
             return false;
         }
         let mut free = true;
         let mut cells = Vec::new();
-        box_cells(scene::Extent::WINDOW, &b, self.clearance_m, |x, y| {
-            free &= !self.taken[x * GridSpec::NY + y];
-            cells.push(x * GridSpec::NY + y);
+        box_cells(Extent::WINDOW, &b, self.clearance_m, |x, y| {
+            free &= !self.taken[x * Window::NY + y];
+            cells.push(x * Window::NY + y);
         });
-        box_cells(scene::Extent::WINDOW, &b, 0.0, |x, y| {
-            free &= on(self.layout.cell(x, y))
-        });
+        box_cells(Extent::WINDOW, &b, 0.0, |x, y| free &= on(self.layout.cell(x, y)));
         if free {
             cells.into_iter().for_each(|c| self.taken[c] = true);
             self.boxes.insert(b.id, b);
@@ -199,7 +195,7 @@ impl Placer<'_> {
             }
         }
         // In car parks: rows of places at right angles to the nearest road.
-        let cells: Vec<usize> = (0..GridSpec::COLUMNS)
+        let cells: Vec<usize> = (0..Window::COLUMNS)
             .filter(|&c| layout.cells()[c] & lot != 0)
             .collect();
         self.parked_rows(&cells, share);
@@ -212,7 +208,7 @@ impl Placer<'_> {
         let (Some(first), lot) = (cells.first(), BevLayer::CarparkArea.bit()) else {
             return;
         };
-        let center = |c: usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+        let center = |c: usize| Window::center(c / Window::NY, c % Window::NY, 0).truncate();
         let middle = cells.iter().map(|c| center(*c)).sum::<DVec2>() / cells.len() as f64;
         let along = DVec2::from_angle(self.heading_near(middle).unwrap_or(0.0));
         // Rows are counted from one corner of the lot, so that they run the whole of it.
@@ -248,7 +244,7 @@ impl Placer<'_> {
             return;
         }
         let c = cells[self.draw.below(cells.len())];
-        let start = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+        let start = Window::center(c / Window::NY, c % Window::NY, 0).truncate();
         let yaw = self.heading_near(start).unwrap_or(0.0);
         let d = DVec2::from_angle(yaw);
         let class = if self.draw.chance(0.6) {
@@ -298,7 +294,7 @@ impl Placer<'_> {
         let centre = cells[self.draw.below(cells.len())];
         for i in 0..busy + crowd {
             let any = cells[self.draw.below(cells.len())];
-            let p = |c: usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let p = |c: usize| Window::center(c / Window::NY, c % Window::NY, 0).truncate();
             let spread = DVec2::from_angle(self.draw.range(0.0, 6.3)) * self.draw.range(0.3, 6.5);
             let p = if i < busy { p(any) } else { p(centre) + spread };
             let jitter = DVec2::new(self.draw.range(-0.2, 0.2), self.draw.range(-0.2, 0.2));
@@ -315,7 +311,7 @@ impl Placer<'_> {
     }
 
     fn cells_with(&self, bits: u32) -> Vec<usize> {
-        (0..GridSpec::COLUMNS)
+        (0..Window::COLUMNS)
             .filter(|&c| self.layout.cells()[c] & bits != 0)
             .collect()
     }
@@ -345,12 +341,12 @@ mod tests {
             let layout = template::any_layout(seed);
             let boxes = place(&layout, seed, &TrafficSpec::NORMAL);
             assert_eq!(boxes, place(&layout, seed, &TrafficSpec::NORMAL));
-            let mut owner = vec![None; GridSpec::COLUMNS];
+            let mut owner = vec![None; Window::COLUMNS];
             for b in boxes.values() {
                 assert_eq!(b.problem(), None);
                 cars += usize::from(b.class == Class::Car);
-                box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-                    let cell = &mut owner[x * GridSpec::NY + y];
+                box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+                    let cell = &mut owner[x * Window::NY + y];
                     assert!(cell.is_none(), "boxes {cell:?} and {:?} overlap", b.id);
                     *cell = Some(b.id);
                 });
@@ -368,12 +364,12 @@ mod tests {
         let mut seen = 0;
         for seed in 0..6 {
             let mut layout = template::any_layout(seed);
-            layout.relief = scene::Relief::from_fn(scene::Extent::WINDOW, |p| 0.12 * p.x);
+            layout.relief = scene::Relief::from_fn(Extent::WINDOW, |p| 0.12 * p.x);
             for b in place(&layout, seed, &TrafficSpec::NORMAL).values() {
                 let low = b.center_m.z - b.size_m.z / 2.0;
                 assert!((low - 0.12 * b.center_m.x).abs() < 1e-3, "{b:?}");
                 assert!(
-                    low >= GridSpec::MIN_M[2] && low + b.size_m.z <= GridSpec::MAX_M[2],
+                    low >= Window::MIN_M[2] && low + b.size_m.z <= Window::MAX_M[2],
                     "{b:?}"
                 );
                 seen += usize::from(b.center_m.x.abs() > 5.0);

@@ -143,7 +143,7 @@ impl Render {
             wall_s.insert("lidar", start.elapsed().as_secs_f64());
             let returns = sweep.points.len();
             lidar_report = json!({ "rays": sweep.rays, "returns": returns, "dropped": sweep.rays - returns });
-            writer.lidar(&sweep)?;
+            writer.lidar(frame.extent(), &sweep)?;
         }
         if plan.bev {
             let start = Instant::now();

@@ -9,7 +9,7 @@ use app::picture::{self, Picture, SHEET_COLOR};
 use formats::export::ply;
 use formats::multi_plane;
 use formats::npz::{self, Array, Values};
-use scene::{CameraMaps, LidarSweep, MultiPlaneImage, PerspectiveMap};
+use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
 use sensors::color;
@@ -186,9 +186,9 @@ impl Writer {
         self.picture(&format!("{}_mpi.png", image.camera), &picture::plane_sheet(image))
     }
 
-    /// Points, and a picture from above.
-    pub fn lidar(&mut self, sweep: &LidarSweep) -> anyhow::Result<()> {
+    /// Points, and a picture of the map from above.
+    pub fn lidar(&mut self, extent: Extent, sweep: &LidarSweep) -> anyhow::Result<()> {
         self.bytes("lidar.ply", &ply::to_bytes(sweep))?;
-        self.picture("lidar.png", &picture::lidar_top(sweep, 4))
+        self.picture("lidar.png", &picture::lidar_top(extent, sweep, 4))
     }
 }

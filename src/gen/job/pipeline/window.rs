@@ -1,24 +1,21 @@
 //! Maps of another extent than the networks' window: the frame is cut to the window around the ego vehicle before a job,
 //! and what the networks made of it is put back into the map after it.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::contract::{GenError, GenResult, Job, JobCtx, JobUpdate};
-use scene::{Extent, Scene, VoxelGrid};
+use scene::VoxelGrid;
 
 /// The same job with its frame cut to the window; `None` if the frame is the window.
 pub(super) fn cut(job: &Job) -> Option<Job> {
-    let frame = job.scene.frame();
-    if frame.extent() == Extent::WINDOW {
-        return None;
+    match job.scene.in_window() {
+        Cow::Borrowed(_) => None,
+        Cow::Owned(scene) => Some(Job {
+            scene: Arc::new(scene),
+            params: job.params.clone(),
+        }),
     }
-    // The revision stays: it names what the job answers.
-    let mut scene = Scene::clone(&job.scene);
-    scene.frames[scene.current] = Arc::new(frame.crop(Extent::WINDOW));
-    Some(Job {
-        scene: Arc::new(scene),
-        params: job.params.clone(),
-    })
 }
 
 /// Puts a result back: the map around the window stays as the frame shows it.
@@ -65,7 +62,7 @@ pub(super) fn in_window(
 mod tests {
     use super::*;
     use crate::contract::{GenParams, GenReport};
-    use scene::{BevLayout, Class, Frame, SensorRig};
+    use scene::{BevLayout, Class, Extent, Frame, Scene, SensorRig};
 
     #[test]
     fn the_window_changes_and_the_map_around_it_stays() {

@@ -169,7 +169,7 @@ fn calibrate(
         let start = Instant::now();
         let job = Job {
             scene: cases[0].before.clone(),
-            params,
+            params: params.clone(),
         };
         pipeline.prepare(&job, &ctx)?;
         let invert_s = start.elapsed().as_secs_f64();
@@ -177,7 +177,7 @@ fn calibrate(
         of.invert_s = invert_s;
         let mut times = vec![Vec::new(); cases.len()];
         for (c, case) in cases.iter().enumerate() {
-            let (time, hash) = run(&pipeline, case, params, &ctx)?;
+            let (time, hash) = run(&pipeline, case, params.clone(), &ctx)?;
             same &= of.probe.get(c) == Some(&hash);
             // The first run of all warms up.
             if k > 0 || c > 0 {
@@ -238,7 +238,7 @@ pub fn build() -> String {
 
 /// Runs the reference on the same edit.
 fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Result<News, GenError> {
-    let params = of.reference.knobs.on(of.params);
+    let params = of.reference.knobs.on(of.params.clone());
     // Inversion and sampling: so many steps each.
     let steps = 2 * params.steps as usize;
     let half = std::sync::atomic::AtomicUsize::new(0);
@@ -257,7 +257,7 @@ fn refined(of: &Refine, stop: &(dyn Fn() -> bool + Sync), told: &Told<'_>) -> Re
     let mut pipeline = OccPipeline::new(OccModels::bundled().map_err(GenError::failed)?);
     let job = Job {
         scene: of.edited.clone(),
-        params,
+        params: params.clone(),
     };
     let truth = pipeline.run(&job, &ctx)?;
     let case = Case {

@@ -24,7 +24,7 @@ pub fn presets_of(rows: &[&Row], reference: GenParams, models: &OccModels) -> Pr
     for (i, name) in kept.iter().zip(names) {
         presets.extend(preset(name, rows[*i], points[*i]));
     }
-    presets.extend(reference_preset(rows, reference));
+    presets.extend(reference_preset(rows, reference.clone()));
     Presets {
         weights: models.card.hashes,
         machine: machine(),

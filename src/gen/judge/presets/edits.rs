@@ -20,7 +20,7 @@ use job::region::Region;
 use job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
 use metrics::iou::Confusion;
 use nets::{LATENT, OccModels};
-use scene::{Class, GridSpec, Scene, VoxelGrid};
+use scene::{Class, Scene, VoxelGrid, Window};
 use world::draw::{Draw, hash};
 
 /// Settings whose sources stand ready side by side while their runs take turns.
@@ -168,15 +168,15 @@ impl Bench {
         let mut outside = 0u64;
         let mut confusion = Confusion::default();
         let (mut truth, mut found) = (VoxelGrid::new(), VoxelGrid::new());
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 let (a, b) = (result.column(x, y), reference.occupancy.column(x, y));
-                if !region.columns[x * GridSpec::NY + y] {
+                if !region.columns[x * Window::NY + y] {
                     outside = a.iter().fold(outside, |h, v| hash(h ^ u64::from(*v)));
                     continue;
                 }
-                both += GridSpec::NZ;
-                for z in 0..GridSpec::NZ {
+                both += Window::NZ;
+                for z in 0..Window::NZ {
                     differ += usize::from(a[z] != b[z]);
                     occupied += usize::from(a[z] != Class::FREE || b[z] != Class::FREE);
                 }
@@ -233,7 +233,7 @@ impl Bench {
         let mut pipeline = OccPipeline::new(self.models.clone());
         let references = cases
             .iter()
-            .map(|case| self.reference(&mut pipeline, case, base, ctx));
+            .map(|case| self.reference(&mut pipeline, case, base.clone(), ctx));
         let references = references.collect::<anyhow::Result<Vec<_>>>()?;
         drop(pipeline);
         let mut outcomes: Vec<Vec<Outcome>> = vec![vec![Outcome::default(); settings.len()]; cases.len()];
@@ -244,18 +244,18 @@ impl Bench {
         for some in order.chunks(SIDE_BY_SIDE) {
             let mut ready: Vec<(usize, OccPipeline)> = Vec::new();
             for i in some {
-                let params = settings[*i].params;
+                let params = settings[*i].params.clone();
                 let mut pipeline = OccPipeline::new(self.models.clone());
                 forget_peak_memory();
                 let start = Instant::now();
                 if params.region == RegionMode::Auto {
-                    pipeline.prepare(&Self::job(&cases[0].before, params), ctx)?;
+                    pipeline.prepare(&Self::job(&cases[0].before, params.clone()), ctx)?;
                 }
                 let invert_s = start.elapsed().as_secs_f64();
                 for ((case, reference), outcomes) in cases.iter().zip(&references).zip(&mut outcomes) {
                     // The run that is judged also warms up.
                     let mut first = pipeline.clone();
-                    let outcome = match first.run(&Self::job(&case.after, params), ctx) {
+                    let outcome = match first.run(&Self::job(&case.after, params.clone()), ctx) {
                         Ok(result) => {
                             let latent = first.latest_latent();
                             let (grid, report) = (&result.occupancy, &result.report);
@@ -286,7 +286,7 @@ impl Bench {
                 let (i, pipeline) = &ready[turn / cases.len()];
                 let c = turn % cases.len();
                 let mut pipeline = pipeline.clone();
-                let job = Self::job(&cases[c].after, settings[*i].params);
+                let job = Self::job(&cases[c].after, settings[*i].params.clone());
                 let start = Instant::now();
                 let ran = pipeline.run(&job, ctx);
                 let wall_s = start.elapsed().as_secs_f64();
@@ -315,7 +315,7 @@ fn pack(reference: &Reference) -> Vec<u8> {
 }
 
 fn unpack(bytes: &[u8]) -> Option<Reference> {
-    let (labels, latent) = bytes.split_at_checked(GridSpec::COLUMNS * GridSpec::NZ)?;
+    let (labels, latent) = bytes.split_at_checked(Window::COLUMNS * Window::NZ)?;
     let latent: Vec<f32> = latent
         .chunks_exact(4)
         .filter_map(|b| b.try_into().ok().map(f32::from_le_bytes))

@@ -42,7 +42,7 @@ impl Plan {
                 let all = scenes.len() * settings.len();
                 let told = |k| progress.at(part, i * settings.len() + k, all);
                 let ctx = JobCtx::detached();
-                let outcomes = bench.run(some, &settings, self.repeats, base, seed, &ctx, told)?;
+                let outcomes = bench.run(some, &settings, self.repeats, base.clone(), seed, &ctx, told)?;
                 let named = some.iter().map(|c| c.name.clone()).zip(outcomes);
                 raw.parts.entry(part.into()).or_default().extend(named);
             }

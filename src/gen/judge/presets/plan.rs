@@ -100,10 +100,10 @@ impl Plan {
     pub(super) fn settings(&self, part: &str) -> (GenParams, Vec<Setting>) {
         let (base, mut settings) = if part == "edit" {
             let base = GenParams::default();
-            (base, settings::of_edits(base, self.draws, self.seed))
+            (base.clone(), settings::of_edits(base, self.draws, self.seed))
         } else {
             let base = GenParams::whole_scene();
-            (base, settings::of_scenes(base))
+            (base.clone(), settings::of_scenes(base))
         };
         settings.retain(|s| self.only.is_empty() || self.only.contains(&s.name));
         (base, settings)

@@ -54,7 +54,7 @@ struct List {
 impl List {
     fn new(base: GenParams) -> Self {
         let mut list = Self {
-            base,
+            base: base.clone(),
             settings: Vec::new(),
         };
         list.add(base);
@@ -80,47 +80,53 @@ impl List {
 
     /// In full precision and in int8.
     fn add_both_precisions(&mut self, params: GenParams) {
-        self.add(params);
+        self.add(params.clone());
         self.add(GenParams {
             precision: Precision::Int8,
-            ..params
+            ..params.clone()
         });
     }
 
     /// Steps, solvers, fixed points, neighbours, reuse: one knob of edits after another.
     fn add_knobs(&mut self) {
-        let base = self.base;
+        let base = self.base.clone();
         for steps in [2, 4, 6, 10, 20, 33, 50] {
-            self.add_both_precisions(GenParams { steps, ..base });
+            self.add_both_precisions(GenParams {
+                steps,
+                ..base.clone()
+            });
         }
         for steps in [4, 10, 20] {
             for solver in [SolverKind::DpmPp2M, SolverKind::UniPc, SolverKind::OBelm] {
                 self.add(GenParams {
                     steps,
                     solver,
-                    ..base
+                    ..base.clone()
                 });
             }
         }
         self.add(GenParams {
             inversion_iterations: 1,
-            ..base
+            ..base.clone()
         });
         for steps in [4, 6, 10, 20, 33] {
             self.add_both_precisions(GenParams {
                 steps,
                 inversion_iterations: 3,
-                ..base
+                ..base.clone()
             });
         }
         for halo_tokens in [0, 2, 4] {
-            self.add(GenParams { halo_tokens, ..base });
+            self.add(GenParams {
+                halo_tokens,
+                ..base.clone()
+            });
         }
         for steps in [4, 10, 20] {
             self.add(GenParams {
                 steps,
                 local: false,
-                ..base
+                ..base.clone()
             });
         }
         for reuse_steps in [2, 3] {
@@ -128,7 +134,7 @@ impl List {
                 self.add(GenParams {
                     reuse_steps,
                     steps,
-                    ..base
+                    ..base.clone()
                 });
             }
         }
@@ -136,13 +142,13 @@ impl List {
 
     /// The fine stage beside few and many steps.
     fn add_fine_stages(&mut self) {
-        let base = self.base;
+        let base = self.base.clone();
         for steps in [2, 4, 10] {
             for fine_steps in [0, 1, 2, 8] {
                 self.add(GenParams {
                     steps,
                     fine_steps,
-                    ..base
+                    ..base.clone()
                 });
             }
         }
@@ -153,7 +159,7 @@ impl List {
                     precision,
                     fine_steps,
                     inversion_iterations: 3,
-                    ..base
+                    ..base.clone()
                 });
             }
         }
@@ -161,14 +167,26 @@ impl List {
 
     /// What asks for another result than the reference.
     fn add_other_targets(&mut self) {
-        let base = self.base;
+        let base = self.base.clone();
         for guidance in [1.5, 3.0] {
             let extra = format!(", guidance {guidance}");
-            self.put(GenParams { guidance, ..base }, Some(extra));
+            self.put(
+                GenParams {
+                    guidance,
+                    ..base.clone()
+                },
+                Some(extra),
+            );
         }
         for halo_columns in [1, 4] {
             let extra = format!(", {halo_columns} columns around");
-            self.put(GenParams { halo_columns, ..base }, Some(extra));
+            self.put(
+                GenParams {
+                    halo_columns,
+                    ..base.clone()
+                },
+                Some(extra),
+            );
         }
     }
 
@@ -191,7 +209,7 @@ impl List {
                 halo_tokens: [0, 1, 2][pick(3, i, 3)],
                 inversion_iterations: [0, 0, 1][pick(4, i, 3)],
                 reuse_steps: [1, 1, 2][pick(5, i, 3)],
-                ..self.base
+                ..self.base.clone()
             });
         }
     }
@@ -209,24 +227,30 @@ pub fn of_edits(base: GenParams, draws: usize, seed: u64) -> Vec<Setting> {
 
 /// The settings of whole scenes.
 pub fn of_scenes(base: GenParams) -> Vec<Setting> {
-    let mut list = List::new(base);
+    let mut list = List::new(base.clone());
     for steps in [4, 6, 10, 20, 40] {
-        list.add_both_precisions(GenParams { steps, ..base });
+        list.add_both_precisions(GenParams {
+            steps,
+            ..base.clone()
+        });
     }
     for steps in [6, 10, 20] {
         list.add(GenParams {
             steps,
             solver: SolverKind::DpmPp2M,
-            ..base
+            ..base.clone()
         });
         list.add(GenParams {
             steps,
             reuse_steps: 2,
-            ..base
+            ..base.clone()
         });
     }
     for fine_steps in [0, 1, 2, 8] {
-        list.add(GenParams { fine_steps, ..base });
+        list.add(GenParams {
+            fine_steps,
+            ..base.clone()
+        });
     }
     list.settings
 }

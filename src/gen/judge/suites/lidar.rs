@@ -17,7 +17,7 @@ use nets::lidar::field::{Ray, Sampling};
 use nets::lidar::sites::physical;
 use nets::lidar::{LearnedRay, LidarNet};
 use numeric::quantile::{Sorted, median};
-use scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use scene::{Class, SensorRig, VoxelGrid, Window};
 use sensors::learned::{self, Drops};
 use sensors::raycast::ColumnMasks;
 use sensors::truth::{self, Echo, TruthRay};
@@ -96,7 +96,7 @@ impl Method {
 /// True if a distance along the ray lies in the grid: outside, nobody knows anything.
 fn in_grid(ray: &Ray, t: f64) -> bool {
     let p = ray.origin + ray.direction * t;
-    t >= ray.range_m[0] && GridSpec::voxel_at(p).is_some()
+    t >= ray.range_m[0] && Window::voxel_at(p).is_some()
 }
 
 /// Distance to the true surface, if there is one in the grid.
@@ -320,9 +320,9 @@ fn raised(grid: &VoxelGrid) -> VoxelGrid {
     let (labels, mut out) = (physical(grid), VoxelGrid::new());
     for (k, label) in labels.iter().enumerate().filter(|(_, l)| **l != Class::FREE) {
         out.set(
-            k / (GridSpec::NY * GridSpec::NZ),
-            k / GridSpec::NZ % GridSpec::NY,
-            k % GridSpec::NZ,
+            k / (Window::NY * Window::NZ),
+            k / Window::NZ % Window::NY,
+            k % Window::NZ,
             *label,
         );
     }

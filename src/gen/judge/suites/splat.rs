@@ -12,7 +12,7 @@ use dataset::world_of;
 use metrics::maps::{LabelledDepth, MapAgreement, OUTLINE_PX};
 use numeric::quantile::median;
 use scene::raster::bev_channels;
-use scene::{Camera, CameraMaps, Class, GridSpec, SensorRig};
+use scene::{Camera, CameraMaps, Class, SensorRig, Window};
 use sensors::cloud::GaussianCloud;
 use sensors::march::{CameraRays, GroundHeight, MarchOptions, MarchScene};
 use sensors::splat::{self, SplatOptions};
@@ -71,7 +71,7 @@ fn truth(world: &World, camera: &Camera) -> LabelledDepth {
             let dir = along.normalize();
             let hit = world.cast(rays.origin, dir, 200.0);
             // Of higher things the grid knows nothing.
-            let low = hit.filter(|h| rays.origin.z + dir.z * h.range_m < GridSpec::MAX_M[2]);
+            let low = hit.filter(|h| rays.origin.z + dir.z * h.range_m < Window::MAX_M[2]);
             low.map_or((0, -1.0), |h| (h.class.id(), (h.range_m / along.length()) as f32))
         })
         .collect();

@@ -6,7 +6,7 @@ use editor::{Edit, Shape};
 use job::request::voxels_of;
 use places::{across_the_road, on_free_road, verge};
 use scene::raster::box_cells;
-use scene::{BevLayer, BoxLabel, Class, Frame, SceneBox, VoxelGrid};
+use scene::{BevLayer, BoxLabel, Class, Extent, Frame, SceneBox, VoxelGrid};
 
 /// Kinds of edits, by name.
 pub const KINDS: [&str; 6] = ["remove", "add", "move", "class", "road", "crossing"];
@@ -187,7 +187,7 @@ fn removed_share(
     after: &VoxelGrid,
 ) -> Option<f64> {
     let (mut all, mut gone) = (0, 0);
-    box_cells(scene::Extent::WINDOW, b, 0.2, |x, y| {
+    box_cells(Extent::WINDOW, b, 0.2, |x, y| {
         for (old, new) in before.column(x, y).iter().zip(after.column(x, y)) {
             if *old == b.class.id() {
                 all += 1;
@@ -204,7 +204,7 @@ fn removed_share(
 /// Share of the box's footprint columns that hold its class.
 fn filled_share(b: &SceneBox, after: &VoxelGrid) -> f64 {
     let (mut all, mut hit) = (0u32, 0u32);
-    box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+    box_cells(Extent::WINDOW, b, 0.0, |x, y| {
         all += 1;
         hit += u32::from(after.column(x, y).contains(&b.class.id()));
     });

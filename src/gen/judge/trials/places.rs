@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use scene::raster::{box_cells, disc_cells};
-use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, GridSpec, PolylineKind, SceneBox};
+use scene::{BevLayer, BoxId, BoxLabel, Class, Extent, Frame, PolylineKind, SceneBox, Window};
 use world::draw::Draw;
 
 /// A place on road that nothing stands on, along the nearest lane: for a new box of a class, or for
@@ -41,10 +41,10 @@ pub fn on_free_road(frame: &Frame, class: Class, moved: Option<SceneBox>, seed: 
             label: BoxLabel::default(),
         };
         let mut free = placed.footprint().iter().all(|c| c.abs().max_element() < 38.0) && a.length() > 6.0;
-        box_cells(scene::Extent::WINDOW, &placed, 0.8, |x, y| {
-            free &= cells[x * GridSpec::NY + y] & objects == 0
+        box_cells(Extent::WINDOW, &placed, 0.8, |x, y| {
+            free &= cells[x * Window::NY + y] & objects == 0
         });
-        box_cells(scene::Extent::WINDOW, &placed, 0.0, |x, y| {
+        box_cells(Extent::WINDOW, &placed, 0.0, |x, y| {
             free &= frame.layout.has(BevLayer::DrivableArea, x, y)
         });
         if free {
@@ -70,16 +70,11 @@ pub fn verge(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
                 .iter()
                 .any(|(x, y)| is_road(*x, *y));
         let mut cells = Vec::new();
-        disc_cells(
-            scene::Extent::WINDOW,
-            GridSpec::center(x, y, 0).truncate(),
-            2.0,
-            |x, y| {
-                if bare(x, y) {
-                    cells.push([x, y]);
-                }
-            },
-        );
+        disc_cells(Extent::WINDOW, Window::center(x, y, 0).truncate(), 2.0, |x, y| {
+            if bare(x, y) {
+                cells.push([x, y]);
+            }
+        });
         if beside && cells.len() >= 40 {
             return Some(cells);
         }
@@ -92,7 +87,7 @@ pub fn across_the_road(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
     let mut draw = Draw::new(seed, "crossing");
     let cells = frame.bev_channels();
     let road_only =
-        |x: usize, y: usize| cells[x * GridSpec::NY + y] & !line_bits() == BevLayer::DrivableArea.bit();
+        |x: usize, y: usize| cells[x * Window::NY + y] & !line_bits() == BevLayer::DrivableArea.bit();
     let lanes: Vec<_> = frame
         .layout
         .polylines
@@ -109,16 +104,11 @@ pub fn across_the_road(frame: &Frame, seed: u64) -> Option<Vec<[usize; 2]>> {
         let across = (b - a).normalize_or_zero().perp();
         let mut found = Vec::new();
         for i in -20..=20 {
-            disc_cells(
-                scene::Extent::WINDOW,
-                a + across * (f64::from(i) * 0.4),
-                1.5,
-                |x, y| {
-                    if road_only(x, y) {
-                        found.push([x, y]);
-                    }
-                },
-            );
+            disc_cells(Extent::WINDOW, a + across * (f64::from(i) * 0.4), 1.5, |x, y| {
+                if road_only(x, y) {
+                    found.push([x, y]);
+                }
+            });
         }
         found.sort_unstable();
         found.dedup();

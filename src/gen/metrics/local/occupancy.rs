@@ -3,18 +3,18 @@
 
 use super::Windows;
 use super::random::{Bank, Map, normal};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 use world::draw::Draw;
 
 /// Columns of a window each way.
 pub const WINDOW: usize = 8;
 /// Windows of a frame each way.
-pub const SIDE: usize = GridSpec::NX / WINDOW;
+pub const SIDE: usize = Window::NX / WINDOW;
 /// Windows of a patch each way.
 const PATCH: usize = 3;
 
-const NY: usize = GridSpec::NY;
-const NZ: usize = GridSpec::NZ;
+const NY: usize = Window::NY;
+const NZ: usize = Window::NZ;
 /// Channels of a column for the random convolutions, and their filters.
 const CHANNELS: usize = 8;
 const FILTERS: usize = 32;
@@ -89,7 +89,7 @@ pub fn names() -> Vec<String> {
 
 /// Features of the 25 x 25 windows of a frame, row by row; in the order of [`names`].
 pub fn windows(grid: &VoxelGrid) -> Windows {
-    let columns: Vec<Column> = (0..GridSpec::COLUMNS)
+    let columns: Vec<Column> = (0..Window::COLUMNS)
         .map(|c| Column::of(grid.column(c / NY, c % NY)))
         .collect();
     let by_chance = convolved(grid);
@@ -106,7 +106,7 @@ fn convolved(grid: &VoxelGrid) -> Windows {
     let embedding: Vec<f32> = (0..NZ * Class::COUNT * CHANNELS)
         .map(|_| normal(&mut draw) as f32)
         .collect();
-    let mut data = vec![0.0f32; GridSpec::COLUMNS * CHANNELS];
+    let mut data = vec![0.0f32; Window::COLUMNS * CHANNELS];
     for (x, y, z, label) in grid.iter_set() {
         let entry = (z * Class::COUNT + usize::from(label.min(Class::FREE))) * CHANNELS;
         let at = (x * NY + y) * CHANNELS;
@@ -116,7 +116,7 @@ fn convolved(grid: &VoxelGrid) -> Windows {
     }
     let map = Map {
         data: &data,
-        rows: GridSpec::NX,
+        rows: Window::NX,
         columns: NY,
     };
     Bank::new("occupancy", CHANNELS, 3, FILTERS).means(&map, [WINDOW, WINDOW])
@@ -142,7 +142,7 @@ fn by_hand(grid: &VoxelGrid, columns: &[Column], x0: usize, y0: usize) -> Vec<f6
                 .zip(own.runs)
                 .for_each(|(sum, n)| *sum += u32::from(n));
             let right = (y + 1 < NY).then(|| columns[c + 1]);
-            let ahead = (x + 1 < GridSpec::NX).then(|| columns[c + NY]);
+            let ahead = (x + 1 < Window::NX).then(|| columns[c + NY]);
             for near in [right, ahead].into_iter().flatten() {
                 for (of, steps) in steps.iter_mut().enumerate() {
                     if let (Some(a), Some(b)) = (own.tops[of], near.tops[of]) {

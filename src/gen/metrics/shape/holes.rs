@@ -1,7 +1,7 @@
 //! Holes in the ground: columns inside the area of a ground class where there is neither ground nor anything on it.
 
 use super::{ShapeFigures, share};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Classes of ground, and the names of their figures.
 const CLASSES: [Class; 4] = [
@@ -21,8 +21,8 @@ pub const NAMES: [&str; 4] = [
 const RADIUS: usize = 3;
 /// Columns around the grid, so that what lies outside does not limit the closing.
 const PAD: usize = 2 * RADIUS;
-const SIDE: usize = GridSpec::NX + 2 * PAD;
-const NY: usize = GridSpec::NY;
+const SIDE: usize = Window::NX + 2 * PAD;
+const NY: usize = Window::NY;
 
 /// Place of a column in a padded map.
 fn padded(c: usize) -> usize {
@@ -74,7 +74,7 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     for (class, name) in CLASSES.into_iter().zip(NAMES) {
         // The bin of the ground, -1 where there is none of this class.
         let mut area = vec![-1i8; SIDE * SIDE];
-        for c in 0..GridSpec::COLUMNS {
+        for c in 0..Window::COLUMNS {
             let column = grid.column(c / NY, c % NY);
             if let Some(bin) = column.iter().rposition(|l| *l == class.id()) {
                 area[padded(c)] = bin as i8;
@@ -83,13 +83,13 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
         let around = grow(&area, &disc);
         let closed = shrink(&around, &disc);
         let (mut holes, mut columns) = (0, 0);
-        for c in (0..GridSpec::COLUMNS).filter(|c| closed[padded(*c)]) {
+        for c in (0..Window::COLUMNS).filter(|c| closed[padded(*c)]) {
             // At most one bin above the highest ground around it, something must be there.
             let highest = around[padded(c)].max(0) as usize + 1;
             let column = grid.column(c / NY, c % NY);
             columns += 1;
             let empty = |l: &u8| *l == Class::FREE;
-            holes += usize::from(column[..=highest.min(GridSpec::NZ - 1)].iter().all(empty));
+            holes += usize::from(column[..=highest.min(Window::NZ - 1)].iter().all(empty));
         }
         share(out, name, holes, columns);
     }

@@ -2,7 +2,7 @@
 
 use super::{ShapeFigures, share};
 use numeric::quantile::median;
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Sides that face a column without manmade, per manmade column: 0 inside, 4 for a post.
 pub const EDGE: &str = "edge_per_manmade_column";
@@ -13,12 +13,12 @@ pub const PART_COLUMNS: &str = "manmade_part_median_columns";
 /// Share of the neighbouring pairs of manmade columns whose highest manmade voxels differ in height.
 pub const ROOF_STEPS: &str = "roof_steps";
 
-const NY: usize = GridSpec::NY;
+const NY: usize = Window::NY;
 
 /// The highest manmade voxel of every column, `[x][y]`; `None` where there is none.
 pub fn tops(grid: &VoxelGrid) -> Vec<Option<usize>> {
     let top = |column: &[u8]| column.iter().rposition(|l| *l == Class::Manmade.id());
-    (0..GridSpec::COLUMNS)
+    (0..Window::COLUMNS)
         .map(|c| top(grid.column(c / NY, c % NY)))
         .collect()
 }
@@ -26,9 +26,9 @@ pub fn tops(grid: &VoxelGrid) -> Vec<Option<usize>> {
 pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     let tops = tops(grid);
     let (mut edges, mut pairs, mut steps) = (0, 0, 0);
-    for c in 0..GridSpec::COLUMNS {
+    for c in 0..Window::COLUMNS {
         let right = (c % NY + 1 < NY).then_some(c + 1);
-        let ahead = (c / NY + 1 < GridSpec::NX).then_some(c + NY);
+        let ahead = (c / NY + 1 < Window::NX).then_some(c + NY);
         for near in [right, ahead].into_iter().flatten() {
             match (tops[c], tops[near]) {
                 (None, None) => {}
@@ -60,7 +60,7 @@ fn parts(mut inside: Vec<bool>) -> Vec<f64> {
         while let Some(c) = stack.pop() {
             size += 1.0;
             let (x, y) = (c / NY, c % NY);
-            for i in x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1) {
+            for i in x.saturating_sub(1)..=(x + 1).min(Window::NX - 1) {
                 for j in y.saturating_sub(1)..=(y + 1).min(NY - 1) {
                     if std::mem::replace(&mut inside[i * NY + j], false) {
                         stack.push(i * NY + j);

@@ -3,7 +3,7 @@
 
 use super::manmade::tops;
 use super::{ShapeFigures, share};
-use scene::{GridSpec, VoxelGrid};
+use scene::{VoxelGrid, Window};
 
 /// Share of the stretches that deviate from a line by no more than the steps of its columns do.
 pub const STRAIGHT: &str = "wall_straightness";
@@ -18,8 +18,8 @@ const STRAIGHT_COLUMNS: f64 = 0.35;
 /// Outlines around fewer sides are no walls: posts, lamps, signs.
 const FEWEST_SIDES: usize = 12;
 
-const NX: usize = GridSpec::NX;
-const NY: usize = GridSpec::NY;
+const NX: usize = Window::NX;
+const NY: usize = Window::NY;
 /// Steps along +x, +y, -x, -y; the next one is a turn to the left.
 const STEP: [(isize, isize); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
@@ -144,6 +144,6 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     share(out, STRAIGHT, straight, deviations.len());
     if !deviations.is_empty() {
         let mean = deviations.iter().sum::<f64>() / deviations.len() as f64;
-        out.insert(DEVIATION_M, mean * GridSpec::VOXEL_M);
+        out.insert(DEVIATION_M, mean * Window::VOXEL_M);
     }
 }

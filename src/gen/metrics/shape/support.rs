@@ -2,7 +2,7 @@
 
 use super::{ShapeFigures, share};
 use crate::components::{around, components, flat, place, spread};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Groups of vegetation (26 neighbours, [`SMALLEST_CROWN`] voxels or more) none of whose voxels stands on anything else.
 pub const CROWNS: &str = "crowns_without_trunk";
@@ -20,7 +20,7 @@ const SMALLEST_CROWN: usize = 4;
 fn at_side(group: &[usize]) -> bool {
     group.iter().any(|at| {
         let [x, y, _] = place(*at);
-        x == 0 || y == 0 || x + 1 == GridSpec::NX || y + 1 == GridSpec::NY
+        x == 0 || y == 0 || x + 1 == Window::NX || y + 1 == Window::NY
     })
 }
 
@@ -32,7 +32,7 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     let in_ground =
         |at: usize| around(at).any(|near| place(near)[2] == place(at)[2] && is_ground(labels[near]));
     let rests = |at: usize| {
-        at.is_multiple_of(GridSpec::NZ) || ![leaf, Class::FREE].contains(&labels[at - 1]) || in_ground(at)
+        at.is_multiple_of(Window::NZ) || ![leaf, Class::FREE].contains(&labels[at - 1]) || in_ground(at)
     };
     let (mut crowns, mut loose, mut leaves) = (0, 0, 0);
     for group in components(labels.iter().map(|l| *l == leaf).collect()) {
@@ -46,7 +46,7 @@ pub fn figures(grid: &VoxelGrid, out: &mut ShapeFigures) {
     share(out, CROWN_SHARE, loose, leaves);
 
     let occupied = |at: &usize| labels[*at] != Class::FREE;
-    let ground = |at: &usize| at.is_multiple_of(GridSpec::NZ) || is_ground(labels[*at]);
+    let ground = |at: &usize| at.is_multiple_of(Window::NZ) || is_ground(labels[*at]);
     let start = (0..labels.len()).filter(occupied).filter(ground).collect();
     let mut left: Vec<bool> = (0..labels.len()).map(|at| occupied(&at)).collect();
     spread(&mut left, start);

@@ -1,7 +1,7 @@
 //! Every figure on things built by hand, then with its fault put in by hand.
 
 use super::*;
-use scene::{Class, GridSpec};
+use scene::{Class, Window};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
@@ -125,8 +125,8 @@ fn walls_in_any_direction_are_straight_until_roughened() {
     for degrees in [0.0f64, 7.0, 18.0, 30.0, 45.0, 61.0] {
         let (sin, cos) = degrees.to_radians().sin_cos();
         let (mut smooth, mut rough) = (VoxelGrid::new(), VoxelGrid::new());
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 let (dx, dy) = (x as f64 - 99.7, y as f64 - 100.2);
                 let (u, v) = (dx * cos + dy * sin, dy * cos - dx * sin);
                 let out = (u.abs() - 40.0).max(v.abs() - 25.0);
@@ -157,8 +157,8 @@ fn faults_in_a_world_move_their_figures_and_no_others() {
     let sound = shape(&world);
     let mut draw = world::draw::Draw::new(2, "faults");
     let [mut roofs, mut shards, mut holes] = [world.clone(), world.clone(), world.clone()];
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
             let column = world.column(x, y);
             let top = column.iter().rposition(|l| *l == Class::Manmade.id());
             if let Some(top) = top.filter(|t| (3..15).contains(t))

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::local::occupancy;
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
@@ -91,9 +91,9 @@ fn shards_in_worlds_are_found() {
     let grid = |seed: u64| complete(&World::random(seed), Vertical::Occ3d);
     let nibbled = |seed: u64| -> VoxelGrid {
         let (mut out, mut draw) = (grid(seed), Draw::new(seed, "nibbled"));
-        for c in 0..GridSpec::COLUMNS {
+        for c in 0..Window::COLUMNS {
             if draw.chance(0.35) {
-                let column = out.column_mut(c / GridSpec::NY, c % GridSpec::NY);
+                let column = out.column_mut(c / Window::NY, c % Window::NY);
                 let taken = column.iter_mut().skip(1).filter(|l| **l == Class::Manmade.id());
                 taken.for_each(|l| *l = Class::FREE);
             }

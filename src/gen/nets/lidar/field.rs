@@ -7,7 +7,7 @@ use super::neus;
 use super::prior::Cells;
 use super::sites::Volume;
 use nn::vectorised;
-use scene::{Class, GridSpec};
+use scene::{Class, Window};
 
 /// Hidden numbers of a voxel, and of the network behind them.
 pub const HIDDEN: usize = 16;
@@ -107,10 +107,10 @@ impl Field {
     #[inline(always)]
     fn corners(&self, p: [f32; 3]) -> Option<Corners> {
         const LOWER: [f32; 3] = [-40.0, -40.0, -1.0];
-        const PLACES: [i32; 3] = [GridSpec::NX as i32, GridSpec::NY as i32, GridSpec::NZ as i32];
+        const PLACES: [i32; 3] = [Window::NX as i32, Window::NY as i32, Window::NZ as i32];
         let (mut share, mut place) = ([0.0; 3], [0usize; 3]);
         for axis in 0..3 {
-            let q = (p[axis] - LOWER[axis]) / GridSpec::VOXEL_M as f32 - 0.5;
+            let q = (p[axis] - LOWER[axis]) / Window::VOXEL_M as f32 - 0.5;
             let floor = q.floor();
             // Written so that NaN is outside.
             if !(floor >= -1.0 && floor < PLACES[axis] as f32) {

@@ -24,12 +24,12 @@ use self::sparse::{Block, Convolution};
 use super::{ModelError, check_finite};
 use nn::layers::{Linear, Norm};
 use nn::weights::{self, WeightFile, WeightsError};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// File name of the weights.
 pub const FILE: &str = "lidar.safetensors";
 /// Shape of the finest level.
-const SHAPE: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+const SHAPE: [usize; 3] = [Window::NX, Window::NY, Window::NZ];
 /// Classes that are not free.
 const CLASSES: usize = Class::FREE as usize;
 /// Rows that go through a linear layer in one piece.
@@ -165,7 +165,7 @@ impl LidarNet {
         }
         let net = Self {
             class_table: w.take("class_table", &[CLASSES, w0])?,
-            height_table: w.take("height_table", &[GridSpec::NZ, w0])?,
+            height_table: w.take("height_table", &[Window::NZ, w0])?,
             unet,
             norm: Norm::new(&mut w, "norm", w0)?,
             geometry: Linear::new(&mut w, "geometry", w0, HIDDEN + 4, &[])?,

@@ -4,10 +4,10 @@
 use glam::DVec3;
 
 use super::sites::Level;
-use scene::{Class, GridSpec};
+use scene::{Class, Window};
 
 /// Cells along each axis: one more than voxels.
-const N: [usize; 3] = [GridSpec::NX + 1, GridSpec::NY + 1, GridSpec::NZ + 1];
+const N: [usize; 3] = [Window::NX + 1, Window::NY + 1, Window::NZ + 1];
 /// Metres between samples where there are things.
 pub const SPACING_M: f64 = 0.2;
 /// Density of samples where there is only ground: it is smooth.
@@ -84,8 +84,8 @@ impl Iterator for Walk<'_> {
             }
             if density > 0 {
                 return Some(Segment {
-                    from_m: from * GridSpec::VOXEL_M,
-                    to_m: end * GridSpec::VOXEL_M,
+                    from_m: from * Window::VOXEL_M,
+                    to_m: end * Window::VOXEL_M,
                     density: if density == 1 { GROUND_DENSITY } else { 1.0 },
                     begins_run,
                 });
@@ -137,7 +137,7 @@ impl Cells {
     pub fn new(keys: &[u32], classes: &[u8]) -> Self {
         let mut density = vec![0u8; N[0] * N[1] * N[2]];
         for (key, class) in keys.iter().zip(classes) {
-            let [x, y, z] = Level::place([GridSpec::NX, GridSpec::NY, GridSpec::NZ], *key);
+            let [x, y, z] = Level::place([Window::NX, Window::NY, Window::NZ], *key);
             let kind = if Class::from_id(*class).is_some_and(Class::is_ground) {
                 1
             } else {
@@ -162,8 +162,8 @@ impl Cells {
     /// direction zero.
     #[inline(always)]
     pub fn walk(&self, origin_in_ego: DVec3, direction: DVec3, [near_m, far_m]: [f64; 2]) -> Walk<'_> {
-        let unit = GridSpec::VOXEL_M;
-        let o = GridSpec::to_voxel_units(origin_in_ego) + 0.5;
+        let unit = Window::VOXEL_M;
+        let o = Window::to_voxel_units(origin_in_ego) + 0.5;
         let inverse = |d: f64| if d.abs() < STILL { f64::INFINITY } else { 1.0 / d };
         let inv = DVec3::new(inverse(direction.x), inverse(direction.y), inverse(direction.z));
         let mut walk = Walk {
@@ -281,7 +281,7 @@ mod tests {
     /// Row 47 of the extremes table: empty, one voxel, full; one sample and ten thousand.
     #[test]
     fn row_47_prior() {
-        let all: Vec<[usize; 3]> = (0..GridSpec::VOXELS)
+        let all: Vec<[usize; 3]> = (0..Window::VOXELS)
             .map(|k| [k / 3200, k / 16 % 200, k % 16])
             .collect();
         let (one, full) = ([[120usize, 100, 7]], all);
@@ -295,7 +295,7 @@ mod tests {
                     assert!(found.is_sorted() && found.iter().all(|t| t.is_finite()));
                     for t in found {
                         // Within one voxel of an occupied centre, along every axis.
-                        let p = GridSpec::to_voxel_units(origin + direction * f64::from(t)) - 0.5;
+                        let p = Window::to_voxel_units(origin + direction * f64::from(t)) - 0.5;
                         let near = voxels.len() > 1
                             || voxels.iter().any(|v| {
                                 (p - DVec3::new(v[0] as f64, v[1] as f64, v[2] as f64))
@@ -338,7 +338,7 @@ mod tests {
             assert!(segments.windows(2).all(|w| w[0].to_m <= w[1].from_m + 1e-9));
             for k in 0..8000 {
                 let t = f64::from(k) * 0.01 + 0.005;
-                let q = (GridSpec::to_voxel_units(origin + direction * t) + 0.5).floor();
+                let q = (Window::to_voxel_units(origin + direction * t) + 0.5).floor();
                 let inside = (0..3).all(|a| q[a] >= 0.0 && q[a] < N[a] as f64);
                 let active =
                     inside && cells.density[(q.x as usize * N[1] + q.y as usize) * N[2] + q.z as usize] > 0;

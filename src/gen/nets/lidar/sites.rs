@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::sparse::Gather;
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// How far the ground lies below its place in labels, and how far everything else is smeared down, in bins
 /// (`real_statistics.md`, 2.2).
@@ -21,16 +21,16 @@ const PIECE: usize = 1024;
 /// Labels with the vertical convention of Occ3D undone, `[x][y][z]`: the ground two bins up; of every vertical run of
 /// other things the lowest two voxels gone (all but the top, if it has no more).
 pub fn physical(grid: &VoxelGrid) -> Vec<u8> {
-    let mut out = vec![Class::FREE; GridSpec::VOXELS];
+    let mut out = vec![Class::FREE; Window::VOXELS];
     let kinds: [Kind; 256] = std::array::from_fn(|label| match Class::from_id(label as u8) {
         _ if label == usize::from(Class::FREE) => Kind::Free,
         Some(class) if class.is_ground() => Kind::Ground,
         _ => Kind::Thing,
     });
-    out.par_chunks_mut(GridSpec::NY * GridSpec::NZ)
+    out.par_chunks_mut(Window::NY * Window::NZ)
         .enumerate()
         .for_each(|(x, slice)| {
-            for (y, to) in slice.chunks_exact_mut(GridSpec::NZ).enumerate() {
+            for (y, to) in slice.chunks_exact_mut(Window::NZ).enumerate() {
                 raise(grid.column(x, y), to, &kinds);
             }
         });
@@ -44,21 +44,21 @@ enum Kind {
     Thing,
 }
 
-fn raise(from: &[u8; GridSpec::NZ], to: &mut [u8], kinds: &[Kind; 256]) {
+fn raise(from: &[u8; Window::NZ], to: &mut [u8], kinds: &[Kind; 256]) {
     let kind = |z: usize| kinds[usize::from(from[z])];
     let mut below = 0;
-    for z in 0..GridSpec::NZ {
+    for z in 0..Window::NZ {
         if kind(z) != Kind::Thing {
             below = 0;
             continue;
         }
-        if below >= RAISE || z + 1 == GridSpec::NZ || kind(z + 1) != Kind::Thing {
+        if below >= RAISE || z + 1 == Window::NZ || kind(z + 1) != Kind::Thing {
             to[z] = from[z];
         }
         below += 1;
     }
     for (z, &label) in from.iter().enumerate() {
-        let raised = (z + RAISE).min(GridSpec::NZ - 1);
+        let raised = (z + RAISE).min(Window::NZ - 1);
         if kind(z) == Kind::Ground && to[raised] == Class::FREE {
             to[raised] = label;
         }
@@ -68,7 +68,7 @@ fn raise(from: &[u8; GridSpec::NZ], to: &mut [u8], kinds: &[Kind; 256]) {
 /// Keys in rising order of the voxels of `[x][y][z]` labels that have a free neighbour: of six, the one below only above
 /// bin 3, since nothing looks at a building from underground.
 pub fn surface(labels: &[u8]) -> Vec<u32> {
-    let (nx, ny, nz) = (GridSpec::NX, GridSpec::NY, GridSpec::NZ);
+    let (nx, ny, nz) = (Window::NX, Window::NY, Window::NZ);
     // Bit z of a column is a voxel that is not free.
     let solid: Vec<u16> = labels
         .par_chunks_exact(nz)
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn what_is_enclosed_is_left_out() {
-        let mut labels = vec![Class::FREE; GridSpec::VOXELS];
+        let mut labels = vec![Class::FREE; Window::VOXELS];
         for x in 10..15 {
             for y in 10..15 {
                 (2..8).for_each(|z| labels[(x * 200 + y) * 16 + z] = Class::Manmade.id());

@@ -216,7 +216,7 @@ fn kept(old: &Field, keys: Vec<u32>, classes: Vec<u8>) -> Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{Class, GridSpec};
+    use scene::{Class, Window};
     use world::World;
     use world::voxelize::{Vertical, complete};
 
@@ -295,6 +295,6 @@ mod tests {
             }
         }
         assert!((SIGHT - 3..=SIGHT).contains(&farthest), "{farthest}");
-        assert_eq!(SHAPE, [GridSpec::NX, GridSpec::NY, GridSpec::NZ]);
+        assert_eq!(SHAPE, [Window::NX, Window::NY, Window::NZ]);
     }
 }

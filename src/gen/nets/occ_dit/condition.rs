@@ -5,10 +5,10 @@ use rayon::prelude::*;
 use super::tokens::{PATCH_CELLS, patch};
 use crate::column_heights::{ColumnHeights, GROUPS};
 use crate::{CELLS, CHANNELS, LATENT, ModelError, SIDE, check_finite, check_length};
-use scene::GridSpec;
+use scene::Window;
 use scene::raster::HEADINGS;
 
-const COLUMNS: usize = GridSpec::NX / SIDE;
+const COLUMNS: usize = Window::NX / SIDE;
 const LAYERS: usize = 18;
 /// Layout channels of a cell: one per column and layer, `(dx * 4 + dy) * 18 + layer`.
 const LAYOUT: usize = COLUMNS * COLUMNS * LAYERS;
@@ -65,13 +65,13 @@ impl DitCondition {
 
     /// Fails if an input has another length or is not finite.
     pub(super) fn check(&self) -> Result<(), ModelError> {
-        check_length("layout", self.bev.len(), GridSpec::COLUMNS)?;
-        check_length("headings", self.heading.len(), GridSpec::COLUMNS)?;
+        check_length("layout", self.bev.len(), Window::COLUMNS)?;
+        check_length("headings", self.heading.len(), Window::COLUMNS)?;
         check_finite("named numbers", &self.named.map(|n| n.unwrap_or(0.0)))?;
         check_length("draft latent", self.draft_latent.len(), LATENT)?;
         check_length("given background", self.given.len(), CELLS)?;
         check_finite("given background", self.given.as_flattened())?;
-        check_length("columns", self.columns.len(), GridSpec::COLUMNS)?;
+        check_length("columns", self.columns.len(), Window::COLUMNS)?;
         check_length("mask", self.mask.len(), CELLS)?;
         check_length("context", self.context.len(), LATENT)?;
         check_finite("draft latent", &self.draft_latent)?;
@@ -114,16 +114,16 @@ impl DitCondition {
         let (standing, ground) = rest.split_at_mut(GROUPS * STANDING);
         given.copy_from_slice(&self.given[cell]);
         ground[0] = f32::from(u8::from(self.ground));
-        let bins = |n: u8| f32::from(n) / GridSpec::NZ as f32;
+        let bins = |n: u8| f32::from(n) / Window::NZ as f32;
         let [mut cos_sum, mut sin_sum] = [0.0; 2];
         for (column, layers) in layout.chunks_exact_mut(LAYERS).enumerate() {
             let x = cell / SIDE * COLUMNS + column / COLUMNS;
             let y = cell % SIDE * COLUMNS + column % COLUMNS;
-            let bits = self.bev[x * GridSpec::NY + y];
+            let bits = self.bev[x * Window::NY + y];
             for (layer, value) in layers.iter_mut().enumerate() {
                 *value = (bits >> layer & 1) as f32;
             }
-            let heights = &self.columns[x * GridSpec::NY + y];
+            let heights = &self.columns[x * Window::NY + y];
             for (group, [base, top]) in heights.standing.iter().enumerate() {
                 if *top > 0 {
                     let known = given[group];
@@ -134,7 +134,7 @@ impl DitCondition {
                 }
             }
             ground[1 + column] = bins(heights.ground) * ground[0];
-            let code = self.heading[x * GridSpec::NY + y];
+            let code = self.heading[x * Window::NY + y];
             if code > 0 {
                 let angle = f32::from(code - 1) * (std::f32::consts::TAU / f32::from(HEADINGS));
                 cos_sum += angle.cos();

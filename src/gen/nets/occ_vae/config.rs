@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use scene::GridSpec;
+use scene::Window;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -47,6 +47,6 @@ impl VaeConfig {
 
     /// Latent cells along one side of the map.
     pub fn side(&self) -> usize {
-        GridSpec::NX >> (self.widths.len() - 1)
+        Window::NX >> (self.widths.len() - 1)
     }
 }

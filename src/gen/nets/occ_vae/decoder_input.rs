@@ -3,9 +3,9 @@
 use crate::ModelError;
 use crate::encoder::{HEIGHT, VoxelTable};
 use nn::Ops;
-use nn::map::Window;
+use nn::map::CellRect;
 use nn::weights::{WeightFile, WeightsError};
-use scene::{GridSpec, VoxelGrid};
+use scene::{VoxelGrid, Window};
 
 /// What the decoder gets to know of the columns that it decodes.
 #[derive(Clone, Copy, Default)]
@@ -43,7 +43,7 @@ impl<B: Ops> InputEmbedding<B> {
         ops: &B,
         mut map: B::Tensor,
         input: DecoderInput<'_>,
-        window: Window,
+        window: CellRect,
     ) -> Result<B::Tensor, ModelError> {
         if let Some(draft) = input.draft {
             map = self.drafted.add_to(ops, map, draft, window)?;
@@ -51,9 +51,9 @@ impl<B: Ops> InputEmbedding<B> {
         let Some(observed) = input.observed else {
             return Ok(map);
         };
-        let corner = [window.x, window.y].map(|cell| cell * (GridSpec::NX / window.side));
+        let corner = [window.x, window.y].map(|cell| cell * (Window::NX / window.side));
         let bits = |row: usize, column: usize| {
-            let told = observed[(corner[0] + row) * GridSpec::NY + corner[1] + column];
+            let told = observed[(corner[0] + row) * Window::NY + corner[1] + column];
             (0..HEIGHT + 1).filter(move |bit| told >> bit & 1 == 1)
         };
         Ok(ops.bag(&self.observed, map, bits)?)

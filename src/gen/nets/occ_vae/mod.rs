@@ -9,11 +9,11 @@ mod decoder_input;
 use super::encoder::{Encoder, HEIGHT, Level, PIECE, levels, steps};
 use super::{ModelError, check_finite, check_length};
 use crate::pieces::pieces;
-use nn::map::{Map, Window};
+use nn::map::{CellRect, Map};
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use numeric::philox::{self, Stream};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 pub use config::VaeConfig;
 pub use decoder_input::DecoderInput;
@@ -104,7 +104,7 @@ impl<B: Ops> OccVae<B> {
 
     /// Columns of voxels along one side of a cell.
     fn columns(&self) -> usize {
-        GridSpec::NX / self.config.side()
+        Window::NX / self.config.side()
     }
 
     /// How many cells around an edited one may get another latent.
@@ -124,13 +124,13 @@ impl<B: Ops> OccVae<B> {
     /// The mean latent `[x][y][channel]`, 50x50x8 (fine: 100x100x16), of zero mean and unit spread over the
     /// training set.
     pub fn encode(&self, grid: &VoxelGrid) -> Result<Vec<f32>, ModelError> {
-        Ok(self.encode_window(grid, Window::whole(self.config.side()))?.0)
+        Ok(self.encode_window(grid, CellRect::whole(self.config.side()))?.0)
     }
 
     /// A latent drawn from the encoder's normal distribution, as training sees them; the same seed gives the
     /// same latent.
     pub fn encode_sampled(&self, grid: &VoxelGrid, seed: u64) -> Result<Vec<f32>, ModelError> {
-        let (mut latent, spread) = self.encode_window(grid, Window::whole(self.config.side()))?;
+        let (mut latent, spread) = self.encode_window(grid, CellRect::whole(self.config.side()))?;
         let noise = philox::normal_field(seed, Stream::Encoder, self.cells(), self.config.latent);
         for ((value, spread), noise) in latent.iter_mut().zip(&spread).zip(&noise) {
             *value += spread * *noise as f32;
@@ -151,7 +151,7 @@ impl<B: Ops> OccVae<B> {
         check_length("latent", latent.len(), self.cells() * channels)?;
         let reach = self.encoder_reach();
         for cells in pieces(cells, reach) {
-            let Some(window) = Window::around(&cells, reach) else {
+            let Some(window) = CellRect::around(&cells, reach) else {
                 continue;
             };
             let (found, _) = self.encode_window(grid, window)?;
@@ -169,7 +169,7 @@ impl<B: Ops> OccVae<B> {
     pub fn encode_window(
         &self,
         grid: &VoxelGrid,
-        window: Window,
+        window: CellRect,
     ) -> Result<(Vec<f32>, Vec<f32>), ModelError> {
         let channels = self.config.latent;
         let ops = &self.ops;
@@ -211,12 +211,12 @@ impl<B: Ops> OccVae<B> {
         check_length("cell mask", cells.len(), self.cells())?;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
         if let Some(observed) = input.observed {
-            check_length("observed columns", observed.len(), GridSpec::COLUMNS)?;
+            check_length("observed columns", observed.len(), Window::COLUMNS)?;
         }
         let mut grid = VoxelGrid::new();
         let reach = self.decoder_reach();
         for cells in pieces(cells, reach) {
-            if let Some(window) = Window::around(&cells, reach) {
+            if let Some(window) = CellRect::around(&cells, reach) {
                 let map = self.decoder_map(latent, window, input)?;
                 self.labels_of(&map, &cells, window, &mut grid)?;
             }
@@ -229,7 +229,7 @@ impl<B: Ops> OccVae<B> {
         &self,
         map: &B::Tensor,
         cells: &[bool],
-        window: Window,
+        window: CellRect,
         grid: &mut VoxelGrid,
     ) -> Result<(), ModelError> {
         let (side, per_cell) = (self.config.side(), self.columns());
@@ -254,7 +254,7 @@ impl<B: Ops> OccVae<B> {
     }
 
     /// Places of a cell's columns in a map of the window, `[dx][dy]`.
-    fn places_of(&self, cell: usize, window: Window) -> impl Iterator<Item = usize> {
+    fn places_of(&self, cell: usize, window: CellRect) -> impl Iterator<Item = usize> {
         let (side, per_cell) = (self.config.side(), self.columns());
         let x = (cell / side - window.x) * per_cell;
         let y = (cell % side - window.y) * per_cell;
@@ -272,7 +272,7 @@ impl<B: Ops> OccVae<B> {
         let mut cells = vec![false; self.cells()];
         cells[cell] = true;
         check_length("latent", latent.len(), self.cells() * self.config.latent)?;
-        let Some(window) = Window::around(&cells, self.decoder_reach()) else {
+        let Some(window) = CellRect::around(&cells, self.decoder_reach()) else {
             return Ok(Vec::new());
         };
         let map = self.decoder_map(latent, window, input)?;
@@ -290,7 +290,7 @@ impl<B: Ops> OccVae<B> {
     fn decoder_map(
         &self,
         latent: &[f32],
-        window: Window,
+        window: CellRect,
         input: DecoderInput<'_>,
     ) -> Result<B::Tensor, ModelError> {
         check_finite("latent", latent)?;

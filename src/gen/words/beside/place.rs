@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::{SideOf, Where};
 use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
 use scene::road_map::RoadMap;
-use scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox, Window};
 use world::scenery::distance_cells;
 
 /// Things end at the border of the grid, m.
@@ -32,11 +32,11 @@ impl Ground {
             own: OnceCell::new(),
             roads,
             to_paved: distance_cells(|c| layout.cells()[c] & paved != 0),
-            taken: vec![false; GridSpec::COLUMNS],
+            taken: vec![false; Window::COLUMNS],
         };
         for b in boxes.values() {
-            box_cells(scene::Extent::WINDOW, b, 0.4, |x, y| {
-                out.taken[x * GridSpec::NY + y] = true
+            box_cells(Extent::WINDOW, b, 0.4, |x, y| {
+                out.taken[x * Window::NY + y] = true
             });
         }
         for thing in things.iter() {
@@ -48,39 +48,39 @@ impl Ground {
     /// Marks the ground of a form as taken.
     pub fn take(&mut self, form: &Form) {
         let taken = &mut self.taken;
-        let take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
+        let take = |x: usize, y: usize| taken[x * Window::NY + y] = true;
         match form {
-            Form::Building(b) => polygon_cells(scene::Extent::WINDOW, &b.outline_m, take),
-            Form::Line(l) => line_cells(scene::Extent::WINDOW, &l.points_m, l.width_m / 2.0 + 0.2, take),
-            Form::Bridge(b) => line_cells(scene::Extent::WINDOW, &b.points_m, b.width_m / 2.0, take),
-            Form::Tree(t) => disc_cells(scene::Extent::WINDOW, t.position_m, 1.0, take),
-            Form::Post(p) => disc_cells(scene::Extent::WINDOW, p.position_m, 0.6, take),
+            Form::Building(b) => polygon_cells(Extent::WINDOW, &b.outline_m, take),
+            Form::Line(l) => line_cells(Extent::WINDOW, &l.points_m, l.width_m / 2.0 + 0.2, take),
+            Form::Bridge(b) => line_cells(Extent::WINDOW, &b.points_m, b.width_m / 2.0, take),
+            Form::Tree(t) => disc_cells(Extent::WINDOW, t.position_m, 1.0, take),
+            Form::Post(p) => disc_cells(Extent::WINDOW, p.position_m, 0.6, take),
             // Other things may grow or stand among shrubs.
             Form::Shrubs(_) => {}
         }
     }
 
     fn own(&self) -> &[DVec2] {
-        let all = || (0..GridSpec::COLUMNS).map(|c| self.roads.along_ego_lane(middle_m(c)));
+        let all = || (0..Window::COLUMNS).map(|c| self.roads.along_ego_lane(middle_m(c)));
         self.own.get_or_init(|| all().collect())
     }
 
     /// Distance from paved ground, m.
     pub fn paved_m(&self, p: DVec2) -> f64 {
-        GridSpec::column_at(p.x, p.y).map_or(0.0, |[x, y]| {
-            f64::from(self.to_paved[x * GridSpec::NY + y]) * GridSpec::VOXEL_M
+        Window::column_at(p.x, p.y).map_or(0.0, |[x, y]| {
+            f64::from(self.to_paved[x * Window::NY + y]) * Window::VOXEL_M
         })
     }
 
     fn is_free(&self, x: usize, y: usize, gap_m: f64) -> bool {
-        let c = x * GridSpec::NY + y;
-        !self.taken[c] && f64::from(self.to_paved[c]) * GridSpec::VOXEL_M > gap_m
+        let c = x * Window::NY + y;
+        !self.taken[c] && f64::from(self.to_paved[c]) * Window::VOXEL_M > gap_m
     }
 
     /// True if a disc is free and off the paved ground.
     pub fn has_room(&self, p: DVec2, radius_m: f64) -> bool {
         let mut free = p.abs().max_element() < BORDER_M - radius_m;
-        disc_cells(scene::Extent::WINDOW, p, radius_m, |x, y| {
+        disc_cells(Extent::WINDOW, p, radius_m, |x, y| {
             free &= self.is_free(x, y, 0.3)
         });
         free
@@ -89,9 +89,7 @@ impl Ground {
     /// True if an outline is free, off the paved ground and in the grid.
     pub fn has_room_for(&self, outline_m: &[DVec2]) -> bool {
         let mut free = outline_m.iter().all(|p| p.abs().max_element() < BORDER_M);
-        polygon_cells(scene::Extent::WINDOW, outline_m, |x, y| {
-            free &= self.is_free(x, y, 0.4)
-        });
+        polygon_cells(Extent::WINDOW, outline_m, |x, y| free &= self.is_free(x, y, 0.4));
         free
     }
 
@@ -120,10 +118,10 @@ impl Ground {
         fits: &dyn Fn(DVec2) -> bool,
     ) -> Option<DVec2> {
         let all = self.own();
-        let mut order: Vec<(f64, usize)> = (0..GridSpec::COLUMNS)
+        let mut order: Vec<(f64, usize)> = (0..Window::COLUMNS)
             .filter(|c| !self.taken[*c])
             .filter_map(|c| {
-                let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
+                let paved = f64::from(self.to_paved[c]) * Window::VOXEL_M;
                 let own = all[c];
                 // Beside the own road rather than beside one that leads away from it.
                 let cost = (own.x - along_m).abs() * 2.0 + own.y.abs() * 0.25 + (paved - from_paved_m).abs();
@@ -149,7 +147,7 @@ impl Ground {
         let all = self.own();
         for (c, own) in all.iter().enumerate() {
             let p = middle_m(c);
-            let paved = f64::from(self.to_paved[c]) * GridSpec::VOXEL_M;
+            let paved = f64::from(self.to_paved[c]) * Window::VOXEL_M;
             let wrong_side = (own.y > 0.0) != (side == SideOf::Left);
             if wrong_side
                 || (paved - from_paved_m).abs() > 0.3
@@ -183,5 +181,5 @@ impl Ground {
 }
 
 fn middle_m(c: usize) -> DVec2 {
-    GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate()
+    Window::center(c / Window::NY, c % Window::NY, 0).truncate()
 }

@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::edits::{OpenBackground, ThingOutcome, carry_out};
 use super::*;
 use scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
-use scene::{Background, BevLayer, BevLayout, Edit, Form, GridSpec, Polyline, PolylineKind, Pose, ThingId};
+use scene::{Background, BevLayer, BevLayout, Edit, Form, Polyline, PolylineKind, Pose, ThingId, Window};
 use world::scenery::Setting;
 
 fn one(text: &str, edits: bool) -> Said {
@@ -237,9 +237,9 @@ fn other_sentences_are_left_alone() {
 /// A straight road with a sidewalk, trees and a house on either side, and a crossing 10 m ahead.
 fn scene() -> (Background, BevLayout) {
     let mut layout = BevLayout::default();
-    for c in 0..GridSpec::COLUMNS {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
-        let p = GridSpec::center(x, y, 0);
+    for c in 0..Window::COLUMNS {
+        let (x, y) = (c / Window::NY, c % Window::NY);
+        let p = Window::center(x, y, 0);
         layout.set(BevLayer::DrivableArea, x, y, (-2.0..6.0).contains(&p.y));
     }
     let line = |kind, points: &[(f64, f64)]| Polyline {

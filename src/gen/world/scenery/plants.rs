@@ -7,7 +7,7 @@ use super::site::Site;
 use super::walk;
 use crate::draw::{Draw, noise};
 use scene::background::{Shrubs, Tree, TreeKind};
-use scene::{Form, GridSpec};
+use scene::{Form, Window};
 
 /// Trees per 1,000 m² of open ground, how much they gather in groves (0 to 1), and weights of [`TreeKind::ALL`].
 fn wood(setting: Setting) -> (f64, f64, [f64; 4]) {
@@ -133,7 +133,7 @@ pub(super) fn shrubs(site: &mut Site<'_>, draw: &mut Draw) {
                 p + DVec2::from_angle(angle) * (radius * own.range(0.55, 1.0)).min(room)
             })
             .collect();
-        let inside_grid = |q: &DVec2| GridSpec::column_at(q.x, q.y).is_none() || site.free(*q, 0.3);
+        let inside_grid = |q: &DVec2| Window::column_at(q.x, q.y).is_none() || site.free(*q, 0.3);
         if !outline_m.iter().chain([&p]).all(inside_grid) {
             continue;
         }

@@ -7,13 +7,13 @@ use glam::DVec2;
 use super::setting::{Side, Style};
 use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
 use scene::road_map::RoadMap;
-use scene::{Background, BevLayer, BevLayout, BoxId, Form, GridSpec, SceneBox};
+use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox, Window};
 
 /// Distance in cells from every cell to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
 pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
     const FAR: f32 = 255.0;
     const DIAGONAL: f32 = 1.414;
-    let (nx, ny) = (GridSpec::NX, GridSpec::NY);
+    let (nx, ny) = (Window::NX, Window::NY);
     // A border of cells that are never nearest spares the loops all tests.
     let row = ny + 2;
     let mut d = vec![2.0 * FAR; (nx + 2) * row];
@@ -75,11 +75,9 @@ impl<'a> Site<'a> {
     ) -> Self {
         let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         let paved = road | BevLayer::Walkway.bit();
-        let mut box_cell = vec![false; GridSpec::COLUMNS];
+        let mut box_cell = vec![false; Window::COLUMNS];
         for b in boxes.values() {
-            box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
-                box_cell[x * GridSpec::NY + y] = true
-            });
+            box_cells(Extent::WINDOW, b, 0.0, |x, y| box_cell[x * Window::NY + y] = true);
         }
         let cells = layout.cells();
         Self {
@@ -90,7 +88,7 @@ impl<'a> Site<'a> {
             to_paved: distance_cells(|c| cells[c] & paved != 0),
             to_road: distance_cells(|c| cells[c] & road != 0),
             to_box: distance_cells(|c| box_cell[c]),
-            taken: vec![false; GridSpec::COLUMNS],
+            taken: vec![false; Window::COLUMNS],
             out: Background::default(),
         }
     }
@@ -105,18 +103,15 @@ impl<'a> Site<'a> {
 
     fn at(field: &[f32], p: DVec2) -> f64 {
         // Blended between cell centres, so that lines at a distance run straight.
-        let u = GridSpec::to_voxel_units(p.extend(0.0)).truncate() - DVec2::splat(0.5);
+        let u = Window::to_voxel_units(p.extend(0.0)).truncate() - DVec2::splat(0.5);
         let limit = |v: f64, n: usize| v.clamp(0.0, (n - 1) as f64);
-        let (x, y) = (limit(u.x, GridSpec::NX), limit(u.y, GridSpec::NY));
-        let (x0, y0) = (
-            (x as usize).min(GridSpec::NX - 2),
-            (y as usize).min(GridSpec::NY - 2),
-        );
+        let (x, y) = (limit(u.x, Window::NX), limit(u.y, Window::NY));
+        let (x0, y0) = ((x as usize).min(Window::NX - 2), (y as usize).min(Window::NY - 2));
         let (tx, ty) = (x - x0 as f64, y - y0 as f64);
-        let f = |i: usize, j: usize| f64::from(field[i * GridSpec::NY + j]);
+        let f = |i: usize, j: usize| f64::from(field[i * Window::NY + j]);
         let low = f(x0, y0) * (1.0 - tx) + f(x0 + 1, y0) * tx;
         let high = f(x0, y0 + 1) * (1.0 - tx) + f(x0 + 1, y0 + 1) * tx;
-        (low * (1.0 - ty) + high * ty) * GridSpec::VOXEL_M
+        (low * (1.0 - ty) + high * ty) * Window::VOXEL_M
     }
 
     /// Distance to the nearest road, car park or sidewalk, m.
@@ -126,7 +121,7 @@ impl<'a> Site<'a> {
 
     /// The same of a cell.
     pub fn cell_to_paved_m(&self, cell: usize) -> f64 {
-        f64::from(self.to_paved[cell]) * GridSpec::VOXEL_M
+        f64::from(self.to_paved[cell]) * Window::VOXEL_M
     }
 
     /// Distance to the nearest road or car park, m.
@@ -159,8 +154,8 @@ impl<'a> Site<'a> {
             return false;
         }
         let mut free = true;
-        disc_cells(scene::Extent::WINDOW, p, radius_m, |x, y| {
-            free &= !self.taken[x * GridSpec::NY + y]
+        disc_cells(Extent::WINDOW, p, radius_m, |x, y| {
+            free &= !self.taken[x * Window::NY + y]
         });
         free
     }
@@ -168,9 +163,9 @@ impl<'a> Site<'a> {
     /// True if no cell of an outline is taken, paved within `gap_m`, or near a box. Parts outside the grid count as free.
     pub fn free_outline(&self, outline_m: &[DVec2], gap_m: f64) -> bool {
         let mut free = true;
-        let gap = (gap_m / GridSpec::VOXEL_M) as f32;
-        polygon_cells(scene::Extent::WINDOW, outline_m, |x, y| {
-            let c = x * GridSpec::NY + y;
+        let gap = (gap_m / Window::VOXEL_M) as f32;
+        polygon_cells(Extent::WINDOW, outline_m, |x, y| {
+            let c = x * Window::NY + y;
             free &= !self.taken[c] && self.to_paved[c] > gap && self.to_box[c] > 2.0;
         });
         free
@@ -179,29 +174,19 @@ impl<'a> Site<'a> {
     /// Puts a thing in and takes its ground, grown by a margin.
     pub fn put(&mut self, form: Form, margin_m: f64) {
         let taken = &mut self.taken;
-        let mut take = |x: usize, y: usize| taken[x * GridSpec::NY + y] = true;
+        let mut take = |x: usize, y: usize| taken[x * Window::NY + y] = true;
         match &form {
             Form::Building(b) => {
                 let n = b.outline_m.len();
-                polygon_cells(scene::Extent::WINDOW, &b.outline_m, &mut take);
+                polygon_cells(Extent::WINDOW, &b.outline_m, &mut take);
                 let ring: Vec<DVec2> = (0..=n).map(|i| b.outline_m[i % n]).collect();
-                line_cells(scene::Extent::WINDOW, &ring, margin_m, &mut take);
+                line_cells(Extent::WINDOW, &ring, margin_m, &mut take);
             }
-            Form::Shrubs(s) => polygon_cells(scene::Extent::WINDOW, &s.outline_m, &mut take),
-            Form::Line(l) => line_cells(
-                scene::Extent::WINDOW,
-                &l.points_m,
-                l.width_m / 2.0 + margin_m,
-                &mut take,
-            ),
-            Form::Bridge(b) => line_cells(
-                scene::Extent::WINDOW,
-                &b.points_m,
-                b.width_m / 2.0 + margin_m,
-                &mut take,
-            ),
-            Form::Tree(t) => disc_cells(scene::Extent::WINDOW, t.position_m, margin_m, &mut take),
-            Form::Post(p) => disc_cells(scene::Extent::WINDOW, p.position_m, margin_m, &mut take),
+            Form::Shrubs(s) => polygon_cells(Extent::WINDOW, &s.outline_m, &mut take),
+            Form::Line(l) => line_cells(Extent::WINDOW, &l.points_m, l.width_m / 2.0 + margin_m, &mut take),
+            Form::Bridge(b) => line_cells(Extent::WINDOW, &b.points_m, b.width_m / 2.0 + margin_m, &mut take),
+            Form::Tree(t) => disc_cells(Extent::WINDOW, t.position_m, margin_m, &mut take),
+            Form::Post(p) => disc_cells(Extent::WINDOW, p.position_m, margin_m, &mut take),
         }
         self.out.add(form);
     }

@@ -7,7 +7,7 @@ use super::site::Site;
 use super::walk;
 use crate::draw::Draw;
 use scene::background::{Bridge, Line, LineKind};
-use scene::{BevLayer, Form, GridSpec};
+use scene::{BevLayer, Form, Window};
 
 /// Distances from paved ground at which a step of the ground is looked for, m.
 const STEPS_AT_M: [f64; 4] = [1.2, 1.6, 2.0, 2.4];
@@ -85,16 +85,16 @@ pub(super) fn bridges(site: &mut Site<'_>, draw: &mut Draw) {
     let (wanted, x_m) = (draw.chance(chance), draw.range(14.0, 34.0));
     let x_m = if draw.chance(0.7) { x_m } else { -x_m };
     let (for_vehicles, rise) = (draw.chance(0.6), draw.range(5.6, 6.4));
-    let Some([x, _]) = GridSpec::column_at(x_m, 0.0).filter(|_| wanted) else {
+    let Some([x, _]) = Window::column_at(x_m, 0.0).filter(|_| wanted) else {
         return;
     };
     let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
     let width_m = if for_vehicles { 8.0 } else { 3.0 };
-    let near = (width_m / 2.0 / GridSpec::VOXEL_M) as usize;
-    let under = (x.saturating_sub(near)..=(x + near).min(GridSpec::NX - 1))
-        .flat_map(|x| (0..GridSpec::NY).map(move |y| [x, y]))
+    let near = (width_m / 2.0 / Window::VOXEL_M) as usize;
+    let under = (x.saturating_sub(near)..=(x + near).min(Window::NX - 1))
+        .flat_map(|x| (0..Window::NY).map(move |y| [x, y]))
         .filter(|[x, y]| site.layout.cell(*x, *y) & paved != 0)
-        .map(|[x, y]| GridSpec::center(x, y, 0).y);
+        .map(|[x, y]| Window::center(x, y, 0).y);
     let (lo, hi) = under.fold((f64::MAX, f64::MIN), |(lo, hi), y| (lo.min(y), hi.max(y)));
     if hi < lo || hi - lo > 2.0 * HALF_SPAN_M {
         return;

@@ -3,14 +3,14 @@
 use super::*;
 use crate::{World, template, traffic};
 use scene::raster::polygon_cells;
-use scene::{BevLayer, Form, GridSpec};
+use scene::{BevLayer, Extent, Form, Window};
 
 #[test]
 fn distance_is_zero_on_the_set_and_grows() {
-    let d = distance_cells(|c| c == 100 * GridSpec::NY + 100);
-    assert_eq!(d[100 * GridSpec::NY + 100], 0.0);
-    assert_eq!(d[100 * GridSpec::NY + 110], 10.0);
-    assert!((d[103 * GridSpec::NY + 104] - 5.0).abs() < 0.5);
+    let d = distance_cells(|c| c == 100 * Window::NY + 100);
+    assert_eq!(d[100 * Window::NY + 100], 0.0);
+    assert_eq!(d[100 * Window::NY + 110], 10.0);
+    assert!((d[103 * Window::NY + 104] - 5.0).abs() < 0.5);
 }
 
 #[test]
@@ -23,19 +23,19 @@ fn scenery_is_sound_repeatable_and_off_the_road() {
         let all = background(&layout, &boxes, seed);
         assert_eq!(all, background(&layout, &boxes, seed));
         assert_eq!(all.problem(), None, "seed {seed}");
-        let mut owner = vec![None; GridSpec::COLUMNS];
+        let mut owner = vec![None; Window::COLUMNS];
         for thing in all.iter() {
             match &thing.form {
                 Form::Building(b) => {
                     counts[0] += 1;
-                    polygon_cells(scene::Extent::WINDOW, &b.outline_m, |x, y| {
+                    polygon_cells(Extent::WINDOW, &b.outline_m, |x, y| {
                         assert_eq!(
                             layout.cell(x, y) & paved,
                             0,
                             "seed {seed}: {:?} on the road",
                             thing.id
                         );
-                        let before = owner[x * GridSpec::NY + y].replace(thing.id);
+                        let before = owner[x * Window::NY + y].replace(thing.id);
                         assert!(
                             before.is_none(),
                             "seed {seed}: {before:?} and {:?} overlap",
@@ -45,7 +45,7 @@ fn scenery_is_sound_repeatable_and_off_the_road() {
                 }
                 Form::Tree(t) => {
                     counts[1] += 1;
-                    if let Some([x, y]) = GridSpec::column_at(t.position_m.x, t.position_m.y) {
+                    if let Some([x, y]) = Window::column_at(t.position_m.x, t.position_m.y) {
                         let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
                         assert_eq!(layout.cell(x, y) & road, 0, "seed {seed}: a tree on the road");
                     }
@@ -112,7 +112,7 @@ fn steps_are_held_by_walls_and_bridges_span_the_road() {
             let mut solids = Vec::new();
             deck.solids(&|_| 0.0, &mut solids);
             for s in solids.iter().filter(|s| s.center.z - s.reach().z < 4.4) {
-                let cell = GridSpec::column_at(s.center.x, s.center.y);
+                let cell = Window::column_at(s.center.x, s.center.y);
                 let road = |[x, y]: [usize; 2]| layout.cell(x, y) & BevLayer::DrivableArea.bit() != 0;
                 assert!(!cell.is_some_and(road), "seed {seed}: a pier on the road");
             }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::site::Site;
-use scene::GridSpec;
+use scene::{Extent, Window};
 
 /// Steps along a line, m.
 const STEP_M: f64 = 0.8;
@@ -12,9 +12,9 @@ const BEYOND_M: f64 = 1.0;
 
 /// Lines at `distance_m` from paved ground, with a vertex about every 0.8 m; the road is on the right of the walk.
 pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
-    let mut seen = vec![false; GridSpec::COLUMNS];
+    let mut seen = vec![false; Window::COLUMNS];
     let mut out = Vec::new();
-    for start in 0..GridSpec::COLUMNS {
+    for start in 0..Window::COLUMNS {
         if seen[start] {
             continue;
         }
@@ -22,7 +22,7 @@ pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
         if (site.cell_to_paved_m(start) - distance_m).abs() > 0.26 {
             continue;
         }
-        let p = GridSpec::center(start / GridSpec::NY, start % GridSpec::NY, 0).truncate();
+        let p = Window::center(start / Window::NY, start % Window::NY, 0).truncate();
         if (site.paved_m(p) - distance_m).abs() > 0.25 {
             continue;
         }
@@ -39,9 +39,7 @@ pub(super) fn lines(site: &Site<'_>, distance_m: f64) -> Vec<Vec<DVec2>> {
 }
 
 fn mark(p: DVec2, seen: &mut [bool]) {
-    scene::raster::disc_cells(scene::Extent::WINDOW, p, 1.3, |x, y| {
-        seen[x * GridSpec::NY + y] = true
-    });
+    scene::raster::disc_cells(Extent::WINDOW, p, 1.3, |x, y| seen[x * Window::NY + y] = true);
 }
 
 fn walk(site: &Site<'_>, from: DVec2, distance_m: f64, sign: f64, seen: &mut [bool]) -> Vec<DVec2> {
@@ -60,7 +58,7 @@ fn walk(site: &Site<'_>, from: DVec2, distance_m: f64, sign: f64, seen: &mut [bo
             break;
         }
         // A line that closes, or meets another, ends there.
-        if GridSpec::column_at(next.x, next.y).is_some_and(|[x, y]| seen[x * GridSpec::NY + y]) {
+        if Window::column_at(next.x, next.y).is_some_and(|[x, y]| seen[x * Window::NY + y]) {
             break;
         }
         // Cells right behind the walker are not marked yet, or it would stop at once.

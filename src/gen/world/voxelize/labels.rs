@@ -8,7 +8,7 @@ use super::observed::{Passed, seen_by_cameras};
 use super::{Vertical, finish_column};
 use crate::World;
 use crate::draw::Draw;
-use scene::{Class, GridSpec, LidarPattern, Relief, SensorRig, VoxelGrid};
+use scene::{Class, LidarPattern, Relief, SensorRig, VoxelGrid, Window};
 
 /// A lowest hit up to so many bins above the ground still belongs to something standing on it, before the smear.
 const HIGHEST_UNDERSIDE: usize = 4;
@@ -64,11 +64,11 @@ pub fn observed_labels(
         s.hits
     });
     let (grid, filled) = voted(world, sweeps.collect::<Vec<_>>().into_iter(), vertical);
-    let mut by_lidar = Vec::with_capacity(GridSpec::VOXELS);
+    let mut by_lidar = Vec::with_capacity(Window::VOXELS);
     for (c, filled) in filled.into_iter().enumerate() {
-        let column = grid.column(c / GridSpec::NY, c % GridSpec::NY);
-        by_lidar.extend((0..GridSpec::NZ).map(|z| match column[z] {
-            Class::FREE => passed.has(c * GridSpec::NZ + z),
+        let column = grid.column(c / Window::NY, c % Window::NY);
+        by_lidar.extend((0..Window::NZ).map(|z| match column[z] {
+            Class::FREE => passed.has(c * Window::NZ + z),
             label => !filled || !Class::from_id(label).is_some_and(Class::is_ground),
         }));
     }
@@ -120,8 +120,8 @@ fn drive_through(
                     if draw.chance(stray) {
                         p += DVec3::new(draw.range(-0.5, 0.5), draw.range(-0.5, 0.5), draw.range(0.0, 0.6));
                     }
-                    if let Some([x, y, z]) = GridSpec::voxel_at(p) {
-                        hits.push((((x * GridSpec::NY + y) * GridSpec::NZ + z) as u32, hit.class.id()));
+                    if let Some([x, y, z]) = Window::voxel_at(p) {
+                        hits.push((((x * Window::NY + y) * Window::NZ + z) as u32, hit.class.id()));
                     }
                 }
             }
@@ -137,7 +137,7 @@ fn voted(
     vertical: Vertical,
 ) -> (VoxelGrid, Vec<bool>) {
     // Boyer-Moore majority vote per voxel, in sweep order.
-    let mut votes = vec![(0u16, Class::FREE); GridSpec::VOXELS];
+    let mut votes = vec![(0u16, Class::FREE); Window::VOXELS];
     for (voxel, class) in sweeps.flatten() {
         let (count, winner) = &mut votes[voxel as usize];
         match (*count, *winner == class) {
@@ -146,13 +146,13 @@ fn voted(
             (_, false) => *count -= 1,
         }
     }
-    let mut ground: Vec<Option<(usize, u8)>> = Vec::with_capacity(GridSpec::COLUMNS);
-    for column_votes in votes.chunks_exact_mut(GridSpec::NZ) {
+    let mut ground: Vec<Option<(usize, u8)>> = Vec::with_capacity(Window::COLUMNS);
+    for column_votes in votes.chunks_exact_mut(Window::NZ) {
         let is_ground = |v: &(u16, u8)| Class::from_id(v.1).is_some_and(Class::is_ground);
         let z = column_votes.iter().position(is_ground);
         ground.push(z.map(|z| (z, column_votes[z].1)));
         // What is left are things that stand on it, and decks over it.
-        let below_deck = z.map_or(0, |z| (z + DECK).min(GridSpec::NZ));
+        let below_deck = z.map_or(0, |z| (z + DECK).min(Window::NZ));
         let all = column_votes[..below_deck].iter_mut().filter(|v| is_ground(v));
         all.for_each(|v| *v = (0, Class::FREE));
     }
@@ -161,17 +161,17 @@ fn voted(
         ground = closed(&ground);
     }
     let mut grid = VoxelGrid::new();
-    for (c, column_votes) in votes.chunks_exact(GridSpec::NZ).enumerate() {
-        let mut column: [u8; GridSpec::NZ] = std::array::from_fn(|z| column_votes[z].1);
+    for (c, column_votes) in votes.chunks_exact(Window::NZ).enumerate() {
+        let mut column: [u8; Window::NZ] = std::array::from_fn(|z| column_votes[z].1);
         if vertical == Vertical::Occ3d {
-            let p = GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
+            let p = Window::center(c / Window::NY, c % Window::NY, 0).truncate();
             extend_to_ground(&mut column, Relief::physical_bin(world.ground_height(p)));
         }
         if ground[c].is_none() && column.iter().all(|l| *l == Class::FREE) {
             continue;
         }
         finish_column(&mut column, ground[c], vertical);
-        grid.column_mut(c / GridSpec::NY, c % GridSpec::NY)
+        grid.column_mut(c / Window::NY, c % Window::NY)
             .copy_from_slice(&column);
     }
     let filled = hit.into_iter().zip(&ground).map(|(hit, g)| !hit && g.is_some());
@@ -182,11 +182,11 @@ fn voted(
 /// without any takes that of its neighbours if half of the eight have some.
 fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
     let at = |x: usize, y: usize| -> Option<(usize, u8)> {
-        let inside = x < GridSpec::NX && y < GridSpec::NY;
-        inside.then(|| ground[x * GridSpec::NY + y]).flatten()
+        let inside = x < Window::NX && y < Window::NY;
+        inside.then(|| ground[x * Window::NY + y]).flatten()
     };
     let fill = |c: usize| {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        let (x, y) = (c / Window::NY, c % Window::NY);
         let around = (0..9).filter(|i| *i != 4);
         let near: Vec<(usize, u8)> = around
             .filter_map(|i| at((x + i / 3).wrapping_sub(1), (y + i % 3).wrapping_sub(1)))
@@ -202,7 +202,7 @@ fn closed(ground: &[Option<(usize, u8)>]) -> Vec<Option<(usize, u8)>> {
 
 /// Real labels of vehicles and people reach the ground although sensors see little of their undersides:
 /// fills an object's column from its lowest hit down to the bin of the ground.
-fn extend_to_ground(column: &mut [u8; GridSpec::NZ], ground: usize) {
+fn extend_to_ground(column: &mut [u8; Window::NZ], ground: usize) {
     let Some(lowest) = column.iter().position(|l| *l != Class::FREE) else {
         return;
     };

@@ -10,7 +10,7 @@ pub use drive::Drive;
 pub use labels::{Labelled, labelled, labels, observed_labels};
 use scene::raster::bev_channels;
 use scene::solid::fill::{SMEAR, fill, smear_down};
-use scene::{BevLayer, Class, GridSpec, Relief, VoxelGrid};
+use scene::{BevLayer, Class, Extent, Relief, VoxelGrid, Window};
 
 /// Where the ground sits vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -27,24 +27,24 @@ pub enum Vertical {
 /// would label; see [`fill`]. An object's voxels stay in the columns of its box's footprint, as the
 /// layout's do: what sticks out by less than half a column belongs to no column.
 pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
-    let mut best = vec![(0u8, Class::FREE); GridSpec::VOXELS]; // votes, class
+    let mut best = vec![(0u8, Class::FREE); Window::VOXELS]; // votes, class
     let bev = bev_channels(&world.layout, world.boxes.values());
     for s in world.solids() {
         let layer = BevLayer::of_object(s.class).map_or(0, BevLayer::bit);
-        let counts = |x: usize, y: usize| layer == 0 || bev[x * GridSpec::NY + y] & layer != 0;
-        fill(scene::Extent::WINDOW, s, counts, |x, y, z, votes| {
-            let cell = &mut best[(x * GridSpec::NY + y) * GridSpec::NZ + z];
+        let counts = |x: usize, y: usize| layer == 0 || bev[x * Window::NY + y] & layer != 0;
+        fill(Extent::WINDOW, s, counts, |x, y, z, votes| {
+            let cell = &mut best[(x * Window::NY + y) * Window::NZ + z];
             if votes > cell.0 {
                 *cell = (votes, s.class.id());
             }
         });
     }
     let mut grid = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            let at = (x * GridSpec::NY + y) * GridSpec::NZ;
-            let mut column = [Class::FREE; GridSpec::NZ];
-            for (z, (_, class)) in best[at..at + GridSpec::NZ].iter().enumerate() {
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
+            let at = (x * Window::NY + y) * Window::NZ;
+            let mut column = [Class::FREE; Window::NZ];
+            for (z, (_, class)) in best[at..at + Window::NZ].iter().enumerate() {
                 column[z] = *class;
             }
             let ground = (ground_bin(world, x, y), world.ground_class(x, y).id());
@@ -58,11 +58,11 @@ pub fn complete(world: &World, vertical: Vertical) -> VoxelGrid {
 
 /// Bin of the ground in a column, as measured.
 fn ground_bin(world: &World, x: usize, y: usize) -> usize {
-    Relief::physical_bin(world.ground_height(GridSpec::center(x, y, 0).truncate()))
+    Relief::physical_bin(world.ground_height(Window::center(x, y, 0).truncate()))
 }
 
 /// Where the ground steps down to a neighbour by more than a bin, its side is ground too: one could look under it else.
-fn close_step(column: &mut [u8; GridSpec::NZ], world: &World, [x, y]: [usize; 2], vertical: Vertical) {
+fn close_step(column: &mut [u8; Window::NZ], world: &World, [x, y]: [usize; 2], vertical: Vertical) {
     if world.layout.relief.is_flat() {
         return;
     }
@@ -74,7 +74,7 @@ fn close_step(column: &mut [u8; GridSpec::NZ], world: &World, [x, y]: [usize; 2]
     ];
     let inside = beside
         .into_iter()
-        .filter(|(x, y)| *x < GridSpec::NX && *y < GridSpec::NY);
+        .filter(|(x, y)| *x < Window::NX && *y < Window::NY);
     let lowest = inside.map(|(x, y)| ground_bin(world, x, y)).min().unwrap_or(0);
     let shift = if vertical == Vertical::Occ3d { SMEAR } else { 0 };
     let own = ground_bin(world, x, y).saturating_sub(shift);
@@ -83,7 +83,7 @@ fn close_step(column: &mut [u8; GridSpec::NZ], world: &World, [x, y]: [usize; 2]
 }
 
 /// Puts the ground below what stands on it and applies the vertical convention.
-fn finish_column(column: &mut [u8; GridSpec::NZ], ground: Option<(usize, u8)>, vertical: Vertical) {
+fn finish_column(column: &mut [u8; Window::NZ], ground: Option<(usize, u8)>, vertical: Vertical) {
     if vertical == Vertical::Occ3d {
         smear_down(column);
     }

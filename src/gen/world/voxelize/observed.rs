@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use scene::{Camera, Class, GridSpec, Pose, SensorRig, VoxelGrid};
+use scene::{Camera, Class, Pose, SensorRig, VoxelGrid, Window};
 
 /// Voxels that rays went through before they ended; one bit each.
 #[derive(Clone, Default)]
@@ -23,7 +23,7 @@ impl Passed {
 
     fn mark(&mut self, voxel: usize) {
         if self.0.is_empty() {
-            self.0 = vec![0; GridSpec::VOXELS.div_ceil(64)];
+            self.0 = vec![0; Window::VOXELS.div_ceil(64)];
         }
         self.0[voxel / 64] |= 1 << (voxel % 64);
     }
@@ -44,10 +44,10 @@ impl Passed {
 
 /// Calls `visit` with the index of each voxel of the grid along a segment, in order, until it says no.
 fn voxels_between(from: DVec3, to: DVec3, mut visit: impl FnMut(usize) -> bool) {
-    let (a, b) = (GridSpec::to_voxel_units(from), GridSpec::to_voxel_units(to));
+    let (a, b) = (Window::to_voxel_units(from), Window::to_voxel_units(to));
     let d = b - a;
     let inverse = d.recip();
-    let size = DVec3::new(GridSpec::NX as f64, GridSpec::NY as f64, GridSpec::NZ as f64);
+    let size = DVec3::new(Window::NX as f64, Window::NY as f64, Window::NZ as f64);
     // The part of the segment inside the grid.
     let (near, far) = ((-a) * inverse, (size - a) * inverse);
     let mut range = (0.0_f64, 1.0_f64);
@@ -65,7 +65,7 @@ fn voxels_between(from: DVec3, to: DVec3, mut visit: impl FnMut(usize) -> bool) 
     let start = a + d * range.0;
     let mut cell = [0_i64; 3];
     let mut next = DVec3::INFINITY;
-    let bounds = [GridSpec::NX as i64, GridSpec::NY as i64, GridSpec::NZ as i64];
+    let bounds = [Window::NX as i64, Window::NY as i64, Window::NZ as i64];
     for axis in 0..3 {
         // On the upper face of the grid a ray that goes down enters the last voxel.
         cell[axis] = (start[axis].floor() as i64).clamp(0, bounds[axis] - 1);
@@ -76,7 +76,7 @@ fn voxels_between(from: DVec3, to: DVec3, mut visit: impl FnMut(usize) -> bool) 
     }
     let step = inverse.abs();
     loop {
-        let voxel = (cell[0] as usize * GridSpec::NY + cell[1] as usize) * GridSpec::NZ + cell[2] as usize;
+        let voxel = (cell[0] as usize * Window::NY + cell[1] as usize) * Window::NZ + cell[2] as usize;
         if !visit(voxel) {
             return;
         }
@@ -98,10 +98,10 @@ pub(super) fn seen_by_cameras(grid: &VoxelGrid, by_lidar: &[bool], rig: &SensorR
     let solid: Vec<bool> = grid.to_dense().iter().map(|l| *l != Class::FREE).collect();
     let views: Vec<View<'_>> = rig.cameras.iter().map(View::new).collect();
     let sees = |voxel: usize| {
-        let column = voxel / GridSpec::NZ;
-        let center = GridSpec::center(column / GridSpec::NY, column % GridSpec::NY, voxel % GridSpec::NZ);
+        let column = voxel / Window::NZ;
+        let center = Window::center(column / Window::NY, column % Window::NY, voxel % Window::NZ);
         views.iter().any(|view| {
-            let towards = (view.at - center).signum() * GridSpec::VOXEL_M * 0.501;
+            let towards = (view.at - center).signum() * Window::VOXEL_M * 0.501;
             let sides = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| center + axis * towards);
             sides.iter().any(|p| {
                 let mut free = view.holds(*p);
@@ -157,13 +157,13 @@ mod tests {
         let centers = [[3, 7, 2], [150, 30, 12], [3, 7, 9], [199, 199, 0], [0, 0, 15]];
         for a in centers {
             for b in centers {
-                let at = |[x, y, z]: [usize; 3]| GridSpec::center(x, y, z);
+                let at = |[x, y, z]: [usize; 3]| Window::center(x, y, z);
                 let mut met = Vec::new();
                 voxels_between(at(a), at(b), |i| {
                     met.push([
-                        i / GridSpec::NZ / GridSpec::NY,
-                        i / GridSpec::NZ % GridSpec::NY,
-                        i % GridSpec::NZ,
+                        i / Window::NZ / Window::NY,
+                        i / Window::NZ % Window::NY,
+                        i % Window::NZ,
                     ]);
                     true
                 });
@@ -183,7 +183,7 @@ mod tests {
         };
         assert_eq!(
             count(DVec3::new(-100.0, 0.1, 1.1), DVec3::new(100.0, 0.1, 1.1)),
-            GridSpec::NX
+            Window::NX
         );
         assert_eq!(
             count(DVec3::new(-100.0, 50.0, 1.0), DVec3::new(100.0, 50.0, 1.0)),

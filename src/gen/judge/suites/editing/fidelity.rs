@@ -16,7 +16,7 @@ use job::region::Region;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use metrics::iou::Confusion;
 use nets::tokens_of;
-use scene::{GridSpec, Scene, VoxelGrid};
+use scene::{Scene, VoxelGrid, Window};
 use world::draw::Draw;
 
 /// Edits of one world before the next is taken.
@@ -37,7 +37,7 @@ impl Options {
     ) -> anyhow::Result<(Value, usize)> {
         let params = GenParams {
             steps: RANDOM_EDIT_STEPS,
-            ..params
+            ..params.clone()
         };
         let mut draw = Draw::new(self.edit_params.seed, "random edits");
         let (mut done, mut tried, mut untouched, mut changed) = (0, 0, 0, 0);
@@ -58,7 +58,7 @@ impl Options {
                 document.apply("Edit", &trial.edit)?;
                 let job = Job {
                     scene: document.scene().clone(),
-                    params,
+                    params: params.clone(),
                 };
                 let result = pipeline.run(&job, &JobCtx::detached())?;
                 // Counted here again, from the grids alone, besides what the report says.
@@ -93,7 +93,7 @@ impl Options {
                     steps,
                     solver,
                     inversion_iterations: iterations,
-                    ..params
+                    ..params.clone()
                 };
                 let (mut error, mut noise_std) = (Vec::new(), Vec::new());
                 for i in 0..self.scheme_frames {
@@ -136,7 +136,7 @@ impl Options {
             }
             let first = after_both(pipeline, &scene, [one, other], &params)?;
             let second = after_both(pipeline, &scene, [other, one], &params)?;
-            let voxels = (one_region.column_count() + other_region.column_count()) * GridSpec::NZ;
+            let voxels = (one_region.column_count() + other_region.column_count()) * Window::NZ;
             differ.push(first.count_different(&second) as f64 / voxels.max(1) as f64);
         }
         Ok(differ)
@@ -159,12 +159,12 @@ impl Options {
             };
             let many = GenParams {
                 steps: REFERENCE_STEPS,
-                ..params
+                ..params.clone()
             };
-            let (few, report) = edited(pipeline, &scene, &trial, params)?;
+            let (few, report) = edited(pipeline, &scene, &trial, params.clone())?;
             let (reference, _) = edited(pipeline, &scene, &trial, many)?;
             all.add(&reference, &few);
-            let voxels = report.region_columns * GridSpec::NZ;
+            let voxels = report.region_columns * Window::NZ;
             differ.push(few.count_different(&reference) as f64 / voxels.max(1) as f64);
         }
         Ok(json!({
@@ -197,7 +197,7 @@ fn after_both(
         document.apply("Edit", &trial.edit)?;
         let job = Job {
             scene: document.scene().clone(),
-            params: *params,
+            params: params.clone(),
         };
         let result = pipeline.run(&job, &JobCtx::detached())?;
         document.adopt(result.rev(), result.occupancy.clone())?;
@@ -207,9 +207,9 @@ fn after_both(
 
 /// Voxels outside the region that differ.
 fn outside(before: &VoxelGrid, after: &VoxelGrid, region: &Region) -> usize {
-    let columns = (0..GridSpec::COLUMNS).filter(|c| !region.columns[*c]);
+    let columns = (0..Window::COLUMNS).filter(|c| !region.columns[*c]);
     let different = columns.map(|c| {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+        let (x, y) = (c / Window::NY, c % Window::NY);
         let both = before.column(x, y).iter().zip(after.column(x, y));
         both.filter(|(a, b)| a != b).count()
     });

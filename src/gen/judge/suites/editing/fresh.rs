@@ -37,7 +37,7 @@ impl Fresh {
         let mut ready = pipeline.clone();
         let job = Job {
             scene: Arc::new(scene.clone()),
-            params,
+            params: params.clone(),
         };
         ready.prepare(&job, &JobCtx::detached())?;
         for kind in ["remove", "add"] {
@@ -46,7 +46,7 @@ impl Fresh {
                 for (i, (_, strength)) in STARTS.iter().enumerate() {
                     let params = GenParams {
                         strength: *strength,
-                        ..params
+                        ..params.clone()
                     };
                     let tried = try_edit(&ready, scene, trial, params)?;
                     self.0.entry(kind).or_default()[i].add(&tried);

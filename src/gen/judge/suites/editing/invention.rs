@@ -94,7 +94,7 @@ impl Options {
     ) -> anyhow::Result<Invention> {
         let base = GenParams {
             keep_objects: false,
-            ..self.edit_params
+            ..self.edit_params.clone()
         };
         let mut found: Vec<OfPreset> = presets.iter().map(|_| OfPreset::default()).collect();
         let mut bands = Bands::default();
@@ -106,16 +106,16 @@ impl Options {
             bands.add(scene.frame());
             let trials = trials(&scene, self.vehicles, i as u64);
             for (preset, found) in presets.iter().zip(&mut found) {
-                let params = preset.knobs.on(base);
+                let params = preset.knobs.on(base.clone());
                 // Every edit starts from the inverted source, none from what another left in memory.
                 let mut ready = pipeline.clone();
                 let job = Job {
                     scene: Arc::new(scene.clone()),
-                    params,
+                    params: params.clone(),
                 };
                 ready.prepare(&job, &JobCtx::detached())?;
                 for (kind, trial) in &trials {
-                    let tried = try_edit(&ready, &scene, trial, params)?;
+                    let tried = try_edit(&ready, &scene, trial, params.clone())?;
                     found.kinds.entry(kind).or_default().add(&tried);
                     match (*kind, &tried.brought) {
                         ("add", Some(brought)) => found.added.add(brought),
@@ -124,7 +124,7 @@ impl Options {
                     }
                 }
             }
-            fresh.add(pipeline, &scene, &trials, base)?;
+            fresh.add(pipeline, &scene, &trials, base.clone())?;
         }
         if !matches!(material, Material::Files(_)) {
             for i in material.count()..self.band_worlds {

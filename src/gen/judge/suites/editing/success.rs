@@ -14,7 +14,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, GenReport, Job, JobCtx};
 use metrics::stats::mean_ci95;
 use numeric::quantile::median;
-use scene::GridSpec;
+use scene::Window;
 
 /// What was measured of one kind of edit.
 #[derive(Default)]
@@ -76,7 +76,7 @@ impl Options {
     ) -> anyhow::Result<(Value, Vec<Bar>)> {
         let params = GenParams {
             keep_objects: false,
-            ..self.edit_params
+            ..self.edit_params.clone()
         };
         let ctx = JobCtx::detached();
         let mut kinds: BTreeMap<&str, Kind> = BTreeMap::new();
@@ -88,7 +88,7 @@ impl Options {
             let start = std::time::Instant::now();
             let job = Job {
                 scene: Arc::new(scene.clone()),
-                params,
+                params: params.clone(),
             };
             pipeline.prepare(&job, &ctx)?;
             invert_s.push(start.elapsed().as_secs_f64());
@@ -97,7 +97,7 @@ impl Options {
                 let Some(trial) = Trial::propose(kind, scene.frame(), i as u64) else {
                     continue;
                 };
-                let (after, report) = edited(pipeline, &scene, &trial, params)?;
+                let (after, report) = edited(pipeline, &scene, &trial, params.clone())?;
                 let reached = trial.judge(&scene.frame().occupancy, &after);
                 untouched += report.untouched_voxels_changed;
                 let entry = kinds.entry(kind).or_default();
@@ -105,7 +105,7 @@ impl Options {
                 // As the editor and `sceneloom edit` show it: what the networks left out is put in.
                 let kept = GenParams {
                     keep_objects: true,
-                    ..params
+                    ..params.clone()
                 };
                 let (shown, report) = edited(pipeline, &scene, &trial, kept)?;
                 untouched += report.untouched_voxels_changed;
@@ -117,10 +117,10 @@ impl Options {
                     // What the other tokens' stored keys and values cost in accuracy, and save in time.
                     let dense = GenParams {
                         local: false,
-                        ..params
+                        ..params.clone()
                     };
                     let (all, dense_report) = edited(pipeline, &scene, &trial, dense)?;
-                    let voxels = report.region_columns * GridSpec::NZ;
+                    let voxels = report.region_columns * Window::NZ;
                     let share = all.count_different(&after) as f64 / voxels as f64;
                     entry.differs_from_dense.push(share);
                     entry.dense_wall_s.push(dense_report.total_s());
@@ -147,17 +147,17 @@ impl Options {
             ("road widened", success("road"), 0.90),
             ("crossing painted", success("crossing"), 0.90),
         ];
-        let order = self.order(pipeline, params, progress)?;
+        let order = self.order(pipeline, params.clone(), progress)?;
         report["two_edits_in_either_order_differ"] = with_interval(&order);
         let most = order.iter().fold(0.0, |m: f64, v| m.max(*v));
         report["two_edits_in_either_order_differ_at_most"] = most.into();
         if self.random_edits > 0 {
-            let (random, changed) = self.random_edits(pipeline, params, progress)?;
+            let (random, changed) = self.random_edits(pipeline, params.clone(), progress)?;
             untouched += changed;
             report["random_edits"] = random;
         }
         if self.scheme_frames > 0 {
-            report["inversion_schemes"] = self.schemes(pipeline, params, progress)?;
+            report["inversion_schemes"] = self.schemes(pipeline, params.clone(), progress)?;
         }
         if self.reference_frames > 0 {
             report["against_1000_steps"] = self.reference(pipeline, params, progress)?;

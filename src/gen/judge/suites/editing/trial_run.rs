@@ -12,7 +12,7 @@ use job::keep_objects::{keep_ground, keep_objects};
 use job::pipeline::OccPipeline;
 use job::request::{Request, voxels_of};
 use job::{GenParams, Job, JobCtx, Pipeline};
-use scene::{BevLayout, Class, Scene, SceneBox, VoxelGrid, draft};
+use scene::{BevLayout, Class, Extent, Scene, SceneBox, VoxelGrid, draft};
 
 /// States of a result, in the order in which the composite makes them: the networks alone; with placed boxes and painted
 /// ground kept; as the editor shows it, with the road kept clear and unobserved places kept as well.
@@ -70,7 +70,7 @@ impl Brought {
                 .gone()
                 .filter(|old| old.class == b.class)
                 .map(|old| voxels_of(source, old)),
-            draft: draft::box_columns(scene::Extent::WINDOW, b)
+            draft: draft::box_columns(Extent::WINDOW, b)
                 .into_iter()
                 .map(from_ground)
                 .sum(),
@@ -95,7 +95,7 @@ pub fn try_edit(
         scene: document.scene().clone(),
         params: GenParams {
             keep_objects: false,
-            ..params
+            ..params.clone()
         },
     };
     let networks = pipeline.clone().run(&job, &JobCtx::detached())?.occupancy;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::suite::with_interval;
 use metrics::iou::Confusion;
-use scene::{BevLayer, BevLayout, Class, GridSpec, VoxelGrid};
+use scene::{BevLayer, BevLayout, Class, VoxelGrid, Window};
 
 /// Scenes of some roads, each from a seed of its own and from one seed for all.
 #[derive(Default)]
@@ -30,8 +30,8 @@ fn unpaved(layout: &BevLayout) -> Vec<bool> {
 /// IoU of the manmade voxels in the columns that both roads leave to buildings: that none stands on a road is no merit.
 fn manmade_iou(a: &VoxelGrid, b: &VoxelGrid, free: [&[bool]; 2]) -> Option<f64> {
     let (mut both, mut either) = (0u64, 0u64);
-    for c in (0..GridSpec::COLUMNS).filter(|c| free[0][*c] && free[1][*c]) {
-        let column = |grid: &VoxelGrid| *grid.column(c / GridSpec::NY, c % GridSpec::NY);
+    for c in (0..Window::COLUMNS).filter(|c| free[0][*c] && free[1][*c]) {
+        let column = |grid: &VoxelGrid| *grid.column(c / Window::NY, c % Window::NY);
         for (a, b) in column(a).into_iter().zip(column(b)) {
             let [a, b] = [a, b].map(|l| l == Class::Manmade.id());
             both += u64::from(a && b);
@@ -94,7 +94,7 @@ mod tests {
     /// A row of houses beside the road, or at a place that the seed chooses, whatever the road.
     fn scene(road: usize, seed: usize, follows: bool) -> (BevLayout, VoxelGrid) {
         let (mut layout, mut grid) = (BevLayout::default(), VoxelGrid::new());
-        for x in 0..GridSpec::NX {
+        for x in 0..Window::NX {
             for y in 0..20 {
                 layout.set(BevLayer::DrivableArea, x, road + y, true);
                 let house = if follows { road + 24 } else { seed } + y;

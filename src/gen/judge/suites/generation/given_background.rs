@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::suite::with_interval;
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 
 /// Classes of the background and their names in the report.
 const CLASSES: [(Class, &str); 2] = [(Class::Manmade, "manmade"), (Class::Vegetation, "vegetation")];
@@ -17,14 +17,14 @@ pub struct Given {
 
 /// Highest bin of a class in a column.
 fn top(grid: &VoxelGrid, column: usize, class: Class) -> Option<usize> {
-    let labels = grid.column(column / GridSpec::NY, column % GridSpec::NY);
+    let labels = grid.column(column / Window::NY, column % Window::NY);
     labels.iter().rposition(|l| *l == class.id())
 }
 
 /// Columns in both over columns in either, and the share of the former whose tops differ by at most a voxel.
 fn followed(found: &VoxelGrid, truth: &VoxelGrid, class: Class) -> [Option<f64>; 2] {
     let [mut both, mut either, mut level] = [0u64; 3];
-    for column in 0..GridSpec::COLUMNS {
+    for column in 0..Window::COLUMNS {
         let tops = [top(found, column, class), top(truth, column, class)];
         either += u64::from(tops.iter().any(Option::is_some));
         if let [Some(a), Some(b)] = tops {

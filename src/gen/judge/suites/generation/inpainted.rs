@@ -9,7 +9,7 @@ use crate::suite::with_interval;
 use job::pipeline::OccPipeline;
 use job::region::Region;
 use job::{GenParams, Job, JobCtx, Named, Pipeline, RegionMode};
-use scene::{Class, Density, GridSpec, VoxelGrid};
+use scene::{Class, Density, VoxelGrid, Window};
 
 /// Side of the square, columns, how often it is inpainted, and the step of its places.
 const SIDE: usize = 28;
@@ -53,7 +53,7 @@ fn fullest_square(grid: &VoxelGrid) -> Vec<[usize; 2]> {
         let ys = move |x| (y0..y0 + SIDE).map(move |y| [x, y]);
         (x0..x0 + SIDE).flat_map(ys).collect::<Vec<_>>()
     };
-    let starts = || (PLACE_STEP..GridSpec::NX - SIDE - PLACE_STEP).step_by(PLACE_STEP);
+    let starts = || (PLACE_STEP..Window::NX - SIDE - PLACE_STEP).step_by(PLACE_STEP);
     let squares = starts().flat_map(|x| starts().map(move |y| square(x, y)));
     let count = |c: &Vec<[usize; 2]>| {
         let each = c
@@ -72,10 +72,10 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
     let frame = job.scene.frame();
     let truth = &frame.occupancy;
     let square = fullest_square(truth);
-    let mut columns = vec![false; GridSpec::COLUMNS];
+    let mut columns = vec![false; Window::COLUMNS];
     square
         .iter()
-        .for_each(|[x, y]| columns[x * GridSpec::NY + y] = true);
+        .for_each(|[x, y]| columns[x * Window::NY + y] = true);
     let density = Density::of(truth, frame.layout.cells());
     let mut job = Job {
         params: GenParams {
@@ -101,7 +101,7 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
         for [x, y] in &square {
             count(&mut inside, [*x, *y], [*x, *y]);
             for outside in [[x - 1, *y], [x + 1, *y], [*x, y - 1], [*x, y + 1]] {
-                if !columns[outside[0] * GridSpec::NY + outside[1]] {
+                if !columns[outside[0] * Window::NY + outside[1]] {
                     count(&mut seam, outside, [*x, *y]);
                 }
             }

@@ -68,12 +68,12 @@ impl Options {
         let extractor = Extractor::bundled()?;
         let params = GenParams {
             keep_objects: false,
-            ..self.scene_params
+            ..self.scene_params.clone()
         };
         let mut measured = Measured::default();
         for i in 0..self.frames {
             progress.at("generation", i, self.frames);
-            self.frame(i, pipeline, params, &extractor, &mut measured)?;
+            self.frame(i, pipeline, params.clone(), &extractor, &mut measured)?;
         }
         progress.at("judge", 0, 1);
         let found = &measured.rows[GENERATED];
@@ -120,13 +120,13 @@ impl Options {
         params.seed = params.seed.wrapping_add(i as u64);
         let job = Job {
             scene: Arc::new(world),
-            params,
+            params: params.clone(),
         };
         let given = pipeline.run(&job, &JobCtx::detached())?.occupancy;
         let coarse = Job {
             params: GenParams {
                 fine_steps: 0,
-                ..params
+                ..params.clone()
             },
             ..job.clone()
         };
@@ -139,7 +139,7 @@ impl Options {
             let scene = with_drawn_scenery(&job.scene, by, seed)?;
             let params = GenParams {
                 keep_objects: true, // as it is shown
-                ..params
+                ..params.clone()
             };
             let result = pipeline.run(&Job { scene, params }, &JobCtx::detached())?;
             Ok(result.occupancy)
@@ -151,7 +151,7 @@ impl Options {
                 background: Arc::default(),
                 ..(*job.scene).clone()
             }),
-            params,
+            params: params.clone(),
         };
         let mut run = |ablation, job: &Job| {
             pipeline.ablate(ablation);
@@ -166,7 +166,7 @@ impl Options {
             let again = Job {
                 params: GenParams {
                     seed: common,
-                    ..params
+                    ..params.clone()
                 },
                 ..job.clone()
             };

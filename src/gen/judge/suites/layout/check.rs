@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use scene::{BevLayer, BevLayout, Class, GridSpec, Paint, PolylineKind, SceneBox};
+use scene::{BevLayer, BevLayout, Class, Paint, PolylineKind, SceneBox, Window};
 
 /// A layout with what stands on it.
 pub struct Judge<'a> {
@@ -19,7 +19,7 @@ enum To {
 
 impl Judge<'_> {
     fn at(&self, p: DVec2, layers: &[BevLayer]) -> bool {
-        GridSpec::column_at(p.x, p.y).is_some_and(|[x, y]| layers.iter().any(|l| self.layout.has(*l, x, y)))
+        Window::column_at(p.x, p.y).is_some_and(|[x, y]| layers.iter().any(|l| self.layout.has(*l, x, y)))
     }
 
     /// Nearest point of all lane centres: distance, direction, and signed offset of the point from it (left positive).

@@ -7,7 +7,7 @@ use super::per_class;
 use dataset::world_of;
 use metrics::iou::Confusion;
 use nets::OccVae;
-use scene::{Class, GridSpec, Relief, SensorRig, VoxelGrid};
+use scene::{Class, Extent, Relief, SensorRig, VoxelGrid, Window};
 use world::draw::Draw;
 use world::voxelize::{Drive, Vertical, labels};
 use world::{World, traffic};
@@ -29,7 +29,7 @@ fn labels_on(grade: f64, seed: u64, index: u64) -> VoxelGrid {
     let (world, seed) = world_of(seed, index, |_| None);
     let up = uphill(seed);
     let mut layout = world.layout;
-    layout.relief = Relief::from_fn(scene::Extent::WINDOW, |p| grade * up.dot(p));
+    layout.relief = Relief::from_fn(Extent::WINDOW, |p| grade * up.dot(p));
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
     let world = World::new(layout, boxes, seed);
     let rig = SensorRig::default();
@@ -39,9 +39,9 @@ fn labels_on(grade: f64, seed: u64, index: u64) -> VoxelGrid {
 /// A grid with its columns moved up and down to a plane, by whole bins; what leaves the grid is lost.
 fn tilted(grid: &VoxelGrid, grade: f64, up: DVec2) -> VoxelGrid {
     let mut out = VoxelGrid::new();
-    for (x, y) in (0..GridSpec::NX).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y))) {
-        let rise_m = grade * up.dot(GridSpec::center(x, y, 0).truncate());
-        let bins = (rise_m / GridSpec::VOXEL_M).round() as isize;
+    for (x, y) in (0..Window::NX).flat_map(|x| (0..Window::NY).map(move |y| (x, y))) {
+        let rise_m = grade * up.dot(Window::center(x, y, 0).truncate());
+        let bins = (rise_m / Window::VOXEL_M).round() as isize;
         let from = grid.column(x, y);
         *out.column_mut(x, y) = std::array::from_fn(|z| {
             let z = usize::try_from(z as isize - bins).ok();
