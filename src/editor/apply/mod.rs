@@ -9,7 +9,7 @@ mod voxels;
 
 use std::sync::Arc;
 
-use scene::{Edit, EditError, Frame, Scene, SensorRig, Shape};
+use scene::{Edit, EditError, Frame, Scene, SensorRig};
 
 use super::things;
 pub(crate) use voxels::adopt;
