@@ -72,8 +72,8 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 /// Boxes around the voxels, as a correction: the voxels stay as they are.
 fn boxes_for(context: &Context<'_>, class: Class, group: &[[usize; 3]]) -> Vec<Edit> {
     let found = infer::boxes_around(class, group);
-    // These count columns as the window does.
-    let shift_m = Extent::default().min_m() - context.frame.extent().min_m();
+    // These count columns from the window's corner.
+    let shift_m = Extent::WINDOW.min_m() - context.frame.extent().min_m();
     let add = |b: scene::SceneBox| Edit::Correct {
         edit: Box::new(Edit::AddBox {
             class,

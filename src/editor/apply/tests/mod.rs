@@ -16,7 +16,9 @@ use serde_json::{Value, json};
 
 use super::*;
 use scene::draft::draft;
-use scene::{BevLayer, BevLayout, BoxId, BoxName, Class, Extent, Polyline, SceneBox, SensorRig, VoxelGrid};
+use scene::{
+    BevLayer, BevLayout, BoxId, BoxName, Class, Extent, Polyline, SceneBox, SensorRig, Shape, VoxelGrid,
+};
 
 const FREE: u8 = Class::FREE;
 
