@@ -45,8 +45,11 @@ pub fn flood(layout: &BevLayout, layer: BevLayer, start: [usize; 2], bounds: Fil
             }
         }
     }
-    let cells = extent.all_columns().zip(seen).filter(|(_, seen)| *seen);
-    cells.map(|(cell, _)| cell).collect()
+    let mut cells = Vec::new();
+    for (x, row) in seen.chunks_exact(extent.ny()).enumerate() {
+        cells.extend((0..row.len()).filter(|y| row[*y]).map(|y| [x, y]));
+    }
+    cells
 }
 
 #[cfg(test)]

@@ -147,22 +147,19 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
     let mut sides = [IVec3::X, IVec3::Y, IVec3::Z].to_vec();
     sides.remove(axis);
     let mut seen = vec![0u16; extent.columns()];
-    let mut see = |[x, y, z]: Cell| {
-        let word = &mut seen[extent.index(x, y)];
-        let new = *word >> z & 1 == 0;
-        *word |= 1 << z;
-        new
-    };
     let mut open = vec![start];
-    see(start);
+    seen[extent.index(start[0], start[1])] = 1 << start[2];
     let mut cells = Vec::new();
     while let Some(c) = open.pop() {
         cells.push(c);
         for step in sides.iter().flat_map(|s| [*s, -*s]) {
             if let Some(next) = cell_at(extent, ivec(c) + step)
+                && let [x, y, z] = next
+                && let word = &mut seen[extent.index(x, y)]
+                && *word >> z & 1 == 0
                 && shows(next)
-                && see(next)
             {
+                *word |= 1 << z;
                 open.push(next);
             }
         }

@@ -111,6 +111,23 @@ mod tests {
     }
 
     #[test]
+    fn the_floor_is_that_of_the_whole_map() {
+        let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
+        let frame = Frame::new(BevLayout::over(extent), BTreeMap::new(), VoxelGrid::over(extent));
+        let ray = Ray::new(DVec3::new(100.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
+        let cells = target(&frame, VoxelVerb::Attach, [3, 1], &ray);
+        assert_eq!((cells.len(), cells[4]), (9, [400, 260, 0]));
+        let ray = Ray::new(DVec3::new(131.9, 83.9, 9.0), -DVec3::Z).expect("a direction");
+        assert_eq!(
+            target(&frame, VoxelVerb::Attach, [3, 1], &ray).len(),
+            4,
+            "cut at the rim"
+        );
+        let ray = Ray::new(DVec3::new(132.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
+        assert!(target(&frame, VoxelVerb::Attach, [3, 1], &ray).is_empty());
+    }
+
+    #[test]
     fn faces_from_the_side() {
         let frame = frame();
         let from = Extent::WINDOW.center(80, 100, 1);
