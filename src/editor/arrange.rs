@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use scene::{BoxId, Frame, GridSpec, SceneBox};
+use scene::{BoxId, Frame, SceneBox};
 
 use super::Edit;
 use super::lanes::{along, nearest_lane};
@@ -206,7 +206,8 @@ pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &Row) -> Vec<SceneBox> {
             });
         }
     }
-    copies.retain(|b| b.problem().is_none() && GridSpec::column_at(b.center_m.x, b.center_m.y).is_some());
+    let on_map = |p: DVec3| frame.extent().column_at(p.x, p.y).is_some();
+    copies.retain(|b| b.problem().is_none() && on_map(b.center_m));
     copies
 }
 

@@ -28,7 +28,8 @@ struct Step {
 /// What an undo step is called.
 pub type Label = std::borrow::Cow<'static, str>;
 
-/// A result came too late: the document shows another state by now.
+/// A result came too late: the document shows another state by now. A result that covers another part of the ground
+/// than the frame is of another state too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the result belongs to an earlier state of the scene")]
 pub struct Stale;
@@ -210,9 +211,10 @@ impl Document {
         if self.drag.is_some() || step.scene.rev != rev {
             return Err(Stale);
         }
-        let scene = Arc::make_mut(&mut step.scene);
-        super::apply::adopt(scene.frame_mut(), occupancy);
+        let mut scene = Scene::clone(&step.scene);
+        super::apply::adopt(scene.frame_mut(), occupancy).map_err(|_| Stale)?;
         let rev = scene.rev;
+        step.scene = Arc::new(scene);
         self.weigh(self.at);
         self.weigh(self.at + 1);
         self.forget_oldest();
@@ -230,7 +232,7 @@ impl Document {
             return Err(Stale);
         }
         let mut scene = Scene::clone(self.settled_scene());
-        super::apply::adopt(scene.frame_mut(), occupancy);
+        super::apply::adopt(scene.frame_mut(), occupancy).map_err(|_| Stale)?;
         self.push(label.into(), scene);
         Ok(self.settled_scene().rev)
     }
@@ -248,7 +250,7 @@ impl Document {
         }
         let mut scene = Scene::clone(self.settled_scene());
         scene.background = Arc::new(background);
-        super::apply::adopt(scene.frame_mut(), occupancy);
+        super::apply::adopt(scene.frame_mut(), occupancy).map_err(|_| Stale)?;
         self.push(label.into(), scene);
         Ok(self.settled_scene().rev)
     }

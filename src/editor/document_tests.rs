@@ -10,7 +10,7 @@ use super::*;
 use crate::Shape;
 use scene::draft::draft;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Conditions, Frame, GridSpec, SceneBox, SensorRig, TimeOfDay, Weather,
+    BevLayer, BevLayout, BoxId, Class, Conditions, Extent, Frame, SceneBox, SensorRig, TimeOfDay, Weather,
 };
 
 fn start() -> Scene {
@@ -422,10 +422,10 @@ fn frames_are_edited_one_at_a_time_and_history_is_bounded() {
 fn the_history_is_bounded_by_bytes() {
     let paint = |i: usize, all: bool| Edit::PaintVoxels {
         cells: match all {
-            true => (0..GridSpec::NX)
-                .flat_map(|x| (0..GridSpec::NY).map(move |y| [x, y, 3]))
+            true => (0..Extent::WINDOW.nx())
+                .flat_map(|x| (0..Extent::WINDOW.ny()).map(move |y| [x, y, 3]))
                 .collect(),
-            false => vec![[i % GridSpec::NX, 7, 9]],
+            false => vec![[i % Extent::WINDOW.nx(), 7, 9]],
         },
         class: [Class::Car, Class::Bus][i % 2],
     };
@@ -478,7 +478,7 @@ fn the_history_is_bounded_by_bytes() {
     );
     // A result that is adopted counts with its step, and what comes after it too.
     let mut grid = large.scene().frame().occupancy.clone();
-    (0..GridSpec::NX).for_each(|x| grid.set(x, 9, 9, Class::Vegetation.id()));
+    (0..Extent::WINDOW.nx()).for_each(|x| grid.set(x, 9, 9, Class::Vegetation.id()));
     let before = large.history_bytes();
     large.adopt(large.scene().rev, grid).expect("shown");
     assert_ne!(large.history_bytes(), before);

@@ -1,6 +1,6 @@
 //! Flood fill on the bird's-eye view.
 
-use scene::{BevLayer, BevLayout, GridSpec};
+use scene::{BevLayer, BevLayout};
 
 /// What bounds a fill.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -12,11 +12,12 @@ pub enum FillBounds {
     OwnLayer,
 }
 
-/// Cells `[x, y]` that connect to `start` by their sides and are alike, sorted; at most all 40,000. Empty if
+/// Cells `[x, y]` that connect to `start` by their sides and are alike, sorted; at most all of the map. Empty if
 /// the start is outside the grid.
 pub fn flood(layout: &BevLayout, layer: BevLayer, start: [usize; 2], bounds: FillBounds) -> Vec<[usize; 2]> {
     let [x, y] = start;
-    if x >= GridSpec::NX || y >= GridSpec::NY {
+    let extent = layout.extent();
+    if !extent.holds(x, y) {
         return Vec::new();
     }
     let mask = match bounds {
@@ -24,9 +25,9 @@ pub fn flood(layout: &BevLayout, layer: BevLayer, start: [usize; 2], bounds: Fil
         FillBounds::OwnLayer => layer.bit(),
     };
     let wanted = layout.cell(x, y) & mask;
-    let mut seen = vec![false; GridSpec::COLUMNS];
+    let mut seen = vec![false; extent.columns()];
     let mut open = vec![start];
-    seen[x * GridSpec::NY + y] = true;
+    seen[extent.index(x, y)] = true;
     while let Some([x, y]) = open.pop() {
         let neighbours = [
             [x.wrapping_sub(1), y],
@@ -35,21 +36,26 @@ pub fn flood(layout: &BevLayout, layer: BevLayer, start: [usize; 2], bounds: Fil
             [x, y + 1],
         ];
         for [x, y] in neighbours {
-            if x >= GridSpec::NX || y >= GridSpec::NY || seen[x * GridSpec::NY + y] {
+            if !extent.holds(x, y) || seen[extent.index(x, y)] {
                 continue;
             }
             if layout.cell(x, y) & mask == wanted {
-                seen[x * GridSpec::NY + y] = true;
+                seen[extent.index(x, y)] = true;
                 open.push([x, y]);
             }
         }
     }
-    let cells = (0..GridSpec::COLUMNS).filter(|i| seen[*i]);
-    cells.map(|i| [i / GridSpec::NY, i % GridSpec::NY]).collect()
+    let mut cells = Vec::new();
+    for (x, row) in seen.chunks_exact(extent.ny()).enumerate() {
+        cells.extend((0..row.len()).filter(|y| row[*y]).map(|y| [x, y]));
+    }
+    cells
 }
 
 #[cfg(test)]
 mod tests {
+    use scene::Extent;
+
     use super::*;
 
     #[test]
@@ -68,7 +74,10 @@ mod tests {
         assert_eq!(count([52, 52], FillBounds::AnyLayer), 8 * 3);
         assert_eq!(count([52, 52], FillBounds::OwnLayer), 8 * 8);
         assert_eq!(count([50, 50], FillBounds::AnyLayer), 36);
-        assert_eq!(count([0, 0], FillBounds::AnyLayer), GridSpec::COLUMNS - 100);
+        assert_eq!(
+            count([0, 0], FillBounds::AnyLayer),
+            Extent::WINDOW.columns() - 100
+        );
         assert_eq!(count([200, 0], FillBounds::AnyLayer), 0);
     }
 }

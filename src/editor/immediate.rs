@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use scene::draft::{box_columns, ground_bin, ground_class};
 use scene::grid::NOT_PAINTED;
 use scene::raster::box_cells;
-use scene::{BevLayer, BevLayout, Class, Frame, GridSpec, SceneBox, VoxelGrid};
+use scene::{BevLayer, BevLayout, Class, Extent, Frame, SceneBox, VoxelGrid};
 
 /// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
 const MARGIN_M: f64 = 0.6;
@@ -25,16 +25,20 @@ pub(super) fn clear_box(frame: &mut Frame, old: &SceneBox) {
         .filter(|b| b.class == old.class && b.id != old.id && near(b, old))
         .copied()
         .collect();
+    let extent = frame.extent();
     let top_m = old.center_m.z + old.size_m.z / 2.0 + MARGIN_M;
     let mut emptied = Vec::new();
-    box_cells(scene::Extent::WINDOW, old, MARGIN_M, |x, y| {
-        if others.iter().any(|b| outside_m(b, x, y) <= outside_m(old, x, y)) {
+    box_cells(extent, old, MARGIN_M, |x, y| {
+        if others
+            .iter()
+            .any(|b| outside_m(extent, b, x, y) <= outside_m(extent, old, x, y))
+        {
             return;
         }
         let painted = *frame.painted.column(x, y);
         let mut column = *frame.occupancy.column(x, y);
-        for z in 0..GridSpec::NZ {
-            let inside = GridSpec::center(x, y, z).z <= top_m;
+        for z in 0..Extent::NZ {
+            let inside = extent.center(x, y, z).z <= top_m;
             if inside && column[z] == class && painted[z] == NOT_PAINTED {
                 column[z] = background(frame.source.occupancy.get(x, y, z));
                 if z == ground_bin(&frame.layout, x, y) && column[z] == Class::FREE {
@@ -60,7 +64,7 @@ fn background(source_label: u8) -> u8 {
 
 /// Stamps the voxels of a box in the rough profile of its class, in place of what was there.
 pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
-    for (x, y, layers) in box_columns(scene::Extent::WINDOW, b) {
+    for (x, y, layers) in box_columns(frame.extent(), b) {
         let painted = *frame.painted.column(x, y);
         let ground = ground_bin(&frame.layout, x, y).min(layers - 1);
         for (z, locked) in painted.iter().enumerate().take(layers).skip(ground) {
@@ -91,7 +95,7 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
             continue;
         }
         // The second bin of a kerb is cleared too: a road painted over a sidewalk would keep its rim otherwise.
-        for z in bin + 1..(bin + 1 + GROUND_BINS).min(GridSpec::NZ) {
+        for z in bin + 1..(bin + 1 + GROUND_BINS).min(Extent::NZ) {
             if is_ground(column[z]) && painted[z] == NOT_PAINTED {
                 column[z] = Class::FREE;
             }
@@ -123,10 +127,11 @@ pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &
 
 /// Ground class that most columns have on the smallest square ring around (x, y) with any ground.
 fn nearby_ground(grid: &VoxelGrid, layout: &BevLayout, x: usize, y: usize) -> u8 {
+    let extent = layout.extent();
     for reach in 1..=MAX_REACH {
         let mut votes = [0usize; Class::COUNT];
-        let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
-        for i in x.saturating_sub(reach)..=(x + reach).min(GridSpec::NX - 1) {
+        let ys = y.saturating_sub(reach)..=(y + reach).min(extent.ny() - 1);
+        for i in x.saturating_sub(reach)..=(x + reach).min(extent.nx() - 1) {
             for j in ys.clone() {
                 let on_ring = i.abs_diff(x).max(j.abs_diff(y)) == reach;
                 if on_ring {
@@ -159,8 +164,8 @@ fn near(a: &SceneBox, b: &SceneBox) -> bool {
 }
 
 /// Distance of a column's centre from a box's footprint, m; 0 inside.
-fn outside_m(b: &SceneBox, x: usize, y: usize) -> f64 {
-    let p = GridSpec::center(x, y, 0);
+fn outside_m(extent: Extent, b: &SceneBox, x: usize, y: usize) -> f64 {
+    let p = extent.center(x, y, 0);
     let local = b.to_local(DVec3::new(p.x, p.y, b.center_m.z)).truncate();
     let beyond = local.abs() - b.size_m.truncate() / 2.0;
     beyond.max(DVec2::ZERO).length()

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use scene::distance::nearest_source;
-use scene::{BevLayer, BevLayout, GridSpec, Polyline, PolylineKind, raster};
+use scene::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, raster};
 
 /// From this angle between two streets on they cross; below it one is drawn along the other, to widen or renew it.
 const CROSSES_RAD: f64 = 0.44;
@@ -31,8 +31,8 @@ pub(super) fn crossed(layout: &BevLayout, middle_m: &[DVec2], band: &[[usize; 2]
     };
     let old = layout.polylines.iter().filter(lengthwise);
     let (Some(old), Some(new)) = (
-        Ways::of(old.map(|l| &l.points_m[..])),
-        Ways::of(std::iter::once(middle_m)),
+        Ways::of(layout.extent(), old.map(|l| &l.points_m[..])),
+        Ways::of(layout.extent(), std::iter::once(middle_m)),
     ) else {
         return Vec::new();
     };
@@ -46,29 +46,35 @@ pub(super) fn crossed(layout: &BevLayout, middle_m: &[DVec2], band: &[[usize; 2]
 
 /// For every column the direction of the nearest of some lines.
 struct Ways {
+    extent: Extent,
     directions: Vec<DVec2>,
     nearest: Vec<u32>,
 }
 
 impl Ways {
     /// `None` if no line touches the grid.
-    fn of<'a>(lines: impl Iterator<Item = &'a [DVec2]>) -> Option<Self> {
-        let mut directions = vec![DVec2::ZERO; GridSpec::COLUMNS];
+    fn of<'a>(extent: Extent, lines: impl Iterator<Item = &'a [DVec2]>) -> Option<Self> {
+        let mut directions = vec![DVec2::ZERO; extent.columns()];
         for pair in lines.flat_map(|l| l.windows(2)) {
             let direction = (pair[1] - pair[0]).normalize_or_zero();
-            raster::line_cells(scene::Extent::WINDOW, pair, GridSpec::VOXEL_M, |x, y| {
-                directions[x * GridSpec::NY + y] = direction;
+            raster::line_cells(extent, pair, Extent::VOXEL_M, |x, y| {
+                directions[extent.index(x, y)] = direction;
             });
         }
-        let nearest = nearest_source(scene::Extent::WINDOW, |c| directions[c] != DVec2::ZERO)?;
-        Some(Self { directions, nearest })
+        let nearest = nearest_source(extent, |c| directions[c] != DVec2::ZERO)?;
+        Some(Self {
+            extent,
+            directions,
+            nearest,
+        })
     }
 
     /// Distance to the nearest line, m, and its direction there.
     fn at(&self, x: usize, y: usize) -> (f64, DVec2) {
-        let nearest = self.nearest[x * GridSpec::NY + y] as usize;
-        let [i, j] = [nearest / GridSpec::NY, nearest % GridSpec::NY];
-        let apart = GridSpec::center(x, y, 0).distance(GridSpec::center(i, j, 0));
+        let extent = self.extent;
+        let nearest = self.nearest[extent.index(x, y)] as usize;
+        let [i, j] = extent.column(nearest);
+        let apart = extent.center(x, y, 0).distance(extent.center(i, j, 0));
         (apart, self.directions[nearest])
     }
 }
@@ -76,18 +82,18 @@ impl Ways {
 /// The painted crossings that lie in an area by more than [`CROSSING_WITHIN`], whole: nobody crosses within a junction.
 pub(super) fn crossings_in(layout: &BevLayout, area: &Area) -> Vec<[usize; 2]> {
     let painted = |[x, y]: [usize; 2]| layout.has(BevLayer::PedCrossing, x, y);
-    let columns = (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
-    let (mut seen, mut found) = (vec![false; GridSpec::COLUMNS], Vec::new());
-    for start in columns.filter(|at| painted(*at) && area.holds(*at)) {
+    let extent = layout.extent();
+    let (mut seen, mut found) = (vec![false; extent.columns()], Vec::new());
+    for start in extent.all_columns().filter(|at| painted(*at) && area.holds(*at)) {
         let (mut crossing, mut open) = (Vec::new(), vec![start]);
         while let Some(at) = open.pop() {
-            if !painted(at) || std::mem::replace(&mut seen[at[0] * GridSpec::NY + at[1]], true) {
+            if !painted(at) || std::mem::replace(&mut seen[extent.index(at[0], at[1])], true) {
                 continue;
             }
             crossing.push(at);
             let [x, y] = at;
-            open.extend([[x.saturating_sub(1), y], [(x + 1).min(GridSpec::NX - 1), y]]);
-            open.extend([[x, y.saturating_sub(1)], [x, (y + 1).min(GridSpec::NY - 1)]]);
+            open.extend([[x.saturating_sub(1), y], [(x + 1).min(extent.nx() - 1), y]]);
+            open.extend([[x, y.saturating_sub(1)], [x, (y + 1).min(extent.ny() - 1)]]);
         }
         let within = crossing.iter().filter(|at| area.holds(**at)).count();
         if within as f64 > CROSSING_WITHIN * crossing.len() as f64 {
@@ -98,34 +104,38 @@ pub(super) fn crossings_in(layout: &BevLayout, area: &Area) -> Vec<[usize; 2]> {
 }
 
 /// Cells as a set that is asked often.
-pub(super) struct Area(Vec<bool>);
+pub(super) struct Area {
+    extent: Extent,
+    covered: Vec<bool>,
+}
 
 impl Area {
-    pub(super) fn new(cells: &[[usize; 2]]) -> Self {
-        let mut covered = vec![false; GridSpec::COLUMNS];
+    pub(super) fn new(extent: Extent, cells: &[[usize; 2]]) -> Self {
+        let mut covered = vec![false; extent.columns()];
         for &[x, y] in cells {
-            covered[x * GridSpec::NY + y] = true;
+            covered[extent.index(x, y)] = true;
         }
-        Self(covered)
+        Self { extent, covered }
     }
 
     /// The cells and those that touch them: lines that end here do not reach in with their width.
-    pub(super) fn around(cells: &[[usize; 2]]) -> Self {
+    pub(super) fn around(extent: Extent, cells: &[[usize; 2]]) -> Self {
         let mut grown = Vec::new();
         for &[x, y] in cells {
-            for i in x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1) {
-                grown.extend((y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1)).map(|j| [i, j]));
+            for i in x.saturating_sub(1)..=(x + 1).min(extent.nx() - 1) {
+                grown.extend((y.saturating_sub(1)..=(y + 1).min(extent.ny() - 1)).map(|j| [i, j]));
             }
         }
-        Self::new(&grown)
+        Self::new(extent, &grown)
     }
 
     pub(super) fn holds(&self, [x, y]: [usize; 2]) -> bool {
-        self.0[x * GridSpec::NY + y]
+        self.covered[self.extent.index(x, y)]
     }
 
     fn has(&self, p_m: DVec2) -> bool {
-        GridSpec::column_at(p_m.x, p_m.y).is_some_and(|cell| self.holds(cell))
+        let cell = self.extent.column_at(p_m.x, p_m.y);
+        cell.is_some_and(|cell| self.holds(cell))
     }
 
     /// True if a line passes through.
@@ -172,7 +182,7 @@ fn steps(pair: &[DVec2]) -> usize {
 /// Takes the lines of a layer away where they pass through the cells, and the outlines of crossings most of which lies there.
 pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize; 2]]) {
     if layer == BevLayer::PedCrossing {
-        return drop_outlines(layout, &Area::new(cells));
+        return drop_outlines(layout, &Area::new(layout.extent(), cells));
     }
     let kind = match layer {
         BevLayer::RoadDivider => PolylineKind::RoadDivider,
@@ -180,7 +190,7 @@ pub(super) fn cut_lines(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize
         BevLayer::StopLine => PolylineKind::StopLine,
         _ => return,
     };
-    let area = Area::new(cells);
+    let area = Area::new(layout.extent(), cells);
     let is_cut = |l: &Polyline| l.kind == kind && area.touches(&l.points_m);
     if !layout.polylines.iter().any(is_cut) {
         return;
@@ -201,7 +211,7 @@ fn drop_outlines(layout: &mut BevLayout, area: &Area) {
     let is_gone = |l: &Polyline| {
         let (mut all, mut within) = (0, 0);
         if l.kind == PolylineKind::PedCrossing {
-            raster::polygon_cells(scene::Extent::WINDOW, &l.points_m, |x, y| {
+            raster::polygon_cells(area.extent, &l.points_m, |x, y| {
                 all += 1;
                 within += usize::from(area.holds([x, y]));
             });

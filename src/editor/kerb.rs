@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use scene::{BevLayer, BevLayout, Form, GridSpec};
+use scene::{BevLayer, BevLayout, Extent, Form};
 
 use super::lanes::nearest_lane;
 
@@ -41,29 +41,30 @@ struct Side {
 }
 
 fn sides(layout: &BevLayout, p_m: DVec2, reach_m: f64) -> Vec<Side> {
+    let (extent, min_m) = (layout.extent(), layout.extent().min_m());
     let cell = |v: f64, axis: usize, count: usize| {
-        let at = (v - GridSpec::MIN_M[axis]) / GridSpec::VOXEL_M;
+        let at = (v - min_m[axis]) / Extent::VOXEL_M;
         at.floor().clamp(0.0, count as f64 - 1.0) as usize
     };
     let (x0, x1) = (
-        cell(p_m.x - reach_m, 0, GridSpec::NX),
-        cell(p_m.x + reach_m, 0, GridSpec::NX),
+        cell(p_m.x - reach_m, 0, extent.nx()),
+        cell(p_m.x + reach_m, 0, extent.nx()),
     );
     let (y0, y1) = (
-        cell(p_m.y - reach_m, 1, GridSpec::NY),
-        cell(p_m.y + reach_m, 1, GridSpec::NY),
+        cell(p_m.y - reach_m, 1, extent.ny()),
+        cell(p_m.y + reach_m, 1, extent.ny()),
     );
     let mut out = Vec::new();
     for x in x0..=x1 {
         for y in y0..=y1 {
             for (nx, ny, step) in [(x + 1, y, DVec2::X), (x, y + 1, DVec2::Y)] {
-                if nx >= GridSpec::NX || ny >= GridSpec::NY {
+                if !extent.holds(nx, ny) {
                     continue;
                 }
                 let (a, b) = (rank(layout, x, y), rank(layout, nx, ny));
                 if a != b {
                     out.push(Side {
-                        middle_m: GridSpec::center(x, y, 0).truncate() + step * (GridSpec::VOXEL_M / 2.0),
+                        middle_m: extent.center(x, y, 0).truncate() + step * (Extent::VOXEL_M / 2.0),
                         away: if a > b { step } else { -step },
                         ranks: (a.max(b), a.min(b)),
                     });
@@ -126,7 +127,8 @@ pub fn toward_road(layout: &BevLayout, p_m: DVec2) -> f64 {
 
 /// True if vehicles drive there.
 pub fn is_roadway(layout: &BevLayout, p_m: DVec2) -> bool {
-    GridSpec::column_at(p_m.x, p_m.y).is_some_and(|[x, y]| rank(layout, x, y) == 2)
+    let cell = layout.extent().column_at(p_m.x, p_m.y);
+    cell.is_some_and(|[x, y]| rank(layout, x, y) == 2)
 }
 
 /// Points of one thing that are asked where the kerb is, at most.
@@ -159,9 +161,9 @@ mod tests {
     /// Roadway below a line through (0, `y0`) of that slope, a walkway of 2 m above it.
     fn road(y0: f64, slope: f64) -> BevLayout {
         let mut layout = BevLayout::default();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                let p = GridSpec::center(x, y, 0);
+        for x in 0..Extent::WINDOW.nx() {
+            for y in 0..Extent::WINDOW.ny() {
+                let p = Extent::WINDOW.center(x, y, 0);
                 let over = p.y - y0 - slope * p.x;
                 layout.set(BevLayer::DrivableArea, x, y, over < 0.0);
                 layout.set(BevLayer::Walkway, x, y, (0.0..2.0).contains(&over));

@@ -58,11 +58,11 @@ impl LaneStrip {
             let mut points_m = offset_line(&middle_m, from_m);
             points_m.extend(offset_line(&middle_m, to_m).iter().rev());
             Shape::Polygon { points_m }
-                .cells(scene::Extent::WINDOW)
+                .cells(layout.extent())
                 .unwrap_or_default()
         };
         let junction = junction::crossed(layout, &middle_m, &band(half_m + walk_m, -half_m - walk_m));
-        let area = Area::new(&junction);
+        let area = Area::new(layout.extent(), &junction);
         let marked = |layer: BevLayer| {
             let mut cells = junction.clone();
             cells.retain(|[x, y]| layout.has(layer, *x, *y));
@@ -98,7 +98,7 @@ impl LaneStrip {
         };
         let mut edits: Vec<Edit> = areas.into_iter().map(paint).collect();
         edits.push(Edit::AddPolylines {
-            lines: self.lines(&middle_m, half_m, &Area::around(&junction)),
+            lines: self.lines(&middle_m, half_m, &Area::around(layout.extent(), &junction)),
         });
         edits
     }
@@ -165,7 +165,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use scene::{BevLayout, Frame, GridSpec, Scene, VoxelGrid};
+    use scene::{BevLayout, Extent, Frame, Scene, VoxelGrid};
 
     #[test]
     fn a_street_has_its_lanes_dividers_and_walkways() {
@@ -205,7 +205,7 @@ mod tests {
     fn a_street_cuts_the_walkway_that_it_crosses() {
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
         let mut scene = Scene::single("street", frame, Arc::default(), 1);
-        for y in 0..GridSpec::NY {
+        for y in 0..Extent::WINDOW.ny() {
             scene.frame_mut().layout.set(BevLayer::Walkway, 100, y, true);
         }
         let ends = [DVec2::new(-20.0, 0.0), DVec2::new(20.0, 0.0)];
@@ -213,7 +213,7 @@ mod tests {
             edit.apply(&mut scene).expect("sound");
         }
         let layout = &scene.frame().layout;
-        for y in 0..GridSpec::NY {
+        for y in 0..Extent::WINDOW.ny() {
             let road = layout.has(BevLayer::DrivableArea, 100, y);
             assert_ne!(road, layout.has(BevLayer::Walkway, 100, y), "column 100, {y}");
         }
@@ -245,8 +245,8 @@ mod tests {
         let layout = &scene.frame().layout;
         let half_m = strip.width_m() / 2.0;
         let (mut inside, mut marked_beside) = (0, 0);
-        for (x, y) in (0..GridSpec::NX).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y))) {
-            let p = GridSpec::center(x, y, 0).truncate();
+        for (x, y) in (0..Extent::WINDOW.nx()).flat_map(|x| (0..Extent::WINDOW.ny()).map(move |y| (x, y))) {
+            let p = Extent::WINDOW.center(x, y, 0).truncate();
             let on = [
                 (p.y - 1.0).abs() < half_m && p.x.abs() < 29.5,
                 (p.x - 2.0).abs() < half_m && p.y.abs() < 29.5,
@@ -308,8 +308,8 @@ mod tests {
             edit.apply(&mut scene).expect("sound");
         }
         let layout = &scene.frame().layout;
-        let painted = |x: usize| (0..GridSpec::NY).any(|y| layout.has(BevLayer::PedCrossing, x, y));
-        let painted: Vec<usize> = (0..GridSpec::NX).filter(|x| painted(*x)).collect();
+        let painted = |x: usize| (0..Extent::WINDOW.ny()).any(|y| layout.has(BevLayer::PedCrossing, x, y));
+        let painted: Vec<usize> = (0..Extent::WINDOW.nx()).filter(|x| painted(*x)).collect();
         assert!(
             painted.len() > 6 && painted.iter().all(|x| *x < 70),
             "{painted:?}"

@@ -12,6 +12,8 @@ mod junction;
 pub mod kerb;
 pub mod lane_strip;
 pub mod lanes;
+#[cfg(test)]
+mod map_tests;
 pub mod measure;
 pub mod outline;
 pub mod part;

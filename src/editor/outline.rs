@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec2;
 
-use scene::GridSpec;
+use scene::Extent;
 use scene::background::crossing_edges;
 
 use super::Shape;
@@ -14,13 +14,13 @@ const MOST_CORNERS: usize = 100;
 /// How far corners may move to make an outline simpler, tried in this order, m.
 const TOLERANCES_M: [f64; 4] = [0.3, 0.5, 0.8, 1.2];
 
-/// Outline of a stroke along points (ego frame, m), counter-clockwise, its holes filled; `None` beside the grid.
-pub fn of_stroke(points_m: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
+/// Outline of a stroke along points (ego frame, m), counter-clockwise, its holes filled; `None` beside the map.
+pub fn of_stroke(extent: Extent, points_m: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
     let stroke = Shape::Line {
         points_m: points_m.to_vec(),
         width_m,
     };
-    let border = border(&stroke.cells(scene::Extent::WINDOW).ok()?)?;
+    let border = border(extent, &stroke.cells(extent).ok()?)?;
     let simple = TOLERANCES_M
         .iter()
         .map(|tolerance_m| simplified(&border, *tolerance_m))
@@ -30,7 +30,7 @@ pub fn of_stroke(points_m: &[DVec2], width_m: f64) -> Option<Vec<DVec2>> {
 
 /// The longest closed border of cells, through the middles of their sides, m: through their corners it would be a
 /// staircase, and touch itself where cells meet at a corner.
-fn border(cells: &[[usize; 2]]) -> Option<Vec<DVec2>> {
+fn border(extent: Extent, cells: &[[usize; 2]]) -> Option<Vec<DVec2>> {
     let set: std::collections::BTreeSet<[i64; 2]> =
         cells.iter().map(|[x, y]| [*x as i64, *y as i64]).collect();
     // Directed sides with the area on their left, by where they begin.
@@ -60,10 +60,8 @@ fn border(cells: &[[usize; 2]]) -> Option<Vec<DVec2>> {
             longest = way;
         }
     }
-    let corner = |[x, y]: [i64; 2]| {
-        let min = DVec2::new(GridSpec::MIN_M[0], GridSpec::MIN_M[1]);
-        min + DVec2::new(x as f64, y as f64) * GridSpec::VOXEL_M
-    };
+    let corner =
+        |[x, y]: [i64; 2]| extent.min_m().truncate() + DVec2::new(x as f64, y as f64) * Extent::VOXEL_M;
     let n = longest.len();
     let middle = |i: usize| (corner(longest[i]) + corner(longest[(i + 1) % n])) / 2.0;
     (n >= 4).then(|| (0..n).map(middle).collect())
@@ -139,7 +137,8 @@ mod tests {
 
     #[test]
     fn a_stroke_becomes_an_outline_around_it() {
-        let outline = of_stroke(&[v(0.0, 0.0), v(8.0, 0.0), v(8.0, 6.0)], 3.0).expect("an area");
+        let outline =
+            of_stroke(Extent::WINDOW, &[v(0.0, 0.0), v(8.0, 0.0), v(8.0, 6.0)], 3.0).expect("an area");
         assert!((3..40).contains(&outline.len()), "{}", outline.len());
         assert_eq!(crossing_edges(&outline), None);
         for (p, inside) in [
@@ -158,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_slanting_stroke_has_straight_sides() {
-        let outline = of_stroke(&[v(0.0, 0.0), v(14.0, 3.0)], 3.0).expect("an area");
+        let outline = of_stroke(Extent::WINDOW, &[v(0.0, 0.0), v(14.0, 3.0)], 3.0).expect("an area");
         assert!(outline.len() < 16, "{outline:?}");
     }
 
@@ -168,7 +167,7 @@ mod tests {
         let ring: Vec<DVec2> = (0..=24)
             .map(|i| DVec2::from_angle(f64::from(i) * 0.27) * 6.0)
             .collect();
-        let outline = of_stroke(&ring, 1.2).expect("an area");
+        let outline = of_stroke(Extent::WINDOW, &ring, 1.2).expect("an area");
         assert!(is_inside(&outline, v(0.0, 0.0)) && crossing_edges(&outline).is_none());
         // A scribble over itself, as thin as the brush goes.
         let scribble: Vec<DVec2> = (0..200)
@@ -181,11 +180,11 @@ mod tests {
             })
             .collect();
         for width_m in [0.4, 1.0, 2.5] {
-            let outline = of_stroke(&scribble, width_m).expect("an area");
+            let outline = of_stroke(Extent::WINDOW, &scribble, width_m).expect("an area");
             assert_eq!(crossing_edges(&outline), None, "{width_m}");
             assert!((3..=MOST_CORNERS).contains(&outline.len()), "{}", outline.len());
         }
-        assert_eq!(of_stroke(&[v(90.0, 0.0)], 2.0), None);
-        assert!(of_stroke(&[v(39.9, 0.0)], 2.0).is_some());
+        assert_eq!(of_stroke(Extent::WINDOW, &[v(90.0, 0.0)], 2.0), None);
+        assert!(of_stroke(Extent::WINDOW, &[v(39.9, 0.0)], 2.0).is_some());
     }
 }

@@ -1,28 +1,29 @@
 //! Accepts a part of a result: takes some of the voxels that differ between two states, and leaves the rest as it was.
 
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, Extent, VoxelGrid};
 
 /// What is taken.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
-    /// Every voxel of these columns, `[x * NY + y]`.
+    /// Every voxel of these columns, `[x][y]` of the map.
     Columns(Vec<bool>),
     /// Voxels that were or become of this class.
     Class(Class),
 }
 
 impl Part {
-    /// `before`, with this part of `after`.
+    /// `before`, with this part of `after`; `before` alone if the two are of different maps.
     pub fn taken(&self, before: &VoxelGrid, after: &VoxelGrid) -> VoxelGrid {
+        let extent = before.extent();
         let mut out = before.clone();
         each_different(before, after, |x, y, old, new| match self {
             Self::Columns(columns) => {
-                if columns.get(x * GridSpec::NY + y) == Some(&true) {
+                if columns.get(extent.index(x, y)) == Some(&true) {
                     *out.column_mut(x, y) = *new;
                 }
             }
             Self::Class(class) => {
-                for z in (0..GridSpec::NZ).filter(|z| old[*z] != new[*z]) {
+                for z in (0..Extent::NZ).filter(|z| old[*z] != new[*z]) {
                     if [old[z], new[z]].contains(&class.id()) {
                         out.set(x, y, z, new[z]);
                     }
@@ -52,15 +53,19 @@ pub fn changed_by_class(before: &VoxelGrid, after: &VoxelGrid) -> Vec<(Class, us
     found
 }
 
-type Column = [u8; GridSpec::NZ];
+type Column = [u8; Extent::NZ];
 
 fn each_different(
     before: &VoxelGrid,
     after: &VoxelGrid,
     mut visit: impl FnMut(usize, usize, &Column, &Column),
 ) {
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    if before.extent() != after.extent() {
+        return;
+    }
+    for brick in before.changed_bricks(after) {
+        let ([x0, y0], [nx, ny]) = before.brick_columns(brick);
+        for [x, y] in (x0..x0 + nx).flat_map(|x| (y0..y0 + ny).map(move |y| [x, y])) {
             let (old, new) = (before.column(x, y), after.column(x, y));
             if old != new {
                 visit(x, y, old, new);
@@ -94,8 +99,8 @@ mod tests {
         assert_eq!(manmade, grid(&[([1, 1, 3], Class::Manmade)]));
         let cars = Part::Class(Class::Car).taken(&before, &after);
         assert_eq!(before.count_different(&cars), 1);
-        let mut columns = vec![false; GridSpec::COLUMNS];
-        columns[5 * GridSpec::NY + 5] = true;
+        let mut columns = vec![false; Extent::WINDOW.columns()];
+        columns[Extent::WINDOW.index(5, 5)] = true;
         let place = Part::Columns(columns).taken(&before, &after);
         assert_eq!(place, grid(&[([1, 1, 3], Class::Vegetation)]));
         // Columns that nobody named are not taken.

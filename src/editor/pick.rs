@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use scene::{BoxId, Class, Frame, GridSpec, SceneBox, VoxelGrid};
+use scene::{BoxId, Class, Extent, Frame, SceneBox, VoxelGrid};
 
 /// A half line in the ego frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,8 +80,8 @@ pub struct VoxelHit {
 
 impl VoxelHit {
     /// The cell in front of the face, where a voxel would be attached; `None` outside the grid.
-    pub fn neighbour(&self) -> Option<[usize; 3]> {
-        let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    pub fn neighbour(&self, extent: Extent) -> Option<[usize; 3]> {
+        let n = extent.shape();
         let mut out = [0; 3];
         for axis in 0..3 {
             let v = self.cell[axis] as i64 + i64::from(self.normal[axis]);
@@ -98,8 +98,9 @@ impl VoxelHit {
 /// Amanatides and Woo 1987, with crossings computed from the origin each time, so that nothing
 /// accumulates, and at most one step per plane of the grid.
 pub fn ray_voxels(ray: &Ray, grid: &VoxelGrid, solid: impl Fn([usize; 3], u8) -> bool) -> Option<VoxelHit> {
-    let n = [GridSpec::NX as i64, GridSpec::NY as i64, GridSpec::NZ as i64];
-    let origin = GridSpec::to_voxel_units(ray.origin_in_ego);
+    let extent = grid.extent();
+    let n = extent.shape().map(|n| n as i64);
+    let origin = extent.to_voxel_units(ray.origin_in_ego);
     let d = ray.direction_in_ego;
     let size = DVec3::new(n[0] as f64, n[1] as f64, n[2] as f64);
     let (enter, leave) = slab(origin, d, DVec3::ZERO, size)?;
@@ -137,7 +138,7 @@ pub fn ray_voxels(ray: &Ray, grid: &VoxelGrid, solid: impl Fn([usize; 3], u8) ->
                 cell: here,
                 label,
                 normal,
-                distance_m: at * GridSpec::VOXEL_M,
+                distance_m: at * Extent::VOXEL_M,
             });
         }
         let next_plane = |axis: usize| match d[axis] {
@@ -224,7 +225,7 @@ pub fn pick(frame: &Frame, ray: &Ray) -> Option<Hit> {
 pub fn box_of_voxel(frame: &Frame, [x, y, z]: [usize; 3]) -> Option<BoxId> {
     const REACH_M: f64 = 0.5;
     let label = frame.occupancy.get(x, y, z);
-    let p = GridSpec::center(x, y, z);
+    let p = frame.extent().center(x, y, z);
     let candidates = frame.boxes.values().filter(|b| {
         let bottom_m = b.center_m.z - b.size_m.z / 2.0;
         b.class.id() == label && b.contains(DVec3::new(p.x, p.y, p.z.max(bottom_m)), REACH_M)

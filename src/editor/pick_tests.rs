@@ -114,15 +114,15 @@ proptest! {
         if jitter {
             direction += DVec3::new(0.0123, -0.0456, 0.00789);
         }
-        let r = Ray::new(GridSpec::from_voxel_units(half), direction).expect("finite");
+        let r = Ray::new(Extent::WINDOW.from_voxel_units(half), direction).expect("finite");
         let got = ray_voxels(&r, &grid, |_, _| true);
         let hits = |shrink: f64| {
-            let origin = GridSpec::to_voxel_units(r.origin_in_ego);
+            let origin = Extent::WINDOW.to_voxel_units(r.origin_in_ego);
             let each = voxels.iter().filter_map(|(x, y, z)| {
                 let min = DVec3::new(*x as f64, *y as f64, *z as f64);
                 let (lo, hi) = (min + shrink, min + 1.0 - shrink);
                 let (enter, leave) = slab(origin, r.direction_in_ego, lo, hi)?;
-                (leave >= 0.0).then_some(enter.max(0.0) * GridSpec::VOXEL_M)
+                (leave >= 0.0).then_some(enter.max(0.0) * Extent::VOXEL_M)
             });
             each.reduce(f64::min)
         };
@@ -150,7 +150,7 @@ proptest! {
 fn row_45_far_and_degenerate_rays_end() {
     let mut grid = VoxelGrid::new();
     grid.set(199, 199, 15, 15);
-    let corner = GridSpec::center(199, 199, 15);
+    let corner = Extent::WINDOW.center(199, 199, 15);
     let direction = DVec3::new(-1.0, -2.0, -0.1);
     let far = Ray::new(corner - direction.normalize() * 1e6, direction).expect("finite");
     let hit = ray_voxels(&far, &grid, |_, _| true).expect("aimed at its centre");
@@ -191,9 +191,13 @@ fn pick_prefers_what_is_in_front_and_gives_voxels_to_their_box() {
     let car = some_box(7, [10.0, 0.0, 0.85], [4.6, 1.95, 1.7], 0.0);
     let mut grid = VoxelGrid::new();
     // The car's blob reaches a voxel beyond its rear (x = 7.7 m) and down to bin 0; a wall stands at x = 4 m, y < -1 m.
-    let [x, y, _] = GridSpec::voxel_at(DVec3::new(7.5, 0.1, 0.0)).expect("inside");
+    let [x, y, _] = Extent::WINDOW
+        .voxel_at(DVec3::new(7.5, 0.1, 0.0))
+        .expect("inside");
     grid.set(x, y, 0, Class::Car.id());
-    let [wx, wy, wz] = GridSpec::voxel_at(DVec3::new(4.1, -2.1, 1.1)).expect("inside");
+    let [wx, wy, wz] = Extent::WINDOW
+        .voxel_at(DVec3::new(4.1, -2.1, 1.1))
+        .expect("inside");
     grid.set(wx, wy, wz, Class::Manmade.id());
     let f = frame(&[car], grid);
     let id_of = |hit: Option<Hit>| match hit {
@@ -213,7 +217,7 @@ fn pick_prefers_what_is_in_front_and_gives_voxels_to_their_box() {
     match wall {
         Some(Hit::Voxel(v)) => {
             assert_eq!((v.cell, v.normal), ([wx, wy, wz], [-1, 0, 0]));
-            assert_eq!(v.neighbour(), Some([wx - 1, wy, wz]));
+            assert_eq!(v.neighbour(Extent::WINDOW), Some([wx - 1, wy, wz]));
         }
         other => panic!("expected the wall, got {other:?}"),
     }

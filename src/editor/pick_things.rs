@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use scene::{Background, Class, Form, Frame, GridSpec, Pose, Thing, ThingId};
+use scene::{Background, Class, Form, Frame, Pose, Thing, ThingId};
 
 use super::choose::is_inside;
 
@@ -77,7 +77,7 @@ pub fn things_in(background: &Background, inside: impl Fn(DVec2) -> bool) -> Vec
 /// The thing that a voxel of a frame shows: of its class, around it and not much lower than it.
 pub fn thing_of_voxel(frame: &Frame, background: &Background, [x, y, z]: [usize; 3]) -> Option<ThingId> {
     let class = Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)?;
-    let center = GridSpec::center(x, y, z);
+    let center = frame.extent().center(x, y, z);
     let p_m = ground_in_world(&frame.world_from_ego, center.truncate());
     let above_m = center.z - frame.layout.relief.height_m(center.truncate());
     let may = |t: &&Thing| {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::*;
 use scene::background::{Building, Line, LineKind, Post, PostKind, Tree, TreeKind};
-use scene::{BevLayout, VoxelGrid};
+use scene::{BevLayout, Extent, VoxelGrid};
 
 fn v(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
@@ -62,7 +62,7 @@ fn voxels_lead_to_their_thing_in_a_frame_that_has_driven_on() {
     // The world is 10 m behind and turned by 90 degrees: (x, y) of the ego frame is (10 - y, x) of the world.
     frame.world_from_ego = Pose::planar(10.0, 0.0, std::f64::consts::FRAC_PI_2);
     let mut voxel = |x: f64, y: f64, z: usize, class: Class| {
-        let [cx, cy] = GridSpec::column_at(x, y).expect("inside");
+        let [cx, cy] = Extent::WINDOW.column_at(x, y).expect("inside");
         frame.occupancy.set(cx, cy, z, class.id());
         thing_of_voxel(&frame, &all, [cx, cy, z])
     };

@@ -13,8 +13,7 @@ use scene::grid::NOT_PAINTED;
 use scene::raster::polygon_cells;
 use scene::shape::at_least;
 use scene::{
-    Background, BevLayout, Class, Form, Frame, GridSpec, Scene, SceneRev, Thing, ThingId, VoxelGrid,
-    VoxelPaint,
+    Background, BevLayout, Class, Extent, Form, Frame, Scene, SceneRev, Thing, ThingId, VoxelGrid, VoxelPaint,
 };
 use scene::{Edit, EditError};
 
@@ -163,11 +162,9 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
 
 /// Takes voxels of scenery that belong to no thing out of columns (none: of all) of the current frame and of its source.
 pub(super) fn clear_scenery(scene: &mut Scene, cells: Option<&[[usize; 2]]>) {
-    let all = || (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
-    let cells = cells.map_or_else(|| all().collect(), <[_]>::to_vec);
-    let kept = scene
-        .background
-        .in_extent(scene::Extent::WINDOW, &scene.frame().world_from_ego);
+    let extent = scene.frame().extent();
+    let cells = cells.map_or_else(|| extent.all_columns().collect(), <[_]>::to_vec);
+    let kept = scene.background.in_extent(extent, &scene.frame().world_from_ego);
     let mut frame = Frame::clone(scene.frame());
     let source = Arc::make_mut(&mut frame.source);
     let grids = [
@@ -192,13 +189,13 @@ fn clear_columns(
     kept: &[Thing],
 ) -> bool {
     // What the things' own forms account for, in these columns and their class.
-    let mut owned: BTreeMap<[usize; 2], [bool; GridSpec::NZ]> = BTreeMap::new();
+    let mut owned: BTreeMap<[usize; 2], [bool; Extent::NZ]> = BTreeMap::new();
     for thing in kept {
         let class = thing.form.class().id();
         for (at, voxels) in thing.columns(layout) {
             let own = owned.entry(at).or_default();
             let now = grid.column(at[0], at[1]);
-            for z in 0..GridSpec::NZ {
+            for z in 0..Extent::NZ {
                 own[z] |= voxels[z] != Class::FREE && (now[z] == voxels[z] || now[z] == class);
             }
         }
@@ -208,7 +205,7 @@ fn clear_columns(
     for &[x, y] in cells {
         let (own, locked) = (owned.get(&[x, y]), painted.column(x, y));
         let mut column = *grid.column(x, y);
-        for z in 0..GridSpec::NZ {
+        for z in 0..Extent::NZ {
             let scenery = [Class::Manmade.id(), Class::Vegetation.id()].contains(&column[z]);
             if scenery && locked[z] == NOT_PAINTED && !own.is_some_and(|own| own[z]) {
                 column[z] = Class::FREE;
@@ -226,14 +223,18 @@ fn clear_columns(
     changed
 }
 
-/// Columns of a frame, `[x * NY + y]`, whose voxels an edit of the background from `before` to `after` may change.
+/// Columns of a frame, `[x][y]`, whose voxels an edit of the background from `before` to `after` may change.
 pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -> Vec<bool> {
-    let mut out = vec![false; GridSpec::COLUMNS];
+    let extent = frame.extent();
+    let mut out = vec![false; extent.columns()];
     let changed = [only_in(before, after), only_in(after, before)].concat();
-    for thing in in_extent(frame.extent(), &changed, &frame.world_from_ego) {
+    for thing in in_extent(extent, &changed, &frame.world_from_ego) {
         let own = thing.columns(&frame.layout);
-        for [x, y] in with_margin(&own).into_iter().chain(grown_over(&thing)) {
-            out[x * GridSpec::NY + y] = true;
+        for [x, y] in with_margin(extent, &own)
+            .into_iter()
+            .chain(grown_over(extent, &thing))
+        {
+            out[extent.index(x, y)] = true;
         }
     }
     out
@@ -281,7 +282,7 @@ fn redraw(
 
 fn near(a: &Thing, b: &Thing) -> bool {
     let ((a_lo, a_hi), (b_lo, b_hi)) = (a.form.bounds_m(), b.form.bounds_m());
-    let reach = DVec2::splat(2.0 * GridSpec::VOXEL_M);
+    let reach = DVec2::splat(2.0 * Extent::VOXEL_M);
     a_lo.cmple(b_hi + reach).all() && b_lo.cmple(a_hi + reach).all()
 }
 
@@ -293,17 +294,18 @@ fn clear(
     cleared: &mut BTreeMap<[usize; 3], u8>,
 ) {
     let own = thing.columns(layout);
-    let mut around = with_margin(&own);
+    let extent = layout.extent();
+    let mut around = with_margin(extent, &own);
     let class = thing.form.class().id();
     let top = own
         .values()
         .filter_map(|c| c.iter().rposition(|v| *v != Class::FREE))
         .max();
-    let mut top = top.map_or(0, |z| (z + MARGIN).min(GridSpec::NZ - 1));
-    for [x, y] in grown_over(thing) {
+    let mut top = top.map_or(0, |z| (z + MARGIN).min(Extent::NZ - 1));
+    for [x, y] in grown_over(extent, thing) {
         let height_m = layout.relief.column_m(x, y) + thing.form.height_m();
-        let bin = GridSpec::to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
-        top = top.max((bin + MARGIN).min(GridSpec::NZ - 1));
+        let bin = extent.to_voxel_units(DVec3::Z * height_m).z.max(0.0) as usize;
+        top = top.max((bin + MARGIN).min(Extent::NZ - 1));
         around.insert([x, y]);
     }
     for [x, y] in around {
@@ -326,20 +328,20 @@ fn clear(
     }
 }
 
-fn with_margin(own: &Columns) -> BTreeSet<[usize; 2]> {
+fn with_margin(extent: Extent, own: &Columns) -> BTreeSet<[usize; 2]> {
     let around = own.keys().flat_map(|[x, y]| {
-        let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(GridSpec::NY - 1);
-        let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(GridSpec::NX - 1);
+        let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(extent.ny() - 1);
+        let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(extent.nx() - 1);
         xs.flat_map(move |x| ys.clone().map(move |y| [x, y]))
     });
     around.collect()
 }
 
 /// Columns of an area of shrubs: what grows there is the area's, whether one of the plants drawn for it stands there or not.
-fn grown_over(thing: &Thing) -> Vec<[usize; 2]> {
+fn grown_over(extent: Extent, thing: &Thing) -> Vec<[usize; 2]> {
     let mut out = Vec::new();
     if let Form::Shrubs(shrubs) = &thing.form {
-        polygon_cells(scene::Extent::WINDOW, &shrubs.outline_m, |x, y| out.push([x, y]));
+        polygon_cells(extent, &shrubs.outline_m, |x, y| out.push([x, y]));
     }
     out
 }
@@ -354,7 +356,7 @@ fn stamp(
     for ([x, y], voxels) in thing.columns(layout) {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);
-        for z in 0..GridSpec::NZ {
+        for z in 0..Extent::NZ {
             let taken = Class::from_id(column[z]).is_some_and(Class::is_object);
             if voxels[z] != Class::FREE && !taken && locked[z] == NOT_PAINTED && wanted([x, y, z]) {
                 column[z] = voxels[z];

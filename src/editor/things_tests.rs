@@ -53,10 +53,10 @@ fn scene(relief: Relief) -> Scene {
 }
 
 fn columns_changed(a: &VoxelGrid, b: &VoxelGrid) -> Vec<DVec2> {
-    let all = (0..GridSpec::COLUMNS).map(|c| (c / GridSpec::NY, c % GridSpec::NY));
+    let all = Extent::WINDOW.all_columns().map(|[x, y]| (x, y));
     let changed = all.filter(|(x, y)| a.column(*x, *y) != b.column(*x, *y));
     changed
-        .map(|(x, y)| GridSpec::center(x, y, 0).truncate())
+        .map(|(x, y)| Extent::WINDOW.center(x, y, 0).truncate())
         .collect()
 }
 
@@ -65,7 +65,7 @@ fn columns_changed(a: &VoxelGrid, b: &VoxelGrid) -> Vec<DVec2> {
 fn edits_of_things_are_local_and_undoable() {
     for relief in [
         Relief::FLAT,
-        Relief::from_fn(scene::Extent::WINDOW, |p| 0.03 * p.x + 0.02 * p.y),
+        Relief::from_fn(Extent::WINDOW, |p| 0.03 * p.x + 0.02 * p.y),
     ] {
         let mut doc = Document::new(scene(relief));
         let empty = doc.scene().frame().occupancy.clone();
@@ -177,7 +177,7 @@ fn every_frame_of_a_clip_follows_in_its_own_coordinates() {
             .iter_set()
             .filter(|v| v.3 == Class::Vegetation.id());
         let (n, sum) = plants.fold((0, 0.0), |(n, sum), v| {
-            (n + 1, sum + GridSpec::center(v.0, v.1, v.2).x)
+            (n + 1, sum + Extent::WINDOW.center(v.0, v.1, v.2).x)
         });
         assert!(n > 30 && (sum / f64::from(n) - x).abs() < 0.5, "{n} {sum}");
     }
@@ -306,9 +306,9 @@ fn shrubs_go_with_all_their_ground() {
     )
     .expect("sound");
     let columns = |lo: f64, hi: f64| {
-        let all = (0..GridSpec::COLUMNS).map(|c| [c / GridSpec::NY, c % GridSpec::NY]);
+        let all = Extent::WINDOW.all_columns();
         all.filter(move |[x, y]| {
-            let p = GridSpec::center(*x, *y, 0);
+            let p = Extent::WINDOW.center(*x, *y, 0);
             (10.0..16.0).contains(&p.x) && (lo..hi).contains(&p.y)
         })
     };

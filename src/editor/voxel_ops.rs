@@ -5,28 +5,23 @@ use std::collections::BTreeMap;
 
 use glam::IVec3;
 
-use scene::{Class, Frame, GridSpec, VoxelGrid};
+use scene::{Class, Extent, Frame, VoxelGrid};
 
 use super::Edit;
 
 /// Index of a voxel `[x, y, z]`.
 pub type Cell = [usize; 3];
 
-const SIZE: Cell = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
-
-fn flat([x, y, z]: Cell) -> usize {
-    (x * GridSpec::NY + y) * GridSpec::NZ + z
+fn holds(extent: Extent, [x, y, z]: Cell) -> bool {
+    extent.holds(x, y) && z < Extent::NZ
 }
 
-fn unflat(i: usize) -> Cell {
-    let column = i / GridSpec::NZ;
-    [column / GridSpec::NY, column % GridSpec::NY, i % GridSpec::NZ]
-}
-
-fn cell_at(p: IVec3) -> Option<Cell> {
-    let p = p.to_array();
-    let inside = (0..3).all(|a| p[a] >= 0 && (p[a] as usize) < SIZE[a]);
-    inside.then(|| p.map(|v| v as usize))
+fn cell_at(extent: Extent, p: IVec3) -> Option<Cell> {
+    let cell = p.to_array().map(usize::try_from);
+    match cell {
+        [Ok(x), Ok(y), Ok(z)] => Some([x, y, z]).filter(|c| holds(extent, *c)),
+        _ => None,
+    }
 }
 
 fn ivec(c: Cell) -> IVec3 {
@@ -34,9 +29,10 @@ fn ivec(c: Cell) -> IVec3 {
 }
 
 /// Every voxel between two corners, both included; corners outside are moved to the rim.
-pub fn between(a: Cell, b: Cell) -> Vec<Cell> {
-    let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(SIZE[i] - 1));
-    let high = [0, 1, 2].map(|i| a[i].max(b[i]).min(SIZE[i] - 1));
+pub fn between(extent: Extent, a: Cell, b: Cell) -> Vec<Cell> {
+    let size = extent.shape();
+    let low = [0, 1, 2].map(|i| a[i].min(b[i]).min(size[i] - 1));
+    let high = [0, 1, 2].map(|i| a[i].max(b[i]).min(size[i] - 1));
     let mut cells = Vec::new();
     for x in low[0]..=high[0] {
         for y in low[1]..=high[1] {
@@ -48,10 +44,10 @@ pub fn between(a: Cell, b: Cell) -> Vec<Cell> {
 
 /// The voxels from one to another along a straight line, each `size` wide, connected by faces, edges or
 /// corners; as many steps as the longest side.
-pub fn line(a: Cell, b: Cell, size: usize) -> Vec<Cell> {
+pub fn line(extent: Extent, a: Cell, b: Cell, size: usize) -> Vec<Cell> {
     let (a, b) = (ivec(a).as_dvec3(), ivec(b).as_dvec3());
     let steps = (b - a).abs().max_element().min(1e4);
-    let size = size.clamp(1, GridSpec::NZ) as i32;
+    let size = size.clamp(1, Extent::NZ) as i32;
     let low = (size - 1) / 2;
     let mut cells = Vec::new();
     for i in 0..=steps as usize {
@@ -60,7 +56,7 @@ pub fn line(a: Cell, b: Cell, size: usize) -> Vec<Cell> {
         for x in 0..size {
             for y in 0..size {
                 for z in 0..size {
-                    cells.extend(cell_at(at + IVec3::new(x - low, y - low, z)));
+                    cells.extend(cell_at(extent, at + IVec3::new(x - low, y - low, z)));
                 }
             }
         }
@@ -76,33 +72,56 @@ fn tidy(mut cells: Vec<Cell>) -> Vec<Cell> {
 
 /// Voxels of one class that connect to `start` by faces; empty for a free one or one outside the grid.
 pub fn connected(grid: &VoxelGrid, start: Cell) -> Vec<Cell> {
-    if (0..3).any(|a| start[a] >= SIZE[a]) {
+    let extent = grid.extent();
+    if !holds(extent, start) {
         return Vec::new();
     }
-    let class = grid.get(start[0], start[1], start[2]);
+    let [x, y, z] = start;
+    let class = grid.get(x, y, z);
     if class == Class::FREE {
         return Vec::new();
     }
-    let dense = grid.to_dense();
-    let mut seen = vec![false; GridSpec::VOXELS];
-    let mut open = vec![flat(start)];
-    seen[open[0]] = true;
-    while let Some(i) = open.pop() {
-        let [x, y, z] = unflat(i);
-        let mut visit = |there: bool, j: usize| {
-            if there && !seen[j] && dense[j] == class {
-                seen[j] = true;
-                open.push(j);
-            }
-        };
-        visit(z > 0, i.wrapping_sub(1));
-        visit(z + 1 < GridSpec::NZ, i + 1);
-        visit(y > 0, i.wrapping_sub(GridSpec::NZ));
-        visit(y + 1 < GridSpec::NY, i + GridSpec::NZ);
-        visit(x > 0, i.wrapping_sub(GridSpec::NZ * GridSpec::NY));
-        visit(x + 1 < GridSpec::NX, i + GridSpec::NZ * GridSpec::NY);
+    // Whole runs of a column at once, one bit per voxel.
+    let mut seen = vec![0u16; extent.columns()];
+    let mut open = vec![([x, y], 1u16 << z)];
+    while let Some(([x, y], touched)) = open.pop() {
+        let column = grid.column(x, y).iter().enumerate();
+        let own = column.fold(0, |word, (z, v)| word | u16::from(*v == class) << z);
+        let seen = &mut seen[extent.index(x, y)];
+        let new = runs(touched, own) & !*seen;
+        if new == 0 {
+            continue;
+        }
+        *seen |= new;
+        let sides = [
+            [x.wrapping_sub(1), y],
+            [x + 1, y],
+            [x, y.wrapping_sub(1)],
+            [x, y + 1],
+        ];
+        let inside = sides.into_iter().filter(|[x, y]| extent.holds(*x, *y));
+        open.extend(inside.map(|side| (side, new)));
     }
-    (0..GridSpec::VOXELS).filter(|i| seen[*i]).map(unflat).collect()
+    let mut cells = Vec::new();
+    for ([x, y], word) in extent.all_columns().zip(seen) {
+        if word != 0 {
+            let set = (0..Extent::NZ).filter(|z| word >> z & 1 == 1);
+            cells.extend(set.map(|z| [x, y, z]));
+        }
+    }
+    cells
+}
+
+/// The runs of `within` that a word touches.
+fn runs(touched: u16, within: u16) -> u16 {
+    let mut bits = touched & within;
+    loop {
+        let spread = (bits | bits << 1 | bits >> 1) & within;
+        if spread == bits {
+            return bits;
+        }
+        bits = spread;
+    }
 }
 
 /// The face that a voxel is part of: voxels of its class in one plane, connected by sides, each with nothing
@@ -112,31 +131,35 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
     let Some(axis) = (0..3).find(|a| normal[*a].abs() == 1 && normal.abs().element_sum() == 1) else {
         return Vec::new();
     };
-    if (0..3).any(|a| start[a] >= SIZE[a]) {
+    let extent = grid.extent();
+    if !holds(extent, start) {
         return Vec::new();
     }
     let get = |c: Cell| grid.get(c[0], c[1], c[2]);
     let class = get(start);
     // The rim of the grid is open too: the face shows there.
-    let shows =
-        |c: Cell| get(c) == class && cell_at(ivec(c) + normal).is_none_or(|front| get(front) == Class::FREE);
+    let shows = |c: Cell| {
+        get(c) == class && cell_at(extent, ivec(c) + normal).is_none_or(|front| get(front) == Class::FREE)
+    };
     if class == Class::FREE || !shows(start) {
         return Vec::new();
     }
     let mut sides = [IVec3::X, IVec3::Y, IVec3::Z].to_vec();
     sides.remove(axis);
-    let mut seen = vec![false; GridSpec::VOXELS];
+    let mut seen = vec![0u16; extent.columns()];
     let mut open = vec![start];
-    seen[flat(start)] = true;
+    seen[extent.index(start[0], start[1])] = 1 << start[2];
     let mut cells = Vec::new();
     while let Some(c) = open.pop() {
         cells.push(c);
         for step in sides.iter().flat_map(|s| [*s, -*s]) {
-            if let Some(next) = cell_at(ivec(c) + step)
-                && !seen[flat(next)]
+            if let Some(next) = cell_at(extent, ivec(c) + step)
+                && let [x, y, z] = next
+                && let word = &mut seen[extent.index(x, y)]
+                && *word >> z & 1 == 0
                 && shows(next)
             {
-                seen[flat(next)] = true;
+                *word |= 1 << z;
                 open.push(next);
             }
         }
@@ -148,44 +171,53 @@ pub fn face(grid: &VoxelGrid, start: Cell, normal: [i32; 3]) -> Vec<Cell> {
 /// the first that is not free), or, for negative layers, the voxels to be taken away.
 pub fn extrude(grid: &VoxelGrid, face: &[Cell], normal: [i32; 3], layers: i32) -> Vec<Cell> {
     let normal = IVec3::from_array(normal);
-    let limit = GridSpec::NX as i32;
+    let extent = grid.extent();
+    let limit = extent.nx().max(extent.ny()) as i32;
     let layers = layers.clamp(-limit, limit);
     let mut cells = Vec::new();
     for &c in face {
         if layers > 0 {
-            let front = (1..=layers).map_while(|i| cell_at(ivec(c) + normal * i));
+            let front = (1..=layers).map_while(|i| cell_at(extent, ivec(c) + normal * i));
             cells.extend(front.take_while(|c| grid.get(c[0], c[1], c[2]) == Class::FREE));
         } else {
-            let behind = (0..-layers).map_while(|i| cell_at(ivec(c) - normal * i));
+            let behind = (0..-layers).map_while(|i| cell_at(extent, ivec(c) - normal * i));
             cells.extend(behind.take_while(|c| grid.get(c[0], c[1], c[2]) != Class::FREE));
         }
     }
     tidy(cells)
 }
 
-/// The voxels and their mirror images about the ego x axis.
-pub fn mirrored(cells: &[Cell]) -> Vec<Cell> {
-    let image = |[x, y, z]: &Cell| [*x, GridSpec::NY - 1 - (*y).min(GridSpec::NY - 1), *z];
-    tidy(cells.iter().copied().chain(cells.iter().map(image)).collect())
+/// The voxels and their mirror images about the ego x axis, as far as the map has them.
+pub fn mirrored(extent: Extent, cells: &[Cell]) -> Vec<Cell> {
+    // Columns count from the lower corner, which lies to the right of the axis or to the left.
+    let sum = -1 - 2 * i64::from(extent.from()[1]);
+    let image = |[x, y, z]: &Cell| {
+        let y = usize::try_from(sum - *y as i64).ok()?;
+        (y < extent.ny()).then_some([*x, y, *z])
+    };
+    tidy(
+        cells
+            .iter()
+            .copied()
+            .chain(cells.iter().filter_map(image))
+            .collect(),
+    )
 }
 
 /// Only the free voxels, or only those that are not; those outside the grid go.
 pub fn only(grid: &VoxelGrid, cells: Vec<Cell>, free: bool) -> Vec<Cell> {
-    let fits =
-        |c: &Cell| (0..3).all(|a| c[a] < SIZE[a]) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free;
+    let extent = grid.extent();
+    let fits = |c: &Cell| holds(extent, *c) && (grid.get(c[0], c[1], c[2]) == Class::FREE) == free;
     cells.into_iter().filter(fits).collect()
 }
 
 /// Edits that lock voxels as they are: each is painted in the class that it has.
 pub fn lock(frame: &Frame, cells: &[Cell]) -> Vec<Edit> {
     let mut by_class: BTreeMap<u8, Vec<Cell>> = BTreeMap::new();
-    for &[x, y, z] in cells {
-        if let Some([x, y, z]) = cell_at(ivec([x, y, z])) {
-            by_class
-                .entry(frame.occupancy.get(x, y, z))
-                .or_default()
-                .push([x, y, z]);
-        }
+    let extent = frame.occupancy.extent();
+    for &[x, y, z] in cells.iter().filter(|c| holds(extent, **c)) {
+        let class = frame.occupancy.get(x, y, z);
+        by_class.entry(class).or_default().push([x, y, z]);
     }
     let edit =
         |(id, cells): (u8, Vec<Cell>)| Class::from_id(id).map(|class| Edit::PaintVoxels { cells, class });
@@ -203,10 +235,10 @@ mod tests {
     fn grid() -> VoxelGrid {
         let mut grid = VoxelGrid::new();
         // A wall of 4 x 1 x 3 with a hole in its top row, on ground of 10 x 10.
-        for [x, y, z] in between([100, 100, 0], [109, 109, 0]) {
+        for [x, y, z] in between(Extent::WINDOW, [100, 100, 0], [109, 109, 0]) {
             grid.set(x, y, z, Class::Terrain.id());
         }
-        for [x, y, z] in between([102, 103, 1], [105, 103, 3]) {
+        for [x, y, z] in between(Extent::WINDOW, [102, 103, 1], [105, 103, 3]) {
             grid.set(x, y, z, Class::Manmade.id());
         }
         grid.set(104, 103, 3, Class::FREE);
@@ -215,17 +247,20 @@ mod tests {
 
     #[test]
     fn boxes_and_lines() {
-        assert_eq!(between([5, 7, 2], [3, 9, 2]).len(), 9);
-        assert_eq!(between([0; 3], [usize::MAX; 3]).len(), GridSpec::VOXELS);
-        let diagonal = line([0, 0, 0], [9, 4, 2], 1);
+        assert_eq!(between(Extent::WINDOW, [5, 7, 2], [3, 9, 2]).len(), 9);
+        assert_eq!(
+            between(Extent::WINDOW, [0; 3], [usize::MAX; 3]).len(),
+            Extent::WINDOW.voxels()
+        );
+        let diagonal = line(Extent::WINDOW, [0, 0, 0], [9, 4, 2], 1);
         assert_eq!(diagonal.len(), 10);
         assert!(diagonal.contains(&[9, 4, 2]) && diagonal.contains(&[0, 0, 0]));
         for pair in diagonal.windows(2) {
             assert!((ivec(pair[1]) - ivec(pair[0])).abs().max_element() == 1);
         }
-        assert_eq!(line([3, 3, 3], [3, 3, 3], 1), [[3, 3, 3]]);
+        assert_eq!(line(Extent::WINDOW, [3, 3, 3], [3, 3, 3], 1), [[3, 3, 3]]);
         // A thick one is cut at the rim.
-        assert_eq!(line([0, 0, 15], [0, 0, 15], 3).len(), 2 * 2);
+        assert_eq!(line(Extent::WINDOW, [0, 0, 15], [0, 0, 15], 3).len(), 2 * 2);
     }
 
     #[test]
@@ -263,9 +298,9 @@ mod tests {
 
     #[test]
     fn mirror_images_and_filters() {
-        assert_eq!(mirrored(&[[3, 0, 1]]), [[3, 0, 1], [3, 199, 1]]);
+        assert_eq!(mirrored(Extent::WINDOW, &[[3, 0, 1]]), [[3, 0, 1], [3, 199, 1]]);
         let grid = grid();
-        let cells = between([100, 103, 0], [109, 103, 3]);
+        let cells = between(Extent::WINDOW, [100, 103, 0], [109, 103, 3]);
         assert_eq!(only(&grid, cells.clone(), false).len(), 10 + 11);
         assert_eq!(only(&grid, cells, true).len(), 40 - 21);
         assert!(only(&grid, vec![[500, 0, 0]], true).is_empty());
@@ -281,12 +316,15 @@ mod tests {
         document.apply_all("Lock", &locks).expect("sound");
         assert_eq!(document.scene().frame().occupancy, before);
         assert_eq!(document.scene().frame().painted.count_set(), 11);
-        let cells = between([0; 3], [usize::MAX; 3]);
+        let cells = between(Extent::WINDOW, [0; 3], [usize::MAX; 3]);
         let class = Class::Manmade;
         document
             .apply("Fill", &Edit::PaintVoxels { cells, class })
             .expect("sound");
-        assert_eq!(document.scene().frame().occupancy.count_set(), GridSpec::VOXELS);
+        assert_eq!(
+            document.scene().frame().occupancy.count_set(),
+            Extent::WINDOW.voxels()
+        );
         assert_eq!(document.undo(), Some("Fill"));
         assert_eq!(document.scene().frame().occupancy, before);
     }

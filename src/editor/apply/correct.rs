@@ -73,7 +73,7 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
             }
         }
         Edit::PaintBev { layer, shape, value } => {
-            let mut cells = shape.cells(scene::Extent::WINDOW)?;
+            let mut cells = shape.cells(source.layout.extent())?;
             if !value {
                 junction::cut_lines(&mut source.layout, *layer, &cells);
             }

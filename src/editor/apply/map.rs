@@ -15,7 +15,7 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
             if layer.is_object() {
                 return Err(EditError::ObjectLayer(*layer));
             }
-            let mut cells = shape.cells(scene::Extent::WINDOW)?;
+            let mut cells = shape.cells(frame.extent())?;
             if !value {
                 junction::cut_lines(&mut frame.layout, *layer, &cells);
             }

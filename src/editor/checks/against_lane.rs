@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::lanes::{gap_deg, near};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
-use scene::{BevLayer, Class, GridSpec, SceneBox};
+use scene::{BevLayer, Class, SceneBox};
 
 pub const NAME: &str = "against_lane";
 /// A vehicle is on a lane if its centre is this near to the lane's middle, m: half a lane.
@@ -21,7 +21,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     for b in context.boxes.iter().filter(|b| on_wheels(b.class)) {
         let p = b.center_m.truncate();
         // In a car park vehicles stand as the places do, and where works block the road machines as they need.
-        let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
+        let Some([x, y]) = layout.extent().column_at(p.x, p.y) else {
             continue;
         };
         let cell = layout.cell(x, y);

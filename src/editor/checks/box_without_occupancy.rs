@@ -4,7 +4,7 @@ use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use scene::draft::box_columns;
 use scene::raster::box_cells;
-use scene::{GridSpec, SceneBox, VoxelGrid};
+use scene::{Extent, SceneBox, VoxelGrid};
 
 pub const NAME: &str = "box_without_occupancy";
 /// Voxels this far outside a box still belong to it, m.
@@ -13,7 +13,7 @@ const MARGIN_M: f64 = 0.3;
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let grid = &context.frame.occupancy;
     for b in &context.boxes {
-        let columns = box_columns(scene::Extent::WINDOW, b);
+        let columns = box_columns(grid.extent(), b);
         // A box outside the grid cannot have voxels.
         if columns.is_empty() || voxels(grid, b) > 0 {
             continue;
@@ -47,13 +47,14 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 
 /// Voxels of a box's class in the columns of its footprint, up to its top.
 pub fn voxels(grid: &VoxelGrid, b: &SceneBox) -> usize {
-    let top_m = b.center_m.z + b.size_m.z / 2.0 + GridSpec::VOXEL_M;
+    let extent = grid.extent();
+    let top_m = b.center_m.z + b.size_m.z / 2.0 + Extent::VOXEL_M;
     let mut count = 0;
-    box_cells(scene::Extent::WINDOW, b, MARGIN_M, |x, y| {
+    box_cells(extent, b, MARGIN_M, |x, y| {
         let column = grid.column(x, y).iter().enumerate();
         count += column
             .filter(|(z, l)| {
-                **l == b.class.id() && GridSpec::center(x, y, *z).z <= top_m.max(GridSpec::MIN_M[2] + 0.4)
+                **l == b.class.id() && extent.center(x, y, *z).z <= top_m.max(Extent::BOTTOM_M + 0.4)
             })
             .count();
     });

@@ -3,7 +3,7 @@
 use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
 use scene::support::{CROWN, bins_set, groups, is_known_to_float, main_class, stem};
-use scene::{Class, GridSpec};
+use scene::{Class, Extent};
 
 pub const NAME: &str = "floating_voxels";
 /// Groups that are listed one by one, the largest; the rest is one finding.
@@ -11,12 +11,12 @@ const LISTED: usize = 40;
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
-    let bits = context.bits();
+    let (extent, bits) = (frame.extent(), context.bits());
     let mut cells = Vec::new();
     for (c, (all, stands)) in bits.occupied.iter().zip(&bits.supported).enumerate() {
-        cells.extend(bins_set(scene::Extent::WINDOW, c, all & !stands));
+        cells.extend(bins_set(extent, c, all & !stands));
     }
-    let mut groups: Vec<_> = groups(scene::Extent::WINDOW, cells)
+    let mut groups: Vec<_> = groups(extent, cells)
         .into_iter()
         .filter(|g| is_known_to_float(&frame.occupancy, frame.inferred.unobserved.as_ref(), g))
         .collect();
@@ -29,7 +29,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let remove = |cells: Vec<[usize; 3]>| paint("Remove floating voxels", cells, Class::Free);
     for group in groups {
         let class = main_class(&frame.occupancy, &group);
-        let above_m = lowest_m(&group);
+        let above_m = lowest_m(extent, &group);
         let text = match group.len() {
             1 => format!(
                 "A voxel of {} floats {above_m:.1} m above the ground",
@@ -43,7 +43,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         out.push(Finding {
             check: NAME,
             severity: Severity::Warning,
-            where_m: middle(&group),
+            where_m: middle(extent, &group),
             box_id: None,
             cells: group.clone(),
             text,
@@ -58,7 +58,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         });
     }
     if let Some(first) = rest.first() {
-        let where_m = middle(first);
+        let where_m = middle(extent, first);
         let count = rest.len();
         let cells: Vec<_> = rest.into_iter().flatten().collect();
         out.push(Finding {
@@ -74,7 +74,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 }
 
 /// Lower face of the lowest voxel above the ground's surface, m.
-pub fn lowest_m(group: &[[usize; 3]]) -> f64 {
+pub fn lowest_m(extent: Extent, group: &[[usize; 3]]) -> f64 {
     let lowest = group.iter().map(|c| c[2]).min().unwrap_or(0);
-    (GridSpec::center(0, 0, lowest).z - GridSpec::VOXEL_M / 2.0).max(0.0)
+    (extent.center(0, 0, lowest).z - Extent::VOXEL_M / 2.0).max(0.0)
 }

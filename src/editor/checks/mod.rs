@@ -25,7 +25,7 @@ use super::Edit;
 use findings::Findings;
 pub use findings::MOST;
 use scene::draft::{ground_bin, ground_class};
-use scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, support};
+use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -178,11 +178,12 @@ fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> 
 impl Context<'_> {
     fn bits(&self) -> &Bits {
         self.bits.get_or_init(|| {
+            let extent = self.frame.extent();
             let by_class = support::by_class(&self.frame.occupancy);
             let occupied = support::occupied(&self.frame.occupancy);
-            let ground = support::ground(scene::Extent::WINDOW, &by_class);
+            let ground = support::ground(extent, &by_class);
             Bits {
-                supported: support::supported(scene::Extent::WINDOW, &occupied, &ground),
+                supported: support::supported(extent, &occupied, &ground),
                 by_class,
                 occupied,
                 ground,
@@ -220,8 +221,8 @@ fn removal(frame: &Frame, cells: &[[usize; 3]]) -> Vec<Edit> {
 }
 
 /// Mean of the centres of voxels, ego frame, m; the origin for none.
-fn middle(cells: &[[usize; 3]]) -> DVec3 {
-    let sum: DVec3 = cells.iter().map(|&[x, y, z]| GridSpec::center(x, y, z)).sum();
+fn middle(extent: Extent, cells: &[[usize; 3]]) -> DVec3 {
+    let sum: DVec3 = cells.iter().map(|&[x, y, z]| extent.center(x, y, z)).sum();
     sum / (cells.len().max(1) as f64)
 }
 

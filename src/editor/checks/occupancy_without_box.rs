@@ -3,7 +3,7 @@
 use super::{Context, Finding, Findings, Fix, MOST, Severity, middle, removal};
 use crate::Edit;
 use scene::raster::box_cells;
-use scene::{Class, GridSpec, infer, support};
+use scene::{Class, Extent, infer, support};
 
 pub const NAME: &str = "occupancy_without_box";
 /// Voxels this far outside a box still belong to it, m: networks draw objects up to a voxel and a half too wide.
@@ -15,24 +15,25 @@ const MOST_BOXES: usize = 64;
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
+    let extent = frame.extent();
     // Bit per class: columns in which it is explained by a box.
-    let mut explained = vec![0u32; GridSpec::COLUMNS];
+    let mut explained = vec![0u32; extent.columns()];
     for b in &context.boxes {
-        box_cells(scene::Extent::WINDOW, b, MARGIN_M, |x, y| {
-            explained[x * GridSpec::NY + y] |= 1 << b.class.id()
+        box_cells(extent, b, MARGIN_M, |x, y| {
+            explained[extent.index(x, y)] |= 1 << b.class.id()
         });
     }
     let mut left: Vec<Vec<[usize; 3]>> = vec![Vec::new(); Class::COUNT];
     for (x, y, z, label) in frame.occupancy.iter_set() {
         let is_object = Class::from_id(label).is_some_and(Class::is_object);
-        if is_object && explained[x * GridSpec::NY + y] >> label & 1 == 0 {
+        if is_object && explained[extent.index(x, y)] >> label & 1 == 0 {
             left[label as usize].push([x, y, z]);
         }
     }
     let mut groups: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     for class in Class::OBJECTS {
         let cells = std::mem::take(&mut left[class as usize]);
-        let of_class = support::groups(scene::Extent::WINDOW, cells).into_iter();
+        let of_class = support::groups(extent, cells).into_iter();
         groups.extend(of_class.filter(|g| g.len() >= LEAST_VOXELS).map(|g| (class, g)));
     }
     if groups.len() > MOST {
@@ -41,13 +42,13 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     }
     for (class, group) in groups {
         if out.is_full() {
-            out.count(Severity::Warning, middle(&group));
+            out.count(Severity::Warning, middle(extent, &group));
             continue;
         }
         out.push(Finding {
             check: NAME,
             severity: Severity::Warning,
-            where_m: middle(&group),
+            where_m: middle(extent, &group),
             box_id: None,
             cells: group.clone(),
             text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
@@ -71,10 +72,12 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 /// Boxes around the voxels, as a correction: the voxels stay as they are.
 fn boxes_for(context: &Context<'_>, class: Class, group: &[[usize; 3]]) -> Vec<Edit> {
     let found = infer::boxes_around(class, group);
+    // These count columns from the window's corner.
+    let shift_m = Extent::WINDOW.min_m() - context.frame.extent().min_m();
     let add = |b: scene::SceneBox| Edit::Correct {
         edit: Box::new(Edit::AddBox {
             class,
-            center_m: b.center_m,
+            center_m: b.center_m - shift_m,
             size_m: b.size_m,
             yaw_deg: b.yaw_rad.to_degrees(),
             velocity_mps: None,

@@ -1,11 +1,13 @@
 //! Vehicles that do not stand on a road or a car park; cones, barriers and machines of works that stand far from any.
 
+use glam::DVec2;
+
 use super::geometry::{shared_area_m2, shared_height_m};
 use super::lanes::nearest;
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
 use scene::raster::box_cells;
-use scene::{BevLayer, BevLayout, Class, GridSpec, SceneBox};
+use scene::{BevLayer, BevLayout, Class, SceneBox};
 
 pub const NAME: &str = "off_road";
 /// A vehicle is on the road if at least this share of its footprint is.
@@ -56,7 +58,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 /// What is wrong with a vehicle's place, if anything is.
 fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
     let (mut cells, mut on) = (0usize, 0usize);
-    box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+    box_cells(layout.extent(), b, 0.0, |x, y| {
         cells += 1;
         on += usize::from(layout.cell(x, y) & ROAD != 0);
     });
@@ -74,7 +76,7 @@ fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
 fn is_off_paved(layout: &BevLayout, b: &SceneBox) -> bool {
     let paved = ROAD | BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
     let (mut cells, mut on) = (0usize, false);
-    box_cells(scene::Extent::WINDOW, b, 0.0, |x, y| {
+    box_cells(layout.extent(), b, 0.0, |x, y| {
         cells += 1;
         on |= layout.cell(x, y) & paved != 0;
     });
@@ -94,13 +96,15 @@ fn onto_lane(context: &Context<'_>, b: &SceneBox) -> Option<Fix> {
 
 /// The nearest road cell, heading as it is, if nothing stands there.
 fn onto_road(context: &Context<'_>, b: &SceneBox) -> Option<Fix> {
-    let place = |c: usize| GridSpec::center(c / GridSpec::NY, c % GridSpec::NY, 0).truncate();
-    let off = |c: &usize| place(*c).distance_squared(b.center_m.truncate());
-    let cells = context.frame.layout.cells().iter().enumerate();
-    let road = cells.filter(|(_, bits)| **bits & ROAD != 0).map(|(c, _)| c);
-    let nearest = road.min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let layout = &context.frame.layout;
+    let extent = layout.extent();
+    let off = |p: &DVec2| p.distance_squared(b.center_m.truncate());
+    let cells = extent.all_columns().zip(layout.cells());
+    let road = cells.filter(|(_, bits)| **bits & ROAD != 0);
+    let places = road.map(|([x, y], _)| extent.center(x, y, 0).truncate());
+    let nearest = places.min_by(|a, b| off(a).total_cmp(&off(b)))?;
     let moved = SceneBox {
-        center_m: place(nearest).extend(b.center_m.z),
+        center_m: nearest.extend(b.center_m.z),
         ..*b
     };
     moved_to(context, &moved, "Move to the road")

@@ -2,7 +2,7 @@
 
 use super::{Context, Finding, Findings, Fix, Severity, middle, removal};
 use scene::support::{bins_set, groups, main_class, supported};
-use scene::{BevLayer, BevLayout, Class, GridSpec};
+use scene::{BevLayer, BevLayout, Class, Extent};
 
 pub const NAME: &str = "on_the_road";
 /// What reaches down to so many bins above the ground stands in the way. In labels, whose voxels reach two bins further
@@ -18,21 +18,20 @@ const REACH: usize = 8;
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
     let (grid, layout) = (&frame.occupancy, &frame.layout);
-    let bits = context.bits();
+    let (extent, bits) = (frame.extent(), context.bits());
     // Runs of voxels that begin low on the road, and which of them are low.
-    let mut runs = vec![0u16; GridSpec::COLUMNS];
-    let mut low = vec![0u16; GridSpec::COLUMNS];
-    for c in 0..GridSpec::COLUMNS {
-        let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+    let mut runs = vec![0u16; extent.columns()];
+    let mut low = vec![0u16; extent.columns()];
+    for (c, [x, y]) in extent.all_columns().enumerate() {
         let of = |class: Class| bits.by_class[usize::from(class.id())].get(c).copied();
         let standing = of(Class::Manmade).unwrap_or(0) | of(Class::Vegetation).unwrap_or(0);
         if standing == 0 || !is_well_on_road(layout, x, y) {
             continue;
         }
-        let foot = foot(&bits.ground, x, y);
+        let foot = foot(extent, &bits.ground, x, y);
         low[c] = standing & (((1u32 << (LOW_BINS + 1)) - 1) << foot) as u16;
         runs[c] = low[c];
-        for z in 1..GridSpec::NZ {
+        for z in 1..Extent::NZ {
             runs[c] |= standing & 1 << z & (runs[c] & 1 << (z - 1)) << 1;
         }
     }
@@ -46,17 +45,17 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         .zip(&runs)
         .map(|(all, run)| all & !run)
         .collect();
-    let after = supported(scene::Extent::WINDOW, &without, &bits.ground);
+    let after = supported(extent, &without, &bits.ground);
     let mut cells = Vec::new();
-    for c in 0..GridSpec::COLUMNS {
+    for c in 0..extent.columns() {
         cells.extend(bins_set(
-            scene::Extent::WINDOW,
+            extent,
             c,
             runs[c] | (bits.supported[c] & !after[c] & without[c]),
         ));
     }
-    let is_low = |[x, y, z]: &&[usize; 3]| low[x * GridSpec::NY + y] >> z & 1 == 1;
-    let mut groups = groups(scene::Extent::WINDOW, cells);
+    let is_low = |[x, y, z]: &&[usize; 3]| low[extent.index(*x, *y)] >> z & 1 == 1;
+    let mut groups = groups(extent, cells);
     groups.retain(|g| g.iter().filter(is_low).count() >= LEAST_VOXELS);
     groups.sort_by_key(|g| std::cmp::Reverse(g.len()));
     let rest = groups.split_off(groups.len().min(LISTED));
@@ -77,10 +76,10 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     for group in groups {
         let class = main_class(grid, &group).label();
         let text = format!("{} voxels of {class} stand on the road", group.len());
-        report(text, middle(&group), group);
+        report(text, middle(extent, &group), group);
     }
     if let Some(first) = rest.first() {
-        let (where_m, count) = (middle(first), rest.len());
+        let (where_m, count) = (middle(extent, first), rest.len());
         let cells: Vec<_> = rest.into_iter().flatten().collect();
         let text = format!("{count} smaller things stand on the road, {} voxels", cells.len());
         report(text, where_m, cells);
@@ -94,18 +93,19 @@ fn is_well_on_road(layout: &BevLayout, x: usize, y: usize) -> bool {
         let drivable = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         cell & drivable != 0 && cell & BevLayer::RoadBlock.bit() == 0
     };
-    let xs = x.saturating_sub(1)..=(x + 1).min(GridSpec::NX - 1);
-    let ys = y.saturating_sub(1)..=(y + 1).min(GridSpec::NY - 1);
+    let extent = layout.extent();
+    let xs = x.saturating_sub(1)..=(x + 1).min(extent.nx() - 1);
+    let ys = y.saturating_sub(1)..=(y + 1).min(extent.ny() - 1);
     xs.into_iter()
         .all(|i| ys.clone().all(|j| road(layout.cell(i, j))))
 }
 
 /// Bin of the ground in a column or, where a thing covers it, of the nearest column that shows any; else the lowest bin.
-fn foot(ground: &[u16], x: usize, y: usize) -> u32 {
+fn foot(extent: Extent, ground: &[u16], x: usize, y: usize) -> u32 {
     for reach in 0..=REACH {
-        let xs = x.saturating_sub(reach)..=(x + reach).min(GridSpec::NX - 1);
-        let ys = y.saturating_sub(reach)..=(y + reach).min(GridSpec::NY - 1);
-        let bins = xs.flat_map(|i| ys.clone().map(move |j| ground[i * GridSpec::NY + j]));
+        let xs = x.saturating_sub(reach)..=(x + reach).min(extent.nx() - 1);
+        let ys = y.saturating_sub(reach)..=(y + reach).min(extent.ny() - 1);
+        let bins = xs.flat_map(|i| ys.clone().map(move |j| ground[extent.index(i, j)]));
         if let Some(lowest) = bins.filter(|g| *g != 0).map(u16::trailing_zeros).min() {
             return lowest;
         }

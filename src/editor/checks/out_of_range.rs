@@ -2,7 +2,7 @@
 
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
-use scene::{GridSpec, SceneBox};
+use scene::{Extent, SceneBox};
 
 pub const NAME: &str = "out_of_range";
 /// How far a bottom may lie from the ground, m: it is known by the column, and boxes are level.
@@ -11,7 +11,7 @@ const TOLERANCE_M: f64 = 0.6;
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     for b in &context.boxes {
         let ground_m = context.frame.layout.relief.height_m(b.center_m.truncate());
-        let Some((severity, problem, may_drop)) = problem(b, ground_m) else {
+        let Some((severity, problem, may_drop)) = problem(context.frame.extent(), b, ground_m) else {
             continue;
         };
         let dropped = b.center_m.truncate().extend(ground_m + b.size_m.z / 2.0);
@@ -37,12 +37,12 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 }
 
 /// What is wrong with a box's place on ground of this height, and whether putting it on the ground helps.
-fn problem(b: &SceneBox, ground_m: f64) -> Option<(Severity, String, bool)> {
+fn problem(extent: Extent, b: &SceneBox, ground_m: f64) -> Option<(Severity, String, bool)> {
     let half_m = b.size_m.z / 2.0;
     let (bottom_m, top_m) = (b.center_m.z - half_m, b.center_m.z + half_m);
-    let (roof_m, fits) = (GridSpec::MAX_M[2], ground_m + b.size_m.z <= GridSpec::MAX_M[2]);
+    let (roof_m, fits) = (Extent::TOP_M, ground_m + b.size_m.z <= Extent::TOP_M);
     let center = b.center_m;
-    if GridSpec::column_at(center.x, center.y).is_none() {
+    if extent.column_at(center.x, center.y).is_none() {
         let text = format!("stands outside the map, at {:.1}, {:.1} m", center.x, center.y);
         return Some((Severity::Warning, text, false));
     }

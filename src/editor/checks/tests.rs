@@ -33,8 +33,8 @@ fn street(objects: &[SceneBox]) -> Scene {
         lane([(-40.0, -1.75), (40.0, -1.75)]),
         lane([(40.0, 1.75), (-40.0, 1.75)]),
     ];
-    let mut layout = BevLayout::from_cells(vec![0; GridSpec::COLUMNS], lanes).expect("40,000 cells");
-    for x in 0..GridSpec::NX {
+    let mut layout = BevLayout::from_cells(vec![0; Extent::WINDOW.columns()], lanes).expect("40,000 cells");
+    for x in 0..Extent::WINDOW.nx() {
         for y in 83..118 {
             layout.set(BevLayer::DrivableArea, x, y, true);
         }
@@ -116,7 +116,7 @@ fn floating_voxels_are_found_and_removed() {
         finding.text,
         "3 voxels of vegetation float 2.6 m above the ground"
     );
-    assert!(finding.where_m.distance(GridSpec::center(50, 50, 9)) < 1.0);
+    assert!(finding.where_m.distance(Extent::WINDOW.center(50, 50, 9)) < 1.0);
     // A stem makes it a tree.
     let stem = (1..9).map(|z| [50, 50, z]).collect();
     paint(&mut scene, Class::Vegetation, stem);
@@ -142,8 +142,8 @@ fn floating_voxels_are_found_and_removed() {
     let mut scene = street(&[]);
     paint(&mut scene, Class::Manmade, vec![[60, 60, 8]]);
     only(&scene, "floating_voxels", None);
-    let mut observed = vec![true; GridSpec::VOXELS];
-    observed[(60 * GridSpec::NY + 60) * GridSpec::NZ + 7] = false;
+    let mut observed = vec![true; Extent::WINDOW.voxels()];
+    observed[(Extent::WINDOW.index(60, 60)) * Extent::NZ + 7] = false;
     scene.frame_mut().inferred.unobserved = scene::Unobserved::from_observed(&observed);
     assert_eq!(run_checks(&scene, None), []);
 }
@@ -166,7 +166,7 @@ fn a_box_needs_voxels_and_voxels_need_a_box() {
     let mut scene = street(&traffic());
     let emptied = |scene: &mut Scene, b: &SceneBox| {
         let frame = scene.frame_mut();
-        for (x, y, layers) in scene::draft::box_columns(scene::Extent::WINDOW, b) {
+        for (x, y, layers) in scene::draft::box_columns(Extent::WINDOW, b) {
             frame.occupancy.column_mut(x, y)[..layers].fill(Class::FREE);
             frame.occupancy.set(x, y, 0, Class::DriveableSurface.id());
         }
@@ -204,7 +204,7 @@ fn a_box_needs_voxels_and_voxels_need_a_box() {
     document
         .apply_all("Remove", &finding.fixes[1].edits)
         .expect("sound");
-    let [x, y] = GridSpec::column_at(-15.0, -1.6).expect("inside");
+    let [x, y] = Extent::WINDOW.column_at(-15.0, -1.6).expect("inside");
     assert_eq!(
         document.scene().frame().occupancy.get(x, y, 0),
         Class::DriveableSurface.id()

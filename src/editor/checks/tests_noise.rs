@@ -21,16 +21,18 @@ fn random(seed: u64) -> impl FnMut(u64) -> u64 {
 fn noise(seed: u64, percent: u64) -> Scene {
     let mut next = random(seed);
     let mut grid = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            for z in 0..GridSpec::NZ {
+    for x in 0..Extent::WINDOW.nx() {
+        for y in 0..Extent::WINDOW.ny() {
+            for z in 0..Extent::NZ {
                 if next(100) < percent {
                     grid.set(x, y, z, next(u64::from(Class::FREE) + 1) as u8);
                 }
             }
         }
     }
-    let cells = (0..GridSpec::COLUMNS).map(|_| next(1 << 8) as u32).collect();
+    let cells = (0..Extent::WINDOW.columns())
+        .map(|_| next(1 << 8) as u32)
+        .collect();
     let layout = BevLayout::from_cells(cells, Vec::new()).expect("40,000 cells");
     let boxes = infer::boxes(&grid);
     let rig = Arc::new(SensorRig::default());
@@ -63,7 +65,7 @@ fn noise_is_checked_and_repaired_in_bounds() {
         );
         let cells: usize = findings.iter().map(|f| f.cells.len()).sum();
         assert!(
-            cells <= 8 * GridSpec::COLUMNS * GridSpec::NZ,
+            cells <= 8 * Extent::WINDOW.columns() * Extent::NZ,
             "{cells} cells in findings"
         );
         let start = Instant::now();

@@ -21,7 +21,7 @@ fn trees_poles_and_walls_on_the_road_are_found() {
         finding
             .where_m
             .truncate()
-            .distance(GridSpec::center(100, 96, 0).truncate())
+            .distance(Extent::WINDOW.center(100, 96, 0).truncate())
             < 0.5
     );
     // A pole, and a wall that covers its ground.
@@ -72,8 +72,8 @@ fn what_hangs_over_the_road_or_stands_beside_it_is_fine() {
 fn on_raised_road_heights_count_from_the_road() {
     let mut scene = street(&[]);
     let frame = scene.frame_mut();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Extent::WINDOW.nx() {
+        for y in 0..Extent::WINDOW.ny() {
             let column = frame.occupancy.column_mut(x, y);
             column[4] = column[0];
             column[0] = Class::FREE;

@@ -60,7 +60,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             cells.len(),
             Class::FREE
         );
-        let mut finding = error(middle(&cells), None, text, Vec::new());
+        let mut finding = error(middle(context.frame.extent(), &cells), None, text, Vec::new());
         finding.fixes.push(Fix {
             label: "Remove these voxels",
             edits: removal(frame, &cells),

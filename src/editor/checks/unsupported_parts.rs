@@ -4,8 +4,8 @@
 use super::floating_voxels::lowest_m;
 use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
+use scene::Class;
 use scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
-use scene::{Class, GridSpec};
 
 pub const NAME: &str = "unsupported_parts";
 /// Smaller parts are noise of labels, voxels.
@@ -15,12 +15,12 @@ const LISTED: usize = 40;
 
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     let frame = context.frame;
-    let bits = context.bits();
+    let (extent, bits) = (frame.extent(), context.bits());
     let mut parts: Vec<(Class, Vec<[usize; 3]>)> = Vec::new();
     // What stands takes the place of the ground's own voxel, in whatever bin the ground lies beside it.
-    let ground = ground(scene::Extent::WINDOW, &bits.by_class);
-    let beside: Vec<u16> = (0..GridSpec::COLUMNS)
-        .map(|c| neighbours(scene::Extent::WINDOW, c).fold(0, |word, n| word | ground[n]))
+    let ground = ground(extent, &bits.by_class);
+    let beside: Vec<u16> = (0..extent.columns())
+        .map(|c| neighbours(extent, c).fold(0, |word, n| word | ground[n]))
         .collect();
     let standing = |c: &&Class| **c != Class::Free && !c.is_ground();
     for class in Class::ALL.iter().filter(standing) {
@@ -29,18 +29,12 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             continue;
         }
         // Held from below: in the ground, or on a voxel of another class.
-        let rests = reached(scene::Extent::WINDOW, own, |c| {
-            beside[c] | (bits.occupied[c] & !own[c]) << 1
-        });
+        let rests = reached(extent, own, |c| beside[c] | (bits.occupied[c] & !own[c]) << 1);
         let mut cells = Vec::new();
-        for c in 0..GridSpec::COLUMNS {
-            cells.extend(bins_set(
-                scene::Extent::WINDOW,
-                c,
-                own[c] & !rests[c] & bits.supported[c],
-            ));
+        for c in 0..extent.columns() {
+            cells.extend(bins_set(extent, c, own[c] & !rests[c] & bits.supported[c]));
         }
-        let large = groups(scene::Extent::WINDOW, cells)
+        let large = groups(extent, cells)
             .into_iter()
             .filter(|g| g.len() >= LEAST_VOXELS);
         let known =
@@ -62,13 +56,13 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         out.push(Finding {
             check: NAME,
             severity: Severity::Warning,
-            where_m: middle(&part),
+            where_m: middle(extent, &part),
             box_id: None,
             text: format!(
                 "{} voxels of {} rest on nothing, {:.1} m above the ground",
                 part.len(),
                 class.label(),
-                lowest_m(&part)
+                lowest_m(extent, &part)
             ),
             cells: part,
             fixes,

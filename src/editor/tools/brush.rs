@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::{Edit, Shape, flood};
 use scene::raster::disc_cells;
-use scene::{BevLayer, Class, Frame, GridSpec};
+use scene::{BevLayer, Class, Extent, Frame};
 
 use super::setting::{self, Setting, Value};
 use super::{
@@ -285,9 +285,9 @@ pub(super) fn locked(layer: BevLayer) -> Response {
     Response::act(Act::Note(text))
 }
 
-/// Shows the shape painted; shapes beside the grid paint nothing, which is no error to show.
-pub(super) fn show(layer: BevLayer, shape: Shape, value: bool) -> Response {
-    match shape.cells(scene::Extent::WINDOW) {
+/// Shows the shape painted; shapes beside the map paint nothing, which is no error to show.
+pub(super) fn show(extent: Extent, layer: BevLayer, shape: Shape, value: bool) -> Response {
+    match shape.cells(extent) {
         Ok(_) => Response::act(Act::Preview(vec![Edit::PaintBev { layer, shape, value }])),
         Err(_) => Response::none(),
     }
@@ -305,7 +305,7 @@ fn straightened(from_m: DVec2, to_m: DVec2, snap: bool) -> DVec2 {
 
 /// The uppermost shown map layer under a point.
 fn layer_at(frame: &Frame, hand: &Hand, at_m: DVec2) -> Option<BevLayer> {
-    let [x, y] = GridSpec::column_at(at_m.x, at_m.y)?;
+    let [x, y] = frame.extent().column_at(at_m.x, at_m.y)?;
     let there = |l: &&BevLayer| hand.shows(**l) && frame.layout.has(**l, x, y);
     DRAW_ORDER.iter().rev().find(there).copied()
 }
@@ -313,7 +313,7 @@ fn layer_at(frame: &Frame, hand: &Hand, at_m: DVec2) -> Option<BevLayer> {
 /// The highest voxel of each column in a disc: what a brush on the ground would cover.
 fn tops_in_disc(frame: &Frame, center_m: DVec2, radius_m: f64) -> Vec<[usize; 3]> {
     let mut cells = Vec::new();
-    disc_cells(scene::Extent::WINDOW, center_m, radius_m, |x, y| {
+    disc_cells(frame.extent(), center_m, radius_m, |x, y| {
         let column = frame.occupancy.column(x, y);
         cells.push([x, y, column.iter().rposition(|v| *v != Class::FREE).unwrap_or(0)]);
     });
@@ -402,7 +402,12 @@ impl Brush {
             }
             drag.points_m.push(at_m);
         }
-        show(drag.layer, drag.shape(at_m, pointer.held.shift), !drag.erase)
+        show(
+            cx.frame().extent(),
+            drag.layer,
+            drag.shape(at_m, pointer.held.shift),
+            !drag.erase,
+        )
     }
 
     /// Paints the outline or lays the street that was drawn.
@@ -444,12 +449,12 @@ impl Brush {
             let text = format!("{:.1} × {:.1} m", d.x.abs(), d.y.abs());
             out.push(Mark::Tag(at_m.into(), text));
         }
-        out.extend(self.outline(hand, at_m));
+        out.extend(self.outline(sight.settled.frame().extent(), hand, at_m));
         out
     }
 
     /// The outline or street that is being drawn, on to the pointer.
-    fn outline(&self, hand: &Hand, at_m: Option<DVec2>) -> Vec<Mark> {
+    fn outline(&self, extent: Extent, hand: &Hand, at_m: Option<DVec2>) -> Vec<Mark> {
         if self.points_m.is_empty() {
             return Vec::new();
         }
@@ -461,10 +466,7 @@ impl Brush {
             out.push(Mark::Ribbon(points_m, hand.street.width_m(), role));
         } else if points_m.len() >= 3 {
             let area = Shape::Polygon { points_m };
-            out.push(Mark::Columns(
-                area.cells(scene::Extent::WINDOW).unwrap_or_default(),
-                role,
-            ));
+            out.push(Mark::Columns(area.cells(extent).unwrap_or_default(), role));
             let closed = line.iter().copied().chain([line[0]]);
             out.push(Mark::Dashed(closed.collect(), role));
         }
@@ -479,7 +481,7 @@ fn role(layer: BevLayer, erase: bool) -> Role {
 }
 
 fn fill(cx: &Context<'_>, layer: BevLayer, at_m: DVec2, erase: bool) -> Response {
-    let Some(start) = GridSpec::column_at(at_m.x, at_m.y) else {
+    let Some(start) = cx.frame().extent().column_at(at_m.x, at_m.y) else {
         return Response::none();
     };
     let cells = flood::flood(&cx.frame().layout, layer, start, cx.hand.fill);
@@ -513,7 +515,7 @@ mod tests {
         }
         grid.set(100, 100, 1, Class::Manmade.id());
         let frame = Frame::new(BevLayout::default(), Default::default(), grid);
-        let cells = tops_in_disc(&frame, GridSpec::center(100, 100, 0).truncate(), 0.6);
+        let cells = tops_in_disc(&frame, Extent::WINDOW.center(100, 100, 0).truncate(), 0.6);
         assert!(cells.contains(&[100, 100, 1]) && cells.contains(&[101, 100, 0]));
     }
 }

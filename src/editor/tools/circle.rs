@@ -93,9 +93,10 @@ impl Circle {
             return Response::none();
         };
         disc.radius_m = disc.middle_m.distance(at_m);
-        disc.shown = disc.radius_m >= LEAST_M && disc.shape().cells(scene::Extent::WINDOW).is_ok();
+        let extent = cx.frame().extent();
+        disc.shown = disc.radius_m >= LEAST_M && disc.shape().cells(extent).is_ok();
         match disc.shown {
-            true => brush::show(disc.layer, disc.shape(), !disc.erase),
+            true => brush::show(extent, disc.layer, disc.shape(), !disc.erase),
             false => Response::act(Act::Cancel),
         }
     }

@@ -11,7 +11,7 @@ use crate::lane_strip::LaneStrip;
 use crate::lanes::nearest_lane;
 use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, Cell};
-use scene::{BevLayer, BoxId, BoxLabel, Class, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
+use scene::{BevLayer, BoxId, BoxLabel, Class, Extent, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
 
 use super::ToolId;
 use super::beside::ThingState;
@@ -310,10 +310,10 @@ impl Hand {
         }
     }
 
-    /// Voxels with their mirror images, if symmetry is on.
-    pub fn both_sides(&self, cells: Vec<Cell>) -> Vec<Cell> {
+    /// Voxels of a map with their mirror images, if symmetry is on.
+    pub fn both_sides(&self, extent: Extent, cells: Vec<Cell>) -> Vec<Cell> {
         match self.symmetry {
-            true => voxel_ops::mirrored(&cells),
+            true => voxel_ops::mirrored(extent, &cells),
             false => cells,
         }
     }

@@ -29,7 +29,7 @@ pub use setting::{Setting, Value};
 pub use tool::{Cursor, Group, Hint, Shortcut, Tool, ToolDef, ToolId, Wants, When, hint_of};
 pub use toolbox::Toolbox;
 pub use view::{
-    CLICK_SLACK, Context, Event, FARTHEST_M, HANDLE_REACH, Key, Modifiers, Pointer, Sight, View, ViewKind,
+    CLICK_SLACK, Context, Event, HANDLE_REACH, Key, Modifiers, Pointer, Sight, View, ViewKind, farthest_m,
     point_of,
 };
 

@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use crate::pick::Ray;
 
-use super::FARTHEST_M;
+use scene::Extent;
+
+use super::farthest_m;
 
 /// Rays this near to parallel with an axis say nothing about it.
 const PARALLEL: f64 = 1e-6;
@@ -18,7 +20,7 @@ pub(super) fn along_axis(ray: &Ray, point_m: DVec3, axis: DVec3) -> Option<f64> 
 }
 
 /// Where a ray meets the plane through a point across an axis of the grid.
-pub(super) fn on_plane(ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> {
+pub(super) fn on_plane(extent: Extent, ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> {
     let d = ray.direction_in_ego[axis];
     if d.abs() < PARALLEL {
         return None;
@@ -26,7 +28,7 @@ pub(super) fn on_plane(ray: &Ray, point_m: DVec3, axis: usize) -> Option<DVec3> 
     let t = (point_m[axis] - ray.origin_in_ego[axis]) / d;
     // Not by distance: the rays of an orthographic view begin far away.
     let p = ray.at(t);
-    (t >= 0.0 && p.abs().max_element() < FARTHEST_M).then_some(p)
+    (t >= 0.0 && p.abs().max_element() < farthest_m(extent)).then_some(p)
 }
 
 #[cfg(test)]
@@ -42,10 +44,13 @@ mod tests {
         assert!((up - 2.0).abs() < 1e-12);
         assert_eq!(along_axis(&ray, DVec3::ZERO, DVec3::Y), None);
         assert_eq!(
-            on_plane(&ray, DVec3::new(0.0, 4.0, 0.0), 1),
+            on_plane(Extent::WINDOW, &ray, DVec3::new(0.0, 4.0, 0.0), 1),
             Some(DVec3::new(0.0, 4.0, 2.0))
         );
-        assert_eq!(on_plane(&ray, DVec3::ZERO, 2), None);
-        assert_eq!(on_plane(&ray, DVec3::new(0.0, -20.0, 0.0), 1), None);
+        assert_eq!(on_plane(Extent::WINDOW, &ray, DVec3::ZERO, 2), None);
+        assert_eq!(
+            on_plane(Extent::WINDOW, &ray, DVec3::new(0.0, -20.0, 0.0), 1),
+            None
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use scene::{Frame, GridSpec};
+use scene::{Extent, Frame};
 
 use super::setting::{self, Setting, Value};
 use super::{
@@ -87,7 +87,7 @@ impl Marker {
         let area = match drag {
             Drag::Rectangle { from_m, to_m } => {
                 // A click marks the cell under it.
-                let around = DVec2::splat(GridSpec::VOXEL_M / 2.0);
+                let around = DVec2::splat(Extent::VOXEL_M / 2.0);
                 Area::Rect(from_m.min(to_m) - around, from_m.max(to_m) + around)
             }
             Drag::Outline(points_m) => Area::Outline(points_m),

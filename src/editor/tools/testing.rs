@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::pick::Ray;
-use scene::{BevLayout, Frame, Scene, VoxelGrid};
+use scene::{BevLayout, Extent, Frame, Scene, VoxelGrid};
 
 use super::{Context, Event, Hand, Key, Modifiers, Pointer, Response, Sight, Tool, View, ViewKind};
 
@@ -49,7 +49,13 @@ pub struct Table {
 
 impl Table {
     pub fn new() -> Self {
-        let frame = Frame::new(BevLayout::default(), Default::default(), VoxelGrid::new());
+        Self::over(Extent::WINDOW)
+    }
+
+    /// The same on a map.
+    pub fn over(extent: Extent) -> Self {
+        let layout = BevLayout::over(extent);
+        let frame = Frame::new(layout, Default::default(), VoxelGrid::over(extent));
         Self {
             scene: Scene::single("test", frame, Default::default(), 0),
             hand: Hand::default(),

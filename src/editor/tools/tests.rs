@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::testing::{NONE, SHIFT, Table};
 use super::*;
 use crate::{Edit, Shape};
-use scene::{BevLayer, BoxId, Class, Form};
+use scene::{BevLayer, BoxId, Class, Extent, Form};
 
 fn of<'a>(toolbox: &'a mut Toolbox, table: &mut Table, id: ToolId) -> &'a mut dyn Tool {
     toolbox.take(&mut table.hand, id);
@@ -260,4 +260,38 @@ fn names_are_there_once_and_every_tool_says_what_it_does() {
         }
         assert!(made.points_m().is_empty());
     }
+}
+
+#[test]
+fn brushes_fills_and_drawn_things_reach_beyond_the_window() {
+    let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
+    let (mut table, mut toolbox) = (Table::over(extent), Toolbox::default());
+    let is_shown = |shown: &Response| {
+        let [Act::Preview(edits) | Act::Try(edits)] = &shown.acts[..] else {
+            return false;
+        };
+        !matches!(&edits[..], [Edit::AddThings { forms }] if forms.is_empty())
+    };
+    for id in [brush::ID, circle::ID, beside::shrubs::ID] {
+        let tool = of(&mut toolbox, &mut table, id);
+        table.press(tool, 100.0, 60.0, NONE);
+        let shown = table.drag(tool, 104.0, 60.0);
+        assert!(is_shown(&shown), "{id:?}: {shown:?}");
+        let done = table.release(tool, 104.0, 60.0);
+        assert!(!done.acts.is_empty(), "{id:?}");
+        // Beside the map nothing is painted.
+        table.press(tool, 300.0, 60.0, NONE);
+        let shown = table.drag(tool, 304.0, 60.0);
+        assert!(!is_shown(&shown), "{id:?}: {shown:?}");
+        table.tell(tool, Event::Cancel);
+    }
+    table.hand.shape = PaintShape::Fill;
+    let tool = of(&mut toolbox, &mut table, brush::ID);
+    let filled = table.click(tool, 100.0, 60.0, NONE);
+    let [Act::Apply(_, edits)] = &filled.acts[..] else {
+        panic!("{filled:?}");
+    };
+    assert!(
+        matches!(&edits[..], [Edit::PaintBev { shape: Shape::Cells(cells), .. }] if cells.len() == extent.columns())
+    );
 }

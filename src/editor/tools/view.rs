@@ -3,12 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::pick::{self, Hit, Ray};
-use scene::{Frame, Scene};
+use scene::{Extent, Frame, Scene};
 
 use super::Hand;
 
-/// Farther points of the ground mean nothing to a tool, m.
-pub const FARTHEST_M: f64 = 400.0;
 /// Points that the pointer may move and still click.
 pub const CLICK_SLACK: f64 = 4.0;
 /// Size of handles under the pointer, points.
@@ -35,6 +33,13 @@ pub trait View {
     fn right(&self) -> DVec3;
     /// Points per metre; only from above it is the same everywhere, elsewhere it is 1.
     fn scale(&self) -> f64;
+}
+
+/// Farther points of the ground mean nothing to a tool, m from the ego vehicle: the whole map can be reached.
+pub fn farthest_m(extent: Extent) -> f64 {
+    const LEAST_M: f64 = 400.0;
+    let corner = extent.min_m().abs().max(extent.max_m().abs());
+    corner.truncate().length().max(LEAST_M)
 }
 
 /// What a tool reads, and the options and selection that it changes.

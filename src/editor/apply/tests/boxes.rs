@@ -137,7 +137,7 @@ fn a_box_put_into_a_hedge_and_taken_out_leaves_the_hedge() {
     let before = frame.occupancy.clone();
     let mut put = car(9, 0.0, 0.0);
     put.center_m.x = 2.0;
-    put.center_m.y = GridSpec::center(100, 130, 0).y;
+    put.center_m.y = Extent::WINDOW.center(100, 130, 0).y;
     Edit::AddBox {
         class: put.class,
         center_m: put.center_m,

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use super::*;
 use scene::draft::draft;
 use scene::{
-    BevLayer, BevLayout, BoxId, BoxName, Class, GridSpec, Polyline, SceneBox, SensorRig, Shape, VoxelGrid,
+    BevLayer, BevLayout, BoxId, BoxName, Class, Extent, Polyline, SceneBox, SensorRig, Shape, VoxelGrid,
 };
 
 const FREE: u8 = Class::FREE;
@@ -25,9 +25,9 @@ const FREE: u8 = Class::FREE;
 /// A road along x (|y| < 4 m) with sidewalks (to 7 m), drafted; a car ahead, another beside it.
 fn street() -> Scene {
     let mut layout = BevLayout::default();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            let side_m = GridSpec::center(x, y, 0).y.abs();
+    for x in 0..Extent::WINDOW.nx() {
+        for y in 0..Extent::WINDOW.ny() {
+            let side_m = Extent::WINDOW.center(x, y, 0).y.abs();
             layout.set(BevLayer::DrivableArea, x, y, side_m < 4.0);
             layout.set(BevLayer::Walkway, x, y, (4.0..7.0).contains(&side_m));
         }
@@ -52,7 +52,7 @@ fn car(id: u32, x: f64, y: f64) -> SceneBox {
 }
 
 fn label_at(scene: &Scene, x: f64, y: f64, z: usize) -> u8 {
-    let [x, y] = GridSpec::column_at(x, y).expect("inside");
+    let [x, y] = Extent::WINDOW.column_at(x, y).expect("inside");
     scene.frame().occupancy.get(x, y, z)
 }
 
@@ -61,7 +61,7 @@ fn cars(scene: &Scene) -> usize {
 }
 
 fn cell(x: f64, y: f64) -> [usize; 2] {
-    GridSpec::column_at(x, y).expect("inside")
+    Extent::WINDOW.column_at(x, y).expect("inside")
 }
 
 fn parse(value: Value) -> Result<Edit, String> {

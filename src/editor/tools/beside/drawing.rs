@@ -8,8 +8,8 @@ use crate::Edit;
 use crate::pick;
 use crate::tools::setting::{Setting, Value};
 use crate::tools::{
-    Act, At, CLICK_SLACK, Context, Cursor, Event, FARTHEST_M, Hand, Hint, Key, Mark, Response, Role, Sight,
-    Tool, View, ViewKind, hint_of,
+    Act, At, CLICK_SLACK, Context, Cursor, Event, Hand, Hint, Key, Mark, Response, Role, Sight, Tool, View,
+    ViewKind, farthest_m, hint_of,
 };
 use scene::{Form, Frame, Scene};
 
@@ -129,8 +129,8 @@ fn reach_m(view: &dyn View, at: DVec2, at_m: DVec2) -> f64 {
 
 /// The ground under the pointer, as far as things are drawn, m.
 fn near_m(cx: &Context<'_>, at: DVec2) -> Option<DVec2> {
-    let from_above = cx.from_above();
-    cx.ground_m(at).filter(|p| from_above || p.length() < FARTHEST_M)
+    let (from_above, limit_m) = (cx.from_above(), farthest_m(cx.frame().extent()));
+    cx.ground_m(at).filter(|p| from_above || p.length() < limit_m)
 }
 
 impl<D: Draft> Drawing<D> {
@@ -282,7 +282,8 @@ impl<D: Draft> Tool for Drawing<D> {
             brush_m: sight.hand.brush_m,
         };
         let free = from_above && sight.pointer.is_some_and(|p| p.held.alt);
-        let at_m = sight.ground_m().filter(|p| from_above || p.length() < FARTHEST_M);
+        let limit_m = farthest_m(sight.settled.frame().extent());
+        let at_m = sight.ground_m().filter(|p| from_above || p.length() < limit_m);
         let pointer = at_m.map(|at_m| Pointer {
             phase: Phase::Press,
             at_m,

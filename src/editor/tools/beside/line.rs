@@ -162,12 +162,12 @@ fn snapped(p: &Pointer, site: &Site<'_>, options: &ThingState) -> DVec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayer, BevLayout, GridSpec};
+    use scene::{BevLayer, BevLayout, Extent};
 
     #[test]
     fn points_lie_beside_the_kerb_unless_alt_is_held() {
         let mut layout = BevLayout::default();
-        for x in 0..GridSpec::NX {
+        for x in 0..Extent::WINDOW.nx() {
             (0..110).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true)); // up to y = 4
         }
         let site = Site {

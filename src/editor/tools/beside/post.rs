@@ -130,12 +130,12 @@ fn clear_m(kind: PostKind) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayer, BevLayout, GridSpec};
+    use scene::{BevLayer, BevLayout, Extent};
 
     #[test]
     fn posts_stand_clear_of_the_kerb_and_face_the_road() {
         let mut layout = BevLayout::default();
-        for x in 0..GridSpec::NX {
+        for x in 0..Extent::WINDOW.nx() {
             (0..110).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true)); // up to y = 4
         }
         let site = Site {

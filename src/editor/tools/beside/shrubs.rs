@@ -53,7 +53,7 @@ impl Draft for ShrubStroke {
         } else if p.phase == Phase::Drag {
             return Outcome::Nothing;
         }
-        let outline_m = outline::of_stroke(&self.points_m, site.brush_m);
+        let outline_m = outline::of_stroke(site.layout.extent(), &self.points_m, site.brush_m);
         let shrubs = outline_m.map(|o| area(o, options));
         match (p.phase, shrubs.filter(|form| form.problem().is_none())) {
             (Phase::Release { .. }, Some(form)) => Outcome::Add(vec![form]),
@@ -68,7 +68,7 @@ impl Draft for ShrubStroke {
 
     fn coming(&self, drawing: bool, p: Option<Pointer>, site: &Site<'_>, options: &ThingState) -> Coming {
         let at_m = p.filter(|_| !drawing).map(|p| p.at_m);
-        let outline_m = at_m.and_then(|p| outline::of_stroke(&[p], site.brush_m));
+        let outline_m = at_m.and_then(|p| outline::of_stroke(site.layout.extent(), &[p], site.brush_m));
         Coming {
             forms: outline_m.map(|o| area(o, options)).into_iter().collect(),
             ..Coming::default()

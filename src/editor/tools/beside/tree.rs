@@ -168,7 +168,7 @@ impl TreeStroke {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayer, BevLayout, GridSpec};
+    use scene::{BevLayer, BevLayout, Extent};
 
     fn stroke(to_m: DVec2, layout: &BevLayout, trees_m: &[DVec2]) -> Vec<Form> {
         stroke_by(to_m, layout, trees_m, &[])
@@ -230,8 +230,8 @@ mod tests {
         // Not where trees stand, and not on the roadway beyond x = 20.
         let taken: Vec<DVec2> = row.iter().skip(1).take(2).map(Form::middle_m).collect();
         assert_eq!(stroke(DVec2::X * 36.0, &layout, &taken).len(), row.len() - 2);
-        for x in 150..GridSpec::NX {
-            (0..GridSpec::NY).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true));
+        for x in 150..Extent::WINDOW.nx() {
+            (0..Extent::WINDOW.ny()).for_each(|y| layout.set(BevLayer::DrivableArea, x, y, true));
         }
         let beside = stroke(DVec2::X * 36.0, &layout, &[]);
         assert!(!beside.is_empty() && beside.iter().all(|f| f.middle_m().x < 20.0));

@@ -9,7 +9,7 @@ use crate::tools::{
 };
 use crate::transform::{Axis, Pull, Transform, TransformKind};
 use crate::{Edit, choose};
-use scene::{Frame, SceneBox};
+use scene::{Extent, Frame, SceneBox};
 
 use super::boxes::{self, Steered, step_name, transform};
 use super::gizmo::{Gizmo, Part};
@@ -43,6 +43,13 @@ pub(super) enum Drag {
     Marquee { from_m: DVec2, to_m: DVec2, add: bool },
     /// Chooses in an outline.
     Lasso { points_m: Vec<DVec2>, add: bool },
+}
+
+/// How far the line of an axis is drawn to both sides, m: across the whole map.
+fn axis_reach_m(extent: Extent) -> f64 {
+    const LEAST_M: f64 = 200.0;
+    let across = extent.max_m() - extent.min_m();
+    across.truncate().length().max(LEAST_M)
 }
 
 fn held(transform: Transform, at_m: DVec2) -> Drag {
@@ -363,7 +370,8 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
             moved: true,
         }) => {
             if let Some(axis) = transform.axis {
-                let (middle_m, along_m) = (transform.middle_m(), transform.axis_in_ego(axis) * 200.0);
+                let reach_m = axis_reach_m(sight.settled.frame().extent());
+                let (middle_m, along_m) = (transform.middle_m(), transform.axis_in_ego(axis) * reach_m);
                 let ends = [middle_m - along_m, middle_m + along_m].map(At::Ego);
                 out.push(Mark::Line(ends.to_vec(), Role::Axis(axis as usize)));
             }

@@ -7,8 +7,8 @@ use crate::pick::{self, Hit};
 use crate::pick_things;
 use crate::tools::rays::along_axis;
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, Context, FARTHEST_M, Hand, Key, Mark, Modifiers, Pointer, Response, Role,
-    Sight, View, point_of,
+    Act, At, CLICK_SLACK, Choose, Context, Hand, Key, Mark, Modifiers, Pointer, Response, Role, Sight, View,
+    farthest_m, point_of,
 };
 use crate::transform::{Axis, Orientation, Pull, Transform, TransformKind};
 use scene::{BoxId, Frame, Scene, ThingId};
@@ -152,7 +152,8 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
             ..
         } => {
             *moved |= from.distance(at) > CLICK_SLACK;
-            let way_m = way_m(cx.view, drag.pull(), *grabbed_m, *from, at).filter(|_| *moved);
+            let limit_m = farthest_m(cx.frame().extent());
+            let way_m = way_m(cx.view, limit_m, drag.pull(), *grabbed_m, [*from, at]).filter(|_| *moved);
             let Some(way_m) = way_m else {
                 return Response::none();
             };
@@ -175,19 +176,31 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
     }
 }
 
-/// How far the pointer went on the level of what it holds, or up, m.
-fn way_m(view: &dyn View, pull: ThingPull, grabbed_m: DVec3, from: DVec2, to: DVec2) -> Option<DVec3> {
+/// How far the pointer went on the level of what it holds, or up, m; `None` beyond `limit_m` from the ego vehicle.
+fn way_m(
+    view: &dyn View,
+    limit_m: f64,
+    pull: ThingPull,
+    grabbed_m: DVec3,
+    [from, to]: [DVec2; 2],
+) -> Option<DVec3> {
     let (start, now) = (view.ray(from)?, view.ray(to)?);
     if pull == ThingPull::Height {
         let up = along_axis(&now, grabbed_m, DVec3::Z)? - along_axis(&start, grabbed_m, DVec3::Z)?;
         return Some(DVec3::Z * up.clamp(-MOST_UP_M, MOST_UP_M));
     }
-    let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < FARTHEST_M)?;
+    let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < limit_m)?;
     Some((to_m - pick::ray_ground(&start, grabbed_m.z)?).with_z(0.0))
 }
 
-/// How far the pointer pulls a drag of boxes.
-fn pull(transform: &Transform, view: &dyn View, grabbed_m: DVec3, from: DVec2, to: DVec2) -> Option<Pull> {
+/// How far the pointer pulls a drag of boxes; places beyond `limit_m` from the ego vehicle do not count.
+fn pull(
+    transform: &Transform,
+    view: &dyn View,
+    limit_m: f64,
+    grabbed_m: DVec3,
+    [from, to]: [DVec2; 2],
+) -> Option<Pull> {
     let (start, now) = (view.ray(from)?, view.ray(to)?);
     let mut pull = Pull::default();
     let middle_m = transform.middle_m();
@@ -195,10 +208,10 @@ fn pull(transform: &Transform, view: &dyn View, grabbed_m: DVec3, from: DVec2, t
         (TransformKind::Move, Some(axis)) => {
             let axis = transform.axis_in_ego(axis);
             let way_m = along_axis(&now, grabbed_m, axis)? - along_axis(&start, grabbed_m, axis)?;
-            pull.delta_m = axis * way_m.clamp(-FARTHEST_M, FARTHEST_M);
+            pull.delta_m = axis * way_m.clamp(-limit_m, limit_m);
         }
         (TransformKind::Move, None) => {
-            let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < FARTHEST_M)?;
+            let to_m = pick::ray_ground(&now, grabbed_m.z).filter(|p| p.truncate().length() < limit_m)?;
             pull.delta_m = (to_m - pick::ray_ground(&start, grabbed_m.z)?).with_z(0.0);
         }
         (TransformKind::Turn, _) => {
@@ -227,7 +240,13 @@ fn show(drag: &Drag, view: &dyn View, frame: &Frame, hand: &Hand, held: Modifier
         moved: true,
         ..
     } = drag
-        && let Some(pull) = pull(transform, view, *grabbed_m, *from, *to)
+        && let Some(pull) = pull(
+            transform,
+            view,
+            farthest_m(frame.extent()),
+            *grabbed_m,
+            [*from, *to],
+        )
     {
         return preview(boxes::edits(transform, &pull, frame, hand, held.ctrl));
     }
@@ -338,6 +357,7 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
     let mut out = Vec::new();
     let gizmo = Gizmo::new(sight.scene.frame(), sight.hand, sight.view);
     let pointer = sight.pointer.map(|p| p.at);
+    let limit_m = farthest_m(sight.settled.frame().extent());
     match drag {
         None => {
             if let Some(gizmo) = gizmo {
@@ -355,7 +375,8 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
             if let Some(gizmo) = gizmo {
                 out.extend(gizmo.marks(held_part(transform.axis, transform.kind)));
             }
-            if let (true, Some(pull)) = (*moved, pull(transform, sight.view, *grabbed_m, *from, *to)) {
+            let pull = pull(transform, sight.view, limit_m, *grabbed_m, [*from, *to]);
+            if let (true, Some(pull)) = (*moved, pull) {
                 let grid = sight.pointer.is_some_and(|p| p.held.ctrl);
                 let text = transform.text(&pull, &sight.hand.snap(grid));
                 out.push(Mark::Tag(At::Screen(*to), text));
@@ -378,7 +399,7 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
             ..
         }) => {
             if let Some(to) = pointer
-                && let Some(way_m) = way_m(sight.view, drag.pull(), *grabbed_m, *from, to)
+                && let Some(way_m) = way_m(sight.view, limit_m, drag.pull(), *grabbed_m, [*from, to])
             {
                 let text = match drag.pull() {
                     ThingPull::Height => format!("{:+.1} m", way_m.z),

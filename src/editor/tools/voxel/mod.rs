@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use crate::Edit;
 use crate::pick::{self, Ray, VoxelHit};
 use crate::voxel_ops::{self, Cell};
-use scene::{Class, Frame, GridSpec};
+use scene::{Class, Extent, Frame};
 
 use super::rays::{along_axis, on_plane};
 use super::setting::{self, Control, Number, Setting, Value};
@@ -163,7 +163,7 @@ fn normal_axis(hit: &VoxelHit) -> usize {
 
 /// Shows voxels painted, on both sides where that is asked for, as far as the verb changes them.
 fn show(cells: Vec<Cell>, frame: &Frame, hand: &Hand, verb: VoxelVerb) -> Response {
-    let both = hand.both_sides(cells);
+    let both = hand.both_sides(frame.extent(), cells);
     let cells = voxel_ops::only(&frame.occupancy, both, verb == VoxelVerb::Attach);
     match cells.is_empty() {
         true => Response::none(),
@@ -215,7 +215,8 @@ impl Voxels {
             }),
             VoxelMode::Fill | VoxelMode::Wand => {
                 let cells = hit.map_or_else(Vec::new, |h| voxel_ops::connected(&frame.occupancy, h.cell));
-                let cells = voxel_ops::only(&frame.occupancy, cx.hand.both_sides(cells), false);
+                let cells =
+                    voxel_ops::only(&frame.occupancy, cx.hand.both_sides(frame.extent(), cells), false);
                 if mode == VoxelMode::Wand {
                     cx.hand.choose_voxels(cells, shift);
                     return Response::none();
@@ -231,6 +232,7 @@ impl Voxels {
 
     fn drag(&mut self, cx: &Context<'_>, pointer: &Pointer) -> Response {
         let (frame, hand, at) = (cx.frame(), &*cx.hand, pointer.at);
+        let extent = frame.extent();
         match &mut self.drag {
             None => Response::none(),
             Some(Drag::Dab { cells, verb, last }) => {
@@ -251,10 +253,11 @@ impl Voxels {
             Some(Drag::Block { first, last, .. }) => {
                 let axis = normal_axis(first);
                 let [x, y, z] = first.cell;
-                let middle_m = GridSpec::center(x, y, z);
-                if let Some(p) = cx.view.ray(at).and_then(|ray| on_plane(&ray, middle_m, axis)) {
-                    let limit = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
-                    let units = GridSpec::to_voxel_units(p);
+                let middle_m = extent.center(x, y, z);
+                let ray = cx.view.ray(at);
+                if let Some(p) = ray.and_then(|ray| on_plane(extent, &ray, middle_m, axis)) {
+                    let limit = extent.shape();
+                    let units = extent.to_voxel_units(p);
                     for a in (0..3).filter(|a| *a != axis) {
                         last[a] = units[a].clamp(0.0, limit[a] as f64 - 1.0) as usize;
                     }
@@ -268,7 +271,7 @@ impl Voxels {
                 };
                 match target(frame, *verb, [1, 1], &ray).first() {
                     Some(last) => {
-                        let cells = voxel_ops::line(*first, *last, hand.voxel_size);
+                        let cells = voxel_ops::line(extent, *first, *last, hand.voxel_size);
                         show(cells, frame, hand, *verb)
                     }
                     None => Response::none(),
@@ -300,14 +303,19 @@ impl Voxels {
         let mut far = *last;
         let end = first.cell[axis] as i32 + outward * first.normal[axis] * (height - 1);
         far[axis] = end.max(0) as usize;
-        show(voxel_ops::between(first.cell, far), frame, hand, *verb)
+        show(
+            voxel_ops::between(frame.extent(), first.cell, far),
+            frame,
+            hand,
+            *verb,
+        )
     }
 
     fn scroll(&mut self, cx: &Context<'_>, notches: i32) -> Response {
         let Some(Drag::Block { height, .. }) = &mut self.drag else {
             return Response::none();
         };
-        *height = (*height + notches).clamp(1, GridSpec::NZ as i32);
+        *height = (*height + notches).clamp(1, Extent::NZ as i32);
         let mut response = self.show_block(cx.frame(), cx.hand);
         response.taken = true;
         response
@@ -338,11 +346,15 @@ fn flood(cells: Vec<Cell>, class: Class) -> Response {
 fn pulled(ray: &Ray, frame: &Frame, hand: &Hand, first: &VoxelHit, face: &[Cell]) -> Option<Edit> {
     let [x, y, z] = first.cell;
     let normal = DVec3::from_array(first.normal.map(f64::from));
-    let surface_m = GridSpec::center(x, y, z) + normal * (GridSpec::VOXEL_M / 2.0);
+    let surface_m = frame.extent().center(x, y, z) + normal * (Extent::VOXEL_M / 2.0);
     let way_m = along_axis(ray, surface_m, normal)?;
-    let layers = (way_m / GridSpec::VOXEL_M).round().clamp(-200.0, 200.0) as i32;
+    let layers = (way_m / Extent::VOXEL_M).round() as i32;
     let cells = voxel_ops::extrude(&frame.occupancy, face, first.normal, layers);
-    let cells = voxel_ops::only(&frame.occupancy, hand.both_sides(cells), layers > 0);
+    let cells = voxel_ops::only(
+        &frame.occupancy,
+        hand.both_sides(frame.extent(), cells),
+        layers > 0,
+    );
     let class = match layers > 0 {
         true => Class::from_id(first.label)?,
         false => Class::Free,
@@ -419,8 +431,9 @@ impl Tool for Voxels {
                 _ if hand.voxel_class == Class::Free => [200; 3],
                 _ => hand.voxel_class.color(),
             };
-            let cells = target(sight.settled.frame(), hand.verb, size(hand), &ray);
-            out.push(Mark::Voxels(hand.both_sides(cells), color));
+            let frame = sight.settled.frame();
+            let cells = target(frame, hand.verb, size(hand), &ray);
+            out.push(Mark::Voxels(hand.both_sides(frame.extent(), cells), color));
         }
         if let Some(Drag::Block {
             first, last, height, ..

@@ -2,7 +2,7 @@
 
 use crate::pick::{self, Ray, VoxelHit};
 use crate::tools::VoxelVerb;
-use scene::{Class, Frame, GridSpec};
+use scene::{Class, Extent, Frame};
 
 /// Voxels of the first face along the ray that the brush covers: free ones in front of it to attach,
 /// others behind it to remove or recolour.
@@ -12,8 +12,8 @@ pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray
         if verb != VoxelVerb::Attach {
             return Vec::new();
         }
-        let floor_m = GridSpec::MIN_M[2] + GridSpec::VOXEL_M / 2.0;
-        let ground = pick::ray_ground(ray, floor_m).and_then(GridSpec::voxel_at);
+        let floor_m = Extent::BOTTOM_M + Extent::VOXEL_M / 2.0;
+        let ground = pick::ray_ground(ray, floor_m).and_then(|p| frame.extent().voxel_at(p));
         let floor = ground.map(|[x, y, _]| VoxelHit {
             cell: [x, y, 0],
             label: Class::FREE,
@@ -24,7 +24,7 @@ pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray
     };
     match verb {
         VoxelVerb::Attach => hit
-            .neighbour()
+            .neighbour(frame.extent())
             .map_or_else(Vec::new, |cell| cube(frame, cell, hit.normal, size, true)),
         _ => cube(frame, hit.cell, hit.normal.map(|n| -n), size, false),
     }
@@ -39,7 +39,7 @@ fn cube(
     [across, height]: [usize; 2],
     free: bool,
 ) -> Vec<[usize; 3]> {
-    let limit = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    let limit = frame.extent().shape();
     let range = |axis: usize| {
         let at = cell[axis] as i64;
         let size = if direction[axis] == 0 { across } else { height } as i64;
@@ -85,7 +85,7 @@ mod tests {
     }
 
     fn down(x: usize, y: usize) -> Ray {
-        let p = GridSpec::center(x, y, 15);
+        let p = Extent::WINDOW.center(x, y, 15);
         Ray::new(p + DVec3::Z * 5.0, -DVec3::Z).expect("a direction")
     }
 
@@ -111,9 +111,26 @@ mod tests {
     }
 
     #[test]
+    fn the_floor_is_that_of_the_whole_map() {
+        let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
+        let frame = Frame::new(BevLayout::over(extent), BTreeMap::new(), VoxelGrid::over(extent));
+        let ray = Ray::new(DVec3::new(100.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
+        let cells = target(&frame, VoxelVerb::Attach, [3, 1], &ray);
+        assert_eq!((cells.len(), cells[4]), (9, [400, 260, 0]));
+        let ray = Ray::new(DVec3::new(131.9, 83.9, 9.0), -DVec3::Z).expect("a direction");
+        assert_eq!(
+            target(&frame, VoxelVerb::Attach, [3, 1], &ray).len(),
+            4,
+            "cut at the rim"
+        );
+        let ray = Ray::new(DVec3::new(132.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
+        assert!(target(&frame, VoxelVerb::Attach, [3, 1], &ray).is_empty());
+    }
+
+    #[test]
     fn faces_from_the_side() {
         let frame = frame();
-        let from = GridSpec::center(80, 100, 1);
+        let from = Extent::WINDOW.center(80, 100, 1);
         let ray = Ray::new(from, DVec3::X).expect("a direction");
         assert_eq!(
             target(&frame, VoxelVerb::Attach, [1, 1], &ray),
