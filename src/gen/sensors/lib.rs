@@ -28,3 +28,4 @@ pub mod surroundings;
 mod texture;
 mod tile;
 pub mod truth;
+mod units;
