@@ -29,3 +29,6 @@ mod texture;
 mod tile;
 pub mod truth;
 mod units;
+
+#[cfg(test)]
+mod map_tests;
