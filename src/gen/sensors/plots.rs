@@ -334,7 +334,7 @@ fn car(
         i == own || q.x < -4.0 || q.y.abs() > exit.half_m + 3.0
     });
     let out_m = border.covered().out_m(at);
-    if !alone || out_m < 3.0 || out_m > REACH_M - 4.0 {
+    if !alone || !(3.0..=REACH_M - 4.0).contains(&out_m) {
         return;
     }
     let heading = exits[own].heading;

@@ -92,10 +92,8 @@ impl Around {
     /// Brings it up to date with the voxels; true if what is around changed, which only what is near the edge or is not
     /// seen by the sweep can bring about.
     pub fn update(&mut self, grid: &VoxelGrid, seen: Extent, pattern: &LidarPattern, rays: &Rays) -> bool {
-        let border = match self.border {
-            Some(_) => Some(Border::of_grid(grid, self.height.lift_m())),
-            None => None,
-        };
+        let known = self.border.as_ref();
+        let border = known.map(|_| Border::of_grid(grid, self.height.lift_m()));
         let partly = partly(grid, seen);
         if border == self.border && is_same_around(&partly, &self.partly) {
             return false;
@@ -156,10 +154,10 @@ impl Around {
                 let backdrop = backdrop.as_ref()?;
                 // Of what is higher than the voxels nobody knows how far it reaches.
                 let left_m = backdrop.border().covered().left_by(origin, direction);
-                let over = origin.z + direction.z * left_m > Extent::TOP_M;
-                backdrop
-                    .cast(origin, direction, pattern.max_range_m)
-                    .filter(|_| !over)
+                if origin.z + direction.z * left_m > Extent::TOP_M {
+                    return None;
+                }
+                backdrop.cast(origin, direction, pattern.max_range_m)
             };
             let in_rest = rest
                 .as_ref()
