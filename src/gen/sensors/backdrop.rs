@@ -4,18 +4,19 @@
 
 use glam::{DVec2, DVec3};
 
-use super::border::{Border, GRID_M};
+use super::border::{Border, Covered};
 use super::plots;
 use super::road_exits::{Exit, exits};
 use scene::solid::Solid;
 use scene::{Class, Polyline, VoxelGrid};
 use world::World;
 
-/// How far the continuation reaches from the middle, m.
-pub const REACH_M: f64 = 128.0;
+/// How far the continuation reaches from the edge, m.
+pub const REACH_M: f64 = 88.0;
+/// How far its bare ground does, m.
+const GROUND_REACH_M: f64 = 216.0;
 /// Bins of solids.
 const BIN_M: f64 = 8.0;
-const BINS: usize = 32;
 /// Instances of the continuation begin here: boxes are below, scenery of the world is in the other half.
 const INSTANCES: u32 = 1 << 30;
 /// Ground that varies by more than this is searched along the ray, m.
@@ -67,6 +68,10 @@ pub struct Backdrop {
     border: Border,
     exits: Vec<Exit>,
     things: Things,
+    /// What it reaches.
+    reached: Covered,
+    /// Bins along x and y.
+    along: [usize; 2],
     bins: Vec<Vec<u32>>, // [x][y] of 8 m
     top_m: f64,
     heights_m: [f64; 2],
@@ -91,15 +96,20 @@ impl Backdrop {
             found = exits(&border, lines);
             plots::draw_up(&border, &found, seed, &mut things);
         }
-        let mut bins = vec![Vec::new(); BINS * BINS];
-        let bin = |v: f64| (((v + REACH_M) / BIN_M).max(0.0) as usize).min(BINS - 1);
+        let reached = border.covered().wider(REACH_M);
+        let along = ((reached.high - reached.low) / BIN_M).to_array();
+        let along = along.map(|n| (n.ceil() as usize).max(1));
+        let mut bins = vec![Vec::new(); along[0] * along[1]];
+        let bin = |v: DVec3, axis: usize| {
+            (((v[axis] - reached.low[axis]) / BIN_M).max(0.0) as usize).min(along[axis] - 1)
+        };
         let mut top_m = f64::NEG_INFINITY;
         for (i, solid) in things.solids.iter().enumerate() {
             let (low, high) = (solid.center - solid.reach(), solid.center + solid.reach());
             top_m = f64::max(top_m, high.z);
-            for x in bin(low.x)..=bin(high.x) {
-                for y in bin(low.y)..=bin(high.y) {
-                    bins[x * BINS + y].push(i as u32);
+            for x in bin(low, 0)..=bin(high, 0) {
+                for y in bin(low, 1)..=bin(high, 1) {
+                    bins[x * along[1] + y].push(i as u32);
                 }
             }
         }
@@ -108,6 +118,8 @@ impl Backdrop {
             border,
             exits: found,
             things,
+            reached,
+            along,
             bins,
             top_m: top_m.max(heights_m[1]),
             heights_m,
@@ -139,7 +151,7 @@ impl Backdrop {
         if !(origin.is_finite() && dir.is_finite() && self.heights_m[0].is_finite()) {
             return None;
         }
-        let out_m = leaves_grid(origin, dir);
+        let out_m = self.border.covered().left_by(origin, dir);
         // NaN is not within.
         let within = out_m < max_range_m;
         if !within || (dir.z >= 0.0 && origin.z + dir.z * out_m > self.top_m) {
@@ -163,21 +175,21 @@ impl Backdrop {
 
     /// Walks the bins under the ray from where it leaves the grid.
     fn first_solid(&self, origin: DVec3, dir: DVec3, out_m: f64, limit: f64) -> Option<(f64, u32)> {
-        let to_bin = |v: f64| (v + REACH_M) / BIN_M;
-        let from = origin + dir * out_m;
-        let (mut x, mut y) = (to_bin(from.x).floor() as i64, to_bin(from.y).floor() as i64);
-        let next = |cell: i64, o: f64, d: f64| match d == 0.0 {
+        let (low, [along_x, along_y]) = (self.reached.low, self.along);
+        let from = ((origin + dir * out_m).truncate() - low) / BIN_M;
+        let (mut x, mut y) = (from.x.floor() as i64, from.y.floor() as i64);
+        let next = |cell: i64, low: f64, o: f64, d: f64| match d == 0.0 {
             true => f64::INFINITY,
-            false => ((cell + i64::from(d > 0.0)) as f64 * BIN_M - REACH_M - o) / d,
+            false => ((cell + i64::from(d > 0.0)) as f64 * BIN_M + low - o) / d,
         };
         let (mut best, mut found) = (limit, None);
         let mut entered_m = out_m;
-        for _ in 0..2 * BINS + 2 {
-            let inside = (0..BINS as i64).contains(&x) && (0..BINS as i64).contains(&y);
+        for _ in 0..along_x + along_y + 2 {
+            let inside = (0..along_x as i64).contains(&x) && (0..along_y as i64).contains(&y);
             if !inside || entered_m > best || (dir.z > 0.0 && origin.z + dir.z * entered_m > self.top_m) {
                 break;
             }
-            for &i in &self.bins[x as usize * BINS + y as usize] {
+            for &i in &self.bins[x as usize * along_y + y as usize] {
                 if let Some(t) = self.things.solids[i as usize].enter(origin, dir, best)
                     && t < best
                     && t > out_m
@@ -185,7 +197,7 @@ impl Backdrop {
                     (best, found) = (t, Some(i));
                 }
             }
-            let (tx, ty) = (next(x, origin.x, dir.x), next(y, origin.y, dir.y));
+            let (tx, ty) = (next(x, low.x, origin.x, dir.x), next(y, low.y, origin.y, dir.y));
             entered_m = tx.min(ty);
             if tx < ty {
                 x += dir.x.signum() as i64;
@@ -226,7 +238,7 @@ impl Backdrop {
             t
         };
         let p = origin + dir * range_m;
-        if !(range_m <= max_range_m && p.truncate().abs().max_element() < REACH_M * 2.0) {
+        if !(range_m <= max_range_m && self.border.covered().out_m(p.truncate()) < GROUND_REACH_M) {
             return None;
         }
         let class = self.ground_class(p.truncate())?;
@@ -252,23 +264,10 @@ impl Backdrop {
         match nearest {
             Class::Free => None,
             // What is at the edge goes on for a few metres, so that a road along it is not cut off.
-            _ if p.abs().max_element() < GRID_M + 3.0 => Some(nearest),
+            _ if self.border.covered().out_m(p) < 3.0 => Some(nearest),
             _ => Some(Class::Terrain),
         }
     }
-}
-
-/// Distance at which a ray is out of the grid's square for good; 0 for one that begins beyond it, infinite for a
-/// vertical one.
-pub(super) fn leaves_grid(origin: DVec3, dir: DVec3) -> f64 {
-    let side = |axis: usize| match dir[axis] {
-        d if d.abs() < 1e-12 => f64::INFINITY,
-        d => (GRID_M * d.signum() - origin[axis]) / d,
-    };
-    if origin.truncate().abs().max_element() >= GRID_M {
-        return 0.0;
-    }
-    side(0).min(side(1)).max(0.0)
 }
 
 #[cfg(test)]
@@ -291,7 +290,7 @@ mod tests {
                 assert_eq!(hit, backdrop.cast(origin, dir, 90.0));
                 let Some(hit) = hit else { continue };
                 let p = origin + dir * hit.range_m;
-                assert!(p.truncate().abs().max_element() >= GRID_M - 1e-9 && hit.range_m <= 90.0);
+                assert!(p.truncate().abs().max_element() >= 40.0 - 1e-9 && hit.range_m <= 90.0);
                 assert!((hit.normal.length() - 1.0).abs() < 1e-9 && hit.class != Class::Free);
                 assert_eq!(hit.instance == 0, hit.solid.is_none());
                 found += 1;
@@ -323,7 +322,7 @@ mod tests {
                 roads += 1;
                 for far_m in [1.0, 15.0, 40.0] {
                     let p = exit.at + exit.heading * far_m;
-                    if p.abs().max_element() > GRID_M + 0.5 {
+                    if p.abs().max_element() > 40.5 {
                         assert_eq!(
                             backdrop.ground_class(p),
                             Some(Class::DriveableSurface),
@@ -333,7 +332,7 @@ mod tests {
                 }
             }
             for solid in &backdrop.things.solids {
-                assert!(solid.center.truncate().abs().max_element() > GRID_M, "{solid:?}");
+                assert!(solid.center.truncate().abs().max_element() > 40.0, "{solid:?}");
                 let ground = backdrop.ground_class(solid.center.truncate());
                 let on_road = ground == Some(Class::DriveableSurface);
                 cars += usize::from(solid.class == Class::Car);
@@ -357,7 +356,12 @@ mod tests {
         }
         let backdrop = Backdrop::of_grid(&grid, 0.0);
         let (origin, dir) = (DVec3::new(0.0, 0.0, 6.0), DVec3::new(1.0, 0.0, -0.05).normalize());
-        let hit = backdrop.ground(origin, dir, leaves_grid(origin, dir), 100.0);
+        let hit = backdrop.ground(
+            origin,
+            dir,
+            backdrop.border().covered().left_by(origin, dir),
+            100.0,
+        );
         let hit = hit.expect("the ground");
         let p = origin + dir * hit.range_m;
         assert!((p.z - 3.0).abs() < 0.1, "{p}"); // the top of bin 9

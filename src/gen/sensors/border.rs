@@ -3,11 +3,9 @@
 
 use glam::{DVec2, DVec3};
 
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, Extent, VoxelGrid};
 use world::World;
 
-/// Half the edge of the grid, m.
-pub const GRID_M: f64 = 40.0;
 /// Depths, in cells from the edge, at which the ground is looked at.
 pub const DEPTHS: [usize; 5] = [0, 5, 10, 15, 20];
 /// Every so many cells it is looked what stands there.
@@ -24,7 +22,7 @@ const SKY_M: f64 = 60.0;
 pub struct Side {
     /// 0 for x, 1 for y: the axis that leads out.
     pub axis: usize,
-    /// True for the side at +40 m.
+    /// True for the side at the upper corner.
     pub high: bool,
 }
 
@@ -42,13 +40,16 @@ impl Side {
         self.axis * 2 + usize::from(self.high)
     }
 
-    /// The cell at a depth and a place along the side.
-    pub fn cell(self, depth: usize, along: usize) -> [usize; 2] {
-        let out = if self.high {
-            GridSpec::NX - 1 - depth
-        } else {
-            depth
-        };
+    /// Cells along the side.
+    pub fn cells(self, extent: Extent) -> usize {
+        [extent.ny(), extent.nx()][self.axis]
+    }
+
+    /// The cell at a depth and a place along the side; the last one across at a depth that the grid has not.
+    pub fn cell(self, extent: Extent, depth: usize, along: usize) -> [usize; 2] {
+        let last = [extent.nx(), extent.ny()][self.axis] - 1;
+        let depth = depth.min(last);
+        let out = if self.high { last - depth } else { depth };
         if self.axis == 0 {
             [out, along]
         } else {
@@ -57,9 +58,9 @@ impl Side {
     }
 
     /// Middle of a cell, m.
-    pub fn point(self, depth: usize, along: usize) -> DVec2 {
-        let [x, y] = self.cell(depth, along);
-        GridSpec::center(x, y, 0).truncate()
+    pub fn point(self, extent: Extent, depth: usize, along: usize) -> DVec2 {
+        let [x, y] = self.cell(extent, depth, along);
+        extent.center(x, y, 0).truncate()
     }
 
     /// Outward unit normal.
@@ -70,6 +71,57 @@ impl Side {
         } else {
             DVec2::Y * sign
         }
+    }
+}
+
+/// The rectangle of ground that a grid covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Covered {
+    /// Lower corner, m.
+    pub low: DVec2,
+    /// Upper corner, m.
+    pub high: DVec2,
+}
+
+impl Covered {
+    /// That of an extent.
+    pub fn by(extent: Extent) -> Self {
+        Self {
+            low: extent.min_m().truncate(),
+            high: extent.max_m().truncate(),
+        }
+    }
+
+    /// The same, wider on every side.
+    pub fn wider(self, by_m: f64) -> Self {
+        Self {
+            low: self.low - by_m,
+            high: self.high + by_m,
+        }
+    }
+
+    /// How far a point lies beyond it along each axis, m; less than 0 inside.
+    pub fn beyond_m(&self, p: DVec2) -> DVec2 {
+        (self.low - p).max(p - self.high)
+    }
+
+    /// How far a point lies beyond it along one axis at least, m; less than 0 inside.
+    pub fn out_m(&self, p: DVec2) -> f64 {
+        self.beyond_m(p).max_element()
+    }
+
+    /// Distance at which a ray is out of it for good; 0 for one that begins beyond it, infinite for a vertical one.
+    pub fn left_by(&self, origin: DVec3, dir: DVec3) -> f64 {
+        let side = |axis: usize| match dir[axis] {
+            d if d.abs() < 1e-12 => f64::INFINITY,
+            d if d > 0.0 => (self.high[axis] - origin[axis]) / d,
+            d => (self.low[axis] - origin[axis]) / d,
+        };
+        let from = origin.truncate();
+        if from.cmple(self.low).any() || from.cmpge(self.high).any() {
+            return 0.0;
+        }
+        side(0).min(side(1)).max(0.0)
     }
 }
 
@@ -87,6 +139,8 @@ pub struct Stands {
 /// The edge of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Border {
+    extent: Extent,
+    covered: Covered,
     ground: Vec<Class>,  // [side][depth][along], free where nothing is known
     height_m: Vec<f64>,  // [side][along], at the very edge
     stands: Vec<Stands>, // sampled; also those that are nothing, class free
@@ -95,13 +149,15 @@ pub struct Border {
 impl Border {
     /// That of a procedural world.
     pub fn of_world(world: &World) -> Self {
+        let extent = world.layout.extent();
         Self::new(
+            extent,
             |x, y| {
-                let at = GridSpec::center(x, y, 0).truncate();
+                let at = extent.center(x, y, 0).truncate();
                 (world.ground_class(x, y), world.ground_height(at))
             },
             |x, y, ground_m| {
-                let at = GridSpec::center(x, y, 0).truncate().extend(ground_m + SKY_M);
+                let at = extent.center(x, y, 0).truncate().extend(ground_m + SKY_M);
                 // The ground itself is the class of a ground.
                 let hit = world.cast(at, DVec3::NEG_Z, SKY_M)?;
                 hit.solid?;
@@ -112,12 +168,13 @@ impl Border {
 
     /// That of voxels; `lift_m` is what labels put the ground too low.
     pub fn of_grid(grid: &VoxelGrid, lift_m: f64) -> Self {
-        let top = |z: usize| GridSpec::MIN_M[2] + GridSpec::VOXEL_M * (z + 1) as f64;
+        let top = |z: usize| Extent::BOTTOM_M + Extent::VOXEL_M * (z + 1) as f64;
         let known = |label: u8| Class::from_id(label).filter(|c| *c != Class::Free);
         Self::new(
+            grid.extent(),
             |x, y| {
                 let column = grid.column(x, y);
-                let ground = (0..GridSpec::NZ).find_map(|z| {
+                let ground = (0..Extent::NZ).find_map(|z| {
                     let class = known(column[z]).filter(|c| c.is_ground())?;
                     Some((class, top(z) + lift_m))
                 });
@@ -125,10 +182,10 @@ impl Border {
             },
             |x, y, ground_m| {
                 let column = grid.column(x, y);
-                (0..GridSpec::NZ).rev().find_map(|z| {
+                (0..Extent::NZ).rev().find_map(|z| {
                     let class = known(column[z]).filter(|c| !c.is_ground())?;
                     // Nobody knows how far what reaches the ceiling goes on: some storeys.
-                    let more = if z + 1 == GridSpec::NZ { 4.0 } else { 0.0 };
+                    let more = if z + 1 == Extent::NZ { 4.0 } else { 0.0 };
                     Some((class, top(z) + more - ground_m))
                 })
             },
@@ -136,43 +193,48 @@ impl Border {
     }
 
     fn new(
+        extent: Extent,
         ground_at: impl Fn(usize, usize) -> (Class, f64),
         stands_at: impl Fn(usize, usize, f64) -> Option<(Class, f64)>,
     ) -> Self {
         let (mut ground, mut height_m, mut stands) = (Vec::new(), Vec::new(), Vec::new());
+        let mut at_edge = Vec::new();
         for side in SIDES {
+            let (cells, edge) = (side.cells(extent), height_m.len());
             for depth in DEPTHS {
-                for along in 0..GridSpec::NX {
-                    let [x, y] = side.cell(depth, along);
+                for along in 0..cells {
+                    let [x, y] = side.cell(extent, depth, along);
                     let (class, at_m) = ground_at(x, y);
                     ground.push(class);
                     if depth == 0 {
+                        at_edge.push(class);
                         height_m.push(at_m);
                     }
                 }
             }
             for depth in (2..DEEP).step_by(STRIDE) {
-                for along in (2..GridSpec::NX).step_by(STRIDE) {
-                    let [x, y] = side.cell(depth, along);
-                    let ground_m = height_m[side.index() * GridSpec::NX + along];
+                for along in (2..cells).step_by(STRIDE) {
+                    let [x, y] = side.cell(extent, depth, along);
+                    let ground_m = height_m[edge + along];
                     let found = stands_at(x, y, ground_m).filter(|(_, h)| *h > LOW_M);
                     let (class, height_m) = found.unwrap_or((Class::Free, 0.0));
-                    let at = side.point(depth, along);
+                    let at = side.point(extent, depth, along);
                     stands.push(Stands { at, class, height_m });
                 }
             }
         }
         // Unknown ground lies as high as the last known.
-        let known = |i: usize| ground[i / GridSpec::NX * DEPTHS.len() * GridSpec::NX + i % GridSpec::NX];
-        let first = (0..height_m.len()).find(|i| known(*i) != Class::Free);
+        let first = at_edge.iter().position(|class| *class != Class::Free);
         let mut last = first.map_or(0.0, |i| height_m[i]);
-        for (i, height_m) in height_m.iter_mut().enumerate() {
-            if known(i) == Class::Free || !height_m.is_finite() {
+        for (class, height_m) in at_edge.iter().zip(&mut height_m) {
+            if *class == Class::Free || !height_m.is_finite() {
                 *height_m = last;
             }
             last = *height_m;
         }
         Self {
+            extent,
+            covered: Covered::by(extent),
             ground,
             height_m,
             stands,
@@ -180,32 +242,53 @@ impl Border {
     }
 
     /// True if a change of the columns from `low` to `high` may change the edge.
-    pub fn is_touched(low: [f64; 2], high: [f64; 2]) -> bool {
-        let (deep, inner) = (DEEP as f64 + 1.0, GridSpec::NX as f64 - DEEP as f64 - 1.0);
-        (0..2).any(|axis| low[axis] <= deep || high[axis] >= inner)
+    pub fn is_touched(extent: Extent, low: [f64; 2], high: [f64; 2]) -> bool {
+        let deep = DEEP as f64 + 1.0;
+        let inner = [extent.nx(), extent.ny()].map(|n| n as f64 - deep);
+        (0..2).any(|axis| low[axis] <= deep || high[axis] >= inner[axis])
+    }
+
+    /// The grid that it is the edge of.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// The ground that this grid covers.
+    pub fn covered(&self) -> Covered {
+        self.covered
+    }
+
+    /// Place of a cell of the edge in arrays `[side][along]`.
+    fn at_edge(&self, side: Side, along: usize) -> usize {
+        let before = match side.axis {
+            0 => 0,
+            _ => 2 * self.extent.ny(),
+        };
+        before + usize::from(side.high) * side.cells(self.extent) + along
     }
 
     /// Ground of a cell; `depth` counts in [`DEPTHS`].
     pub fn ground(&self, side: Side, depth: usize, along: usize) -> Class {
-        self.ground[(side.index() * DEPTHS.len() + depth) * GridSpec::NX + along]
+        self.ground[self.at_edge(side, 0) * DEPTHS.len() + depth * side.cells(self.extent) + along]
     }
 
     /// True if nothing is known of the ground at the edge: then nothing goes on beyond it.
     pub fn is_empty(&self) -> bool {
-        SIDES
-            .iter()
-            .all(|side| (0..GridSpec::NX).all(|along| self.ground(*side, 0, along) == Class::Free))
+        let is_free = |side: &Side| {
+            (0..side.cells(self.extent)).all(|along| self.ground(*side, 0, along) == Class::Free)
+        };
+        SIDES.iter().all(is_free)
     }
 
     /// Height of the ground beyond the grid: that of the nearest place at the edge, m.
     pub fn height_m(&self, p: DVec2) -> f64 {
-        let (side, along) = nearest(p);
-        self.height_m[side.index() * GridSpec::NX + along]
+        let (side, along) = self.nearest(p);
+        self.height_m[self.at_edge(side, along)]
     }
 
     /// Class of the ground at the nearest place at the edge.
     pub fn nearest_ground(&self, p: DVec2) -> Class {
-        let (side, along) = nearest(p);
+        let (side, along) = self.nearest(p);
         self.ground(side, 0, along)
     }
 
@@ -219,23 +302,26 @@ impl Border {
     pub fn stands(&self) -> &[Stands] {
         &self.stands
     }
-}
 
-/// The place at the edge that is nearest to a point beyond it.
-fn nearest(p: DVec2) -> (Side, usize) {
-    let axis = usize::from(p.y.abs() > p.x.abs());
-    let side = Side {
-        axis,
-        high: p[axis] > 0.0,
-    };
-    // Casts saturate; NaN is 0.
-    let along = ((p[1 - axis] + GRID_M) / GridSpec::VOXEL_M) as usize;
-    (side, along.min(GridSpec::NX - 1))
+    /// The place at the edge that is nearest to a point beyond it.
+    fn nearest(&self, p: DVec2) -> (Side, usize) {
+        let Covered { low, high } = self.covered;
+        let beyond_m = self.covered.beyond_m(p);
+        let axis = usize::from(beyond_m.y > beyond_m.x);
+        let side = Side {
+            axis,
+            high: p[axis] > (low[axis] + high[axis]) / 2.0,
+        };
+        // Casts saturate; NaN is 0.
+        let along = ((p[1 - axis] - low[1 - axis]) / Extent::VOXEL_M) as usize;
+        (side, along.min(side.cells(self.extent) - 1))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Window;
     use world::voxelize::{Vertical, complete};
 
     #[test]
@@ -247,24 +333,23 @@ mod tests {
         );
         let (mut same, mut of) = (0, 0);
         for side in SIDES {
-            for along in 0..GridSpec::NX {
+            for along in 0..Window::NX {
                 let found = voxels.ground(side, 0, along);
                 if found != Class::Free {
                     of += 1;
                     same += usize::from(found == exact.ground(side, 0, along));
                 }
-                let p = side.point(0, along) + side.normal() * 20.0;
+                let p = side.point(Extent::WINDOW, 0, along) + side.normal() * 20.0;
                 assert!((voxels.height_m(p) - exact.height_m(p)).abs() < 0.5);
             }
         }
         assert!(of > 600 && same * 10 > of * 9, "{same} of {of}");
+        let touched = |low, high| Border::is_touched(Extent::WINDOW, low, high);
         let tall = |b: &Border| b.stands().iter().filter(|s| s.class != Class::Free).count();
         let (a, b) = (tall(&exact), tall(&voxels));
         assert!(a > 10 && b * 2 > a && a * 2 > b, "{a} {b}");
-        assert!(
-            Border::is_touched([100.0, 10.0], [110.0, 14.0]) && Border::is_touched([181.0; 2], [182.0; 2])
-        );
-        assert!(!Border::is_touched([30.0; 2], [170.0; 2]));
+        assert!(touched([100.0, 10.0], [110.0, 14.0]) && touched([181.0; 2], [182.0; 2]));
+        assert!(!touched([30.0; 2], [170.0; 2]));
         assert!(!exact.is_empty() && Border::of_grid(&VoxelGrid::new(), 0.0).is_empty());
     }
 }

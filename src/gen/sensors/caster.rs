@@ -8,8 +8,7 @@ use super::border::Border;
 use super::lidar::{EgoBox, Rays, look_through};
 use super::raycast::{ColumnMasks, LANES, Met, Packet};
 use super::surroundings::{Around, Height};
-use scene::grid::{BRICK, BRICKS};
-use scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
+use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, VoxelGrid};
 
 /// With more changed boxes than this, all rays are cast: testing them would cost as much.
 const MAX_BOXES: usize = 16;
@@ -61,16 +60,13 @@ impl Caster {
         exclude: Option<EgoBox>,
     ) -> Self {
         let rays = Rays::new(pattern, ego_speed_mps);
+        let extent = grid.extent();
         let mut caster = Self {
-            around: Around::new(grid, pattern, &rays, exclude, Height::AsLabelled),
+            around: Around::new(grid, extent, pattern, &rays, exclude, Height::AsLabelled),
             pattern: pattern.clone(),
             exclude,
             columns: rays.origins.len(),
-            origins: rays
-                .origins
-                .iter()
-                .map(|o| GridSpec::to_voxel_units(*o))
-                .collect(),
+            origins: in_voxels(extent, &rays),
             normals: rays.normals(pattern),
             found: vec![(0.0, None); rays.directions.len()],
             rays,
@@ -83,8 +79,18 @@ impl Caster {
         caster
     }
 
-    /// Brings the sweep up to date with `grid`.
+    /// Brings the sweep up to date with `grid`, which may have another extent.
     pub fn update(&mut self, grid: &VoxelGrid) {
+        let extent = grid.extent();
+        if extent != self.grid.extent() {
+            self.around.update(grid, extent, &self.pattern, &self.rays);
+            self.origins = in_voxels(extent, &self.rays);
+            self.masks = ColumnMasks::from_grid(grid);
+            self.grid = grid.clone();
+            self.leave_out();
+            self.cast_all();
+            return;
+        }
         let bricks = self.grid.changed_bricks(grid);
         let changed: Vec<Changed> = bricks
             .iter()
@@ -93,9 +99,9 @@ impl Caster {
         self.grid = grid.clone();
         if changed
             .iter()
-            .any(|c| Border::is_touched([c.low.x, c.low.y], [c.high.x, c.high.y]))
+            .any(|c| Border::is_touched(extent, [c.low.x, c.low.y], [c.high.x, c.high.y]))
         {
-            self.around.update(grid, &self.pattern, &self.rays);
+            self.around.update(grid, extent, &self.pattern, &self.rays);
         }
         if changed.is_empty() {
             self.cast = 0;
@@ -116,7 +122,7 @@ impl Caster {
         let beam = |beam: usize| {
             columns.iter().filter_map(move |&column| {
                 let ray = beam * kept.columns + column;
-                let reach = f64::from(kept.found[ray].0) / GridSpec::VOXEL_M;
+                let reach = f64::from(kept.found[ray].0) / Extent::VOXEL_M;
                 let inverse = kept.rays.directions[ray].to_array().map(inverse).into();
                 let met = |b: &Changed| b.is_met(kept.origins[column], inverse, reach);
                 changed.iter().any(met).then_some(ray)
@@ -197,7 +203,7 @@ impl Caster {
                 }
             };
             let count = rows.first().map_or(0, |row| row.len() * groups);
-            let max_t = self.pattern.max_range_m / GridSpec::VOXEL_M;
+            let max_t = self.pattern.max_range_m / Extent::VOXEL_M;
             self.masks.cast_packets(count, max_t, packet, |i, met| {
                 let (column, first) = (i / groups, i % groups * LANES);
                 for (beam, met) in (first..beams).zip(met) {
@@ -212,9 +218,9 @@ impl Caster {
     #[inline]
     fn cast_one(&self, ray: usize) -> Found {
         let (origin, direction) = (self.origins[ray % self.columns], self.rays.directions[ray]);
-        let max_t = self.pattern.max_range_m / GridSpec::VOXEL_M;
+        let max_t = self.pattern.max_range_m / Extent::VOXEL_M;
         let met = self.masks.cast_in_voxels(origin, direction, max_t);
-        self.found(ray, met.map(|(t, voxel)| (t, voxel.map(|v| v as u8))))
+        self.found(ray, met.map(|(t, voxel)| (t, voxel.map(|v| v as u16))))
     }
 
     /// What a ray returns that met a voxel, or none.
@@ -224,7 +230,7 @@ impl Caster {
             return (f32::INFINITY, None);
         };
         let (origin, direction) = self.rays.get(ray);
-        let range_m = t * GridSpec::VOXEL_M;
+        let range_m = t * Extent::VOXEL_M;
         let [x, y, z] = voxel.map(usize::from);
         let point = || LidarPoint {
             position_in_ego: (origin + direction * range_m).as_vec3().to_array(),
@@ -242,17 +248,23 @@ impl Caster {
     }
 }
 
+/// The origins of rays in voxel units.
+fn in_voxels(extent: Extent, rays: &Rays) -> Vec<DVec3> {
+    let origins = rays.origins.iter();
+    origins.map(|o| extent.to_voxel_units(*o)).collect()
+}
+
 /// The box around the voxels of a brick that differ. `None` if none does.
 fn changed_in(before: &VoxelGrid, after: &VoxelGrid, brick: usize) -> Option<Changed> {
-    let (x0, y0) = ((brick / BRICKS) * BRICK, (brick % BRICKS) * BRICK);
+    let ([x0, y0], [along_x, along_y]) = before.brick_columns(brick);
     let mut found: Option<([usize; 3], [usize; 3])> = None;
-    for x in x0..(x0 + BRICK).min(GridSpec::NX) {
-        for y in y0..(y0 + BRICK).min(GridSpec::NY) {
+    for x in x0..x0 + along_x {
+        for y in y0..y0 + along_y {
             let (a, b) = (before.column(x, y), after.column(x, y));
             if a == b {
                 continue;
             }
-            for z in (0..GridSpec::NZ).filter(|&z| a[z] != b[z]) {
+            for z in (0..Extent::NZ).filter(|&z| a[z] != b[z]) {
                 let (low, high) = found.get_or_insert(([x, y, z], [x, y, z]));
                 for (axis, v) in [x, y, z].into_iter().enumerate() {
                     low[axis] = low[axis].min(v);
@@ -297,13 +309,13 @@ impl Changed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::SensorRig;
+    use scene::{SensorRig, Window};
     use world::draw::Draw;
 
     fn world() -> VoxelGrid {
         let mut grid = VoxelGrid::new();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 if (x / 7 + y / 5) % 3 != 0 {
                     grid.set(x, y, 0, Class::DriveableSurface.id());
                 }
@@ -360,8 +372,8 @@ mod tests {
     #[test]
     fn a_rolling_sweep_sees_from_where_the_vehicle_was() {
         let mut grid = VoxelGrid::new();
-        for y in 0..GridSpec::NY {
-            for z in 0..GridSpec::NZ {
+        for y in 0..Window::NY {
+            for z in 0..Window::NZ {
                 grid.set(150, y, z, Class::Manmade.id()); // a wall, its face at x = 20 m
             }
         }

@@ -3,7 +3,7 @@
 use super::raycast::ColumnMasks;
 use scene::sensor_data::RenderId;
 pub use scene::splats::Gaussian;
-use scene::{BevLayer, Class, GridSpec, VoxelGrid};
+use scene::{BevLayer, Class, Extent, VoxelGrid};
 
 /// Standard deviation of a voxel's Gaussian: half a voxel (UniScene; X-Scene uses 0.135 m).
 pub const VOXEL_STD_M: f32 = 0.2;
@@ -27,8 +27,8 @@ impl GaussianCloud {
         Self { gaussians }
     }
 
-    /// Every voxel that is not free. `bev` holds one bit per [`BevLayer`] for each cell, `[x][y]`,
-    /// 200 x 200; driveable voxels under a crossing or a divider become render ids 17 to 19.
+    /// Every voxel that is not free. `bev` holds one bit per [`BevLayer`] for each cell of the grid, `[x][y]`;
+    /// driveable voxels under a crossing or a divider become render ids 17 to 19.
     /// Cells that `bev` lacks have no lines, so an empty slice draws none.
     pub fn from_grid(grid: &VoxelGrid, bev: &[u32]) -> Self {
         Self::build(grid, &ColumnMasks::from_grid(grid), bev, |_, _, mask| mask)
@@ -39,15 +39,12 @@ impl GaussianCloud {
     /// almost the same picture sooner: gaps between Gaussians let some 15 % of the light past each layer.
     pub fn from_grid_shell(grid: &VoxelGrid, bev: &[u32], layers: usize) -> Self {
         let masks = ColumnMasks::from_grid(grid);
-        let mut inside: Vec<u16> = (0..GridSpec::COLUMNS)
-            .map(|i| masks.column(i / GridSpec::NY, i % GridSpec::NY))
-            .collect();
+        let extent = grid.extent();
+        let mut inside: Vec<u16> = extent.all_columns().map(|[x, y]| masks.column(x, y)).collect();
         for _ in 0..layers {
-            inside = eroded(&inside);
+            inside = eroded(extent, &inside);
         }
-        Self::build(grid, &masks, bev, |x, y, mask| {
-            mask & !inside[x * GridSpec::NY + y]
-        })
+        Self::build(grid, &masks, bev, |x, y, mask| mask & !inside[extent.index(x, y)])
     }
 
     fn build(
@@ -56,21 +53,23 @@ impl GaussianCloud {
         bev: &[u32],
         keep: impl Fn(usize, usize, u16) -> u16,
     ) -> Self {
+        let extent = grid.extent();
+        let (nx, ny) = (extent.nx(), extent.ny());
         let mut gaussians = Vec::new();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..nx {
+            for y in 0..ny {
                 let mut left = keep(x, y, masks.column(x, y));
                 if left == 0 {
                     continue;
                 }
                 let column = grid.column(x, y);
-                let road = road_id(bev.get(x * GridSpec::NY + y).copied().unwrap_or(0));
+                let road = road_id(bev.get(x * ny + y).copied().unwrap_or(0));
                 while left != 0 {
                     let z = left.trailing_zeros() as usize;
                     left &= left - 1;
                     let label = column[z];
                     gaussians.push(Gaussian {
-                        position_m: GridSpec::center(x, y, z).as_vec3().to_array(),
+                        position_m: extent.center(x, y, z).as_vec3().to_array(),
                         std_m: VOXEL_STD_M,
                         opacity: 1.0,
                         id: render_id(label, road),
@@ -118,13 +117,13 @@ pub(super) fn road_id(layers: u32) -> RenderId {
 }
 
 /// Columns `[x][y]` without the voxels that have a free neighbour.
-fn eroded(columns: &[u16]) -> Vec<u16> {
-    let at = |x: usize, y: usize| match x < GridSpec::NX && y < GridSpec::NY {
-        true => columns[x * GridSpec::NY + y],
+fn eroded(extent: Extent, columns: &[u16]) -> Vec<u16> {
+    let at = |x: usize, y: usize| match extent.holds(x, y) {
+        true => columns[extent.index(x, y)],
         false => 0,
     };
     let cell = |i: usize| {
-        let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+        let [x, y] = extent.column(i);
         let m = columns[i];
         // Below bin 0 is earth; above bin 15 is air.
         let beside = at(x.wrapping_sub(1), y) & at(x + 1, y) & at(x, y.wrapping_sub(1)) & at(x, y + 1);
@@ -136,6 +135,7 @@ fn eroded(columns: &[u16]) -> Vec<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Window;
 
     #[test]
     fn lines_repaint_the_road_only_and_the_later_wins() {
@@ -146,7 +146,7 @@ mod tests {
             grid.set(11, y, 0, walk);
             grid.set(10, y, 1, Class::Car.id());
         }
-        let mut bev = vec![0; GridSpec::COLUMNS];
+        let mut bev = vec![0; Window::COLUMNS];
         let layers = [
             vec![],
             vec![BevLayer::PedCrossing],
@@ -160,12 +160,12 @@ mod tests {
         ];
         for x in [10, 11] {
             for (y, layers) in layers.iter().enumerate() {
-                bev[x * GridSpec::NY + y] = layers.iter().fold(0, |bits, l| bits | l.bit());
+                bev[x * Window::NY + y] = layers.iter().fold(0, |bits, l| bits | l.bit());
             }
         }
         let cloud = GaussianCloud::from_grid(&grid, &bev);
         let ids = |x: usize, z: usize| -> Vec<u8> {
-            let p = |y| GridSpec::center(x, y, z).as_vec3().to_array();
+            let p = |y| Window::center(x, y, z).as_vec3().to_array();
             let find = |y| cloud.gaussians().iter().find(|g| g.position_m == p(y));
             (0..5).map(|y| find(y).expect("a voxel").id).collect()
         };

@@ -1,4 +1,5 @@
-//! One revolution of a spinning LiDAR through the learned field: sub-voxel ranges, echo strength, lost echoes.
+//! One revolution of a spinning LiDAR through the learned field: sub-voxel ranges, echo strength, lost echoes. The field
+//! covers the networks' window; what lies in the rest of a larger map comes from the exact ray cast.
 
 use glam::DVec3;
 
@@ -8,7 +9,7 @@ use super::texture::textured;
 use nets::ModelError;
 use nets::lidar::field::{Field, Ray, Sampling};
 use nets::lidar::{LearnedRay, LidarNet};
-use scene::{Class, GridSpec, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
+use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
 use world::draw::{Draw, hash};
 
 /// What happens to echoes that a real sensor may lose.
@@ -32,26 +33,29 @@ pub fn field(net: &LidarNet, grid: &VoxelGrid, exclude: Option<EgoBox>) -> Resul
     net.field(&seen(grid, exclude))
 }
 
-/// A grid without what stands in the place of the own vehicle.
+/// What the network sees of a grid.
+pub(super) const SEEN: Extent = Extent::WINDOW;
+
+/// What the network sees of a grid, without what stands in the place of the own vehicle.
 pub fn seen(grid: &VoxelGrid, exclude: Option<EgoBox>) -> VoxelGrid {
-    let mut seen = grid.clone();
+    let mut seen = grid.crop(SEEN);
     let Some(ego) = exclude else {
         return seen;
     };
     // Casts saturate: a box of any size covers at most the grid, NaN nothing.
     let range = |axis: usize, n: usize| {
-        let at = |p: DVec3| GridSpec::to_voxel_units(p)[axis].floor();
+        let at = |p: DVec3| SEEN.to_voxel_units(p)[axis].floor();
         let (low, high) = (
             at(ego.center_m - ego.size_m / 2.0),
             at(ego.center_m + ego.size_m / 2.0),
         );
         (low.max(0.0) as usize).min(n)..(high + 1.0).clamp(0.0, n as f64) as usize
     };
-    for x in range(0, GridSpec::NX) {
-        for y in range(1, GridSpec::NY) {
-            for z in range(2, GridSpec::NZ) {
-                let class = grid.get(x, y, z);
-                let near = (GridSpec::center(x, y, z) - ego.center_m)
+    for x in range(0, SEEN.nx()) {
+        for y in range(1, SEEN.ny()) {
+            for z in range(2, Extent::NZ) {
+                let class = seen.get(x, y, z);
+                let near = (SEEN.center(x, y, z) - ego.center_m)
                     .abs()
                     .cmple(ego.size_m / 2.0);
                 if class != Class::FREE && near.all() && !class_is_ground(class) {
@@ -106,7 +110,7 @@ pub fn rig_sweep(
     let ego = Some(EgoBox::of_rig(rig));
     let field = field(net, grid, ego)?;
     let shape = Rays::new(pattern, rig.ego_speed_mps);
-    let around = Around::new(grid, pattern, &shape, ego, Height::Physical);
+    let around = Around::new(grid, SEEN, pattern, &shape, ego, Height::Physical);
     let rays = rays_of(pattern, &shape);
     let answers = net.shoot(&field, &rays, Sampling::Prior);
     let columns = pattern.columns_in_sector();
@@ -162,6 +166,7 @@ pub fn points(
 mod tests {
     use super::*;
     use nets::lidar::drop_probability;
+    use scene::Window;
     use world::World;
     use world::voxelize::{Vertical, complete};
 
@@ -221,7 +226,7 @@ mod tests {
         let net = LidarNet::bundled().expect("the shipped weights");
         let mut grids = vec![VoxelGrid::new(); 3];
         grids[1].set(199, 0, 15, 4);
-        for k in 0..GridSpec::VOXELS {
+        for k in 0..Window::VOXELS {
             grids[2].set(k / 3200, k / 16 % 200, k % 16, if k % 97 == 0 { 200 } else { 15 });
         }
         let ego = EgoBox {
@@ -262,7 +267,7 @@ mod tests {
     #[test]
     fn row_53_the_field_moves_with_the_scene() {
         let net = LidarNet::bundled().expect("the shipped weights");
-        let key = |x: usize, y: usize, z: usize| ((x * GridSpec::NY + y) * GridSpec::NZ + z) as u32;
+        let key = |x: usize, y: usize, z: usize| ((x * Window::NY + y) * Window::NZ + z) as u32;
         let shapes: [Vec<[usize; 3]>; 2] = [
             vec![[20, 20, 5]],
             (0..400)

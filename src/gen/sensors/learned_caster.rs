@@ -6,14 +6,14 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::learned::{self, Drops};
+use super::learned::{self, Drops, SEEN};
 use super::lidar::{EgoBox, Rays};
 use super::surroundings::{Around, Height};
 use nets::ModelError;
 use nets::lidar::field::{Field, Ray, Sampling};
 use nets::lidar::update::{Changed, Region};
 use nets::lidar::{LearnedRay, LidarNet};
-use scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
+use scene::{Extent, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// A voxel's numbers reach half a voxel beyond it, as far as the neighbours' centres.
 const HALO: f64 = 0.5;
@@ -64,7 +64,7 @@ impl LearnedCaster {
         let answers = net.shoot(&field, &rays, Sampling::Prior);
         Ok(Self {
             exclude,
-            around: Around::new(grid, pattern, &shape, exclude, Height::Physical),
+            around: Around::new(grid, SEEN, pattern, &shape, exclude, Height::Physical),
             pattern: pattern.clone(),
             shape,
             shot: (0..rays.len() as u32).collect(),
@@ -93,7 +93,7 @@ impl LearnedCaster {
             }
             Changed::In(regions) => self.shoot_again(&regions),
         };
-        self.around.update(grid, &self.pattern, &self.shape);
+        self.around.update(grid, SEEN, &self.pattern, &self.shape);
         Ok(())
     }
 
@@ -104,7 +104,7 @@ impl LearnedCaster {
         let boxes: Vec<[DVec3; 2]> = regions.iter().map(reached).collect();
         let rays = self.rays.par_iter().zip(&self.answers).with_min_len(CHUNK);
         let touched = rays.enumerate().filter(|(_, (ray, answer))| {
-            let reach = f64::from(answer.met.reach_m) / GridSpec::VOXEL_M + MARGIN;
+            let reach = f64::from(answer.met.reach_m) / Extent::VOXEL_M + MARGIN;
             boxes.iter().any(|b| meets(ray, b, reach))
         });
         let again: Vec<usize> = touched.map(|(i, _)| i).collect();
@@ -173,14 +173,14 @@ fn reached(region: &Region) -> [DVec3; 2] {
     let corner = |xy: [usize; 2], z: usize, by: f64| DVec3::new(xy[0] as f64, xy[1] as f64, z as f64) + by;
     [
         corner(region.low, 0, -HALO - MARGIN),
-        corner(region.high, GridSpec::NZ, HALO + MARGIN),
+        corner(region.high, Extent::NZ, HALO + MARGIN),
     ]
 }
 
 /// True if a ray comes into a box at most `reach` voxels from its origin. Also for a ray of which nothing is known
 /// (NaN): it is shot again to no effect.
 fn meets(ray: &Ray, [low, high]: &[DVec3; 2], reach: f64) -> bool {
-    let o = GridSpec::to_voxel_units(ray.origin);
+    let o = SEEN.to_voxel_units(ray.origin);
     let inverse = ray
         .direction
         .to_array()

@@ -28,3 +28,7 @@ pub mod surroundings;
 mod texture;
 mod tile;
 pub mod truth;
+mod units;
+
+#[cfg(test)]
+mod map_tests;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::caster::Caster;
 use super::raycast::ColumnMasks;
-use scene::{GridSpec, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
+use scene::{Extent, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// The ego vehicle as an upright box along the ego frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,7 +101,8 @@ pub fn rig_sweep(grid: &VoxelGrid, rig: &SensorRig) -> Option<LidarSweep> {
 
 /// Takes the voxels whose centre lies in the box out of the masks.
 pub(super) fn look_through(masks: &mut ColumnMasks, ego: EgoBox) {
-    let cell = |p: DVec3| GridSpec::to_voxel_units(p).floor();
+    let extent = masks.extent();
+    let cell = |p: DVec3| extent.to_voxel_units(p).floor();
     let (low, high) = (
         cell(ego.center_m - ego.size_m / 2.0),
         cell(ego.center_m + ego.size_m / 2.0),
@@ -110,10 +111,10 @@ pub(super) fn look_through(masks: &mut ColumnMasks, ego: EgoBox) {
     let range = |axis: usize, n: usize| {
         low[axis].max(0.0) as usize..(high[axis] + 1.0).max(0.0).min(n as f64) as usize
     };
-    for x in range(0, GridSpec::NX) {
-        for y in range(1, GridSpec::NY) {
-            for z in range(2, GridSpec::NZ) {
-                if ego.contains(GridSpec::center(x, y, z)) {
+    for x in range(0, extent.nx()) {
+        for y in range(1, extent.ny()) {
+            for z in range(2, Extent::NZ) {
+                if ego.contains(extent.center(x, y, z)) {
                     masks.set(x, y, z, false);
                 }
             }

@@ -13,12 +13,13 @@ use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::raycast::ColumnMasks;
+use super::units::Units;
 use ground::Ground;
 pub use ground::GroundHeight;
 use paint::Paint;
 use scene::raster::box_cells;
 use scene::sensor_data::RenderId;
-use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
+use scene::{BevLayout, BoxId, Camera, CameraMaps, Class, Extent, SceneBox, SensorRig, VoxelGrid};
 use solids::{SolidHit, SolidIndex};
 
 /// Columns this far outside a box still belong to it, m: voxels stick out by up to half of one.
@@ -58,6 +59,7 @@ impl Default for MarchOptions {
 
 /// A frame prepared for marching: some milliseconds to build, then shared by all cameras.
 pub struct MarchScene {
+    units: Units,
     grid: VoxelGrid,
     masks: ColumnMasks,
     ground: Ground,
@@ -108,11 +110,13 @@ impl MarchScene {
         } else {
             Paint::default()
         };
+        let extent = grid.extent();
         Self {
+            units: Units::of(extent),
             masks: ColumnMasks::from_grid(&grid),
             grid,
             ground,
-            solids: SolidIndex::of_boxes(drawn.into_iter(), options.seed),
+            solids: SolidIndex::of_boxes(extent, drawn.into_iter(), options.seed),
             paint,
         }
     }
@@ -136,15 +140,15 @@ impl MarchScene {
         if !(origin_in_ego.is_finite() && speed.is_finite() && speed > 1e-12) {
             return None;
         }
-        let (origin, unit) = (GridSpec::to_voxel_units(origin_in_ego), direction / speed);
+        let (origin, unit) = (self.units.to_voxels(origin_in_ego), direction / speed);
         let ground = self.ground.cast(origin, unit, f64::INFINITY);
         let mut best = ground.as_ref().map_or(f64::INFINITY, |h| h.t);
         let mut hit = ground.map(|h| {
-            let p = GridSpec::from_voxel_units(origin + unit * h.t).truncate();
+            let p = self.units.to_ego(origin + unit * h.t).truncate();
             (self.road_id(h.class, h.normal, p), h.normal, None)
         });
-        if let Some(s) = solids(unit, best * GridSpec::VOXEL_M) {
-            best = s.t_m / GridSpec::VOXEL_M;
+        if let Some(s) = solids(unit, best * Extent::VOXEL_M) {
+            best = s.t_m / Extent::VOXEL_M;
             let id = s.solid.class.id();
             hit = Some((id, s.solid.normal_at(origin_in_ego + unit * s.t_m), s.box_id));
         }
@@ -155,11 +159,11 @@ impl MarchScene {
         {
             best = t;
             let normal = face_normal(origin, unit, t, voxel);
-            let p = GridSpec::from_voxel_units(origin + unit * t).truncate();
+            let p = self.units.to_ego(origin + unit * t).truncate();
             hit = Some((self.road_id(self.label(voxel), normal, p), normal, None));
         }
         hit.map(|(id, normal, box_id)| MarchHit {
-            t: best * GridSpec::VOXEL_M / speed,
+            t: best * Extent::VOXEL_M / speed,
             id,
             normal,
             box_id,
@@ -340,9 +344,10 @@ pub(crate) fn remove_voxels(
         GroundHeight::AsLabelled => bottom,
         GroundHeight::Physical => bottom - SMEAR_M - HEIGHT_MARGIN_M,
     };
-    box_cells(scene::Extent::WINDOW, b, margin_m, |x, y| {
-        for z in 0..GridSpec::NZ {
-            let middle = GridSpec::center(x, y, z).z;
+    let extent = grid.extent();
+    box_cells(extent, b, margin_m, |x, y| {
+        for z in 0..Extent::NZ {
+            let middle = extent.center(x, y, z).z;
             if (bottom..top).contains(&middle) && grid.get(x, y, z) == b.class.id() {
                 grid.set(x, y, z, Class::FREE);
                 ground.want(x, y);

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 
 use scene::background::Facade;
 use scene::solid::{Shape, Solid};
-use scene::{BevLayer, Class, Form, GridSpec};
+use scene::{BevLayer, Class, Form};
 use world::draw::{Draw, hash, noise};
 use world::{Surface, World};
 
@@ -252,10 +252,10 @@ impl<'a> Materials<'a> {
             | BevLayer::LaneDivider.bit()
             | BevLayer::RoadDivider.bit()
             | BevLayer::StopLine.bit();
-        let column = GridSpec::column_at(p.x, p.y);
-        self.world
-            .zip(column)
-            .is_some_and(|(world, [x, y])| world.layout.cells()[x * GridSpec::NY + y] & painted != 0)
+        self.world.is_some_and(|world| {
+            let column = world.layout.extent().column_at(p.x, p.y);
+            column.is_some_and(|[x, y]| world.layout.cell(x, y) & painted != 0)
+        })
     }
 }
 

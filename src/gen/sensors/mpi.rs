@@ -11,39 +11,53 @@ use rayon::prelude::*;
 use super::cloud::{render_id, road_id};
 use super::raycast::grid_span;
 use scene::sensor_data::{PlaneRun, Planes, RenderId};
-use scene::{Camera, Class, GridSpec, MultiPlaneImage, VoxelGrid};
+use scene::{Camera, Class, Extent, MultiPlaneImage, VoxelGrid};
 
 const FREE: u8 = Class::FREE;
 /// Free in a table of render ids, where 17 is a crossing.
 const NONE: RenderId = RenderId::MAX;
 
 /// The render ids of all voxels, `[x][y][z]`, ready for any number of cameras.
-pub struct RenderIds(Vec<RenderId>);
+pub struct RenderIds {
+    extent: Extent,
+    /// Voxels along each axis.
+    size: DVec3,
+    /// Columns along y.
+    ny: usize,
+    ids: Vec<RenderId>,
+}
 
 impl RenderIds {
     /// Those of a grid; `bev` holds one bit per layer for each column (an empty slice has no lines).
     pub fn new(grid: &VoxelGrid, bev: &[u32]) -> Self {
-        let mut ids = vec![NONE; GridSpec::VOXELS];
-        for (column, ids) in ids.chunks_exact_mut(GridSpec::NZ).enumerate() {
+        let extent = grid.extent();
+        let mut ids = vec![NONE; extent.voxels()];
+        for (column, ids) in ids.chunks_exact_mut(Extent::NZ).enumerate() {
             let road = road_id(bev.get(column).copied().unwrap_or(0));
-            let labels = grid.column(column / GridSpec::NY, column % GridSpec::NY);
+            let [x, y] = extent.column(column);
+            let labels = grid.column(x, y);
             for (id, &label) in ids.iter_mut().zip(labels) {
                 if label != FREE {
                     *id = render_id(label, road);
                 }
             }
         }
-        Self(ids)
+        Self {
+            extent,
+            size: DVec3::from_array(extent.shape().map(|n| n as f64)),
+            ny: extent.ny(),
+            ids,
+        }
     }
 
     /// The id at a point in voxel units; `NONE` where free, outside the grid or not finite.
     #[inline]
     fn at(&self, p: DVec3) -> RenderId {
         // Written so that NaN fails too; a cast towards 0 would put -0.5 into voxel 0.
-        if !(p.min_element() >= 0.0 && p.x < 200.0 && p.y < 200.0 && p.z < 16.0) {
+        if !(p.min_element() >= 0.0 && p.cmplt(self.size).all()) {
             return NONE;
         }
-        self.0[(p.x as usize * GridSpec::NY + p.y as usize) * GridSpec::NZ + p.z as usize]
+        self.ids[(p.x as usize * self.ny + p.y as usize) * Extent::NZ + p.z as usize]
     }
 }
 
@@ -51,14 +65,14 @@ impl RenderIds {
 pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes: Planes) -> MultiPlaneImage {
     let camera = camera.resized(width.max(1), height.max(1));
     let pose = camera.ego_from_camera();
-    let origin = GridSpec::to_voxel_units(pose.translation_m);
+    let origin = ids.extent.to_voxel_units(pose.translation_m);
     let row = |y: u32| {
         let (mut counts, mut runs) = (Vec::with_capacity(width as usize), Vec::new());
         for x in 0..width {
             let before = runs.len();
             let at = |i: usize, v: u32| (f64::from(v) + 0.5 - camera.center_px[i]) / camera.focal_px[i];
             // Unit depth along the optical axis, so that a multiple of it is a depth.
-            let ray = pose.rotation * DVec3::new(at(0, x), at(1, y), 1.0) / GridSpec::VOXEL_M;
+            let ray = pose.rotation * DVec3::new(at(0, x), at(1, y), 1.0) / Extent::VOXEL_M;
             trace(ids, origin, ray, planes, &mut runs);
             counts.push((runs.len() - before) as u32);
         }
@@ -88,7 +102,7 @@ pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes:
 
 /// Runs along one ray; `ray` is what one metre of depth adds, voxel units.
 fn trace(ids: &RenderIds, origin: DVec3, ray: DVec3, planes: Planes, runs: &mut Vec<PlaneRun>) {
-    let Some(span) = grid_span(origin, ray) else {
+    let Some(span) = grid_span(ids.extent, origin, ray) else {
         return;
     };
     // Planes a step outside the span are looked at too: their points decide for themselves.
@@ -121,7 +135,7 @@ fn trace(ids: &RenderIds, origin: DVec3, ray: DVec3, planes: Planes, runs: &mut 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{SensorRig, draft};
+    use scene::{SensorRig, Window, draft};
     use world::World;
 
     /// The definition, point by point, in the ego frame.
@@ -134,9 +148,9 @@ mod tests {
     ) -> Option<RenderId> {
         let at = |i: usize| (f64::from(pixel[i]) + 0.5 - camera.center_px[i]) / camera.focal_px[i] * depth_m;
         let p = camera.ego_from_camera().apply(DVec3::new(at(0), at(1), depth_m));
-        let [x, y, z] = GridSpec::voxel_at(p)?;
+        let [x, y, z] = Window::voxel_at(p)?;
         let label = grid.get(x, y, z);
-        (label != FREE).then(|| render_id(label, road_id(bev[x * GridSpec::NY + y])))
+        (label != FREE).then(|| render_id(label, road_id(bev[x * Window::NY + y])))
     }
 
     #[test]
@@ -172,8 +186,8 @@ mod tests {
     #[test]
     fn a_wall_shows_where_it_stands_and_odd_cameras_do_no_harm() {
         let mut grid = VoxelGrid::new();
-        for y in 0..GridSpec::NY {
-            for z in 0..GridSpec::NZ {
+        for y in 0..Window::NY {
+            for z in 0..Window::NZ {
                 grid.set(150, y, z, Class::Manmade.id()); // x = 20.0 to 20.4 m
             }
         }

@@ -3,9 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use scene::{
-    BevLayer, BevLayout, Camera, Class, GridSpec, PerspectiveMap, PolylineKind, Pose, Relief, SceneBox,
-};
+use scene::{BevLayer, BevLayout, Camera, Class, PerspectiveMap, PolylineKind, Pose, Relief, SceneBox};
 
 /// Width of a painted line on the ground, m.
 const LINE_M: f64 = 0.2;
@@ -123,7 +121,7 @@ impl Canvas {
 
     /// Looks up the layout where each pixel's ray meets the ground.
     fn ground(&mut self, layout: &BevLayout) {
-        let origin = self.ego_from_camera.translation_m;
+        let (extent, origin) = (layout.extent(), self.ego_from_camera.translation_m);
         let [fx, fy] = self.camera.focal_px;
         let [cx, cy] = self.camera.center_px;
         for i in 0..self.channels.len() {
@@ -134,7 +132,7 @@ impl Canvas {
                 continue;
             };
             let p = origin + ray * depth_m;
-            let Some([x, y]) = GridSpec::column_at(p.x, p.y) else {
+            let Some([x, y]) = extent.column_at(p.x, p.y) else {
                 continue;
             };
             let cell = layout.cell(x, y);

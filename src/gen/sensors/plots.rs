@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use super::backdrop::{REACH_M, Things};
-use super::border::{Border, GRID_M};
+use super::border::Border;
 use super::road_exits::Exit;
 use scene::solid::Solid;
 use scene::{BoxId, Class, SceneBox};
@@ -177,7 +177,7 @@ fn line(
     let gap_m = draw.range(18.0, 32.0);
     while along_m < 60.0 {
         let at = exit.point(along_m, sign * (exit.half_m + 0.5));
-        if clear(exits, at, 0.1) {
+        if clear(border, exits, at, 0.1) {
             let base = at.extend(border.height_m(at));
             things
                 .solids
@@ -190,14 +190,18 @@ fn line(
 
 /// The blocks between the roads.
 fn blocks(border: &Border, exits: &[Exit], usual: Character, seed: u64, things: &mut Things) {
-    let reach = (REACH_M - BLOCK_M) / BLOCK_M;
-    let n = reach.floor() as i64;
-    for (i, j) in (-n..=n).flat_map(|i| (-n..=n).map(move |j| (i, j))) {
+    let covered = border.covered();
+    let reached = covered.wider(REACH_M - BLOCK_M);
+    let of = |axis: usize| {
+        let at = |m: f64| m / BLOCK_M;
+        at(reached.low[axis]).ceil() as i64..=at(reached.high[axis]).floor() as i64
+    };
+    for (i, j) in of(0).flat_map(|i| of(1).map(move |j| (i, j))) {
         let key = hash(seed ^ hash(i as u64 ^ hash(j as u64)));
         let mut draw = Draw::new(key, "block");
         let at = DVec2::new(i as f64, j as f64) * BLOCK_M
             + DVec2::new(draw.range(-2.0, 2.0), draw.range(-2.0, 2.0));
-        let far_m = at.abs().max_element() - GRID_M;
+        let far_m = covered.out_m(at);
         // The farther out, the less is seen: only the first rows are worth it.
         if !(1.0..=BLOCKS_M).contains(&far_m) {
             continue;
@@ -220,10 +224,10 @@ fn blocks(border: &Border, exits: &[Exit], usual: Character, seed: u64, things: 
 }
 
 /// True if a disc beyond the grid is clear of every road and of the grid.
-fn clear(exits: &[Exit], at: DVec2, radius_m: f64) -> bool {
-    let out = at.abs().max_element() > GRID_M + radius_m + CLEAR_M;
-    let in_reach = at.abs().max_element() < REACH_M - radius_m;
-    out && in_reach
+fn clear(border: &Border, exits: &[Exit], at: DVec2, radius_m: f64) -> bool {
+    let out_m = border.covered().out_m(at);
+    out_m > radius_m + CLEAR_M
+        && out_m < REACH_M - radius_m
         && exits.iter().all(|exit| {
             let q = exit.local(at);
             q.x < -radius_m || q.y.abs() > exit.half_m + radius_m
@@ -244,7 +248,7 @@ fn house(
     let height_m = (c.house_m * draw.range(0.7, 1.4)).clamp(2.8, 24.0);
     let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 0.0)];
     let corner = |(u, v): (f64, f64)| at + heading * (u * size.x / 2.0) + heading.perp() * (v * size.y / 2.0);
-    if !corners.iter().all(|k| clear(exits, corner(*k), 0.3)) {
+    if !corners.iter().all(|k| clear(border, exits, corner(*k), 0.3)) {
         return;
     }
     let base = at.extend(border.height_m(at) - 0.1);
@@ -269,7 +273,7 @@ fn house(
 fn tree(border: &Border, exits: &[Exit], at: DVec2, c: Character, draw: &mut Draw, things: &mut Things) {
     let height_m = c.tree_m * draw.range(0.8, 1.4);
     let crown_m = (height_m * draw.range(0.28, 0.42)).min(3.5);
-    if !clear(exits, at, 0.3) || at.abs().max_element() < GRID_M + crown_m + CLEAR_M {
+    if !clear(border, exits, at, 0.3) || border.covered().out_m(at) < crown_m + CLEAR_M {
         return;
     }
     let base = at.extend(border.height_m(at) - 0.1);
@@ -329,7 +333,8 @@ fn car(
         let q = exit.local(at);
         i == own || q.x < -4.0 || q.y.abs() > exit.half_m + 3.0
     });
-    if !alone || at.abs().max_element() < GRID_M + 3.0 || at.abs().max_element() > REACH_M - 4.0 {
+    let out_m = border.covered().out_m(at);
+    if !alone || !(3.0..=REACH_M - 4.0).contains(&out_m) {
         return;
     }
     let heading = exits[own].heading;

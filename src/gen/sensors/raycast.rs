@@ -13,23 +13,29 @@ use glam::DVec3;
 
 pub use packet::{LANES, Met, Packet};
 use scan::{Scan, Slab};
-use scene::grid::{BRICK, BRICKS};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::grid::bricks_along;
+use scene::{Class, Extent, VoxelGrid};
 pub use walk::{Span, grid_span};
 use walk::{Start, walk};
 
-/// Free columns around the grid, so that the scan needs no bounds of its own; one block wide.
+/// Free columns around the grid, so that the scan needs no bounds of its own; one block wide, or up to two at the
+/// upper sides.
 const BORDER: usize = BLOCK;
-/// Columns from one x to the next.
-const STRIDE: usize = GridSpec::NY + 2 * BORDER;
-/// Edge of a block of columns; divides [`BRICK`].
+/// Edge of a block of columns; divides the edge of a brick.
 const BLOCK: usize = 8;
-/// Blocks from one x to the next, border included.
-const BLOCK_STRIDE: usize = STRIDE / BLOCK;
 
 /// Occupancy as one bit per voxel: bit z of column (x, y) is set where the voxel is not free.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnMasks {
+    extent: Extent,
+    /// Voxels along x, y and z.
+    shape: [usize; 3],
+    /// Columns along x, border included: whole blocks.
+    rows: usize,
+    /// Columns from one x to the next: whole blocks.
+    stride: usize,
+    /// Blocks from one x to the next.
+    block_stride: usize,
     /// `[x][y]` with a border of free columns.
     columns: Vec<u16>,
     /// Union over the columns of each block.
@@ -48,32 +54,50 @@ pub struct RayHit {
 impl ColumnMasks {
     /// The masks of a grid.
     pub fn from_grid(grid: &VoxelGrid) -> Self {
+        let extent = grid.extent();
+        let [rows, stride] = [extent.nx(), extent.ny()].map(|n| n.next_multiple_of(BLOCK) + 2 * BORDER);
         let mut masks = Self {
-            columns: vec![0; (GridSpec::NX + 2 * BORDER) * STRIDE],
-            blocks: vec![0; (GridSpec::NX + 2 * BORDER) / BLOCK * BLOCK_STRIDE],
+            extent,
+            shape: extent.shape(),
+            rows,
+            stride,
+            block_stride: stride / BLOCK,
+            columns: vec![0; rows * stride],
+            blocks: vec![0; rows / BLOCK * (stride / BLOCK)],
         };
-        for brick in 0..BRICKS * BRICKS {
+        for brick in 0..grid.bricks().len() {
             masks.update_brick(grid, brick);
         }
         masks
     }
 
+    /// Which part of the ground they cover.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
     /// Brings the masks of the listed bricks (see [`VoxelGrid::changed_bricks`]) up to date with
-    /// `grid`; indices beyond the last brick are ignored.
+    /// `grid`; indices beyond the last brick are ignored. Of a grid with another extent all masks are made anew.
     pub fn update(&mut self, grid: &VoxelGrid, changed_bricks: &[usize]) {
+        if grid.extent() != self.extent {
+            *self = Self::from_grid(grid);
+            return;
+        }
+        let bricks: usize = bricks_along(self.extent).iter().product();
         for &brick in changed_bricks {
-            if brick < BRICKS * BRICKS {
+            if brick < bricks {
                 self.update_brick(grid, brick);
             }
         }
     }
 
     fn update_brick(&mut self, grid: &VoxelGrid, brick: usize) {
-        let (x0, y0) = ((brick / BRICKS) * BRICK, (brick % BRICKS) * BRICK);
-        let (x1, y1) = ((x0 + BRICK).min(GridSpec::NX), (y0 + BRICK).min(GridSpec::NY));
+        let ([x0, y0], [along_x, along_y]) = grid.brick_columns(brick);
+        let (x1, y1) = (x0 + along_x, y0 + along_y);
         for x in x0..x1 {
             for y in y0..y1 {
-                self.columns[Self::at(x, y)] = column_mask(grid.column(x, y));
+                let at = self.at(x, y);
+                self.columns[at] = column_mask(grid.column(x, y));
             }
         }
         for x in (x0..x1).step_by(BLOCK) {
@@ -88,37 +112,36 @@ impl ColumnMasks {
         let (bx, by) = ((x + BORDER) / BLOCK, (y + BORDER) / BLOCK);
         let mut union = 0;
         for row in 0..BLOCK {
-            let from = (bx * BLOCK + row) * STRIDE + by * BLOCK;
+            let from = (bx * BLOCK + row) * self.stride + by * BLOCK;
             union = self.columns[from..from + BLOCK].iter().fold(union, |u, m| u | m);
         }
-        self.blocks[bx * BLOCK_STRIDE + by] = union;
+        self.blocks[bx * self.block_stride + by] = union;
     }
 
     #[inline]
-    fn at(x: usize, y: usize) -> usize {
-        (x + BORDER) * STRIDE + y + BORDER
+    fn at(&self, x: usize, y: usize) -> usize {
+        (x + BORDER) * self.stride + y + BORDER
     }
 
     /// Bits of the occupied voxels above a cell, lowest voxel in bit 0. Panics outside the grid.
     #[inline]
     pub fn column(&self, x: usize, y: usize) -> u16 {
-        assert!(x < GridSpec::NX && y < GridSpec::NY, "column ({x}, {y})");
-        self.columns[Self::at(x, y)]
+        assert!(x < self.shape[0] && y < self.shape[1], "column ({x}, {y})");
+        self.columns[self.at(x, y)]
     }
 
     /// True where a voxel is occupied. Panics outside the grid.
     pub fn occupied(&self, x: usize, y: usize, z: usize) -> bool {
-        assert!(z < GridSpec::NZ, "height {z}");
+        assert!(z < Extent::NZ, "height {z}");
         self.column(x, y) >> z & 1 == 1
     }
 
     /// Marks one voxel as occupied or free. Panics outside the grid.
     pub fn set(&mut self, x: usize, y: usize, z: usize, occupied: bool) {
-        assert!(
-            x < GridSpec::NX && y < GridSpec::NY && z < GridSpec::NZ,
-            "voxel ({x}, {y}, {z})"
-        );
-        let column = &mut self.columns[Self::at(x, y)];
+        let [nx, ny, nz] = self.shape;
+        assert!(x < nx && y < ny && z < nz, "voxel ({x}, {y}, {z})");
+        let at = self.at(x, y);
+        let column = &mut self.columns[at];
         *column = *column & !(1 << z) | (u16::from(occupied) << z);
         self.update_block(x, y);
     }
@@ -128,12 +151,12 @@ impl ColumnMasks {
     /// direction zero.
     pub fn cast(&self, origin_in_ego: DVec3, direction_in_ego: DVec3, max_range_m: f64) -> Option<RayHit> {
         let (t, voxel) = self.cast_in_voxels(
-            GridSpec::to_voxel_units(origin_in_ego),
+            self.extent.to_voxel_units(origin_in_ego),
             direction_in_ego,
-            max_range_m / GridSpec::VOXEL_M,
+            max_range_m / Extent::VOXEL_M,
         )?;
         Some(RayHit {
-            range_m: t * GridSpec::VOXEL_M,
+            range_m: t * Extent::VOXEL_M,
             voxel,
         })
     }
@@ -141,8 +164,8 @@ impl ColumnMasks {
     /// The same in voxel units: 0 is the grid's lower corner and a voxel has edge 1. Returns the
     /// distance in units of the direction's length, and the voxel.
     pub fn cast_in_voxels(&self, origin: DVec3, direction: DVec3, max_t: f64) -> Option<(f64, [usize; 3])> {
-        let start = Start::new(origin, direction, max_t)?;
-        let Some(mut scan) = Scan::new(&start) else {
+        let start = Start::new(self.shape, origin, direction, max_t)?;
+        let Some(mut scan) = Scan::new(self, &start) else {
             return walk(self, start.state(), start.t_end, |_| ());
         };
         while let Some(slab) = scan.next_slab(self) {
@@ -166,8 +189,8 @@ impl ColumnMasks {
 
 /// Bits of the voxels that are not free.
 #[inline]
-fn column_mask(column: &[u8; GridSpec::NZ]) -> u16 {
-    if *column == [Class::FREE; GridSpec::NZ] {
+fn column_mask(column: &[u8; Extent::NZ]) -> u16 {
+    if *column == [Class::FREE; Extent::NZ] {
         return 0;
     }
     let bits = column.iter().enumerate();

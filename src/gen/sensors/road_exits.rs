@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::border::{Border, DEPTHS, GRID_M, SIDES, Side};
-use scene::{Class, GridSpec, Polyline, PolylineKind};
+use super::border::{Border, Covered, DEPTHS, SIDES, Side};
+use scene::{Class, Extent, Polyline, PolylineKind};
 
 /// Narrower ground is no road, wider is one along the edge, cells.
 const LEAST: usize = 7;
@@ -70,6 +70,7 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
         .filter(|l| l.kind == PolylineKind::LaneCenter)
         .flat_map(|l| lane_ends(&l.points_m))
         .collect();
+    let (extent, covered) = (border.extent(), border.covered());
     let mut out = Vec::new();
     for side in SIDES {
         for run in runs(border, side, 0) {
@@ -77,13 +78,13 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
             if !(LEAST..=MOST).contains(&cells) {
                 continue;
             }
-            let (a, b) = (side.point(0, run[0]), side.point(0, run[1] - 1));
-            let wide = 0.5 * GridSpec::VOXEL_M;
+            let (a, b) = (side.point(extent, 0, run[0]), side.point(extent, 0, run[1] - 1));
+            let wide = 0.5 * Extent::VOXEL_M;
             let at = (a + b) / 2.0 + side.normal() * wide;
-            let near = |p: DVec2| p.distance(at) < (cells as f64 / 2.0 + 2.0) * GridSpec::VOXEL_M;
+            let near = |p: DVec2| p.distance(at) < (cells as f64 / 2.0 + 2.0) * Extent::VOXEL_M;
             let lanes = ends
                 .iter()
-                .filter(|[p, _]| near(*p) && out_m(*p, side) < AT_EDGE_M);
+                .filter(|[p, _]| near(*p) && inside_m(covered, *p, side) < AT_EDGE_M);
             let along: DVec2 = lanes.map(|[_, direction]| *direction).sum();
             let heading = along
                 .try_normalize()
@@ -102,7 +103,7 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
                 at,
                 heading,
                 half_m: cells as f64 * wide * cosine,
-                walk_m: walk_m.map(|cells| cells as f64 * GridSpec::VOXEL_M * cosine),
+                walk_m: walk_m.map(|cells| cells as f64 * Extent::VOXEL_M * cosine),
             });
         }
     }
@@ -110,8 +111,11 @@ pub fn exits(border: &Border, lines: &[Polyline]) -> Vec<Exit> {
 }
 
 /// How far a point lies inside a side, m.
-fn out_m(p: DVec2, side: Side) -> f64 {
-    GRID_M - p.dot(side.normal())
+fn inside_m(covered: Covered, p: DVec2, side: Side) -> f64 {
+    match side.high {
+        true => covered.high[side.axis] - p[side.axis],
+        false => p[side.axis] - covered.low[side.axis],
+    }
 }
 
 /// Both ends of a lane with the unit vectors that lead out of it.
@@ -129,7 +133,7 @@ fn lane_ends(points: &[DVec2]) -> Vec<[DVec2; 2]> {
 /// Half-open runs of road along a side at a depth.
 fn runs(border: &Border, side: Side, depth: usize) -> Vec<[usize; 2]> {
     let mut out: Vec<[usize; 2]> = Vec::new();
-    for along in 0..GridSpec::NX {
+    for along in 0..side.cells(border.extent()) {
         if border.ground(side, depth, along) != Class::DriveableSurface {
             continue;
         }
@@ -145,7 +149,8 @@ fn runs(border: &Border, side: Side, depth: usize) -> Vec<[usize; 2]> {
 /// Direction of a road from its middle at several depths; none where its width changes, as in a junction.
 fn course(border: &Border, side: Side, run: [usize; 2]) -> Option<DVec2> {
     let middle = |depth: usize, run: [usize; 2]| {
-        (side.point(DEPTHS[depth], run[0]) + side.point(DEPTHS[depth], run[1] - 1)) / 2.0
+        let point = |along: usize| side.point(border.extent(), DEPTHS[depth], along);
+        (point(run[0]) + point(run[1] - 1)) / 2.0
     };
     let (mut last, mut from) = (run, None);
     for depth in 1..DEPTHS.len() {
@@ -165,7 +170,7 @@ fn course(border: &Border, side: Side, run: [usize; 2]) -> Option<DVec2> {
 /// Cells of sidewalk beside the end of a run.
 fn walk(border: &Border, side: Side, end: usize, upward: bool) -> usize {
     let at = |i: usize| match upward {
-        true => Some(end + i).filter(|a| *a < GridSpec::NX),
+        true => Some(end + i).filter(|a| *a < side.cells(border.extent())),
         false => end.checked_sub(i + 1),
     };
     (0..MOST_WALK)

@@ -1,15 +1,18 @@
 //! What ends a pulse outside the voxels: the own vehicle's roof, and the continuation of the scene beyond the grid. Exact
 //! and learned sweeps put it around what they find in the grid.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::backdrop::{Backdrop, SCENE_SEED, leaves_grid};
-use super::border::Border;
+use super::backdrop::{Backdrop, Behind, SCENE_SEED};
+use super::border::{Border, Covered};
 use super::lidar::{EgoBox, Rays};
+use super::march::{GroundHeight, MarchOptions, MarchScene};
 use super::material::{Materials, Met};
 use super::own_body::{OwnBody, is_blind};
-use scene::{Class, GridSpec, LidarPattern, LidarPoint, VoxelGrid};
+use scene::{BevLayout, Class, Extent, LidarPattern, LidarPoint, VoxelGrid};
 use world::Surface;
 use world::draw::{Draw, hash};
 
@@ -55,13 +58,17 @@ pub struct Around {
     body: Option<OwnBody>,
     /// The edge that the continuation was drawn up from; `None` without one.
     border: Option<Border>,
+    /// The grid and what of it the sweep sees itself, if that is not all.
+    partly: Option<(VoxelGrid, Extent)>,
     outside: Vec<Outside>,
 }
 
 impl Around {
-    /// That of a pattern in a scene; `ego` is the vehicle that carries it, if it is known.
+    /// That of a pattern in a scene; `ego` is the vehicle that carries it, if it is known. Of the grid the sweep sees what
+    /// lies in `seen` itself: the voxels outside count to what is around.
     pub fn new(
         grid: &VoxelGrid,
+        seen: Extent,
         pattern: &LidarPattern,
         rays: &Rays,
         ego: Option<EgoBox>,
@@ -72,6 +79,7 @@ impl Around {
             height,
             body,
             border: None,
+            partly: partly(grid, seen),
             outside: Vec::new(),
         };
         let border = pattern
@@ -81,17 +89,17 @@ impl Around {
         around
     }
 
-    /// Brings it up to date with the voxels; true if what lies beyond the grid changed, which only what is near the edge
-    /// can bring about.
-    pub fn update(&mut self, grid: &VoxelGrid, pattern: &LidarPattern, rays: &Rays) -> bool {
-        let Some(known) = &self.border else {
-            return false;
-        };
-        let border = Border::of_grid(grid, self.height.lift_m());
-        if border == *known {
+    /// Brings it up to date with the voxels; true if what is around changed, which only what is near the edge or is not
+    /// seen by the sweep can bring about.
+    pub fn update(&mut self, grid: &VoxelGrid, seen: Extent, pattern: &LidarPattern, rays: &Rays) -> bool {
+        let known = self.border.as_ref();
+        let border = known.map(|_| Border::of_grid(grid, self.height.lift_m()));
+        let partly = partly(grid, seen);
+        if border == self.border && is_same_around(&partly, &self.partly) {
             return false;
         }
-        self.shoot(Some(border), pattern, rays);
+        self.partly = partly;
+        self.shoot(border, pattern, rays);
         true
     }
 
@@ -108,6 +116,20 @@ impl Around {
 
     fn shoot(&mut self, border: Option<Border>, pattern: &LidarPattern, rays: &Rays) {
         let backdrop = border.map(|border| Backdrop::new(border, &[], SCENE_SEED));
+        let rest = self.partly.as_ref().map(|(grid, seen)| {
+            let options = MarchOptions {
+                ground: match self.height {
+                    Height::AsLabelled => GroundHeight::AsLabelled,
+                    Height::Physical => GroundHeight::Physical,
+                },
+                boxes: false,
+                lines: false,
+                seed: SCENE_SEED,
+            };
+            let nothing = BevLayout::over(grid.extent());
+            let scene = MarchScene::new(grid, &nothing, &BTreeMap::new(), &options);
+            (scene, Covered::by(*seen))
+        });
         let materials = Materials::ordinary(SCENE_SEED);
         let columns = rays.origins.len().max(1);
         let outside = |ray: usize| {
@@ -128,13 +150,23 @@ impl Around {
                 let strength = OWN_STRENGTH * (0.5 + fate);
                 return Outside::Own(seen.then(|| point(range_m, Class::Others, strength, 0.0)));
             }
-            // Of what is higher than the voxels nobody knows how far it reaches.
-            let over = origin.z + direction.z * leaves_grid(origin, direction) > GridSpec::MAX_M[2];
-            let hit = backdrop
+            let beyond = || {
+                let backdrop = backdrop.as_ref()?;
+                // Of what is higher than the voxels nobody knows how far it reaches.
+                let left_m = backdrop.border().covered().left_by(origin, direction);
+                if origin.z + direction.z * left_m > Extent::TOP_M {
+                    return None;
+                }
+                backdrop.cast(origin, direction, pattern.max_range_m)
+            };
+            let in_rest = rest
                 .as_ref()
-                .filter(|_| !over)
-                .and_then(|b| Some((b, b.cast(origin, direction, pattern.max_range_m)?)));
-            let Some((backdrop, hit)) = hit else {
+                .and_then(|(scene, seen)| unseen(scene, *seen, origin, direction));
+            let hit = match in_rest {
+                Some(hit) => (hit.range_m <= pattern.max_range_m).then_some(hit),
+                None => beyond(),
+            };
+            let Some(hit) = hit else {
                 return Outside::Nothing;
             };
             let surface = Surface {
@@ -145,7 +177,7 @@ impl Around {
             let met = Met {
                 class: hit.class,
                 surface: &surface,
-                solid: hit.solid.and_then(|i| backdrop.solid(i)),
+                solid: hit.solid.and_then(|i| backdrop.as_ref()?.solid(i)),
                 at: origin + direction * hit.range_m,
                 range_m: hit.range_m,
                 cosine: hit.normal.dot(direction).abs().clamp(0.0, 1.0),
@@ -164,15 +196,62 @@ impl Around {
     }
 }
 
+/// The grid and what of it a sweep sees, unless that is all.
+fn partly(grid: &VoxelGrid, seen: Extent) -> Option<(VoxelGrid, Extent)> {
+    let extent = grid.extent();
+    let all = extent
+        .overlap(&seen)
+        .is_some_and(|shared| shared.size == [extent.nx(), extent.ny()]);
+    (!all).then(|| (grid.clone(), seen))
+}
+
+/// True if two grids hold the same outside of what sweeps see of them.
+fn is_same_around(a: &Option<(VoxelGrid, Extent)>, b: &Option<(VoxelGrid, Extent)>) -> bool {
+    let (Some((a, seen)), Some((b, also))) = (a, b) else {
+        return a.is_none() && b.is_none();
+    };
+    if (a.extent(), seen) != (b.extent(), also) {
+        return false;
+    }
+    let (mut from, mut to) = ([0; 2], [0; 2]);
+    if let Some(shared) = a.extent().overlap(seen) {
+        from = shared.here;
+        to = [0, 1].map(|axis| from[axis] + shared.size[axis]);
+    }
+    a.changed_bricks(b).into_iter().all(|brick| {
+        let ([x0, y0], [along_x, along_y]) = a.brick_columns(brick);
+        (x0..x0 + along_x).all(|x| {
+            (y0..y0 + along_y).all(|y| {
+                let is_seen = (from[0]..to[0]).contains(&x) && (from[1]..to[1]).contains(&y);
+                is_seen || a.column(x, y) == b.column(x, y)
+            })
+        })
+    })
+}
+
+/// The first voxel along a ray from where it leaves what a sweep sees itself.
+fn unseen(scene: &MarchScene, seen: Covered, origin: DVec3, direction: DVec3) -> Option<Behind> {
+    let left_m = seen.left_by(origin, direction);
+    let hit = scene.cast(origin + direction * left_m, direction)?;
+    Some(Behind {
+        range_m: left_m + hit.t,
+        class: Class::from_id(hit.id)?,
+        normal: hit.normal,
+        instance: 0,
+        part: 0,
+        solid: None,
+    })
+}
+
 /// True if a point of a sweep may be on the own vehicle: nearer than any wheel of another.
 pub fn is_own(point: &LidarPoint) -> bool {
     point.class == Class::Others && point.range_m < 3.0
 }
 
 /// True if a point of a sweep is on the continuation, beyond the grid.
-pub fn is_beyond(point: &LidarPoint) -> bool {
+pub fn is_beyond(extent: Extent, point: &LidarPoint) -> bool {
     let p = DVec3::from_array(point.position_in_ego.map(f64::from));
-    p.truncate().abs().max_element() >= super::border::GRID_M
+    Covered::by(extent).out_m(p.truncate()) >= 0.0
 }
 
 #[cfg(test)]
@@ -189,6 +268,7 @@ mod tests {
         let rig = SensorRig::default();
         let (ego, mut pattern) = (Some(EgoBox::of_rig(&rig)), rig.lidars[0].clone());
         let grid = complete(&World::random(6), Vertical::Occ3d);
+        let is_beyond = |p: &LidarPoint| super::is_beyond(grid.extent(), p);
         let sweep = |p: &LidarPattern| Caster::new(&grid, p, 0.0, ego).sweep();
         let with = sweep(&pattern);
         (pattern.own_body, pattern.beyond_grid) = (false, false);

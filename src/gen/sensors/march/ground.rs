@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, Extent, VoxelGrid};
 
 /// Where the ground is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -25,6 +25,7 @@ const THICK: f64 = 1.0;
 /// Heights of the ground in voxel units, `[x][y]`; empty if the ground stays among the voxels.
 #[derive(Clone, Debug, Default)]
 pub struct Ground {
+    extent: Extent,
     top: Vec<f64>, // NaN: none
     class: Vec<u8>,
     wanted: Vec<bool>,
@@ -49,32 +50,38 @@ fn is_ground(label: u8) -> bool {
 
 /// What stands on the ground, and the ground.
 pub fn split(grid: &VoxelGrid, height: GroundHeight) -> (VoxelGrid, Ground) {
+    let extent = grid.extent();
     if height == GroundHeight::AsLabelled {
-        return (grid.clone(), Ground::default());
+        let none = Ground {
+            extent,
+            ..Ground::default()
+        };
+        return (grid.clone(), none);
     }
     let mut ground = Ground {
-        top: vec![f64::NAN; GridSpec::COLUMNS],
-        class: vec![Class::FREE; GridSpec::COLUMNS],
-        wanted: vec![false; GridSpec::COLUMNS],
+        extent,
+        top: vec![f64::NAN; extent.columns()],
+        class: vec![Class::FREE; extent.columns()],
+        wanted: vec![false; extent.columns()],
         lowest: f64::INFINITY,
         highest: f64::NEG_INFINITY,
     };
-    let mut out = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    let mut out = VoxelGrid::over(extent);
+    for x in 0..extent.nx() {
+        for y in 0..extent.ny() {
             let column = grid.column(x, y);
-            if *column == [Class::FREE; GridSpec::NZ] {
+            if *column == [Class::FREE; Extent::NZ] {
                 continue;
             }
             let mut upper = *column;
-            if let Some(bin) = (0..GridSpec::NZ).rev().find(|z| is_ground(column[*z])) {
-                ground.set(x * GridSpec::NY + y, top_of(bin), column[bin]);
+            if let Some(bin) = (0..Extent::NZ).rev().find(|z| is_ground(column[*z])) {
+                ground.set(extent.index(x, y), top_of(bin), column[bin]);
                 for label in upper.iter_mut().filter(|l| is_ground(**l)) {
                     *label = Class::FREE;
                 }
             }
             unsmear(&mut upper);
-            if upper != [Class::FREE; GridSpec::NZ] {
+            if upper != [Class::FREE; Extent::NZ] {
                 out.column_mut(x, y).copy_from_slice(&upper);
             }
         }
@@ -91,10 +98,10 @@ pub fn top_of(bin: usize) -> f64 {
 }
 
 /// Takes away the two lowest voxels of every run that hangs in the air, and what lies below the ground.
-fn unsmear(column: &mut [u8; GridSpec::NZ]) {
+fn unsmear(column: &mut [u8; Extent::NZ]) {
     let labels = *column;
     // A run from bin 1 stands on a pavement.
-    for z in SMEAR..GridSpec::NZ {
+    for z in SMEAR..Extent::NZ {
         let begins = labels[z] != Class::FREE && labels[z - 1] == Class::FREE;
         let run = labels[z..].iter().take_while(|l| **l != Class::FREE).count();
         if begins && run > SMEAR {
@@ -113,14 +120,14 @@ impl Ground {
 
     /// Label and height in m above the ego's ground of a column, if there is ground.
     pub fn at(&self, x: usize, y: usize) -> Option<(u8, f64)> {
-        let i = x * GridSpec::NY + y;
+        let i = self.extent.index(x, y);
         let top = *self.top.get(i)?;
-        (!top.is_nan()).then(|| (self.class[i], top * GridSpec::VOXEL_M + GridSpec::MIN_M[2]))
+        (!top.is_nan()).then(|| (self.class[i], top * Extent::VOXEL_M + Extent::BOTTOM_M))
     }
 
     /// Asks for ground in a column that an object hid.
     pub fn want(&mut self, x: usize, y: usize) {
-        if let Some(wanted) = self.wanted.get_mut(x * GridSpec::NY + y) {
+        if let Some(wanted) = self.wanted.get_mut(self.extent.index(x, y)) {
             *wanted = true;
         }
     }
@@ -139,15 +146,15 @@ impl Ground {
             }
         }
         while let Some(i) = queue.pop_front() {
-            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            let [x, y] = self.extent.column(i);
             for (nx, ny) in [
                 (x.wrapping_sub(1), y),
                 (x + 1, y),
                 (x, y.wrapping_sub(1)),
                 (x, y + 1),
             ] {
-                if nx < GridSpec::NX && ny < GridSpec::NY {
-                    let n = nx * GridSpec::NY + ny;
+                if self.extent.holds(nx, ny) {
+                    let n = self.extent.index(nx, ny);
                     if source[n] == u32::MAX {
                         source[n] = source[i];
                         queue.push_back(n);
@@ -169,9 +176,10 @@ impl Ground {
             return None;
         }
         let (mut t0, mut t1) = (0.0, t_max);
+        let n = [self.extent.nx(), self.extent.ny()];
         let limits = [
-            (0.0, GridSpec::NX as f64),
-            (0.0, GridSpec::NY as f64),
+            (0.0, n[0] as f64),
+            (0.0, n[1] as f64),
             (self.lowest - THICK, self.highest),
         ];
         let mut entered = 2; // axis by whose plane the ray comes in
@@ -194,7 +202,6 @@ impl Ground {
         if !inside {
             return None;
         }
-        let n = [GridSpec::NX, GridSpec::NY];
         let start = |axis: usize| ((o[axis] + d[axis] * t0).max(0.0) as usize).min(n[axis] - 1);
         let mut cell = [start(0), start(1)];
         let next = |cell: [usize; 2], axis: usize| {
@@ -204,11 +211,11 @@ impl Ground {
             ((cell[axis] + usize::from(d[axis] > 0.0)) as f64 - o[axis]) / d[axis]
         };
         let mut t_in = t0;
-        for _ in 0..GridSpec::NX + GridSpec::NY + 2 {
+        for _ in 0..n[0] + n[1] + 2 {
             let (tx, ty) = (next(cell, 0), next(cell, 1));
             let axis = usize::from(ty < tx);
             let t_out = tx.min(ty).min(t1).max(t_in);
-            let at = cell[0] * GridSpec::NY + cell[1];
+            let at = cell[0] * n[1] + cell[1];
             let top = self.top[at];
             if !top.is_nan() {
                 let hit = |t: f64, normal: DVec3| {

@@ -6,12 +6,15 @@ use glam::DVec2;
 
 use scene::appearance::{AppearanceData, Section};
 use scene::sensor_data::RenderId;
-use scene::{BevLayer, BevLayout, GridSpec, PolylineKind};
+use scene::{BevLayer, BevLayout, Extent, PolylineKind};
+
+use crate::units::Units;
 
 /// Half the width of a line in the label maps, m: a cell, as in the layout and in the splats.
 pub const HALF_LINE_M: f64 = 0.2;
+/// Edge of a bin.
 const BIN_M: f64 = 2.0;
-const BINS: usize = 40;
+const BIN_COLUMNS: usize = 5;
 /// Segments are listed in every bin within this distance, m.
 const REACH_M: f64 = 1.0;
 
@@ -40,6 +43,11 @@ pub struct Nearest {
 /// All paint of a layout.
 #[derive(Clone, Debug, Default)]
 pub struct Paint {
+    extent: Extent,
+    units: Units,
+    /// Lower corner, m.
+    low: DVec2,
+    along: [usize; 2],
     bins: Vec<Vec<Segment>>, // [x][y]
     crossings: Vec<Crossing>,
     allowed: Vec<u32>,
@@ -100,8 +108,14 @@ fn layer_of(kind: PolylineKind) -> Option<BevLayer> {
 impl Paint {
     /// The paint of a layout. Vertices that are not finite and segments without length are skipped.
     pub fn new(layout: &BevLayout) -> Self {
+        let extent = layout.extent();
+        let along = Self::bins_along(extent);
         let mut paint = Self {
-            bins: vec![Vec::new(); BINS * BINS],
+            extent,
+            units: Units::of(extent),
+            low: extent.min_m().truncate(),
+            along,
+            bins: vec![Vec::new(); along[0] * along[1]],
             ..Self::default()
         };
         for line in layout.polylines.iter() {
@@ -123,20 +137,30 @@ impl Paint {
         paint
     }
 
+    /// Bins of lines along x and y; they begin at the lower corner.
+    pub fn bins_along(extent: Extent) -> [usize; 2] {
+        [extent.nx(), extent.ny()].map(|n| n.div_ceil(BIN_COLUMNS))
+    }
+
     fn insert(&mut self, s: Segment) {
-        let bin = |v: f64| ((v + 40.0) / BIN_M).floor().clamp(-1.0, BINS as f64);
         let (low, high) = (s.a.min(s.b) - REACH_M, s.a.max(s.b) + REACH_M);
-        for x in bin(low.x).max(0.0) as usize..(bin(high.x) + 1.0).min(BINS as f64) as usize {
-            for y in bin(low.y).max(0.0) as usize..(bin(high.y) + 1.0).min(BINS as f64) as usize {
-                self.bins[x * BINS + y].push(s);
+        let bins = |axis: usize| {
+            let n = self.along[axis] as f64;
+            let bin = |p: DVec2| ((p[axis] - self.low[axis]) / BIN_M).floor().clamp(-1.0, n);
+            bin(low).max(0.0) as usize..(bin(high) + 1.0).min(n) as usize
+        };
+        let (along_x, along_y) = (bins(0), bins(1));
+        for x in along_x {
+            for y in along_y.clone() {
+                self.bins[x * self.along[1] + y].push(s);
             }
         }
     }
 
     fn compare_with_cells(&mut self, layout: &BevLayout) {
-        let cells = layout.cells();
-        let at = |x: usize, y: usize| match x < GridSpec::NX && y < GridSpec::NY {
-            true => cells[x * GridSpec::NY + y],
+        let (extent, cells) = (self.extent, layout.cells());
+        let at = |x: usize, y: usize| match extent.holds(x, y) {
+            true => cells[extent.index(x, y)],
             false => 0,
         };
         let kinds = [
@@ -151,13 +175,13 @@ impl Paint {
             .filter_map(|k| layer_of(*k))
             .fold(BevLayer::PedCrossing.bit(), |b, l| b | l.bit());
         for (i, &cell) in cells.iter().enumerate() {
-            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            let [x, y] = extent.column(i);
             let around = (0..9).map(|k| at((x + k / 3).wrapping_sub(1), (y + k % 3).wrapping_sub(1)));
             self.allowed[i] = around.fold(0, |a, b| a | b) & bits;
             if cell & bits == 0 {
                 continue;
             }
-            let p = GridSpec::center(x, y, 0).truncate();
+            let p = extent.center(x, y, 0).truncate();
             for kind in kinds {
                 let bit = layer_of(kind).map_or(0, BevLayer::bit);
                 let near = || self.nearest(kind, p).is_some_and(|n| n.distance_m < 0.5);
@@ -188,7 +212,7 @@ impl Paint {
             }
             starts.push((segments.len() / 6) as u32);
         }
-        starts.resize(BINS * BINS + 1, (segments.len() / 6) as u32);
+        starts.resize(self.bins.len() + 1, (segments.len() / 6) as u32);
         out.push(Section::BinStarts, starts);
         out.push(Section::Segments, segments);
         let (mut crossings, mut outlines) = (Vec::new(), Vec::new());
@@ -209,17 +233,20 @@ impl Paint {
             (Section::Orphans, &self.orphans),
         ] {
             let mut cells = of.clone();
-            cells.resize(GridSpec::COLUMNS, 0);
+            cells.resize(self.extent.columns(), 0);
             out.push(section, cells);
         }
     }
 
     /// The nearest line of `kind` to a point of the ego frame, if one is within 1 m.
     pub fn nearest(&self, kind: PolylineKind, p: DVec2) -> Option<Nearest> {
-        let bin = |v: f64| ((v + 40.0) / BIN_M).floor();
-        let (x, y) = (bin(p.x), bin(p.y));
-        let inside = (0.0..BINS as f64).contains(&x) && (0.0..BINS as f64).contains(&y);
-        let list = self.bins.get(x as usize * BINS + y as usize).filter(|_| inside)?;
+        let at = ((p - self.low) / BIN_M).floor();
+        let [along_x, along_y] = self.along;
+        let inside = (0.0..along_x as f64).contains(&at.x) && (0.0..along_y as f64).contains(&at.y);
+        let list = match inside {
+            true => &self.bins[at.x as usize * along_y + at.y as usize],
+            false => return None,
+        };
         let mut best: Option<Nearest> = None;
         for s in list.iter().filter(|s| s.kind == kind) {
             let d = s.b - s.a;
@@ -249,8 +276,7 @@ impl Paint {
     }
 
     fn bits(&self, of: &[u32], p: DVec2) -> u32 {
-        let cell = GridSpec::column_at(p.x, p.y);
-        let at = cell.and_then(|[x, y]| of.get(x * GridSpec::NY + y));
+        let at = self.units.index_at(p).and_then(|i| of.get(i));
         at.copied().unwrap_or(0)
     }
 

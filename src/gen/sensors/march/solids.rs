@@ -3,18 +3,22 @@
 use glam::{DVec2, DVec3};
 
 use scene::solid::Solid;
-use scene::{BoxId, SceneBox};
+use scene::{BoxId, Extent, SceneBox};
 use world::objects;
 
+/// Edge of a bin.
 const BIN_M: f64 = 4.0;
-const BINS: usize = 20;
-const HALF_M: f64 = 40.0;
+const BIN_COLUMNS: usize = 10;
 
 /// Solids of boxes; only what lies over the grid is seen.
 #[derive(Clone, Debug, Default)]
 pub struct SolidIndex {
     solids: Vec<(Solid, BoxId)>,
     groups: Vec<Group>,
+    /// Lower corner of the grid, m.
+    low: DVec2,
+    /// Bins along x and y.
+    along: [usize; 2],
     bins: Vec<Vec<u32>>, // [x][y], indices of groups
 }
 
@@ -75,8 +79,8 @@ impl InView {
 }
 
 impl SolidIndex {
-    /// The solids of these boxes; boxes with a problem are left out.
-    pub fn of_boxes<'a>(boxes: impl Iterator<Item = &'a SceneBox>, seed: u64) -> Self {
+    /// The solids of these boxes over a grid; boxes with a problem are left out.
+    pub fn of_boxes<'a>(extent: Extent, boxes: impl Iterator<Item = &'a SceneBox>, seed: u64) -> Self {
         let mut solids: Vec<(Solid, BoxId)> = Vec::new();
         let mut groups = Vec::new();
         let mut some = Vec::new();
@@ -98,22 +102,29 @@ impl SolidIndex {
                 });
             }
         }
-        let mut bins = vec![Vec::new(); BINS * BINS];
-        let bin = |v: f64| ((v + HALF_M) / BIN_M).floor();
+        let corner = extent.min_m().truncate();
+        let along = [extent.nx(), extent.ny()].map(|n| n.div_ceil(BIN_COLUMNS));
+        let mut bins = vec![Vec::new(); along[0] * along[1]];
         for (i, group) in groups.iter().enumerate() {
             let (lo, hi) = (group.low, group.high);
-            let last = BINS as f64 - 1.0;
-            let span = |lo: f64, hi: f64| {
-                let (lo, hi) = (bin(lo).max(0.0), bin(hi).min(last));
+            let span = |axis: usize| {
+                let bin = |p: DVec3| ((p[axis] - corner[axis]) / BIN_M).floor();
+                let (lo, hi) = (bin(lo).max(0.0), bin(hi).min(along[axis] as f64 - 1.0));
                 lo as usize..(hi + 1.0).max(0.0) as usize
             };
-            for x in span(lo.x, hi.x) {
-                for y in span(lo.y, hi.y) {
-                    bins[x * BINS + y].push(i as u32);
+            for x in span(0) {
+                for y in span(1) {
+                    bins[x * along[1] + y].push(i as u32);
                 }
             }
         }
-        Self { solids, groups, bins }
+        Self {
+            solids,
+            groups,
+            low: corner,
+            along,
+            bins,
+        }
     }
 
     /// Boxes that may cover a pixel of a camera; `project` gives u, v in px and the depth in m.
@@ -191,31 +202,29 @@ impl SolidIndex {
         if self.solids.is_empty() {
             return None;
         }
-        let (o, d) = (
-            (origin.truncate() + DVec2::splat(HALF_M)) / BIN_M,
-            dir.truncate() / BIN_M,
-        );
+        let (o, d) = ((origin.truncate() - self.low) / BIN_M, dir.truncate() / BIN_M);
+        let n = self.along;
         let (mut t0, mut t1) = (0.0f64, limit_m);
         for axis in 0..2 {
             if d[axis] == 0.0 {
-                if !(0.0..=BINS as f64).contains(&o[axis]) {
+                if !(0.0..=n[axis] as f64).contains(&o[axis]) {
                     return None;
                 }
                 continue;
             }
-            let (a, b) = (-o[axis] / d[axis], (BINS as f64 - o[axis]) / d[axis]);
+            let (a, b) = (-o[axis] / d[axis], (n[axis] as f64 - o[axis]) / d[axis]);
             (t0, t1) = (t0.max(a.min(b)), t1.min(a.max(b)));
         }
         let inside = t0 <= t1; // not so for NaN
         if !inside {
             return None;
         }
-        let start = |axis: usize| ((o[axis] + d[axis] * t0).max(0.0) as usize).min(BINS - 1);
+        let start = |axis: usize| ((o[axis] + d[axis] * t0).max(0.0) as usize).min(n[axis] - 1);
         let mut cell = [start(0), start(1)];
         let mut best = limit_m;
         let mut hit = None;
-        for _ in 0..2 * BINS + 2 {
-            for &i in &self.bins[cell[0] * BINS + cell[1]] {
+        for _ in 0..n[0] + n[1] + 2 {
+            for &i in &self.bins[cell[0] * n[1] + cell[1]] {
                 let group = &self.groups[i as usize];
                 if group.beside(origin, dir) {
                     continue;
@@ -234,7 +243,7 @@ impl SolidIndex {
                 break;
             }
             let moved = cell[axis].wrapping_add_signed(if d[axis] > 0.0 { 1 } else { -1 });
-            if moved >= BINS {
+            if moved >= n[axis] {
                 break;
             }
             cell[axis] = moved;

@@ -1,7 +1,7 @@
 //! Tests of the marched camera maps.
 
 use super::*;
-use scene::{Polyline, PolylineKind};
+use scene::{Polyline, PolylineKind, Window};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
@@ -121,8 +121,8 @@ fn pictures_equal_single_rays() {
 #[test]
 fn lines_are_finer_than_voxels_and_follow_the_cells() {
     let mut grid = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
             grid.set(x, y, 0, Class::DriveableSurface.id());
         }
     }
@@ -135,7 +135,7 @@ fn lines_are_finer_than_voxels_and_follow_the_cells() {
     cells.set(scene::BevLayer::RoadDivider, 150, 60, true);
     let erased = 5;
     for x in 0..erased {
-        for y in 0..GridSpec::NY {
+        for y in 0..Window::NY {
             cells.set(scene::BevLayer::LaneDivider, 25 + x, y, false);
         }
     }
@@ -148,12 +148,12 @@ fn lines_are_finer_than_voxels_and_follow_the_cells() {
             assert_eq!((id(x, y), id(x, y + 0.18), id(x, y - 0.18)), (19, 19, 19));
             assert_eq!((id(x, y + 0.22), id(x, y - 0.22)), (11, 11));
         }
-        let p = GridSpec::center(150, 60, 0);
+        let p = Window::center(150, 60, 0);
         assert_eq!(
             (id(p.x, p.y), id(p.x + 0.19, p.y - 0.19), id(p.x + 0.21, p.y)),
             (18, 18, 11)
         );
-        let x = GridSpec::center(27, 0, 0).x;
+        let x = Window::center(27, 0, 0).x;
         assert_eq!(id(x, 2.5 + x * 0.05), 11, "erased");
     }
 }
@@ -162,8 +162,8 @@ fn lines_are_finer_than_voxels_and_follow_the_cells() {
 #[test]
 fn row_45_march_bears_anything() {
     let mut full = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
             full.column_mut(x, y).fill(if (x + y) % 7 == 0 { 11 } else { 16 });
         }
     }

@@ -7,23 +7,25 @@ use glam::DVec3;
 
 use super::walk::{Start, inverse_of, walk};
 use super::wide::{Wide, Work, heights, run};
-use super::{BLOCK, BLOCK_STRIDE, BORDER, ColumnMasks, STRIDE};
-use scene::GridSpec;
+use super::{BLOCK, BORDER, ColumnMasks};
+use scene::Extent;
 
 /// Rays in a packet.
 pub const LANES: usize = 8;
 /// What a ray meets: the distance in units of its direction's length, and the voxel.
-pub type Met = Option<(f64, [u8; 3])>;
+pub type Met = Option<(f64, [u16; 3])>;
 
 /// Positions are integers in 1/2^22 voxel.
 pub(super) const FRACTION: u32 = 22;
-/// Widens what a ray may touch, 2^-12 voxel. Each slab adds at most 2^-23 voxel of rounding, 200 of them 2^-15.
+/// Widens what a ray may touch, 2^-12 voxel. Each slab adds at most 2^-23 voxel of rounding, [`MOST`] of them 2^-14.
 pub(super) const MARGIN: i32 = 1 << (FRACTION - 12);
+/// Slabs that a packet goes through together: 153 m. Rays that go on are cast alone then. Positions count from beside
+/// the origin, so that they stay below 512 voxels.
+const MOST: i32 = 384;
 /// Rays that run this much faster across than along the packet's main axis are cast alone.
 const ASKEW: f64 = 1.25;
-/// Columns on one axis, border included.
-const WIDE: i32 = (GridSpec::NX + 2 * BORDER) as i32;
-const _: () = assert!(GridSpec::NX == GridSpec::NY && GridSpec::NX < 256 && GridSpec::NZ == 16);
+const _: () = assert!(Extent::MAX_SIDE < 1 << 16 && Extent::NZ == 16);
+const _: () = assert!(MOST as f64 * ASKEW + 3.0 * (BLOCK as f64) < 512.0);
 
 /// Rays from one origin. Fewer than [`LANES`] rays: repeat one.
 #[derive(Clone, Copy, Debug)]
@@ -53,9 +55,9 @@ impl ColumnMasks {
                 for i in 0..count {
                     let packet = packet(i);
                     let mut found = [None; LANES];
-                    let lanes = Lanes::new(&packet, max_t);
-                    lanes.cast(wide, masks, &mut found);
-                    let mut left = !lanes.fits;
+                    let lanes = Lanes::new(masks.shape, &packet, max_t);
+                    let going = lanes.cast(wide, masks, &mut found);
+                    let mut left = !lanes.fits | going & lanes.long;
                     while left != 0 {
                         let lane = left.trailing_zeros() as usize;
                         left &= left - 1;
@@ -71,12 +73,14 @@ impl ColumnMasks {
     #[inline(never)]
     fn cast_alone(&self, origin: DVec3, direction: DVec3, max_t: f64) -> Met {
         let (t, voxel) = self.cast_in_voxels(origin, direction, max_t)?;
-        Some((t, voxel.map(|v| v as u8)))
+        Some((t, voxel.map(|v| v as u16)))
     }
 }
 
 /// A packet on its way. Axes in the order along the main one, across, up.
 struct Lanes {
+    /// Voxels along each axis.
+    shape: [usize; 3],
     /// 0: the main axis is x, 1: y.
     main: usize,
     forward: bool,
@@ -87,14 +91,18 @@ struct Lanes {
     t_end: [f64; LANES],
     /// Slabs that a ray has to look at.
     slabs: [i32; LANES],
-    /// Position across at the entry of the first slab, border included, and growth per slab.
+    /// Column across from which positions count, border included: the first of a block.
+    base: usize,
+    /// Position across at the entry of the first slab, and growth per slab.
     across: [i32; LANES],
     across_step: [i32; LANES],
     /// Height at the entry of the first slab, and growth per slab.
     height: [i32; LANES],
     height_step: [i32; LANES],
-    /// One bit per ray: part of the packet; and the others.
+    /// One bit per ray: part of the packet.
     fits: u8,
+    /// One bit per ray: it has more slabs than are gone through here.
+    long: u8,
 }
 
 /// A position as an integer in 1/2^[`FRACTION`] voxel, for |`v`| < 512; all callers hold that bound.
@@ -108,13 +116,14 @@ fn fixed(v: f64) -> i32 {
 impl Lanes {
     /// No ray fits if they do not begin inside the grid.
     #[inline(always)]
-    fn new(packet: &Packet, max_t: f64) -> Self {
+    fn new(shape: [usize; 3], packet: &Packet, max_t: f64) -> Self {
         let lead = packet.directions[LANES / 2];
         let main = usize::from(lead.y.abs() > lead.x.abs());
         let axes = if main == 0 { [0, 1, 2] } else { [1, 0, 2] };
         let given = packet.origin.to_array();
         let origin = [given[axes[0]], given[axes[1]], given[2]];
-        let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ].map(|n| n as f64);
+        let shape = axes.map(|axis| shape[axis]);
+        let n = shape.map(|n| n as f64);
         // Written so that NaN ends here too.
         let inside = (0..3).all(|axis| origin[axis] >= 0.0 && origin[axis] < n[axis]) && max_t >= 0.0;
         // Loops and not closures: they are sure to become code for wide registers.
@@ -132,9 +141,16 @@ impl Lanes {
         }
         let forward = lead[main] > 0.0;
         let sign = if forward { 1.0 } else { -1.0 };
-        let first_cell = if inside { origin[0] as usize } else { 0 };
+        let (first_cell, beside) = if inside {
+            (origin[0] as usize, origin[1] as usize)
+        } else {
+            (0, 0)
+        };
+        let base = (beside + BORDER) / BLOCK * BLOCK;
+        let from_base = BORDER as f64 - base as f64;
         let back = (first_cell + usize::from(!forward)) as f64 - origin[0];
         let mut lanes = Self {
+            shape,
             main,
             forward,
             origin,
@@ -143,19 +159,21 @@ impl Lanes {
             inverse,
             t_end: [0.0; LANES],
             slabs: [0; LANES],
+            base,
             across: [0; LANES],
             across_step: [0; LANES],
             height: [0; LANES],
             height_step: [0; LANES],
             fits: 0,
+            long: 0,
         };
         let end = max_t.next_up();
         let to_border = (if forward {
-            GridSpec::NX - first_cell
+            shape[0] - first_cell
         } else {
             first_cell + 1
         }) as i32;
-        let mut fits = [false; LANES];
+        let (mut fits, mut long) = ([false; LANES], [false; LANES]);
         for lane in 0..LANES {
             let (along, across, up) = (direction[0][lane] * sign, direction[1][lane], direction[2][lane]);
             let inverse = [inverse[0][lane], inverse[1][lane], inverse[2][lane]];
@@ -178,15 +196,17 @@ impl Lanes {
             let per_slab = inverse[0] * sign;
             let (across, up) = (across * per_slab, up * per_slab);
             lanes.t_end[lane] = t_end;
-            lanes.slabs[lane] = slabs;
-            lanes.across[lane] = fixed(origin[1] + back * sign * across + BORDER as f64);
+            lanes.slabs[lane] = slabs.min(MOST);
+            long[lane] = slabs > MOST;
+            lanes.across[lane] = fixed(origin[1] + back * sign * across + from_base);
             lanes.across_step[lane] = fixed(across);
             lanes.height[lane] = fixed(origin[2] + back * sign * up);
             lanes.height_step[lane] = fixed(up);
             fits[lane] = fit;
         }
-        for (lane, fit) in fits.into_iter().enumerate() {
+        for (lane, (fit, long)) in fits.into_iter().zip(long).enumerate() {
             lanes.fits |= u8::from(fit) << lane;
+            lanes.long |= u8::from(long) << lane;
         }
         if lanes.fits != u8::MAX {
             lanes.leave_out();
@@ -210,18 +230,20 @@ impl Lanes {
         }
     }
 
-    /// From slab to slab until every ray of the packet is settled.
+    /// From slab to slab until every ray of the packet is settled, or at its end. One bit per ray that is not settled.
     #[inline(always)]
-    fn cast(&self, wide: impl Wide, masks: &ColumnMasks, met: &mut [Met; LANES]) {
+    fn cast(&self, wide: impl Wide, masks: &ColumnMasks, met: &mut [Met; LANES]) -> u8 {
         let mut alive = self.fits;
         let mut end = self.end(alive);
         let (low, high) = wide.bounds(&self.across);
         let (mut low, mut high) = (low - MARGIN, high + MARGIN);
         let (low_step, high_step) = wide.bounds(&self.across_step);
-        let (strides, block_strides): ([usize; 2], [usize; 2]) = match self.main {
-            0 => ([STRIDE, 1], [BLOCK_STRIDE, 1]),
-            _ => ([1, STRIDE], [1, BLOCK_STRIDE]),
+        let (strides, block_strides, across): ([usize; 2], [usize; 2], usize) = match self.main {
+            0 => ([masks.stride, 1], [masks.block_stride, 1], masks.stride),
+            _ => ([1, masks.stride], [1, masks.block_stride], masks.rows),
         };
+        let (base, across) = (self.base as i32, across as i32);
+        let (base_block, across_blocks) = (base / BLOCK as i32, across / BLOCK as i32);
         let mut height = self.height;
         let mut slab = 0;
         while slab < end {
@@ -230,17 +252,10 @@ impl Lanes {
             let to_border = if self.forward { BLOCK - within } else { within + 1 };
             let in_block = (to_border as i32).min(end - slab);
             const SHIFT: u32 = FRACTION + BLOCK.trailing_zeros();
-            let from = low.min(low + in_block * low_step) >> SHIFT;
-            let to = high.max(high + in_block * high_step) >> SHIFT;
+            let from = base_block + (low.min(low + in_block * low_step) >> SHIFT);
+            let to = base_block + (high.max(high + in_block * high_step) >> SHIFT);
             let row = (cell + BORDER) / BLOCK * block_strides[0];
-            let union = united(
-                &masks.blocks,
-                row,
-                block_strides[1],
-                from,
-                to,
-                WIDE / BLOCK as i32,
-            );
+            let union = united(&masks.blocks, row, block_strides[1], from, to, across_blocks);
             if union == 0 || wide.touching(&height, &self.height_step, in_block, union << 1) & alive == 0 {
                 slab += in_block;
                 (low, high) = (low + in_block * low_step, high + in_block * high_step);
@@ -248,10 +263,10 @@ impl Lanes {
                 continue;
             }
             for _ in 0..in_block {
-                let from = low.min(low + low_step) >> FRACTION;
-                let to = high.max(high + high_step) >> FRACTION;
+                let from = base + (low.min(low + low_step) >> FRACTION);
+                let to = base + (high.max(high + high_step) >> FRACTION);
                 let row = (self.cell(slab) + BORDER) * strides[0];
-                let union = united(&masks.columns, row, strides[1], from, to, WIDE);
+                let union = united(&masks.columns, row, strides[1], from, to, across);
                 let mut touching = wide.touching(&height, &self.height_step, 1, union << 1) & alive;
                 if touching != 0 {
                     while touching != 0 {
@@ -271,6 +286,7 @@ impl Lanes {
                 }
             }
         }
+        alive
     }
 
     /// Slabs that the rays in `alive` have to look at.
@@ -326,8 +342,8 @@ impl Lanes {
         let step = self.across_step[lane];
         let at = self.across[lane] + slab * step;
         let (low, high) = (
-            (at.min(at + step) - MARGIN) >> FRACTION,
-            (at.max(at + step) + MARGIN) >> FRACTION,
+            self.base as i32 + ((at.min(at + step) - MARGIN) >> FRACTION),
+            self.base as i32 + ((at.max(at + step) + MARGIN) >> FRACTION),
         );
         let rise = self.height_step[lane];
         let height = self.height[lane] + slab * rise;
@@ -382,13 +398,13 @@ impl Lanes {
                 } else {
                     return t_1 >= t_end;
                 };
-                let (along, across) = (cell as u8, (across - BORDER as i32) as u8);
+                let (along, across) = (cell as u16, (across - BORDER as i32) as u16);
                 let [x, y] = if self.main == 0 {
                     [along, across]
                 } else {
                     [across, along]
                 };
-                *met = Some((t_hit, [x, y, up as u8]));
+                *met = Some((t_hit, [x, y, up as u16]));
                 return true;
             }
         }
@@ -402,6 +418,7 @@ impl Lanes {
     fn walked(&self, masks: &ColumnMasks, lane: usize, from: Option<(usize, f64)>, t_end: f64) -> Met {
         let places = [[0, 1, 2], [1, 0, 2]][self.main];
         let start = Start {
+            shape: places.map(|axis| self.shape[axis]),
             origin: places.map(|axis| self.origin[axis]).into(),
             direction: places.map(|axis| self.direction[axis][lane]).into(),
             inverse: places.map(|axis| self.inverse[axis][lane]).into(),
@@ -413,7 +430,7 @@ impl Lanes {
             Some((cell, t_in)) => start.state_at(self.main, cell, t_in),
         };
         let (t, voxel) = walk(masks, state, t_end, |_| ())?;
-        Some((t, voxel.map(|v| v as u8)))
+        Some((t, voxel.map(|v| v as u16)))
     }
 }
 

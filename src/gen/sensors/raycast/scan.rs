@@ -5,13 +5,14 @@
 //! integer operations. A margin far above the rounding error widens every range looked at.
 
 use super::walk::Start;
-use super::{BLOCK, BLOCK_STRIDE, BORDER, ColumnMasks, STRIDE};
-use scene::GridSpec;
+use super::{BLOCK, BORDER, ColumnMasks};
+use scene::Extent;
 
 const FRACTION: u32 = 32;
 const BLOCK_SHIFT: u32 = BLOCK.trailing_zeros();
-/// Added on both sides of a range: 1e-6 voxel. Steps are off by 1/2^32 each, 200 of them.
-const MARGIN: i64 = 1 << (FRACTION - 20);
+/// Added on both sides of a range: 1e-5 voxel. Steps are off by 1/2^32 each, up to a map's longest side of them.
+const MARGIN: i64 = 1 << (FRACTION - 17);
+const _: () = assert!(2 * Extent::MAX_SIDE as i64 <= MARGIN);
 /// Farther out the start is too coarse for the margin, voxels.
 const FAR: f64 = 1e7;
 /// Steeper rays see few columns and many heights; the walk alone is right for them.
@@ -88,7 +89,7 @@ impl Line {
 impl Scan {
     /// `None` for rays that are better walked: steep ones and those from very far.
     #[inline]
-    pub fn new(start: &Start) -> Option<Scan> {
+    pub fn new(masks: &ColumnMasks, start: &Start) -> Option<Scan> {
         let (o, d) = (start.origin, start.direction);
         let main = usize::from(d.y.abs() > d.x.abs());
         let (om, dm) = (o[main], d[main]);
@@ -97,7 +98,7 @@ impl Scan {
         if !walkable {
             return None;
         }
-        let n = [GridSpec::NX, GridSpec::NY][main];
+        let n = start.shape[main];
         let forward = dm > 0.0;
         let inverse = start.inverse[main];
         let per_slab = inverse.abs();
@@ -112,8 +113,8 @@ impl Scan {
         let plane = (cell + usize::from(!forward)) as f64;
         let other = 1 - main;
         let entry = |axis: usize| o[axis] + (plane - om) * (d[axis] * inverse);
-        let strides = [STRIDE, 1];
-        let block_strides = [BLOCK_STRIDE, 1];
+        let strides = [masks.stride, 1];
+        let block_strides = [masks.block_stride, 1];
         Some(Scan {
             main,
             cell,

@@ -2,8 +2,20 @@
 
 use super::*;
 use numeric::splitmix::scatter;
+use scene::Window;
 
-const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+const N: [usize; 3] = [Window::NX, Window::NY, Window::NZ];
+
+/// The window, a map, a map that is longer than packets go and no whole number of blocks wide, and a small one.
+fn extents() -> [Extent; 4] {
+    let new = |from, size| Extent::new(from, size).expect("sound");
+    [
+        Extent::WINDOW,
+        new([-150, -110], [480, 320]),
+        new([7, -500], [37, 1003]),
+        new([-3, -4], [5, 9]),
+    ]
+}
 
 /// The oracle of row 45: a plain three-axis walk, voxel by voxel, after the reference's script.
 /// Returns the voxels visited (the last one is the hit if the flag is set) and the distance.
@@ -27,7 +39,13 @@ fn plain_walk(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Opti
         }
     }
     // Where the ray leaves the grid; a voxel touched only there is not visited.
-    let last = |axis: usize| if d[axis] > 0.0 { N[axis] as i64 - 1 } else { 0 };
+    let last = |axis: usize| {
+        if d[axis] > 0.0 {
+            masks.shape[axis] as i64 - 1
+        } else {
+            0
+        }
+    };
     let leave = (0..3)
         .filter(|&a| d[a] != 0.0)
         .map(|a| t_plane(a, last(a)))
@@ -52,10 +70,10 @@ fn plain_walk(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Opti
     (visited, None)
 }
 
-fn scattered_voxels(count: u64) -> ColumnMasks {
-    let mut masks = ColumnMasks::from_grid(&VoxelGrid::new());
+fn scattered_voxels(extent: Extent, count: u64) -> ColumnMasks {
+    let mut masks = ColumnMasks::from_grid(&VoxelGrid::over(extent));
     for i in 0..count {
-        let v = [0, 1, 2].map(|a| (scatter(i * 3 + a) * N[a as usize] as f64) as usize);
+        let v = [0, 1, 2].map(|a| (scatter(i * 3 + a) * masks.shape[a as usize] as f64) as usize);
         masks.set(v[0], v[1], v[2], true);
     }
     masks
@@ -63,7 +81,7 @@ fn scattered_voxels(count: u64) -> ColumnMasks {
 
 fn walk_of(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Option<f64>) {
     let mut visited = Vec::new();
-    let start = Start::new(o, d, f64::INFINITY).expect("starts inside");
+    let start = Start::new(masks.shape, o, d, f64::INFINITY).expect("starts inside");
     let hit = walk(masks, start.state(), start.t_end, |v| visited.push(v));
     // The cast, which skips what is free, comes to the same end.
     assert_eq!(
@@ -76,7 +94,7 @@ fn walk_of(masks: &ColumnMasks, o: DVec3, d: DVec3) -> (Vec<[usize; 3]>, Option<
 
 #[test]
 fn row_45_dda_equals_the_plain_walk() {
-    let masks = scattered_voxels(3000);
+    let masks = scattered_voxels(Extent::WINDOW, 3000);
     let empty = ColumnMasks::from_grid(&VoxelGrid::new());
     let mut rays = Vec::new();
     for i in 0..4000 {
@@ -118,11 +136,15 @@ fn row_45_dda_equals_the_plain_walk() {
 #[test]
 fn row_45_scan_equals_the_walk() {
     let (mut hits, mut misses) = (0, 0);
-    for count in [30, 1000, 100_000] {
-        let masks = scattered_voxels(count);
+    for (extent, count) in extents()
+        .into_iter()
+        .flat_map(|e| [30, 1000, 100_000].map(|n| (e, n)))
+    {
+        let masks = scattered_voxels(extent, count);
+        let [nx, ny, _] = masks.shape.map(|n| n as f64 + 60.0);
         for i in 0..20_000 {
             let at = |k: u64| scatter(5_000_000 + i * 8 + k);
-            let o = DVec3::new(at(0) * 260.0 - 30.0, at(1) * 260.0 - 30.0, at(2) * 24.0 - 4.0);
+            let o = DVec3::new(at(0) * nx - 30.0, at(1) * ny - 30.0, at(2) * 24.0 - 4.0);
             let o = if i % 3 == 0 { o.round() } else { o };
             let d = DVec3::new(
                 at(3) - 0.5,
@@ -137,7 +159,8 @@ fn row_45_scan_equals_the_walk() {
             };
             let max_t = if i % 5 == 0 { at(6) * 300.0 } else { 1e9 };
             let d = d.normalize();
-            let want = Start::new(o, d, max_t).and_then(|s| walk(&masks, s.state(), s.t_end, |_| ()));
+            let want =
+                Start::new(masks.shape, o, d, max_t).and_then(|s| walk(&masks, s.state(), s.t_end, |_| ()));
             assert_eq!(
                 masks.cast_in_voxels(o, d, max_t),
                 want,
@@ -237,7 +260,7 @@ fn row_46_slab_equals_rational_oracle() {
                     let part = |k: u32| [0, 1, -1, 4, -4, 16, -2][(direction / 7i128.pow(k) % 7) as usize];
                     let (o, d) = ([x, y, z], [part(0), part(1), part(2)]);
                     let quarters = |v: [i128; 3]| DVec3::from_array(v.map(|v| v as f64 / 4.0));
-                    let got = grid_span(quarters(o), quarters(d));
+                    let got = grid_span(Extent::WINDOW, quarters(o), quarters(d));
                     match exact_span(o, d) {
                         Some([enter, leave]) => {
                             let span = got.unwrap_or_else(|| panic!("missed: {o:?} {d:?}"));
@@ -256,7 +279,10 @@ fn row_46_slab_equals_rational_oracle() {
     }
     assert!(inside > 10_000 && outside > 10_000, "{inside} {outside}");
     // -0.0 is 0, on the plane itself too.
-    let along = |y| grid_span(DVec3::new(0.0, y, 8.0), DVec3::new(1.0, -0.0, 0.0));
+    let along = |y| {
+        let origin = DVec3::new(0.0, y, 8.0);
+        grid_span(Extent::WINDOW, origin, DVec3::new(1.0, -0.0, 0.0))
+    };
     assert!(along(0.0).is_some() && along(-0.0).is_some());
     assert!(along(200.0).is_none());
 }
@@ -275,6 +301,9 @@ fn update_follows_changed_bricks() {
     masks.update(&before, &[0, 168, 10_000]);
     assert_eq!(masks.column(0, 0), 0);
     assert_eq!(masks.column(199, 199), 0);
+    let map = VoxelGrid::over(extents()[1]);
+    masks.update(&map, &[]);
+    assert_eq!(masks, ColumnMasks::from_grid(&map));
 }
 
 /// Rays cast in packets find what each finds alone: fans of any tilt and spread, along axes and diagonals, from
@@ -282,11 +311,15 @@ fn update_follows_changed_bricks() {
 #[test]
 fn row_45_packets_equal_single_rays() {
     let (mut hits, mut misses) = (0, 0);
-    for count in [0, 30, 1000, 30_000, 300_000] {
-        let masks = scattered_voxels(count);
+    for (extent, count) in extents()
+        .into_iter()
+        .flat_map(|e| [0, 30, 1000, 30_000, 300_000].map(|n| (e, n)))
+    {
+        let masks = scattered_voxels(extent, count);
+        let [nx, ny, _] = masks.shape.map(|n| n as f64);
         let ray = |i: u64| {
             let at = |k: u64| scatter(9_000_000 + i * 16 + k);
-            let mut origin = DVec3::new(at(0) * 200.0, at(1) * 200.0, at(2) * 16.0);
+            let mut origin = DVec3::new(at(0) * nx, at(1) * ny, at(2) * 16.0);
             if i.is_multiple_of(5) {
                 origin = origin.floor();
             }
@@ -319,7 +352,7 @@ fn row_45_packets_equal_single_rays() {
                     let Packet { origin, directions } = ray(from + i as u64);
                     for (met, d) in met.iter().zip(directions) {
                         let alone = masks.cast_in_voxels(origin, d, max_t);
-                        let alone = alone.map(|(t, voxel)| (t, voxel.map(|v| v as u8)));
+                        let alone = alone.map(|(t, voxel)| (t, voxel.map(|v| v as u16)));
                         assert_eq!(*met, alone, "origin {origin}, direction {d}, range {max_t}");
                         hits += u32::from(met.is_some());
                         misses += u32::from(met.is_none());
@@ -331,7 +364,7 @@ fn row_45_packets_equal_single_rays() {
     }
     assert!(hits > 100_000 && misses > 100_000, "{hits} {misses}");
     // Nonsense among the rays does not disturb the others.
-    let masks = scattered_voxels(30_000);
+    let masks = scattered_voxels(Extent::WINDOW, 30_000);
     let mut directions = [DVec3::new(0.8, 0.6, -0.02); LANES];
     directions[1] = DVec3::NAN;
     directions[2] = DVec3::ZERO;
@@ -348,7 +381,7 @@ fn row_45_packets_equal_single_rays() {
                     let alone = masks.cast_in_voxels(origin, d, 1e9);
                     assert_eq!(
                         *met,
-                        alone.map(|(t, voxel)| (t, voxel.map(|v| v as u8))),
+                        alone.map(|(t, voxel)| (t, voxel.map(|v| v as u16))),
                         "{origin} {d}"
                     );
                 }

@@ -4,10 +4,9 @@
 
 use glam::DVec3;
 
-use super::{BORDER, ColumnMasks, STRIDE};
-use scene::GridSpec;
+use super::{BORDER, ColumnMasks};
+use scene::Extent;
 
-const N: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
 /// A slower component moves a ray by less than a rounding error over any distance that f64 can tell.
 const STILL: f64 = 1e-30;
 
@@ -20,11 +19,12 @@ pub struct Span {
     pub leave: f64,
 }
 
-/// The part of the ray inside the half-open box of the grid, in voxel units. `None` if there is
+/// The part of the ray inside the half-open box of the grid, in voxel units of that grid. `None` if there is
 /// none (a start inside counts, a mere touch does not), or for NaN and a zero direction. A ray
 /// parallel to a face is inside if its origin is at or above the lower plane and below the upper one.
-pub fn grid_span(origin: DVec3, direction: DVec3) -> Option<Span> {
-    span_of(origin, direction, direction.to_array().map(inverse_of).into())
+pub fn grid_span(extent: Extent, origin: DVec3, direction: DVec3) -> Option<Span> {
+    let inverse = direction.to_array().map(inverse_of).into();
+    span_of(extent.shape(), origin, direction, inverse)
 }
 
 /// 1 / a component of the direction, infinite for an axis at rest.
@@ -34,14 +34,14 @@ pub(super) fn inverse_of(d: f64) -> f64 {
 }
 
 #[inline]
-fn span_of(origin: DVec3, direction: DVec3, inverse: DVec3) -> Option<Span> {
+fn span_of(shape: [usize; 3], origin: DVec3, direction: DVec3, inverse: DVec3) -> Option<Span> {
     if !origin.is_finite() || !direction.is_finite() {
         return None;
     }
     let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
     let mut starts_inside = true;
     for axis in 0..3 {
-        let (o, n) = (origin[axis], N[axis] as f64);
+        let (o, n) = (origin[axis], shape[axis] as f64);
         let within = o >= 0.0 && o < n;
         starts_inside &= within;
         if inverse[axis].is_infinite() {
@@ -61,6 +61,8 @@ fn span_of(origin: DVec3, direction: DVec3, inverse: DVec3) -> Option<Span> {
 
 /// A ray that meets the grid.
 pub(super) struct Start {
+    /// Voxels of the grid along each axis.
+    pub shape: [usize; 3],
     pub origin: DVec3,
     pub direction: DVec3,
     /// 1 / direction; infinite for an axis at rest.
@@ -92,13 +94,14 @@ struct Axis {
 impl Start {
     /// `None` if the ray misses the grid or its range ends before.
     #[inline]
-    pub fn new(origin: DVec3, direction: DVec3, max_t: f64) -> Option<Start> {
+    pub fn new(shape: [usize; 3], origin: DVec3, direction: DVec3, max_t: f64) -> Option<Start> {
         let inverse = DVec3::from_array(direction.to_array().map(inverse_of));
-        let span = span_of(origin, direction, inverse)?;
+        let span = span_of(shape, origin, direction, inverse)?;
         if max_t.is_nan() || span.enter > max_t {
             return None;
         }
         Some(Start {
+            shape,
             origin,
             direction,
             inverse,
@@ -111,7 +114,7 @@ impl Start {
     /// The cell along an axis in which the ray starts.
     #[inline]
     pub fn first_cell(&self, axis: usize) -> usize {
-        let (o, d, n) = (self.origin[axis], self.direction[axis], N[axis]);
+        let (o, d, n) = (self.origin[axis], self.direction[axis], self.shape[axis]);
         if self.t_in > 0.0 && self.inverse[axis].is_finite() {
             // On the axis whose face is entered the cell is known.
             let (face, plane) = if d > 0.0 { (0, 0.0) } else { (n - 1, n as f64) };
@@ -126,7 +129,7 @@ impl Start {
     #[inline]
     pub fn cell_at(&self, axis: usize, t: f64) -> usize {
         let at = self.origin[axis] + self.direction[axis] * t;
-        (at.max(0.0).min((N[axis] - 1) as f64) as i32) as usize
+        (at.max(0.0).min((self.shape[axis] - 1) as f64) as i32) as usize
     }
 
     /// The walk at its beginning.
@@ -215,6 +218,7 @@ pub(super) fn walk(
     t_end: f64,
     mut visit: impl FnMut([usize; 3]),
 ) -> Option<(f64, [usize; 3])> {
+    let stride = masks.stride;
     let State {
         mut t_in,
         axes: [mut ax, mut ay, mut az],
@@ -222,7 +226,7 @@ pub(super) fn walk(
     loop {
         let along_x = ax.t_next <= ay.t_next;
         let t_out = if along_x { ax.t_next } else { ay.t_next };
-        let column = masks.columns[(ax.cell + BORDER) * STRIDE + ay.cell + BORDER];
+        let column = masks.columns[(ax.cell + BORDER) * stride + ay.cell + BORDER];
         loop {
             visit([ax.cell, ay.cell, az.cell]);
             if column >> az.cell & 1 == 1 {

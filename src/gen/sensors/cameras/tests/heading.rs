@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use scene::{BoxId, Class, GridSpec, SceneBox};
+use scene::{BoxId, Class, SceneBox, Window};
 
 /// Heading of the car and way that the camera looks, counter-clockwise from ego x.
 const CAR_YAW_DEG: f64 = 35.0;
@@ -51,10 +51,10 @@ fn camera() -> Camera {
 fn frame(with_car: bool) -> Frame {
     let mut grid = VoxelGrid::new();
     let (s, c) = CAR_YAW_DEG.to_radians().sin_cos();
-    for (x, y) in (0..GridSpec::NX).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y))) {
+    for (x, y) in (0..Window::NX).flat_map(|x| (0..Window::NY).map(move |y| (x, y))) {
         grid.set(x, y, 0, Class::DriveableSurface.id());
-        for z in (2..GridSpec::NZ).filter(|_| with_car) {
-            let d = GridSpec::center(x, y, z) - CAR_M;
+        for z in (2..Window::NZ).filter(|_| with_car) {
+            let d = Window::center(x, y, z) - CAR_M;
             let (ahead, left) = (d.x * c + d.y * s, d.y * c - d.x * s);
             let top_m = if ahead > 0.1 * CAR_SIZE_M.x {
                 0.0

@@ -3,19 +3,19 @@
 use glam::DVec3;
 
 use super::*;
-use scene::{Class, GridSpec};
+use scene::{Class, Window};
 
 /// The colour in the middle of a normal map of voxels, from a camera at the origin, 1.5 m up.
 fn middle(voxels: impl Fn(DVec3) -> Option<Class>, yaw_deg: f64, pitch_down_deg: f64) -> [i32; 3] {
     let mut grid = VoxelGrid::new();
-    for (x, y, z) in (0..GridSpec::VOXELS).map(|i| {
+    for (x, y, z) in (0..Window::VOXELS).map(|i| {
         (
-            i / GridSpec::NZ / GridSpec::NY,
-            i / GridSpec::NZ % GridSpec::NY,
-            i % GridSpec::NZ,
+            i / Window::NZ / Window::NY,
+            i / Window::NZ % Window::NY,
+            i % Window::NZ,
         )
     }) {
-        if let Some(class) = voxels(GridSpec::center(x, y, z)) {
+        if let Some(class) = voxels(Window::center(x, y, z)) {
             grid.set(x, y, z, class.id());
         }
     }
