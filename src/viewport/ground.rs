@@ -3,7 +3,6 @@
 use super::change::{Change, Part};
 use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
 use super::shared::PipelineSpec;
-use super::voxels::same_bricks;
 use super::{LayoutPlane, ViewOptions};
 use scene::{BevLayer, Class, Extent, VoxelGrid};
 
@@ -35,9 +34,11 @@ pub(super) struct Ground {
     extent: Option<Extent>,
     markings: Vec<[u8; 4]>,
     plane: Vec<[u8; 4]>,
-    /// What they were made from: grid, fingerprint of the cells, kind of plane, voxels shown.
-    made_from: Option<(VoxelGrid, u64, LayoutPlane, bool)>,
+    made_from: Option<MadeFrom>,
 }
+
+/// What both are made from: grid, fingerprint of the cells, kind of plane, voxels shown.
+type MadeFrom = (VoxelGrid, u64, LayoutPlane, bool);
 
 impl Ground {
     /// Uploads the textures if they differ from the last ones; what is seen differently by that.
@@ -61,6 +62,36 @@ impl Ground {
         seen
     }
 
+    /// The same where only some bricks of the grid have changed: markings do not depend on them.
+    fn update_bricks(
+        &mut self,
+        gpu: Gpu<'_>,
+        (bev, bricks): (&[u32], &[usize]),
+        grid: &VoxelGrid,
+        options: &ViewOptions,
+    ) -> Change {
+        let extent = grid.extent();
+        if !only_where_empty(options) || bev.len() != extent.columns() {
+            return Change::None;
+        }
+        let mut around = Columns::default();
+        for &brick in bricks {
+            let ([x0, y0], [w, h]) = grid.brick_columns(brick);
+            for (x, y) in (x0..x0 + w).flat_map(|x| (y0..y0 + h).map(move |y| (x, y))) {
+                let new = plane_texel(grid, [x, y], bev[extent.index(x, y)], true);
+                let old = &mut self.plane[y * extent.nx() + x];
+                if std::mem::replace(old, new) != new {
+                    around.add(grid, x, y);
+                }
+            }
+        }
+        let seen = around.change(extent);
+        if seen != Change::None {
+            gpu.shared.write_layout(gpu.queue, &self.markings, &self.plane);
+        }
+        seen
+    }
+
     /// True if the plane would show anything.
     fn is_visible(&self) -> bool {
         self.plane.iter().any(|t| t[3] != 0)
@@ -74,20 +105,25 @@ impl Drawable for Ground {
 
     fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
         let (scene, options) = (shown.scene, shown.scene.options);
-        let same = |(grid, bev, plane, voxels): &(VoxelGrid, u64, LayoutPlane, bool)| {
-            (*bev, *plane, *voxels) == (shown.bev, options.layout_plane, options.voxels)
-                && same_bricks(grid, scene.grid)
-        };
-        if self.made_from.as_ref().is_some_and(same) {
-            return Change::None;
-        }
-        self.made_from = Some((
+        let now = (
             scene.grid.clone(),
             shown.bev,
             options.layout_plane,
             options.voxels,
-        ));
-        self.update(gpu, scene.bev, scene.grid, options)
+        );
+        let same = |(grid, bev, plane, voxels): &MadeFrom| {
+            (*bev, *plane, *voxels) == (now.1, now.2, now.3) && grid.extent() == now.0.extent()
+        };
+        let changed = match self.made_from.as_ref().filter(|old| same(old)) {
+            Some((grid, ..)) => Some(scene.grid.changed_bricks(grid)),
+            None => None,
+        };
+        self.made_from = Some(now);
+        match changed {
+            Some(bricks) if bricks.is_empty() => Change::None,
+            Some(bricks) => self.update_bricks(gpu, (scene.bev, &bricks), scene.grid, options),
+            None => self.update(gpu, scene.bev, scene.grid, options),
+        }
     }
 
     fn build(&mut self, gpu: Gpu<'_>, samples: u32) {
@@ -117,29 +153,43 @@ impl Drawable for Ground {
     }
 }
 
+/// Columns whose texels differ, and the highest ground voxel among them.
+#[derive(Default)]
+struct Columns(Option<([usize; 3], [usize; 3])>);
+
+impl Columns {
+    fn add(&mut self, grid: &VoxelGrid, x: usize, y: usize) {
+        let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
+        let top = grid.column(x, y).iter().rposition(is_ground).map_or(1, |z| z + 1);
+        let (low, high) = self.0.unwrap_or(([x, y, 0], [0, 0, 1]));
+        self.0 = Some((
+            [low[0].min(x), low[1].min(y), 0],
+            [high[0].max(x + 1), high[1].max(y + 1), high[2].max(top)],
+        ));
+    }
+
+    fn change(self, extent: Extent) -> Change {
+        let Some((low, high)) = self.0 else {
+            return Change::None;
+        };
+        let part = Part::of_voxels(extent, low, high);
+        // The plane lies just above the top of the lowest bin.
+        let high_m = part.high_m + glam::DVec3::Z * 0.05;
+        Change::part(Part { high_m, ..part }, 2.0)
+    }
+}
+
 /// Where texels `[y][x]` differ, up to the highest ground voxel.
 fn differing(new: &[[u8; 4]], old: &[[u8; 4]], grid: &VoxelGrid) -> Change {
     let extent = grid.extent();
     if new.len() != old.len() || new.len() != extent.columns() {
         return Change::All;
     }
-    let (mut low, mut high) = ([usize::MAX, usize::MAX, 0], [0, 0, 1]);
+    let mut around = Columns::default();
     for (i, _) in new.iter().zip(old).enumerate().filter(|(_, (a, b))| a != b) {
-        let (x, y) = (i % extent.nx(), i / extent.nx());
-        let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
-        let top = grid.column(x, y).iter().rposition(is_ground).map_or(1, |z| z + 1);
-        low = [low[0].min(x), low[1].min(y), 0];
-        high = [high[0].max(x + 1), high[1].max(y + 1), high[2].max(top)];
+        around.add(grid, i % extent.nx(), i / extent.nx());
     }
-    match low[0] {
-        usize::MAX => Change::None,
-        _ => {
-            let part = Part::of_voxels(extent, low, high);
-            // The plane lies just above the top of the lowest bin.
-            let high_m = part.high_m + glam::DVec3::Z * 0.05;
-            Change::part(Part { high_m, ..part }, 2.0)
-        }
-    }
+    around.change(extent)
 }
 
 /// Cells of the layout, `[x][y]`, read as texels `[y][x]`; a layout of another size shows nothing.
@@ -168,24 +218,33 @@ fn plane_texels(bev: &[u32], grid: &VoxelGrid, options: &ViewOptions) -> Vec<[u8
     if options.layout_plane == LayoutPlane::Off {
         return vec![[0; 4]; grid.extent().columns()];
     }
-    let only_empty = options.layout_plane == LayoutPlane::WhereEmpty && options.voxels;
+    let only_empty = only_where_empty(options);
     texels(grid.extent(), bev, |x, y, bits| {
-        if only_empty && grid.column(x, y).iter().any(|c| *c < Class::FREE) {
-            return [0; 4];
-        }
-        let map = PLANE.into_iter().rev().find(|layer| bits & layer.bit() != 0);
-        let objects = Class::OBJECTS
-            .into_iter()
-            .filter_map(BevLayer::of_object)
-            .find(|layer| bits & layer.bit() != 0);
-        match (objects, map) {
-            (Some(layer), _) | (None, Some(layer)) => {
-                let [r, g, b] = layer.color();
-                [r, g, b, 255]
-            }
-            (None, None) => [0; 4],
-        }
+        plane_texel(grid, [x, y], bits, only_empty)
     })
+}
+
+/// True if voxels hide the plane.
+fn only_where_empty(options: &ViewOptions) -> bool {
+    options.layout_plane == LayoutPlane::WhereEmpty && options.voxels
+}
+
+fn plane_texel(grid: &VoxelGrid, [x, y]: [usize; 2], bits: u32, only_empty: bool) -> [u8; 4] {
+    if only_empty && grid.column(x, y).iter().any(|c| *c < Class::FREE) {
+        return [0; 4];
+    }
+    let map = PLANE.into_iter().rev().find(|layer| bits & layer.bit() != 0);
+    let objects = Class::OBJECTS
+        .into_iter()
+        .filter_map(BevLayer::of_object)
+        .find(|layer| bits & layer.bit() != 0);
+    match (objects, map) {
+        (Some(layer), _) | (None, Some(layer)) => {
+            let [r, g, b] = layer.color();
+            [r, g, b, 255]
+        }
+        (None, None) => [0; 4],
+    }
 }
 
 #[cfg(test)]

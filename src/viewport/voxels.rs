@@ -341,7 +341,7 @@ fn lit_tiles((low, high): ColumnBox, lit: [usize; 2]) -> impl Iterator<Item = ([
 }
 
 /// True if both hold the same bricks in memory.
-pub(super) fn same_bricks(a: &VoxelGrid, b: &VoxelGrid) -> bool {
+fn same_bricks(a: &VoxelGrid, b: &VoxelGrid) -> bool {
     let mut pairs = a.bricks().iter().zip(b.bricks());
     a.extent() == b.extent() && pairs.all(|(a, b)| Arc::ptr_eq(a, b))
 }
