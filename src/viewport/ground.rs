@@ -114,10 +114,8 @@ impl Drawable for Ground {
         let same = |(grid, bev, plane, voxels): &MadeFrom| {
             (*bev, *plane, *voxels) == (now.1, now.2, now.3) && grid.extent() == now.0.extent()
         };
-        let changed = match self.made_from.as_ref().filter(|old| same(old)) {
-            Some((grid, ..)) => Some(scene.grid.changed_bricks(grid)),
-            None => None,
-        };
+        let held = self.made_from.as_ref().filter(|old| same(old));
+        let changed = held.map(|(grid, ..)| scene.grid.changed_bricks(grid));
         self.made_from = Some(now);
         match changed {
             Some(bricks) if bricks.is_empty() => Change::None,

@@ -102,7 +102,7 @@ impl Drawable for Voxels {
         for (b, _) in self.in_view(view.camera, &view.clip) {
             let brick = &self.bricks[b];
             let ([x, y], _) = self.held.grid.brick_columns(b);
-            let place = (x / BRICK | y / BRICK << 16) as u32;
+            let place = ((x / BRICK) | ((y / BRICK) << 16)) as u32;
             for range in facing(self.bounds_m(b), &brick.quads, view.camera) {
                 brick.vertices.draw_quads_as(pass, view.shared, range, place);
             }
