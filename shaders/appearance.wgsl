@@ -12,6 +12,14 @@ struct View {
     // Ego frame to where textures stay: quaternion, shift.
     turn: vec4f,
     shift: vec4f,
+    // Voxels of the field along x and y, blocks along x and y.
+    field: vec4u,
+    // Bins of lines along x and y.
+    bins: vec4u,
+    // Lower corner of the map, and of the blocks, m.
+    low: vec4f,
+    // Middle of the map, m; how much wider than around a window the skyline is.
+    middle: vec4f,
     // Camera in the ego frame: columns of its rotation, place with the angle of a pixel, focal lengths and centre.
     columns: array<vec4f, 3>,
     place: vec4f,
@@ -49,6 +57,10 @@ fn a_exposure() -> f32 { return view.air[6].w; }
 fn to_sun_in_ego() -> vec3f { return view.air[7].xyz; }
 fn highest_m() -> f32 { return view.air[7].w; }
 fn seed() -> u32 { return view.size.z; }
+fn columns() -> vec2u { return view.field.xy - 2u; }
+fn blocks() -> vec2u { return view.field.zw; }
+fn low_m() -> vec2f { return view.low.xy; }
+fn blocks_from_m() -> vec2f { return view.low.zw; }
 
 // ---- noise.rs
 

@@ -10,7 +10,7 @@ const HEIGHT_M = -0.585;
 
 @vertex
 fn vs_main(@builtin(vertex_index) index: u32) -> Plane {
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 80.0 - 40.0;
+    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * frame.grid_size.xy * VOXEL_M + frame.grid_min.xy;
     var out: Plane;
     out.p = vec3<f32>(corner, HEIGHT_M);
     out.clip = frame.clip_from_ego * vec4<f32>(out.p, 1.0);
@@ -19,8 +19,7 @@ fn vs_main(@builtin(vertex_index) index: u32) -> Plane {
 
 @fragment
 fn fs_main(in: Plane) -> @location(0) vec4<f32> {
-    let cell = (in.p - GRID_MIN_M) / VOXEL_M;
-    let texel = vec2<i32>(clamp(cell.xy, vec2<f32>(0.0), vec2<f32>(199.0)));
+    let texel = texel_at(voxel_units(in.p).xy, textureDimensions(layout_plane));
     let color = textureLoad(layout_plane, texel, 0);
     let alpha = color.a * frame.toggles.w;
     if alpha == 0.0 {

@@ -1,5 +1,8 @@
 // Voxel faces: class colour, baked sky and sun, thin lines between voxels, road markings on ground.
 
+// Columns along a side of a brick.
+const BRICK = 16u;
+
 struct Surface {
     @builtin(position) clip: vec4<f32>,
     @location(0) p: vec3<f32>,
@@ -9,8 +12,15 @@ struct Surface {
 }
 
 @vertex
-fn vs_main(@location(0) packed: u32, @builtin(vertex_index) index: u32) -> Surface {
-    let corner = vec3<f32>(f32(packed & 255u), f32((packed >> 8u) & 255u), f32((packed >> 16u) & 31u));
+fn vs_main(
+    @location(0) packed: u32,
+    @builtin(vertex_index) index: u32,
+    // Place of the brick: x, and y above 16 bits.
+    @builtin(instance_index) brick: u32,
+) -> Surface {
+    let in_brick = vec2<u32>(packed & 255u, (packed >> 8u) & 255u);
+    let column = vec2<u32>(brick & 65535u, brick >> 16u) * BRICK + in_brick;
+    let corner = vec3<f32>(vec2<f32>(column), f32((packed >> 16u) & 31u));
     let direction = (packed >> 21u) & 7u;
     let axis = direction >> 1u;
     let side = 1.0 - 2.0 * f32(direction & 1u);
@@ -32,7 +42,7 @@ fn vs_main(@location(0) packed: u32, @builtin(vertex_index) index: u32) -> Surfa
     }
 
     var out: Surface;
-    let p = corner * VOXEL_M + GRID_MIN_M;
+    let p = corner * VOXEL_M + frame.grid_min.xyz;
     // Merged rectangles meet in T-junctions; a tenth of a pixel of overlap closes their cracks.
     out.clip = frame.clip_from_ego * vec4<f32>(p + outward * (0.12 * pixel_m(p)), 1.0);
     out.p = p;
@@ -51,10 +61,10 @@ fn edge(u: vec2<f32>, width: f32) -> f32 {
 @fragment
 fn fs_main(in: Surface) -> @location(0) vec4<f32> {
     let reached = mix(vec2<f32>(0.9, 1.0), light_at(in.p + in.normal * (0.5 * VOXEL_M)), frame.toggles.z);
-    let cell = (in.p - GRID_MIN_M) / VOXEL_M;
+    let cell = voxel_units(in.p);
     var base = in.color.rgb;
     if in.color.a * frame.toggles.y > 0.0 {
-        let texel = vec2<i32>(clamp(cell.xy, vec2<f32>(0.0), vec2<f32>(199.0)));
+        let texel = texel_at(cell.xy, textureDimensions(markings));
         let paint = textureLoad(markings, texel, 0);
         base = mix(base, paint.rgb * paint.rgb, paint.a * frame.toggles.y);
     }

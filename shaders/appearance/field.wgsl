@@ -1,11 +1,11 @@
 // Voxels as a softened field, and the first surface of it along a ray.
 // ---- field.rs
 
-fn to_field(p: vec3f) -> vec3f { return (p + vec3f(40.0, 40.0, 1.0)) * 2.5 + 0.5; }
+fn to_field(p: vec3f) -> vec3f { return (p - vec3f(low_m(), BOTTOM_M)) * 2.5 + 0.5; }
 fn in_field(q: vec3f) -> bool {
-    return all(q >= vec3f(0.0)) && q.x < f32(NX - 1u) && q.y < f32(NY - 1u) && q.z < f32(NZ - 1u);
+    return all(q >= vec3f(0.0)) && all(q < vec3f(vec3u(view.field.xy, NZ) - 1u));
 }
-fn field_at(x: u32, y: u32, z: u32) -> u32 { return (x * NY + y) * NZ + z; }
+fn field_at(x: u32, y: u32, z: u32) -> u32 { return (x * view.field.y + y) * NZ + z; }
 fn field_column(i: u32, share: f32) -> f32 {
     let low = f32(byte(section(0u), i));
     return low + (f32(byte(section(0u), i + 1u)) - low) * share;
@@ -15,7 +15,7 @@ fn blend(q: vec3f) -> f32 {
     let f = q - c;
     let i = field_at(u32(c.x), u32(c.y), u32(c.z));
     let low = mix(field_column(i, f.z), field_column(i + NZ, f.z), f.y);
-    let j = i + NY * NZ;
+    let j = i + view.field.y * NZ;
     let high = mix(field_column(j, f.z), field_column(j + NZ, f.z), f.y);
     return mix(low, high, f.x) / 255.0;
 }
@@ -31,13 +31,13 @@ fn mask_bit(cell: u32, z: u32) -> bool {
 }
 fn field_dense(p: vec3f) -> f32 {
     let q = to_field(p);
-    if !in_field(q) || !mask_bit(u32(q.x) * CY + u32(q.y), u32(q.z)) {
+    if !in_field(q) || !mask_bit(u32(q.x) * (view.field.y - 1u) + u32(q.y), u32(q.z)) {
         return 0.0;
     }
     return blend(q);
 }
 fn label_near(q: vec3f) -> u32 {
-    let r = min(vec3u(max(q + 0.5, vec3f(0.0))), vec3u(NX, NY, NZ) - 1u);
+    let r = min(vec3u(max(q + 0.5, vec3f(0.0))), vec3u(view.field.xy, NZ) - 1u);
     return byte(section(1u), field_at(r.x, r.y, r.z));
 }
 fn leaves(p: vec3f) -> f32 { return 0.62 * value3(p * 2.6, 71u) + 0.38 * value3(p * 8.5, 72u) - 0.5; }
@@ -65,14 +65,15 @@ struct Structure {
 fn structure_at(p: vec3f) -> Structure {
     var s = Structure(vec2f(1.0, 0.0), 0u, 0.0, 0u, false, false);
     let q = vec2u(max(round(to_field(p).xy), vec2f(0.0)));
-    let c = min(q, vec2u(NX, NY) - 1u);
+    let last = view.field.xy - 1u;
+    let c = min(q, last);
     var around = array<vec2u, 9>(
         vec2u(1u, 1u), vec2u(0u, 1u), vec2u(2u, 1u), vec2u(1u, 0u), vec2u(1u, 2u),
         vec2u(0u, 0u), vec2u(0u, 2u), vec2u(2u, 0u), vec2u(2u, 2u),
     );
     for (var k = 0; k < 9; k++) {
-        let xy = min(max(c + around[k], vec2u(1u)) - 1u, vec2u(NX, NY) - 1u);
-        let i = words[section(4u) + xy.x * NY + xy.y];
+        let xy = min(max(c + around[k], vec2u(1u)) - 1u, last);
+        let i = words[section(4u) + xy.x * view.field.y + xy.y];
         if i > 0u {
             let a = section(5u) + (i - 1u) * 8u;
             s = Structure(vec2f(num(a), num(a + 1u)), words[a + 2u], num(a + 3u), words[a + 4u], words[a + 5u] == 1u, true);
@@ -144,8 +145,9 @@ fn cast_block(index: u32, o: vec3f, d: vec3f, t_in: f32, t_out: f32, stride: f32
     if all((block_mask(index) & z_bits(qo.z + qd.z * t_in, qo.z + qd.z * t_out)) == vec2u(0u)) {
         return -1.0;
     }
-    let lo = vec2u(index / BLOCKS, index % BLOCKS) * BLOCK;
-    let hi = min(lo + BLOCK, vec2u(CX, CY)) - 1u;
+    let lo = vec2u(index / blocks().y, index % blocks().y) * BLOCK;
+    let cells = view.field.xy - 1u;
+    let hi = min(lo + BLOCK, cells) - 1u;
     let enter = t_in + ((t_in + t_out) * 0.5 - t_in) * 1e-4;
     var cell = clamp(vec2u(max(qo.xy + qd.xy * enter, vec2f(0.0))), lo, hi);
     var t = t_in;
@@ -157,7 +159,7 @@ fn cast_block(index: u32, o: vec3f, d: vec3f, t_in: f32, t_out: f32, stride: f32
             }
         }
         let t_end = min(min(next.x, next.y), t_out);
-        let mask = column_mask(cell.x * CY + cell.y);
+        let mask = column_mask(cell.x * cells.y + cell.y);
         if any((mask & z_bits(qo.z + qd.z * t, qo.z + qd.z * t_end)) != vec2u(0u)) {
             var k = ceil(t / stride) * stride;
             for (var guard = 0; guard < 256 && k < t_end; guard++) {

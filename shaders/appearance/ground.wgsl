@@ -2,20 +2,24 @@
 // ---- ground.rs
 
 fn is_level(p: vec2f) -> bool {
-    let q = vec2u(clamp((p + 40.0) * 2.5, vec2f(0.0), vec2f(f32(GRID) - 0.5)));
-    return words[section(7u) + q.x * GRID + q.y] == 1u;
+    let q = vec2u(clamp((p - low_m()) * 2.5, vec2f(0.0), vec2f(columns()) - 0.5));
+    return words[section(7u) + q.x * columns().y + q.y] == 1u;
 }
 fn share_at(i: u32) -> vec4f {
     let a = section(6u) + i * 4u;
     return vec4f(num3(a), num(a + 3u));
 }
 fn shares(p: vec2f) -> vec4f {
-    let q = clamp((p + 40.0) * 2.5 - 0.5, vec2f(0.0), vec2f(f32(GRID) - 1.001));
+    let n = columns();
+    let q = clamp((p - low_m()) * 2.5 - 0.5, vec2f(0.0), max(vec2f(n) - 1.001, vec2f(0.0)));
     let c = floor(q);
     let f = q - c;
-    let i = u32(c.x) * GRID + u32(c.y);
-    let low = mix(share_at(i), share_at(i + 1u), f.y);
-    let high = mix(share_at(i + GRID), share_at(i + GRID + 1u), f.y);
+    let i = u32(c.x) * n.y + u32(c.y);
+    // To the next column along x and along y, if there is one.
+    let right = select(0u, n.y, n.x > 1u);
+    let up = select(0u, 1u, n.y > 1u);
+    let low = mix(share_at(i), share_at(i + up), f.y);
+    let high = mix(share_at(i + right), share_at(i + right + up), f.y);
     return mix(low, high, f.x);
 }
 

@@ -2,20 +2,20 @@
 // ---- march/paint.rs, in f32
 
 fn paint_bits(which: u32, p: vec2f) -> u32 {
-    let c = floor((p + 40.0) / 0.4);
-    if all(c >= vec2f(0.0)) && all(c < vec2f(f32(GRID))) {
-        return words[section(which) + u32(c.x) * GRID + u32(c.y)];
+    let c = floor((p - low_m()) / VOXEL_M);
+    if all(c >= vec2f(0.0)) && all(c < vec2f(columns())) {
+        return words[section(which) + u32(c.x) * columns().y + u32(c.y)];
     }
     return 0u;
 }
 // Distance to the nearest line of a kind and how far along it, negative for none within 1 m.
 fn nearest_line(kind: u32, p: vec2f) -> vec2f {
-    let c = floor((p + 40.0) / 2.0);
+    let c = floor((p - low_m()) / BIN_M);
     var best = vec2f(-1.0, 0.0);
-    if !(all(c >= vec2f(0.0)) && all(c < vec2f(40.0))) {
+    if !(all(c >= vec2f(0.0)) && all(c < vec2f(view.bins.xy))) {
         return best;
     }
-    let bin = section(13u) + u32(c.x) * 40u + u32(c.y);
+    let bin = section(13u) + u32(c.x) * view.bins.y + u32(c.y);
     for (var i = words[bin]; i < words[bin + 1u]; i++) {
         let a = section(14u) + i * 6u;
         if words[a + 4u] != kind {

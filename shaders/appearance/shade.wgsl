@@ -94,10 +94,11 @@ fn lamp_light(p: vec3f, lift: vec3f, n: vec3f, to_eye: vec3f, s: Surface, shadow
 // What stands outside the grid in front of `limit`: colour with air, and 1 if anything does.
 fn beyond(o: vec3f, d: vec3f, limit: f32) -> vec4f {
     let level = dot(d.xy, d.xy);
+    let eye = o.xy - view.middle.xy;
     for (var ring = 0; ring < 3; ring++) {
-        let radius = select(select(320.0, 150.0, ring == 1), 72.0, ring == 0);
-        let b = dot(o.xy, d.xy);
-        let c = dot(o.xy, o.xy) - radius * radius;
+        let radius = select(select(SKYLINE_2_M, SKYLINE_1_M, ring == 1), SKYLINE_0_M, ring == 0) * view.middle.z;
+        let b = dot(eye, d.xy);
+        let c = dot(eye, eye) - radius * radius;
         let disc = b * b - level * c;
         if level < 1e-8 || disc <= 0.0 || c > 0.0 {
             continue;
@@ -108,14 +109,14 @@ fn beyond(o: vec3f, d: vec3f, limit: f32) -> vec4f {
             continue;
         }
         var open = 0.0;
-        if radius < 100.0 {
-            let aside = normal2_or(perp(p.xy), vec2f(0.0));
+        if ring == 0 {
+            let aside = normal2_or(perp(p.xy - view.middle.xy), vec2f(0.0));
             for (var k = -3; k <= 3; k++) {
                 open += ramp(0.15, 0.6, shares(p.xy + aside * (f32(k) * 2.6)).x) / 4.0;
             }
             open = min(open, 1.0);
         }
-        let found = skyline(anchor_dir(p), radius, open);
+        let found = skyline(anchor_dir(p - vec3f(view.middle.xy, 0.0)), radius, open);
         if found.w > 0.0 {
             return vec4f(through_air(found.xyz, t, anchor_dir(d)), 1.0);
         }

@@ -3,9 +3,9 @@
 
 // Beginning and end of the things near a point of the ground.
 fn things_near(p: vec2f) -> vec2u {
-    let c = floor((p - BLOCKS_FROM_M) / BLOCK_M);
-    if all(c >= vec2f(0.0)) && all(c < vec2f(f32(BLOCKS))) {
-        return block_things(u32(c.x) * BLOCKS + u32(c.y));
+    let c = floor((p - blocks_from_m()) / BLOCK_M);
+    if all(c >= vec2f(0.0)) && all(c < vec2f(blocks())) {
+        return block_things(u32(c.x) * blocks().y + u32(c.y));
     }
     return vec2u(0u);
 }
@@ -24,11 +24,12 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
             hit = Met(t, vec3f(0.0, 0.0, 1.0), KIND_GROUND, 0u, 0u);
         }
     }
-    let size = f32(BLOCKS) * BLOCK_M;
+    let n = blocks();
+    let from_m = blocks_from_m();
     var t0 = 0.0;
     var t1 = hit.t;
-    let low = vec3f(BLOCKS_FROM_M, BLOCKS_FROM_M, -0.4);
-    let high = vec3f(BLOCKS_FROM_M + size, BLOCKS_FROM_M + size, highest_m());
+    let low = vec3f(from_m, -0.4);
+    let high = vec3f(from_m + vec2f(n) * BLOCK_M, highest_m());
     for (var a = 0u; a < 3u; a++) {
         if abs(d[a]) < 1e-9 {
             if o[a] < low[a] || o[a] > high[a] {
@@ -44,11 +45,11 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
     if !(t0 < t1) {
         return hit;
     }
-    let q = (o.xy - BLOCKS_FROM_M) / BLOCK_M;
+    let q = (o.xy - from_m) / BLOCK_M;
     let qd = d.xy / BLOCK_M;
-    var cell = min(vec2u(max(q + qd * (t0 + 1e-4), vec2f(0.0))), vec2u(BLOCKS - 1u));
+    var cell = min(vec2u(max(q + qd * (t0 + 1e-4), vec2f(0.0))), n - 1u);
     var t = t0;
-    for (var i = 0u; i < 2u * BLOCKS + 2u; i++) {
+    for (var i = 0u; i < n.x + n.y + 2u; i++) {
         var next = vec2f(INFINITE);
         for (var a = 0u; a < 2u; a++) {
             if abs(qd[a]) >= 1e-9 {
@@ -56,7 +57,7 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
             }
         }
         let t_out = min(min(next.x, next.y), t1);
-        let index = cell.x * BLOCKS + cell.y;
+        let index = cell.x * n.y + cell.y;
         let things = block_things(index);
         for (var k = things.x; k < things.y; k++) {
             let met = cast_thing(words[section(12u) + k], o, d, hit.t);
@@ -92,7 +93,7 @@ fn trace(o: vec3f, d: vec3f, limit: f32, mode: u32) -> Met {
         }
         let a = select(0u, 1u, next.y < next.x);
         if qd[a] > 0.0 {
-            if cell[a] + 1u >= BLOCKS {
+            if cell[a] + 1u >= n[a] {
                 break;
             }
             cell[a] += 1u;

@@ -18,6 +18,10 @@ struct Frame {
     sun: vec4<f32>,
     // x: voxel edges, y: road markings, z: shadows, w: opacity of the layout plane.
     toggles: vec4<f32>,
+    // xyz: lower corner of the map, m; w: how many times farther away than over a small map fog is.
+    grid_min: vec4<f32>,
+    // xyz: voxels of the map.
+    grid_size: vec4<f32>,
     // Per class: rgb squared sRGB; a: 1 for ground classes.
     palette: array<vec4<f32>, 18>,
 }
@@ -28,7 +32,6 @@ struct Frame {
 @group(0) @binding(3) var markings: texture_2d<f32>;
 @group(0) @binding(4) var layout_plane: texture_2d<f32>;
 
-const GRID_MIN_M = vec3<f32>(-40.0, -40.0, -1.0);
 const VOXEL_M = 0.4;
 // Lower edge of the view in front of the eye where lines are cut, m.
 const NEAR_M = 0.1;
@@ -56,10 +59,21 @@ fn toward_eye(p: vec3<f32>) -> vec3<f32> {
     return select(normalize(frame.eye.xyz - p), -frame.forward.xyz, frame.eye.w > 0.5);
 }
 
+// Ego frame to voxel units of the map.
+fn voxel_units(p: vec3<f32>) -> vec3<f32> {
+    return (p - frame.grid_min.xyz) / VOXEL_M;
+}
+
+// The texel of a column: `size` are all of the texture.
+fn texel_at(cell: vec2<f32>, size: vec2<u32>) -> vec2<i32> {
+    return vec2<i32>(clamp(cell, vec2<f32>(0.0), vec2<f32>(size) - 1.0));
+}
+
 // Share of the sky (x) and of the sun (y) that reaches p, a point half a voxel off its surface.
 fn light_at(p: vec3<f32>) -> vec2<f32> {
-    let cell = (p - GRID_MIN_M) / VOXEL_M + vec3<f32>(1.0);
-    return textureSampleLevel(light_volume, light_sampler, cell / vec3<f32>(202.0, 202.0, 18.0), 0.0).xy;
+    let cell = voxel_units(p) + vec3<f32>(1.0);
+    let size = vec3<f32>(textureDimensions(light_volume));
+    return textureSampleLevel(light_volume, light_sampler, cell / size, 0.0).xy;
 }
 
 // Light on a surface of normal n: cool sky from above, warm sun, a little from the ground and from
@@ -75,6 +89,6 @@ fn lighting(n: vec3<f32>, reached: vec2<f32>) -> vec3<f32> {
 
 // Far things lean toward the background: depth one can see.
 fn with_fog(rgb: vec3<f32>, p: vec3<f32>, y_px: f32) -> vec3<f32> {
-    let far = clamp((distance(p, frame.eye.xyz) - 30.0) / 110.0, 0.0, 1.0);
+    let far = clamp((distance(p, frame.eye.xyz) / frame.grid_min.w - 30.0) / 110.0, 0.0, 1.0);
     return mix(rgb, background_at(y_px), far * frame.sun.w);
 }

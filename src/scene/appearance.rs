@@ -1,22 +1,18 @@
 //! A frame made ready for camera pictures, as plain numbers: what the renderers on processor and graphics card share.
 //! `sensors::appearance` fills it, `viewport::appearance` draws from it.
 
-use super::grid::Window;
+use glam::{Vec2, Vec3};
 
-/// Voxels of the field along x, with a free ring around.
-pub const NX: usize = Window::NX + 2;
-/// Along y.
-pub const NY: usize = Window::NY + 2;
-/// Along z, with room above the grid.
+use super::Extent;
+
+/// Voxels of the field along z, with room above the grid.
 pub const NZ: usize = 46;
 /// Columns and rows of cells in a block.
 pub const BLOCK: usize = 8;
-/// Blocks along x and along y.
-pub const BLOCKS: usize = (NX - 1).div_ceil(BLOCK);
 /// Edge of a block, m.
-pub const BLOCK_M: f32 = (BLOCK as f64 * Window::VOXEL_M) as f32;
-/// Corner of the blocks, m: half a voxel and the ring outside the grid.
-pub const BLOCKS_FROM_M: f32 = -40.2;
+pub const BLOCK_M: f32 = (BLOCK as f64 * Extent::VOXEL_M) as f32;
+/// Columns along a side of a bin of lines: 2 m.
+pub const BIN_COLUMNS: usize = 5;
 /// The field's surface.
 pub const SURFACE: f32 = 0.5;
 /// Roughness of leaves, in units of the field.
@@ -44,7 +40,7 @@ pub const LAMP_CLEAR_M: f32 = 0.6;
 pub const LAMP_STEP_M: f32 = 0.05;
 /// Farthest mirrored thing, m.
 pub const MIRROR_M: f32 = 60.0;
-/// Nothing of the grid lies beyond, m.
+/// Nothing of the map is seen from farther away, m.
 pub const FAR_M: f32 = 400.0;
 /// A pixel gets more samples if its tone differs from a neighbour's by more than this.
 pub const CONTRAST: f32 = 0.10;
@@ -52,6 +48,60 @@ pub const CONTRAST: f32 = 0.10;
 pub const THING_WORDS: usize = 20;
 /// See [`THING_WORDS`].
 pub const PART_WORDS: usize = 12;
+
+/// What stands on the horizon stands in circles of these radii around a map, m; wider ones around a wider map.
+pub const SKYLINE_M: [f32; 3] = [72.0, 150.0, 320.0];
+/// From the middle to a corner of the map that [`SKYLINE_M`] is made for, m.
+const SKYLINE_AROUND_M: f64 = 40.0 * std::f64::consts::SQRT_2;
+
+/// How the field and the lists of an appearance cover a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldShape {
+    /// The map.
+    pub extent: Extent,
+    /// Voxels of the field along x, with a free ring around.
+    pub nx: usize,
+    /// Along y.
+    pub ny: usize,
+    /// Blocks along x and along y.
+    pub blocks: [usize; 2],
+    /// Bins of lines along x and along y, from the map's lower corner.
+    pub bins: [usize; 2],
+    /// Lower corner of the map, m.
+    pub low_m: Vec3,
+    /// Corner of the blocks, m: half a voxel and the ring outside the map.
+    pub blocks_from_m: Vec2,
+    /// Middle of the map, m.
+    pub middle_m: Vec2,
+    /// Factor for [`SKYLINE_M`].
+    pub skyline: f32,
+}
+
+impl FieldShape {
+    /// For a map.
+    pub fn of(extent: Extent) -> Self {
+        let [nx, ny] = [extent.nx() + 2, extent.ny() + 2];
+        let (low, high) = (extent.min_m(), extent.max_m());
+        let corner_m = (high - low).truncate().length() / 2.0;
+        Self {
+            extent,
+            nx,
+            ny,
+            blocks: [nx, ny].map(|n| (n - 1).div_ceil(BLOCK)),
+            bins: [extent.nx(), extent.ny()].map(|n| n.div_ceil(BIN_COLUMNS)),
+            low_m: low.as_vec3(),
+            blocks_from_m: (low.truncate() - Extent::VOXEL_M / 2.0).as_vec2(),
+            middle_m: ((low + high) / 2.0).truncate().as_vec2(),
+            skyline: (corner_m / SKYLINE_AROUND_M).max(1.0) as f32,
+        }
+    }
+
+    /// Place of a voxel in arrays `[x][y][z]` of the field.
+    #[inline(always)]
+    pub fn at(&self, x: usize, y: usize, z: usize) -> usize {
+        (x * self.ny + y) * NZ + z
+    }
+}
 
 /// Sections of [`AppearanceData::words`], in the order of [`AppearanceData::at`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +132,7 @@ pub enum Section {
     ListStarts,
     /// Things near a block.
     Lists,
-    /// Where the lines of each bin of 2 m begin; one more at the end.
+    /// Where the lines of each bin begin, `[x][y]`; one more at the end.
     BinStarts,
     /// From (2), to (2), kind, length before it.
     Segments,
@@ -110,6 +160,8 @@ pub const SECTIONS: usize = 24;
 /// A frame under certain conditions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AppearanceData {
+    /// The map that it covers.
+    pub extent: Extent,
     /// Everything that is looked up by place.
     pub words: Vec<u32>,
     /// Where each [`Section`] begins in `words`; the two counts.
@@ -142,6 +194,25 @@ impl AppearanceData {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The numbers that were constants when every map was a window.
+    #[test]
+    fn a_window_has_the_shape_it_always_had() {
+        let shape = FieldShape::of(Extent::WINDOW);
+        assert_eq!(
+            (shape.nx, shape.ny, shape.blocks, shape.bins),
+            (202, 202, [26; 2], [40; 2])
+        );
+        assert_eq!(shape.low_m, Vec3::new(-40.0, -40.0, -1.0));
+        assert_eq!(
+            (shape.blocks_from_m, shape.middle_m),
+            (Vec2::splat(-40.2), Vec2::ZERO)
+        );
+        assert_eq!(shape.skyline, 1.0);
+        let map = FieldShape::of(Extent::new([-150, -110], [480, 321]).expect("sound"));
+        assert_eq!((map.blocks, map.bins), ([61, 41], [96, 65]));
+        assert!(map.skyline * SKYLINE_M[0] > 120.0);
+    }
 
     #[test]
     fn bytes_are_found_where_the_shader_looks() {

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use scene::{Camera, GridSpec};
+use scene::{Camera, Extent};
 
 /// A viewpoint that orbits a target; perspective or orthographic.
 ///
@@ -74,10 +74,10 @@ impl Default for ViewCamera {
 
 /// Nearest visible distance in a perspective view, m.
 const NEAR_M: f64 = 0.1;
-/// Half of the depth that an orthographic view shows about its target, m.
+/// Half of the depth that an orthographic view shows about its target at least, m.
 const ORTHO_HALF_DEPTH_M: f64 = 1000.0;
-const DISTANCE_M: std::ops::RangeInclusive<f64> = 0.2..=1500.0;
-const TARGET_LIMIT_M: f64 = 2000.0;
+const DISTANCE_M: std::ops::RangeInclusive<f64> = 0.2..=15_000.0;
+const TARGET_LIMIT_M: f64 = 20_000.0;
 const FOV_RAD: std::ops::RangeInclusive<f64> = 0.05..=2.6;
 
 impl ViewCamera {
@@ -115,6 +115,18 @@ impl ViewCamera {
                 ortho: false,
             },
         }
+    }
+
+    /// The same over a map: one from above shows all of it, the others look where the ego vehicle is.
+    pub fn preset_over(preset: ViewPreset, extent: Extent) -> Self {
+        let mut camera = Self::preset(preset);
+        if preset == ViewPreset::Top {
+            let (low, high) = (extent.min_m(), extent.max_m());
+            camera.target_m = ((low + high) / 2.0).with_z(0.0);
+            let side_m = (high - low).truncate().max_element();
+            camera.distance_m *= side_m * 1.05 / camera.height_at_target_m();
+        }
+        camera.sane()
     }
 
     /// Looks through a camera of the rig: its position, direction and vertical field of view.
@@ -220,9 +232,21 @@ impl ViewCamera {
         *self = self.sane();
     }
 
-    /// Fits the whole grid in.
+    /// Fits a whole map in.
+    pub fn focus_map(&mut self, extent: Extent) {
+        let (low, high) = (extent.min_m(), extent.max_m());
+        let middle = ((low + high) / 2.0).with_z(0.0);
+        self.focus(middle, (high - low).truncate().max_element() / 2.0 * 1.1);
+    }
+
+    #[doc(hidden)] // until every caller names its map
     pub fn focus_all(&mut self) {
-        self.focus(DVec3::ZERO, GridSpec::MAX_M[0] * 1.1);
+        self.focus_map(Extent::default());
+    }
+
+    /// Half of the depth that an orthographic view shows about its target, m.
+    fn half_depth_m(&self) -> f64 {
+        ORTHO_HALF_DEPTH_M.max(self.distance_m)
     }
 
     /// Height of the view at the target, m.
@@ -245,8 +269,8 @@ impl ViewCamera {
             let half_h = self.height_at_target_m() / 2.0;
             let half_w = half_h * aspect;
             let (near, far) = (
-                self.distance_m - ORTHO_HALF_DEPTH_M,
-                self.distance_m + ORTHO_HALF_DEPTH_M,
+                self.distance_m - self.half_depth_m(),
+                self.distance_m + self.half_depth_m(),
             );
             // Depth 1 at `near`, 0 at `far`; z of the view frame points backward.
             let depth = far - near;
@@ -284,7 +308,7 @@ impl ViewCamera {
         let half_h = (camera.fov_y_rad / 2.0).tan();
         let across = (right * (ndc.x * aspect(size_px)) + up * ndc.y) * half_h;
         if camera.ortho {
-            let origin = camera.target_m + across * camera.distance_m - forward * ORTHO_HALF_DEPTH_M;
+            let origin = camera.target_m + across * camera.distance_m - forward * camera.half_depth_m();
             (origin, forward)
         } else {
             (camera.eye_m(), (forward + across).normalize())
@@ -352,6 +376,52 @@ mod tests {
         let left = top.project(DVec3::new(0.0, 10.0, 0.0), SIZE).expect("seen");
         assert!(ahead.y < 180.0 && (ahead.x - 320.0).abs() < 1e-6);
         assert!(left.x < 320.0 && (left.y - 180.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_map_fits_in() {
+        let seen = |camera: &ViewCamera, extent: Extent| {
+            let (low, high) = (extent.min_m(), extent.max_m());
+            (0..8).all(|i| {
+                let pick = |axis: usize| [low, high][i >> axis & 1][axis];
+                let p = DVec3::new(pick(0), pick(1), pick(2));
+                let c = camera.clip_from_world([480, 480]) * p.extend(1.0);
+                c.x.abs() <= c.w && c.y.abs() <= c.w && (0.0..=c.w).contains(&c.z)
+            })
+        };
+        for (from, size) in [
+            ([-100, -100], [200, 200]),
+            ([-150, -110], [480, 320]),
+            ([3000, -4000], [8192, 2048]),
+            ([0, 0], [1, 1]),
+        ] {
+            let extent = Extent::new(from, size).expect("sound");
+            for preset in [ViewPreset::Perspective, ViewPreset::Top] {
+                let mut camera = ViewCamera::preset(preset);
+                camera.focus_map(extent);
+                assert!(
+                    camera == camera.sane() && seen(&camera, extent),
+                    "{preset:?} {extent}"
+                );
+            }
+            if size[0] > 1 {
+                assert!(
+                    seen(&ViewCamera::preset_over(ViewPreset::Top, extent), extent),
+                    "{extent}"
+                );
+            }
+        }
+        // Over the networks' window nothing moves.
+        let mut camera = ViewCamera::default();
+        camera.focus_map(Extent::WINDOW);
+        let mut other = ViewCamera::default();
+        other.focus(DVec3::ZERO, 44.0);
+        assert_eq!(camera, other);
+        for preset in ViewPreset::ALL {
+            let over = ViewCamera::preset_over(preset, Extent::WINDOW);
+            let usual = ViewCamera::preset(preset).sane();
+            assert!((over.distance_m - usual.distance_m).abs() < 1e-9 && over.target_m == usual.target_m);
+        }
     }
 
     #[test]

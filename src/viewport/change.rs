@@ -3,7 +3,7 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
-use scene::GridSpec;
+use scene::Extent;
 
 /// A part of the ego frame, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,9 +26,9 @@ impl Part {
         part
     }
 
-    /// Voxels `low..high` of the grid.
-    pub fn of_voxels(low: [usize; 3], high: [usize; 3]) -> Self {
-        let corner = |v: [usize; 3]| GridSpec::from_voxel_units(DVec3::from_array(v.map(|c| c as f64)));
+    /// Voxels `low..high` of a grid.
+    pub fn of_voxels(extent: Extent, low: [usize; 3], high: [usize; 3]) -> Self {
+        let corner = |v: [usize; 3]| extent.from_voxel_units(DVec3::from_array(v.map(|c| c as f64)));
         Self {
             low_m: corner(low),
             high_m: corner(high),

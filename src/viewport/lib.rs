@@ -42,7 +42,7 @@ pub use shared::{COLOR_FORMAT, FRAME_UNIFORM_BYTES, FrameUniforms};
 pub use splats::{SPLAT_UNIFORM_BYTES, SplatError, SplatRenderer};
 pub use view::Viewport;
 
-use scene::GridSpec;
+use scene::Extent;
 
 /// Top of the ground bin, m: where the drawn ground is, 0.6 m below the physical one.
-pub const GROUND_TOP_M: f64 = GridSpec::MIN_M[2] + GridSpec::VOXEL_M;
+pub const GROUND_TOP_M: f64 = Extent::BOTTOM_M + Extent::VOXEL_M;

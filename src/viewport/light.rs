@@ -7,13 +7,10 @@ use rayon::prelude::*;
 
 use super::meshing::Solidity;
 use super::pool;
-use scene::GridSpec;
+use scene::Extent;
 
 /// Toward the sun, ego frame, unit length: from behind, left and above.
 pub const SUN: [f32; 3] = [-0.452, 0.362, 0.815];
-
-/// Cells of the light volume along x, y, z: the grid with a border of one cell.
-pub const VOLUME: [usize; 3] = [GridSpec::NX + 2, GridSpec::NY + 2, GridSpec::NZ + 2];
 
 /// Farthest that light looks sideways, in columns: a change reaches no farther than this.
 pub const REACH: usize = 14;
@@ -38,9 +35,16 @@ pub struct LightBlock {
     pub cells: Vec<[u8; 2]>,
 }
 
-/// A step of a ray: how far its column lies in [`Solidity::padded`], and the bins up.
+/// A step of a ray: columns aside, and bins up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Step {
+    aside: [isize; 2],
+    dz: u32,
+}
+
+/// The same in a grid: how far its column lies in [`Solidity::padded`].
+#[derive(Clone, Copy, Debug)]
+struct Offset {
     offset: isize,
     dz: u32,
 }
@@ -90,13 +94,15 @@ impl LightRays {
     pub fn bake(&self, solid: &Solidity, origin: [usize; 2], size: [usize; 2]) -> LightBlock {
         // One more column on every side, because drawn voxels take the sun of their neighbours.
         let (w, h) = (size[0] + 2, size[1] + 2);
+        let stride = solid.stride();
+        let [sun, sky] = [&self.sun, &self.sky].map(|rays| offsets(rays, stride));
         let column = |i: usize| {
             // The margin of the padded columns is wide enough for this one and for every ray.
-            let at = Solidity::index(origin[0] + i % w, origin[1] + i / w) - Solidity::STRIDE - 1;
+            let at = solid.index(origin[0] + i % w, origin[1] + i / w) - stride - 1;
             Column {
                 own: solid.padded()[at],
-                sun: free_counts(solid.padded(), &self.sun, at),
-                sky: free_counts(solid.padded(), &self.sky, at),
+                sun: free_counts(solid.padded(), &sun, at),
+                sky: free_counts(solid.padded(), &sky, at),
             }
         };
         // Around an edit in this thread: others would take longer to wake.
@@ -104,12 +110,12 @@ impl LightRays {
             0..=FEW => (0..w * h).map(column).collect(),
             _ => pool::run(|| (0..w * h).into_par_iter().with_min_len(64).map(column).collect()),
         };
-        let mut cells = vec![[0; 2]; size[0] * size[1] * GridSpec::NZ];
+        let mut cells = vec![[0; 2]; size[0] * size[1] * Extent::NZ];
         for y in 0..size[1] {
             for x in 0..size[0] {
                 let at = |dx: usize, dy: usize| &traced[(y + dy) * w + x + dx];
                 let around = [at(1, 1), at(0, 1), at(2, 1), at(1, 0), at(1, 2)];
-                for z in 0..GridSpec::NZ {
+                for z in 0..Extent::NZ {
                     cells[(z * size[1] + y) * size[0] + x] = cell(around, z);
                 }
             }
@@ -120,8 +126,8 @@ impl LightRays {
 
 struct Column {
     own: u16,
-    sun: [u8; GridSpec::NZ],
-    sky: [u8; GridSpec::NZ],
+    sun: [u8; Extent::NZ],
+    sky: [u8; Extent::NZ],
 }
 
 impl Column {
@@ -144,7 +150,7 @@ fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
         n += 1.0;
     }
     for zz in [z.wrapping_sub(1), z + 1] {
-        if zz < GridSpec::NZ && here.is_free(zz) {
+        if zz < Extent::NZ && here.is_free(zz) {
             sum += f64::from(here.sun[zz]) / SUN_RAYS as f64;
             n += 1.0;
         }
@@ -152,8 +158,17 @@ fn cell(around: [&Column; 5], z: usize) -> [u8; 2] {
     [byte(SKY_IN_SOLID), byte(if n > 0.0 { sum / n } else { 0.0 })]
 }
 
+/// Where the steps of rays lie in columns of so many a row.
+fn offsets(rays: &[Vec<Step>], stride: usize) -> Vec<Vec<Offset>> {
+    let offset = |&Step { aside: [dx, dy], dz }: &Step| Offset {
+        offset: dx * stride as isize + dy,
+        dz,
+    };
+    rays.iter().map(|ray| ray.iter().map(offset).collect()).collect()
+}
+
 /// Of each bin, how many rays reach the end unblocked.
-fn free_counts(columns: &[u16], rays: &[Vec<Step>], at: usize) -> [u8; GridSpec::NZ] {
+fn free_counts(columns: &[u16], rays: &[Vec<Offset>], at: usize) -> [u8; Extent::NZ] {
     // Sixteen counters side by side, one bit of each per word: adding a ray is a carry through five words.
     let mut counters = [0u16; 5];
     for ray in rays {
@@ -185,12 +200,12 @@ fn steps(dir: glam::DVec3, reach: f64) -> Vec<Step> {
         }
         cell[axis] += if dir[axis] < 0.0 { -1 } else { 1 };
         next[axis] += 1.0 / dir[axis].abs();
-        if cell[2] >= GridSpec::NZ as isize || cell[2] < 0 {
+        if cell[2] >= Extent::NZ as isize || cell[2] < 0 {
             break;
         }
         debug_assert!(cell[0].unsigned_abs() < REACH && cell[1].unsigned_abs() < REACH);
         out.push(Step {
-            offset: cell[0] * Solidity::STRIDE as isize + cell[1],
+            aside: [cell[0], cell[1]],
             dz: cell[2] as u32,
         });
     }
@@ -237,9 +252,7 @@ mod tests {
     fn changes_reach_no_farther_than_stated() {
         let rays = LightRays::new();
         for step in rays.sun.iter().chain(&rays.sky).flatten() {
-            let stride = Solidity::STRIDE as isize;
-            let dx = (step.offset + stride / 2).div_euclid(stride);
-            let dy = step.offset - dx * stride;
+            let [dx, dy] = step.aside;
             // One column less, because solid voxels ask their neighbours.
             assert!(
                 dx.unsigned_abs() < REACH && dy.unsigned_abs() < REACH,

@@ -10,7 +10,7 @@ use super::lines::LineList;
 use super::meshing::NORMALS;
 use super::options::drop_m;
 use super::{GROUND_TOP_M, ViewScene, ego};
-use scene::{Camera, GridSpec, SceneBox, SensorRig};
+use scene::{Camera, Extent, SceneBox, SensorRig};
 
 /// All marks of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,10 +32,10 @@ impl Marks {
     /// Of a scene, under its options.
     pub fn of(scene: &ViewScene<'_>) -> Self {
         let mut marks = Self::default();
-        let options = scene.options;
+        let (options, extent) = (scene.options, scene.grid.extent());
         let down = DVec3::Z * drop_m(options);
         if options.grid_lines {
-            marks.metre_grid();
+            marks.metre_grid(extent);
         }
         if options.ego {
             marks.ego_shadow(scene.rig, down.z);
@@ -56,34 +56,55 @@ impl Marks {
             }
         }
         for brush in scene.brush {
-            marks.cells(brush.cells, brush.color);
+            marks.cells(extent, brush.cells, brush.color);
         }
         marks
     }
 
-    fn metre_grid(&mut self) {
+    /// Lines every 10 m over the map and along its sides, and the axes.
+    fn metre_grid(&mut self, extent: Extent) {
+        const STEP_M: f64 = 10.0;
         let z = GROUND_TOP_M + 0.005;
-        let end = GridSpec::MAX_M[0];
-        for i in -4i32..=4 {
-            let at = f64::from(i) * 10.0;
-            let alpha = if i.abs() == 4 { 70 } else { 34 };
-            let grey = [206, 214, 226, alpha];
-            if i != 0 {
-                self.plain
-                    .add(DVec3::new(-end, at, z), DVec3::new(end, at, z), grey, 1.0);
-                self.plain
-                    .add(DVec3::new(at, -end, z), DVec3::new(at, end, z), grey, 1.0);
+        let (low, high) = (extent.min_m(), extent.max_m());
+        let mut places: Vec<f64> = [low.x, low.y, high.x, high.y].to_vec();
+        let (first, last) = (low.x.min(low.y) / STEP_M, high.x.max(high.y) / STEP_M);
+        places.extend((first.ceil() as i64..=last.floor() as i64).map(|i| i as f64 * STEP_M));
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        for at in places.into_iter().filter(|at| *at != 0.0) {
+            let line = |axis: usize| {
+                let side = at == low[axis] || at == high[axis];
+                let full = (at / STEP_M).fract() == 0.0;
+                let within = side || full && (low[axis]..high[axis]).contains(&at);
+                within.then_some([206, 214, 226, if side { 70 } else { 34 }])
+            };
+            if let Some(grey) = line(1) {
+                let ends = [DVec3::new(low.x, at, z), DVec3::new(high.x, at, z)];
+                self.plain.add(ends[0], ends[1], grey, 1.0);
+            }
+            if let Some(grey) = line(0) {
+                let ends = [DVec3::new(at, low.y, z), DVec3::new(at, high.y, z)];
+                self.plain.add(ends[0], ends[1], grey, 1.0);
             }
         }
         // Axes: x forward red, y left green, stronger ahead and to the left than behind.
-        let axis = |dir: DVec3, color: [u8; 3], list: &mut LineList| {
-            let o = DVec3::new(0.0, 0.0, z);
-            let [r, g, b] = color;
-            list.add(o, o - dir * end, [r, g, b, 50], 1.0);
-            list.add(o, o + dir * end, [r, g, b, 130], 1.4);
-        };
-        axis(DVec3::X, [240, 104, 96], &mut self.plain);
-        axis(DVec3::Y, [120, 200, 110], &mut self.plain);
+        for (axis, [r, g, b]) in [(0, [240, 104, 96]), (1, [120, 200, 110])] {
+            if !(low[1 - axis]..=high[1 - axis]).contains(&0.0) {
+                continue;
+            }
+            let at = |v: f64| {
+                let mut p = DVec3::new(0.0, 0.0, z);
+                p[axis] = v;
+                p
+            };
+            let middle = 0f64.clamp(low[axis], high[axis]);
+            if low[axis] < middle {
+                self.plain.add(at(middle), at(low[axis]), [r, g, b, 50], 1.0);
+            }
+            if middle < high[axis] {
+                self.plain.add(at(middle), at(high[axis]), [r, g, b, 130], 1.4);
+            }
+        }
     }
 
     fn ego_shadow(&mut self, rig: &SensorRig, drop_m: f64) {
@@ -168,12 +189,12 @@ impl Marks {
     }
 
     /// The outer faces of a set of voxels, each with a rim.
-    fn cells(&mut self, cells: &[[usize; 3]], color: [u8; 3]) {
-        const LIMIT: [usize; 3] = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+    fn cells(&mut self, extent: Extent, cells: &[[usize; 3]], color: [u8; 3]) {
+        let limit = extent.shape();
         let inside: HashSet<[usize; 3]> = cells
             .iter()
             .copied()
-            .filter(|c| (0..3).all(|i| c[i] < LIMIT[i]))
+            .filter(|c| (0..3).all(|i| c[i] < limit[i]))
             .collect();
         let mut order: Vec<_> = inside.iter().copied().collect();
         order.sort_unstable();
@@ -187,8 +208,8 @@ impl Marks {
                 let n = DVec3::from_array(normal.map(f64::from));
                 let u = DVec3::new(n.y, n.z, n.x);
                 let v = n.cross(u);
-                let half = GridSpec::VOXEL_M / 2.0;
-                let middle = GridSpec::center(cell[0], cell[1], cell[2]) + n * (half + 0.012);
+                let half = Extent::VOXEL_M / 2.0;
+                let middle = extent.center(cell[0], cell[1], cell[2]) + n * (half + 0.012);
                 let at = |a: f64, b: f64| middle + (u * a + v * b) * half;
                 self.faces.add(
                     [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)],
@@ -237,7 +258,7 @@ mod tests {
     fn brush_cells_show_their_outer_faces_only() {
         let faces = |cells: &[[usize; 3]]| {
             let mut marks = Marks::default();
-            marks.cells(cells, [255; 3]);
+            marks.cells(Extent::WINDOW, cells, [255; 3]);
             marks.faces.vertices.len() / 4
         };
         assert_eq!(faces(&[]), 0);
@@ -247,5 +268,32 @@ mod tests {
         assert_eq!(faces(&[[0, 0, 0]]), 6);
         // Cells outside of the grid are left out.
         assert_eq!(faces(&[[200, 0, 0], [0, 0, 16]]), 0);
+    }
+
+    /// The lines as they were when every map was a window, and on a map beside the ego vehicle.
+    #[test]
+    fn the_metre_grid_covers_the_map() {
+        let lines = |extent: Extent| {
+            let mut marks = Marks::default();
+            marks.metre_grid(extent);
+            marks.plain
+        };
+        let (z, end) = (GROUND_TOP_M + 0.005, 40.0);
+        let mut expected = LineList::default();
+        for i in [-4i32, -3, -2, -1, 1, 2, 3, 4] {
+            let at = f64::from(i) * 10.0;
+            let grey = [206, 214, 226, if i.abs() == 4 { 70 } else { 34 }];
+            expected.add(DVec3::new(-end, at, z), DVec3::new(end, at, z), grey, 1.0);
+            expected.add(DVec3::new(at, -end, z), DVec3::new(at, end, z), grey, 1.0);
+        }
+        let o = DVec3::new(0.0, 0.0, z);
+        for (axis, [r, g, b]) in [(DVec3::X, [240, 104, 96]), (DVec3::Y, [120, 200, 110])] {
+            expected.add(o, o - axis * end, [r, g, b, 50], 1.0);
+            expected.add(o, o + axis * end, [r, g, b, 130], 1.4);
+        }
+        assert_eq!(lines(Extent::WINDOW), expected);
+        // x 4.8 m to 25.2 m, y -4 m to 8 m: both sides and full tens along each, and the x axis ahead.
+        let beside = Extent::new([12, -10], [51, 30]).expect("sound");
+        assert_eq!(lines(beside).vertices.len() / 4, 4 + 2 + 1);
     }
 }

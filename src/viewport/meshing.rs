@@ -5,14 +5,15 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::pool;
-use scene::grid::{BRICK, BRICKS, Brick};
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::grid::{BRICK, Brick, brick_columns};
+use scene::{Class, Extent, VoxelGrid};
 
 /// Which voxels are drawn: one bit per bin of every column, after hidden classes and the height clip.
 /// Empty columns border the grid on all sides, so that looking [`Solidity::MARGIN`] beyond it is no
 /// special case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solidity {
+    extent: Extent,
     columns: Vec<u16>, // [x + MARGIN][y + MARGIN]
 }
 
@@ -22,33 +23,50 @@ pub type ColumnBox = ([usize; 2], [usize; 2]);
 impl Solidity {
     /// Empty columns on each side of the grid.
     pub const MARGIN: usize = 16;
-    /// From a column to the one beside it along x, in [`Solidity::padded`].
-    pub const STRIDE: usize = GridSpec::NY + 2 * Self::MARGIN;
+
+    /// Of a grid that holds nothing.
+    pub fn empty(extent: Extent) -> Self {
+        let [w, h] = [extent.nx(), extent.ny()].map(|n| n + 2 * Self::MARGIN);
+        Self {
+            extent,
+            columns: vec![0; w * h],
+        }
+    }
 
     /// Of a whole grid; see [`Visible`].
     pub fn of(grid: &VoxelGrid, visible: Visible) -> Self {
-        let mut solid = Self {
-            columns: vec![0; (GridSpec::NX + 2 * Self::MARGIN) * Self::STRIDE],
-        };
-        for brick in 0..BRICKS * BRICKS {
-            solid.update(brick, &grid.bricks()[brick], visible);
+        let mut solid = Self::empty(grid.extent());
+        for (brick, voxels) in grid.bricks().iter().enumerate() {
+            solid.update(brick, voxels, visible);
         }
         solid
     }
 
+    /// Which part of the ground it covers, without the margins.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// From a column to the one beside it along x, in [`Solidity::padded`].
+    #[inline]
+    pub fn stride(&self) -> usize {
+        self.extent.ny() + 2 * Self::MARGIN
+    }
+
     /// Takes over one brick; returns the box around the columns that changed, if any did.
     pub fn update(&mut self, brick: usize, voxels: &Brick, visible: Visible) -> Option<ColumnBox> {
-        let [x0, y0] = brick_origin(brick);
+        let ([x0, y0], [nx, ny]) = brick_columns(self.extent, brick);
         let mut changed: Option<ColumnBox> = None;
-        for x in x0..(x0 + BRICK).min(GridSpec::NX) {
-            for y in y0..(y0 + BRICK).min(GridSpec::NY) {
+        for x in x0..x0 + nx {
+            let row = self.index(x, 0);
+            for y in y0..y0 + ny {
                 let at = ((x - x0) * BRICK + y - y0) * BRICK;
                 let mut bits = 0u16;
                 for (z, &class) in voxels[at..at + BRICK].iter().enumerate() {
                     bits |= u16::from(visible.class(class)) << z;
                 }
                 bits &= visible.below_clip;
-                let old = std::mem::replace(&mut self.columns[Self::index(x, y)], bits);
+                let old = std::mem::replace(&mut self.columns[row + y], bits);
                 if old != bits {
                     changed = join(changed, Some(([x, y], [x + 1, y + 1])));
                 }
@@ -61,7 +79,7 @@ impl Solidity {
     #[inline]
     pub fn column(&self, x: isize, y: isize) -> u16 {
         let margin = Self::MARGIN as isize;
-        self.columns[(x + margin) as usize * Self::STRIDE + (y + margin) as usize]
+        self.columns[(x + margin) as usize * self.stride() + (y + margin) as usize]
     }
 
     /// All columns, margins included; see [`Solidity::index`].
@@ -72,8 +90,8 @@ impl Solidity {
 
     /// Where a column of the grid is in [`Solidity::padded`].
     #[inline]
-    pub fn index(x: usize, y: usize) -> usize {
-        (x + Self::MARGIN) * Self::STRIDE + y + Self::MARGIN
+    pub fn index(&self, x: usize, y: usize) -> usize {
+        (x + Self::MARGIN) * self.stride() + y + Self::MARGIN
     }
 }
 
@@ -108,15 +126,10 @@ impl Visible {
     }
 }
 
-/// Column of a brick's lower corner.
-pub fn brick_origin(brick: usize) -> [usize; 2] {
-    [brick / BRICKS * BRICK, brick % BRICKS * BRICK]
-}
-
 /// Faces of one brick: four vertices per rectangle, counter-clockwise from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BrickMesh {
-    /// `x | y << 8 | z << 16 | direction << 21 | class << 24`: the corner in voxel units of the grid.
+    /// `x | y << 8 | z << 16 | direction << 21 | class << 24`: the corner in voxel units of the brick.
     pub vertices: Vec<u32>,
     /// Rectangles of each direction: +x, -x, +y, -y, +z, -z.
     pub quads: [Range<u32>; 6],
@@ -148,8 +161,7 @@ pub fn mesh_bricks(grid: &VoxelGrid, solid: &Solidity, bricks: &[usize]) -> Vec<
 
 /// The faces of a brick between a drawn voxel and one that is not drawn.
 pub fn mesh_brick(voxels: &Brick, brick: usize, solid: &Solidity) -> BrickMesh {
-    let [x0, y0] = brick_origin(brick);
-    let (nx, ny) = (BRICK.min(GridSpec::NX - x0), BRICK.min(GridSpec::NY - y0));
+    let ([x0, y0], [nx, ny]) = brick_columns(solid.extent, brick);
     let mut mesh = BrickMesh::default();
     let mut exposed = [0u16; BRICK * BRICK];
     for (direction, normal) in NORMALS.iter().enumerate() {
@@ -176,7 +188,7 @@ pub fn mesh_brick(voxels: &Brick, brick: usize, solid: &Solidity) -> BrickMesh {
                 size: [nx, ny, BRICK],
             };
             face.merge(|class, slice, low, high| {
-                emit(&mut mesh.vertices, direction, [x0, y0], class, slice, low, high);
+                emit(&mut mesh.vertices, direction, class, slice, low, high);
             });
         }
         mesh.quads[direction] = start..mesh.vertices.len() as u32 / 4;
@@ -257,15 +269,7 @@ pub fn is_reversed(direction: usize) -> bool {
     matches!(direction, 1 | 2 | 5)
 }
 
-fn emit(
-    out: &mut Vec<u32>,
-    direction: usize,
-    origin: [usize; 2],
-    class: u8,
-    slice: usize,
-    low: [usize; 2],
-    high: [usize; 2],
-) {
+fn emit(out: &mut Vec<u32>, direction: usize, class: u8, slice: usize, low: [usize; 2], high: [usize; 2]) {
     let axis = direction / 2;
     let (a_axis, b_axis) = plane_axes(axis);
     let mut corners = [
@@ -281,7 +285,7 @@ fn emit(
         let mut p = [0; 3];
         p[axis] = slice + usize::from(direction.is_multiple_of(2));
         (p[a_axis], p[b_axis]) = (a, b);
-        let (x, y, z) = (p[0] + origin[0], p[1] + origin[1], p[2]);
+        let [x, y, z] = p;
         out.push((x | y << 8 | z << 16 | direction << 21) as u32 | u32::from(class) << 24);
     }
 }
@@ -298,12 +302,12 @@ mod tests {
         *state >> 33
     }
 
-    fn speckled(percent: u64, classes: u64) -> VoxelGrid {
-        let mut grid = VoxelGrid::new();
+    fn speckled(extent: Extent, percent: u64, classes: u64) -> VoxelGrid {
+        let mut grid = VoxelGrid::over(extent);
         let mut state = 7 + percent;
-        for x in (0..GridSpec::NX).filter(|x| x % 29 < 17) {
-            for y in (0..GridSpec::NY).filter(|y| y % 23 < 19) {
-                for z in 0..GridSpec::NZ {
+        for x in (0..extent.nx()).filter(|x| x % 29 < 17) {
+            for y in (0..extent.ny()).filter(|y| y % 23 < 19) {
+                for z in 0..Extent::NZ {
                     if noise(&mut state) % 100 < percent {
                         grid.set(x, y, z, (noise(&mut state) % classes) as u8);
                     }
@@ -368,15 +372,20 @@ mod tests {
 
     fn check(grid: &VoxelGrid, visible: Visible) {
         let solid = Solidity::of(grid, visible);
-        let bricks: Vec<usize> = (0..BRICKS * BRICKS).collect();
+        let bricks: Vec<usize> = (0..grid.bricks().len()).collect();
         let mut found = std::collections::BTreeMap::new();
-        for mesh in mesh_bricks(grid, &solid, &bricks) {
+        for (brick, mesh) in mesh_bricks(grid, &solid, &bricks).into_iter().enumerate() {
+            let (from, _) = grid.brick_columns(brick);
             assert_eq!(mesh.quads[5].end as usize * 4, mesh.vertices.len());
             assert!(mesh.vertices.len() <= 65536, "indices are 16 bit");
-            found.extend(unit_faces(&mesh).expect("flat and disjoint"));
+            let faces = unit_faces(&mesh).expect("flat and disjoint");
+            found.extend(faces.into_iter().map(|((p, direction), class)| {
+                let at = [p[0] + from[0] as i64, p[1] + from[1] as i64, p[2]];
+                ((at, direction), class)
+            }));
         }
         let shown = |p: [i64; 3]| -> Option<u8> {
-            let n = [GridSpec::NX, GridSpec::NY, GridSpec::NZ];
+            let n = grid.extent().shape();
             if (0..3).any(|i| p[i] < 0 || p[i] >= n[i] as i64) {
                 return None;
             }
@@ -404,14 +413,18 @@ mod tests {
     #[test]
     fn merged_rectangles_are_exactly_the_exposed_faces() {
         for (percent, classes) in [(3, 17), (50, 2), (97, 3), (100, 1)] {
-            check(&speckled(percent, classes), Visible::ALL);
+            check(&speckled(Extent::WINDOW, percent, classes), Visible::ALL);
+        }
+        for size in [[1, 1], [17, 300], [33, 16]] {
+            let extent = Extent::new([-7, 90], size).expect("sound");
+            check(&speckled(extent, 60, 3), Visible::ALL);
         }
         check(&VoxelGrid::new(), Visible::ALL);
         let some = Visible {
             hidden_classes: 0b101,
             below_clip: 0x03ff,
         };
-        check(&speckled(60, 5), some);
+        check(&speckled(Extent::WINDOW, 60, 5), some);
         // Labels outside of the palette are not drawn and harm nothing.
         let mut odd = VoxelGrid::new();
         odd.set(3, 3, 3, 200);
@@ -420,14 +433,12 @@ mod tests {
 
     #[test]
     fn a_flat_plane_is_one_rectangle_per_brick() {
-        let mut grid = VoxelGrid::new();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                grid.set(x, y, 0, 11);
-            }
+        let mut grid = VoxelGrid::over(Extent::new([-150, -110], [470, 320]).expect("sound"));
+        for [x, y] in grid.extent().all_columns() {
+            grid.set(x, y, 0, 11);
         }
         let solid = Solidity::of(&grid, Visible::ALL);
-        for b in 0..BRICKS * BRICKS {
+        for b in 0..grid.bricks().len() {
             let mesh = mesh_brick(&grid.bricks()[b], b, &solid);
             assert_eq!(mesh.quads[4].len(), 1);
         }
@@ -439,7 +450,7 @@ mod tests {
         grid.set(20, 20, 5, 4);
         let mut solid = Solidity::of(&grid, Visible::ALL);
         grid.set(20, 20, 5, 9);
-        let brick = BRICKS + 1;
+        let brick = grid.bricks_along()[1] + 1;
         assert_eq!(solid.update(brick, &grid.bricks()[brick], Visible::ALL), None);
         grid.set(20, 20, 6, 9);
         let changed = solid.update(brick, &grid.bricks()[brick], Visible::ALL);

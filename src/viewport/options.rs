@@ -132,7 +132,7 @@ pub struct BrushCells<'a> {
 pub struct ViewScene<'a> {
     /// Occupancy.
     pub grid: &'a VoxelGrid,
-    /// Layout, one bit per layer, `[x][y]`, 40,000 cells; of another size it shows nothing.
+    /// Layout, one bit per layer, `[x][y]` of the grid's extent; of another size it shows nothing.
     pub bev: &'a [u32],
     /// Boxes; those with a [`SceneBox::problem`] are left out.
     pub boxes: &'a [&'a SceneBox],

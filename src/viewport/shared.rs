@@ -3,10 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
-use super::light::{LightBlock, SUN, VOLUME};
+use super::light::{LightBlock, SUN};
 use super::shaders::SHADERS;
 use super::{Background, ViewCamera, ViewOptions};
-use scene::{Class, GridSpec};
+use scene::{Class, Extent};
 
 /// Format of the picture: sRGB-encoded values in a format that does not convert, as egui expects of
 /// textures; alpha is premultiplied.
@@ -29,15 +29,26 @@ pub struct FrameUniforms {
     background_bottom: [f32; 4],
     sun: [f32; 4],
     toggles: [f32; 4],
+    grid_min: [f32; 4],
+    grid_size: [f32; 4],
     palette: [[f32; 4]; Class::COUNT],
 }
+
+/// Fog is made for maps as wide as this, m; it begins farther away over wider ones.
+const FOG_OVER_M: f64 = 80.0;
 
 /// Size of the uniforms, bytes; a test compares it with the shader's.
 pub const FRAME_UNIFORM_BYTES: usize = size_of::<FrameUniforms>();
 
 impl FrameUniforms {
-    /// Of one picture; `jitter_px` shifts it by parts of a pixel.
-    pub fn new(camera: &ViewCamera, options: &ViewOptions, size_px: [u32; 2], jitter_px: [f64; 2]) -> Self {
+    /// Of one picture of a map; `jitter_px` shifts it by parts of a pixel.
+    pub fn new(
+        camera: &ViewCamera,
+        options: &ViewOptions,
+        extent: Extent,
+        size_px: [u32; 2],
+        jitter_px: [f64; 2],
+    ) -> Self {
         let camera = camera.sane();
         let (w, h) = (f64::from(size_px[0].max(1)), f64::from(size_px[1].max(1)));
         let shift = glam::DMat4::from_translation(glam::DVec3::new(
@@ -63,6 +74,8 @@ impl FrameUniforms {
             [r, g, b, a]
         };
         let fog = if camera.ortho { 0.0 } else { 0.38 * opaque };
+        let low = extent.min_m();
+        let wide = (extent.max_m() - low).truncate().max_element() / FOG_OVER_M;
         let finite = |v: f32, or: f32| if v.is_finite() { v } else { or };
         Self {
             clip_from_ego: clip.as_mat4().to_cols_array_2d(),
@@ -87,6 +100,8 @@ impl FrameUniforms {
                 f32::from(u8::from(options.shadows)),
                 finite(options.layout_opacity, 1.0).clamp(0.0, 1.0),
             ],
+            grid_min: low.as_vec3().extend(wide.max(1.0) as f32).to_array(),
+            grid_size: [extent.nx() as f32, extent.ny() as f32, Extent::NZ as f32, 0.0],
             palette: Class::ALL.map(|class| {
                 let [r, g, b, _] = rgba(class.color(), 1.0);
                 [r * r, g * g, b * b, f32::from(u8::from(class.is_ground()))]
@@ -106,98 +121,38 @@ impl FrameUniforms {
 #[derive(Debug)]
 pub(super) struct Shared {
     pub bind_group_layout: wgpu::BindGroupLayout,
-    pub bind_group: wgpu::BindGroup,
     pub quad_indices: wgpu::Buffer,
     uniforms: wgpu::Buffer,
+    sampler: wgpu::Sampler,
+    of_map: OfMap,
+}
+
+/// What is as large as the map.
+#[derive(Debug)]
+struct OfMap {
+    extent: Extent,
+    bind_group: wgpu::BindGroup,
     light: wgpu::Texture,
     markings: wgpu::Texture,
     layout: wgpu::Texture,
 }
 
 impl Shared {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+    /// For a map of this extent.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, extent: Extent) -> Self {
         let uniforms = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
             size: FRAME_UNIFORM_BYTES as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let texture = |label, size: [usize; 3], dimension, format| {
-            device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: extent(size),
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension,
-                format,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
-        };
-        use wgpu::{TextureDimension as Dim, TextureFormat as Format};
-        let light = texture("light volume", VOLUME, Dim::D3, Format::Rg8Unorm);
-        let flat = [GridSpec::NX, GridSpec::NY, 1];
-        let markings = texture("markings", flat, Dim::D2, Format::Rgba8Unorm);
-        let layout = texture("layout plane", flat, Dim::D2, Format::Rgba8Unorm);
-        // Fully lit, border included: the border is never written again.
-        let lit = vec![255u8; VOLUME.iter().product::<usize>() * 2];
-        write_texture(queue, &light, [0; 3], VOLUME, 2, &lit);
-
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("light"),
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        let sampled = |binding, view_dimension, visibility| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                view_dimension,
-                multisampled: false,
-            },
-            count: None,
-        };
-        let fragment = wgpu::ShaderStages::FRAGMENT;
-        let bind_group_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("shared"),
-            entries: &[
-                wgpu::BindGroupLayoutEntry {
-                    binding: 0,
-                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                    ty: wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                    count: None,
-                },
-                sampled(1, wgpu::TextureViewDimension::D3, fragment),
-                wgpu::BindGroupLayoutEntry {
-                    binding: 2,
-                    visibility: fragment,
-                    ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-                    count: None,
-                },
-                sampled(3, wgpu::TextureViewDimension::D2, fragment),
-                sampled(4, wgpu::TextureViewDimension::D2, fragment),
-            ],
-        });
-        let view = |t: &wgpu::Texture| t.create_view(&wgpu::TextureViewDescriptor::default());
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("shared"),
-            layout: &bind_group_layout,
-            entries: &[
-                entry(0, uniforms.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&view(&light))),
-                entry(2, wgpu::BindingResource::Sampler(&sampler)),
-                entry(3, wgpu::BindingResource::TextureView(&view(&markings))),
-                entry(4, wgpu::BindingResource::TextureView(&view(&layout))),
-            ],
-        });
-
+        let bind_group_layout = bind_group_layout(device);
         let indices: Vec<u16> = (0..QUADS_PER_DRAW)
             .flat_map(|q| [0, 1, 2, 0, 2, 3].map(|i| (q * 4 + i) as u16))
             .collect();
@@ -208,43 +163,163 @@ impl Shared {
             mapped_at_creation: false,
         });
         queue.write_buffer(&quad_indices, 0, bytemuck::cast_slice(&indices));
+        let of_map = OfMap::new(device, queue, extent, (&bind_group_layout, &uniforms, &sampler));
         Self {
             bind_group_layout,
-            bind_group,
             quad_indices,
             uniforms,
-            light,
-            markings,
-            layout,
+            sampler,
+            of_map,
         }
+    }
+
+    /// Makes the textures anew, fully lit and without a layout, if they are of another map.
+    pub fn fit(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, extent: Extent) {
+        if self.of_map.extent != extent {
+            let with = (&self.bind_group_layout, &self.uniforms, &self.sampler);
+            self.of_map = OfMap::new(device, queue, extent, with);
+        }
+    }
+
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        &self.of_map.bind_group
     }
 
     pub fn write_uniforms(&self, queue: &wgpu::Queue, uniforms: &FrameUniforms) {
         queue.write_buffer(&self.uniforms, 0, bytemuck::bytes_of(uniforms));
     }
 
+    /// Columns that have light, from the map's lower corner: all, unless the device has no texture so large.
+    pub fn lit_columns(&self) -> [usize; 2] {
+        let size = self.of_map.light.size();
+        [size.width as usize - 2, size.height as usize - 2]
+    }
+
+    /// Columns beyond [`Self::lit_columns`] are left out.
     pub fn write_light(&self, queue: &wgpu::Queue, block: &LightBlock) {
-        let ([x, y], [w, h]) = (block.origin, block.size);
-        let bytes = bytemuck::cast_slice(&block.cells);
+        let [x, y] = block.origin;
+        let lit = self.lit_columns();
+        let size = [0, 1].map(|i| block.size[i].min(lit[i].saturating_sub(block.origin[i])));
         write_texture(
             queue,
-            &self.light,
-            [x + 1, y + 1, 1],
-            [w, h, GridSpec::NZ],
-            2,
-            bytes,
+            &self.of_map.light,
+            ([x + 1, y + 1, 1], [size[0], size[1], Extent::NZ]),
+            (2, block.size),
+            bytemuck::cast_slice(&block.cells),
         );
     }
 
-    /// Both as RGBA8, sRGB, straight alpha, `[y][x]`.
+    /// Both as RGBA8, sRGB, straight alpha, `[y][x]` of the map.
     pub fn write_layout(&self, queue: &wgpu::Queue, markings: &[[u8; 4]], plane: &[[u8; 4]]) {
-        let size = [GridSpec::NX, GridSpec::NY, 1];
-        write_texture(queue, &self.markings, [0; 3], size, 4, markings.as_flattened());
-        write_texture(queue, &self.layout, [0; 3], size, 4, plane.as_flattened());
+        let OfMap { extent, .. } = self.of_map;
+        for (texture, texels) in [(&self.of_map.markings, markings), (&self.of_map.layout, plane)] {
+            let size = texture.size();
+            write_texture(
+                queue,
+                texture,
+                ([0; 3], [size.width as usize, size.height as usize, 1]),
+                (4, [extent.nx(), extent.ny()]),
+                texels.as_flattened(),
+            );
+        }
     }
 }
 
-fn extent([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
+impl OfMap {
+    /// Textures as large as the map, or as the device allows.
+    fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        extent: Extent,
+        (layout, uniforms, sampler): (&wgpu::BindGroupLayout, &wgpu::Buffer, &wgpu::Sampler),
+    ) -> Self {
+        use wgpu::{TextureDimension as Dim, TextureFormat as Format};
+        let texture = |label, size: [usize; 3], dimension, format| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: texture_size(size),
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+                view_formats: &[],
+            })
+        };
+        let limits = device.limits();
+        let columns = [extent.nx(), extent.ny()];
+        // The light has a border of one cell.
+        let [w, h] = columns.map(|n| (n + 2).min(limits.max_texture_dimension_3d as usize));
+        let volume = [w, h, Extent::NZ + 2];
+        let [nx, ny] = columns.map(|n| n.min(limits.max_texture_dimension_2d as usize));
+        let light = texture("light volume", volume, Dim::D3, Format::Rg8Unorm);
+        let markings = texture("markings", [nx, ny, 1], Dim::D2, Format::Rgba8Unorm);
+        let plane = texture("layout plane", [nx, ny, 1], Dim::D2, Format::Rgba8Unorm);
+        // Fully lit, border included: the border is never written again.
+        let lit = vec![255u8; w * h * volume[2] * 2];
+        write_texture(queue, &light, ([0; 3], volume), (2, [w, h]), &lit);
+        let view = |t: &wgpu::Texture| t.create_view(&wgpu::TextureViewDescriptor::default());
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("shared"),
+            layout,
+            entries: &[
+                entry(0, uniforms.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&view(&light))),
+                entry(2, wgpu::BindingResource::Sampler(sampler)),
+                entry(3, wgpu::BindingResource::TextureView(&view(&markings))),
+                entry(4, wgpu::BindingResource::TextureView(&view(&plane))),
+            ],
+        });
+        Self {
+            extent,
+            bind_group,
+            light,
+            markings,
+            layout: plane,
+        }
+    }
+}
+
+fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let fragment = wgpu::ShaderStages::FRAGMENT;
+    let sampled = |binding, view_dimension| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: fragment,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension,
+            multisampled: false,
+        },
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("shared"),
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            },
+            sampled(1, wgpu::TextureViewDimension::D3),
+            wgpu::BindGroupLayoutEntry {
+                binding: 2,
+                visibility: fragment,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                count: None,
+            },
+            sampled(3, wgpu::TextureViewDimension::D2),
+            sampled(4, wgpu::TextureViewDimension::D2),
+        ],
+    })
+}
+
+fn texture_size([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
     wgpu::Extent3d {
         width: width as u32,
         height: height as u32,
@@ -252,14 +327,17 @@ fn extent([width, height, depth]: [usize; 3]) -> wgpu::Extent3d {
     }
 }
 
+/// Writes `size` texels at `at` from rows and images of texels that may be longer than that.
 fn write_texture(
     queue: &wgpu::Queue,
     texture: &wgpu::Texture,
-    at: [usize; 3],
-    size: [usize; 3],
-    texel_bytes: usize,
+    (at, size): ([usize; 3], [usize; 3]),
+    (texel_bytes, [row, rows]): (usize, [usize; 2]),
     bytes: &[u8],
 ) {
+    if size.contains(&0) {
+        return;
+    }
     queue.write_texture(
         wgpu::TexelCopyTextureInfo {
             texture,
@@ -274,10 +352,10 @@ fn write_texture(
         bytes,
         wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some((size[0] * texel_bytes) as u32),
-            rows_per_image: Some(size[1] as u32),
+            bytes_per_row: Some((row * texel_bytes) as u32),
+            rows_per_image: Some(rows as u32),
         },
-        extent(size),
+        texture_size(size),
     );
 }
 
@@ -412,6 +490,17 @@ impl VertexBuffer {
 
     /// Draws some of the rectangles, four vertices each, with the pipeline that is set.
     pub fn draw_quads(&self, pass: &mut wgpu::RenderPass<'_>, shared: &Shared, quads: std::ops::Range<u32>) {
+        self.draw_quads_as(pass, shared, quads, 0);
+    }
+
+    /// The same, as an instance of this number.
+    pub fn draw_quads_as(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        shared: &Shared,
+        quads: std::ops::Range<u32>,
+        instance: u32,
+    ) {
         let Some(buffer) = &self.buffer else { return };
         let end = quads.end.min(self.quads());
         let mut start = quads.start;
@@ -426,7 +515,7 @@ impl VertexBuffer {
                 0,
                 buffer.slice(u64::from(start) * bytes..u64::from(start + count) * bytes),
             );
-            pass.draw_indexed(0..count * 6, 0, 0..1);
+            pass.draw_indexed(0..count * 6, 0, instance..instance + 1);
             start += count;
         }
     }

@@ -9,6 +9,7 @@ use super::points::Points;
 use super::shared::{FrameUniforms, Shared};
 use super::target::Target;
 use super::{ViewCamera, ViewOptions, ViewScene};
+use scene::Extent;
 
 /// The 3D view: device objects of every drawable, and the picture drawn last.
 #[derive(Debug)]
@@ -27,6 +28,11 @@ struct Drawn {
     options: ViewOptions,
 }
 
+/// The map until a first one is shown.
+pub(super) fn nothing() -> Extent {
+    Extent::new([0; 2], [1; 2]).expect("a sound size")
+}
+
 /// 1 or 4.
 pub(super) fn samples(wanted: u32) -> u32 {
     if wanted == 4 { 4 } else { 1 }
@@ -36,7 +42,7 @@ impl Viewport {
     /// Makes the device objects; pipelines follow with the first picture.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         Self {
-            shared: Shared::new(device, queue),
+            shared: Shared::new(device, queue, nothing()),
             drawables: drawable::all(),
             target: Target::new(device, [1, 1], 1),
             drawn: None,
@@ -64,7 +70,7 @@ impl Viewport {
         let size = [width.min(max), height.min(max)];
         let samples = samples(scene.options.samples);
         let now = Drawn {
-            uniforms: FrameUniforms::new(camera, scene.options, size, [0.0; 2]),
+            uniforms: FrameUniforms::new(camera, scene.options, scene.grid.extent(), size, [0.0; 2]),
             options: scene.options.clone(),
         };
         let mut change = self.prepare(device, queue, scene);
@@ -133,7 +139,8 @@ impl Viewport {
     ) {
         self.prepare(device, queue, scene);
         self.build(device, queue, target.samples);
-        let uniforms = FrameUniforms::new(camera, scene.options, target.size, jitter_px);
+        let extent = scene.grid.extent();
+        let uniforms = FrameUniforms::new(camera, scene.options, extent, target.size, jitter_px);
         self.draw(device, queue, target, (camera, &uniforms, scene.options), None);
     }
 
@@ -145,6 +152,7 @@ impl Viewport {
     /// Brings the drawables up to date. Returns which part of the picture changes by that.
     fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, scene: &ViewScene<'_>) -> Change {
         let (marks, mut change) = (Marks::of(scene), Change::None);
+        self.shared.fit(device, queue, scene.grid.extent());
         let gpu = Gpu {
             device,
             queue,
@@ -200,7 +208,7 @@ impl Viewport {
         });
         {
             let mut pass = target.begin(&mut encoder, view.part);
-            pass.set_bind_group(0, &self.shared.bind_group, &[]);
+            pass.set_bind_group(0, self.shared.bind_group(), &[]);
             if let Some([x, y, w, h]) = part {
                 pass.set_scissor_rect(x, y, w, h);
             }

@@ -3,19 +3,23 @@
 
 use std::sync::Arc;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::change::{Change, Part, may_be_seen};
 use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
 use super::light::{LightBlock, LightRays, REACH};
-use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, brick_origin, join, mesh_bricks};
+use super::meshing::{BrickMesh, ColumnBox, NORMALS, Solidity, Visible, join, mesh_bricks};
 use super::shared::{PipelineSpec, VertexBuffer};
+use super::view::nothing;
 use super::{ViewCamera, ViewOptions};
-use scene::grid::{BRICK, BRICKS, Brick};
-use scene::{GridSpec, VoxelGrid};
+use scene::grid::{BRICK, Brick, brick_columns, bricks_along};
+use scene::{Extent, VoxelGrid};
 
 /// A vertex is one word; see [`BrickMesh::vertices`].
 const STRIDE: usize = 4;
+
+/// Light is baked in squares of so many columns: what that takes is bounded, whatever the map's size.
+const TILE: usize = 256;
 
 /// How far the picture of a voxel reaches beyond its projection, px.
 const EDGE_PX: f64 = 2.0;
@@ -24,12 +28,19 @@ const EDGE_PX: f64 = 2.0;
 #[derive(Debug)]
 pub(super) struct Voxels {
     pipelines: Pipelines,
-    grid: VoxelGrid, // as last uploaded; holding it keeps the addresses of its bricks unique
+    held: Held,
+    rays: LightRays,
+    lit: [usize; 2],     // columns that have light
+    light: Vec<[u8; 2]>, // theirs as uploaded, `[z][y][x]`
+    bricks: Vec<BrickBuffer>,
+}
+
+/// What is shown, as last uploaded.
+#[derive(Debug)]
+struct Held {
+    grid: VoxelGrid, // holding it keeps the addresses of its bricks unique
     visible: Visible,
     solid: Solidity,
-    rays: LightRays,
-    light: Vec<[u8; 2]>, // as uploaded, `[z][y][x]`
-    bricks: Vec<BrickBuffer>,
 }
 
 #[derive(Debug, Default)]
@@ -48,8 +59,8 @@ pub(super) fn visible(options: &ViewOptions) -> Visible {
     }
     let bins = match options.clip_above_m {
         // The bin that holds the height is still shown; NaN clips nothing.
-        Some(z) if z.is_finite() => ((z - GridSpec::MIN_M[2]) * 2.5).ceil().clamp(0.0, 16.0) as u32,
-        _ => GridSpec::NZ as u32,
+        Some(z) if z.is_finite() => ((z - Extent::BOTTOM_M) * 2.5).ceil().clamp(0.0, 16.0) as u32,
+        _ => Extent::NZ as u32,
     };
     Visible {
         hidden_classes: options.hidden_classes,
@@ -64,7 +75,7 @@ impl Drawable for Voxels {
 
     fn prepare(&mut self, gpu: Gpu<'_>, shown: Shown<'_>) -> Change {
         let (grid, visible) = (shown.scene.grid, visible(shown.scene.options));
-        if visible == self.visible && same_bricks(grid, &self.grid) {
+        if visible == self.held.visible && same_bricks(grid, &self.held.grid) {
             return Change::None;
         }
         self.update(gpu, grid, visible)
@@ -90,8 +101,10 @@ impl Drawable for Voxels {
         }
         for (b, _) in self.in_view(view.camera, &view.clip) {
             let brick = &self.bricks[b];
-            for range in facing(b, &brick.quads, view.camera) {
-                brick.vertices.draw_quads(pass, view.shared, range);
+            let ([x, y], _) = self.held.grid.brick_columns(b);
+            let place = ((x / BRICK) | ((y / BRICK) << 16)) as u32;
+            for range in facing(self.bounds_m(b), &brick.quads, view.camera) {
+                brick.vertices.draw_quads_as(pass, view.shared, range, place);
             }
         }
     }
@@ -105,51 +118,80 @@ impl Drawable for Voxels {
     }
 }
 
-impl Voxels {
-    pub fn new() -> Self {
-        let grid = VoxelGrid::new();
-        let visible = Visible::ALL;
+impl Held {
+    fn nothing_of(extent: Extent) -> Self {
         Self {
-            pipelines: Pipelines::default(),
-            solid: Solidity::of(&grid, visible),
-            grid,
-            visible,
-            rays: LightRays::new(),
-            light: vec![[255; 2]; GridSpec::COLUMNS * GridSpec::NZ],
-            bricks: (0..BRICKS * BRICKS).map(|_| BrickBuffer::default()).collect(),
+            grid: VoxelGrid::over(extent),
+            visible: Visible::ALL,
+            solid: Solidity::empty(extent),
         }
     }
 
-    /// Takes over a grid; what of it is seen differently now.
-    fn update(&mut self, gpu: Gpu<'_>, grid: &VoxelGrid, visible: Visible) -> Change {
-        let same_view = visible == self.visible;
-        let changed: Vec<usize> = if same_view {
-            grid.changed_bricks(&self.grid)
-        } else {
-            (0..BRICKS * BRICKS).collect()
-        };
-        self.visible = visible;
-        if changed.is_empty() {
-            return Change::None;
-        }
-        let mut seen = match same_view {
-            true => self.differing(grid, &changed),
-            false => Change::All,
-        };
-        let mut stale = [false; BRICKS * BRICKS];
+    /// Takes over a grid of the same extent: which bricks are to be meshed again, and the columns whose shape changed.
+    fn take(
+        &mut self,
+        grid: &VoxelGrid,
+        changed: &[usize],
+        visible: Visible,
+    ) -> (Vec<usize>, Option<ColumnBox>) {
+        let mut stale = vec![false; grid.bricks().len()];
         let mut shape_changed = None;
-        for &b in &changed {
+        for &b in changed {
             stale[b] = true;
             let columns = self.solid.update(b, &grid.bricks()[b], visible);
             if columns.is_some() {
                 // Faces at a brick's border depend on its neighbours.
-                neighbours(b).for_each(|n| stale[n] = true);
+                neighbours(grid.extent(), b).for_each(|n| stale[n] = true);
             }
             shape_changed = join(shape_changed, columns);
         }
         self.grid = grid.clone();
-        let stale: Vec<usize> = (0..BRICKS * BRICKS).filter(|&b| stale[b]).collect();
-        let meshes = mesh_bricks(grid, &self.solid, &stale);
+        self.visible = visible;
+        let stale = (0..stale.len()).filter(|&b| stale[b]).collect();
+        (stale, shape_changed)
+    }
+}
+
+impl Voxels {
+    pub fn new() -> Self {
+        Self {
+            pipelines: Pipelines::default(),
+            held: Held::nothing_of(nothing()),
+            rays: LightRays::new(),
+            lit: [0; 2],
+            light: Vec::new(),
+            bricks: vec![BrickBuffer::default()],
+        }
+    }
+
+    /// Starts with an empty map of another extent.
+    fn resize(&mut self, extent: Extent, lit: [usize; 2]) {
+        self.held = Held::nothing_of(extent);
+        self.lit = lit;
+        self.light = vec![[255; 2]; lit[0] * lit[1] * Extent::NZ];
+        self.bricks.clear();
+        self.bricks
+            .resize_with(self.held.grid.bricks().len(), BrickBuffer::default);
+    }
+
+    /// Takes over a grid; what of it is seen differently now.
+    fn update(&mut self, gpu: Gpu<'_>, grid: &VoxelGrid, visible: Visible) -> Change {
+        let resized = grid.extent() != self.held.grid.extent();
+        if resized {
+            self.resize(grid.extent(), gpu.shared.lit_columns());
+        }
+        // An empty map looks the same under any options.
+        let (same, all) = (visible == self.held.visible, 0..self.bricks.len());
+        let changed: Vec<usize> = match same || resized {
+            true => grid.changed_bricks(&self.held.grid),
+            false => all.collect(),
+        };
+        let mut seen = match same && !resized {
+            true => self.differing(grid, &changed),
+            false => Change::All,
+        };
+        let (stale, shape_changed) = self.held.take(grid, &changed, visible);
+        let meshes = mesh_bricks(grid, &self.held.solid, &stale);
         for (&b, mesh) in stale.iter().zip(meshes) {
             let BrickMesh { vertices, quads } = mesh;
             self.bricks[b].quads = quads;
@@ -157,8 +199,9 @@ impl Voxels {
                 .vertices
                 .write(gpu.device, gpu.queue, "voxel brick", &vertices);
         }
-        if let Some((origin, size)) = shape_changed.map(lit_area) {
-            let block: LightBlock = self.rays.bake(&self.solid, origin, size);
+        let lit = self.lit;
+        for (origin, size) in shape_changed.into_iter().flat_map(|b| lit_tiles(b, lit)) {
+            let block: LightBlock = self.rays.bake(&self.held.solid, origin, size);
             gpu.shared.write_light(gpu.queue, &block);
             seen.add(self.keep_light(&block));
         }
@@ -167,9 +210,9 @@ impl Voxels {
 
     /// Where the labels of some bricks differ from those held.
     fn differing(&self, grid: &VoxelGrid, bricks: &[usize]) -> Change {
-        let mut seen = Change::None;
+        let (mut seen, held) = (Change::None, self.held.grid.bricks());
         for &b in bricks {
-            if let Some(part) = differing_part(b, &grid.bricks()[b], &self.grid.bricks()[b]) {
+            if let Some(part) = differing_part(grid.extent(), b, &grid.bricks()[b], &held[b]) {
                 seen.add(Change::part(part, EDGE_PX));
             }
         }
@@ -179,10 +222,11 @@ impl Voxels {
     /// Remembers baked light; where surfaces look different by it.
     fn keep_light(&mut self, block: &LightBlock) -> Change {
         let ([x0, y0], [w, h]) = (block.origin, block.size);
+        let [lit_x, lit_y] = self.lit;
         let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
         for (i, new) in block.cells.iter().enumerate() {
             let at = [x0 + i % w, y0 + i / w % h, i / (w * h)];
-            let old = &mut self.light[(at[2] * GridSpec::NY + at[1]) * GridSpec::NX + at[0]];
+            let old = &mut self.light[(at[2] * lit_y + at[1]) * lit_x + at[0]];
             if std::mem::replace(old, *new) != *new {
                 low = [0, 1, 2].map(|k| low[k].min(at[k]));
                 high = [0, 1, 2].map(|k| high[k].max(at[k] + 1));
@@ -192,10 +236,10 @@ impl Voxels {
             return Change::None;
         }
         // Light is interpolated half a voxel off a surface.
-        let part = Part::of_voxels(low, high);
+        let part = Part::of_voxels(self.held.grid.extent(), low, high);
         let wider = Part {
-            low_m: part.low_m - 2.0 * GridSpec::VOXEL_M,
-            high_m: part.high_m + 2.0 * GridSpec::VOXEL_M,
+            low_m: part.low_m - 2.0 * Extent::VOXEL_M,
+            high_m: part.high_m + 2.0 * Extent::VOXEL_M,
         };
         Change::part(wider, EDGE_PX)
     }
@@ -205,7 +249,7 @@ impl Voxels {
         let mut seen: Vec<(usize, f64)> = (0..self.bricks.len())
             .filter(|&b| self.bricks[b].vertices.quads() > 0)
             .filter_map(|b| {
-                let (low, high) = bounds_m(b);
+                let (low, high) = self.bounds_m(b);
                 let middle = (low + high) / 2.0;
                 let distance = if camera.ortho {
                     middle.dot(forward)
@@ -218,18 +262,21 @@ impl Voxels {
         seen.sort_by(|a, b| a.1.total_cmp(&b.1));
         seen
     }
-}
 
-fn bounds_m(brick: usize) -> (glam::DVec3, glam::DVec3) {
-    let [x, y] = brick_origin(brick).map(|v| v as f64);
-    let side = BRICK as f64;
-    let corner = |dx: f64, z: f64| GridSpec::from_voxel_units(glam::DVec3::new(x + dx, y + dx, z));
-    (corner(0.0, 0.0), corner(side, side))
+    fn bounds_m(&self, brick: usize) -> (DVec3, DVec3) {
+        let ([x, y], _) = self.held.grid.brick_columns(brick);
+        let (low, side) = (DVec3::new(x as f64, y as f64, 0.0), BRICK as f64);
+        let extent = self.held.grid.extent();
+        (extent.from_voxel_units(low), extent.from_voxel_units(low + side))
+    }
 }
 
 /// Ranges of rectangles whose side can be seen at all, neighbouring ranges joined.
-fn facing(brick: usize, quads: &[std::ops::Range<u32>; 6], camera: &ViewCamera) -> Vec<std::ops::Range<u32>> {
-    let (low, high) = bounds_m(brick);
+fn facing(
+    (low, high): (DVec3, DVec3),
+    quads: &[std::ops::Range<u32>; 6],
+    camera: &ViewCamera,
+) -> Vec<std::ops::Range<u32>> {
     let (eye, forward) = (camera.eye_m(), camera.axes()[2]);
     let mut out: Vec<std::ops::Range<u32>> = Vec::with_capacity(6);
     for (direction, range) in quads.iter().enumerate() {
@@ -252,8 +299,8 @@ fn facing(brick: usize, quads: &[std::ops::Range<u32>; 6], camera: &ViewCamera) 
 }
 
 /// The box around the voxels whose label differs.
-fn differing_part(brick: usize, new: &Brick, old: &Brick) -> Option<Part> {
-    let [x0, y0] = brick_origin(brick);
+fn differing_part(extent: Extent, brick: usize, new: &Brick, old: &Brick) -> Option<Part> {
+    let ([x0, y0], _) = brick_columns(extent, brick);
     let (mut low, mut high) = ([usize::MAX; 3], [0; 3]);
     for (column, (new, old)) in new.chunks(BRICK).zip(old.chunks(BRICK)).enumerate() {
         if new == old {
@@ -265,11 +312,12 @@ fn differing_part(brick: usize, new: &Brick, old: &Brick) -> Option<Part> {
             high = [0, 1, 2].map(|k| high[k].max(at[k] + 1));
         }
     }
-    (low[0] < usize::MAX).then(|| Part::of_voxels(low, high))
+    (low[0] < usize::MAX).then(|| Part::of_voxels(extent, low, high))
 }
 
-fn neighbours(brick: usize) -> impl Iterator<Item = usize> {
-    let (bx, by) = (brick / BRICKS, brick % BRICKS);
+fn neighbours(extent: Extent, brick: usize) -> impl Iterator<Item = usize> {
+    let [along_x, along_y] = bricks_along(extent);
+    let (bx, by) = (brick / along_y, brick % along_y);
     [
         (bx.wrapping_sub(1), by),
         (bx + 1, by),
@@ -277,18 +325,61 @@ fn neighbours(brick: usize) -> impl Iterator<Item = usize> {
         (bx, by + 1),
     ]
     .into_iter()
-    .filter(|(x, y)| *x < BRICKS && *y < BRICKS)
-    .map(|(x, y)| x * BRICKS + y)
+    .filter(move |(x, y)| *x < along_x && *y < along_y)
+    .map(move |(x, y)| x * along_y + y)
 }
 
-/// Columns whose light may differ, lower corner and size: as far as light looks.
-fn lit_area((low, high): ColumnBox) -> ([usize; 2], [usize; 2]) {
-    let n = [GridSpec::NX, GridSpec::NY];
+/// Columns whose light may differ, as far as light looks, within the lit ones: lower corners and sizes of tiles.
+fn lit_tiles((low, high): ColumnBox, lit: [usize; 2]) -> impl Iterator<Item = ([usize; 2], [usize; 2])> {
     let low = low.map(|v| v.saturating_sub(REACH));
-    (low, [0, 1].map(|i| (high[i] + REACH).min(n[i]) - low[i]))
+    let high = [0, 1].map(|i| (high[i] + REACH).min(lit[i]));
+    let starts = move |i: usize| (low[i]..high[i]).step_by(TILE);
+    starts(0).flat_map(move |x| {
+        let tile = move |y: usize| ([x, y], [TILE.min(high[0] - x), TILE.min(high[1] - y)]);
+        starts(1).map(tile)
+    })
 }
 
 /// True if both hold the same bricks in memory.
-pub(super) fn same_bricks(a: &VoxelGrid, b: &VoxelGrid) -> bool {
-    a.bricks().iter().zip(b.bricks()).all(|(a, b)| Arc::ptr_eq(a, b))
+fn same_bricks(a: &VoxelGrid, b: &VoxelGrid) -> bool {
+    let mut pairs = a.bricks().iter().zip(b.bricks());
+    a.extent() == b.extent() && pairs.all(|(a, b)| Arc::ptr_eq(a, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edit_meshes_its_brick_again_and_those_beside_it() {
+        let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
+        let mut grid = VoxelGrid::over(extent);
+        let mut held = Held::nothing_of(extent);
+        assert_eq!(held.take(&grid, &[], Visible::ALL), (vec![], None));
+        let [x, y] = extent.column_at(100.0, 5.0).expect("inside");
+        grid.set(x, y, 3, 4);
+        let changed = grid.changed_bricks(&held.grid);
+        let (stale, columns) = held.take(&grid, &changed, Visible::ALL);
+        let brick = x / BRICK * 20 + y / BRICK;
+        assert_eq!(changed, [brick]);
+        assert_eq!(stale, [brick - 20, brick - 1, brick, brick + 1, brick + 20]);
+        assert_eq!(columns, Some(([x, y], [x + 1, y + 1])));
+        // Another class has the same shape.
+        grid.set(x, y, 3, 5);
+        let changed = grid.changed_bricks(&held.grid);
+        assert_eq!(held.take(&grid, &changed, Visible::ALL), (vec![brick], None));
+    }
+
+    #[test]
+    fn light_is_baked_once_wherever_it_may_differ() {
+        let mut seen = vec![0; 500 * 300];
+        for ([x, y], [w, h]) in lit_tiles(([5, 40], [480, 290]), [500, 300]) {
+            assert!(w <= TILE && h <= TILE);
+            (x..x + w).for_each(|x| (y..y + h).for_each(|y| seen[x * 300 + y] += 1));
+        }
+        let within = |i: usize| i / 300 < 494 && i % 300 >= 26;
+        assert!(seen.iter().enumerate().all(|(i, n)| *n == u32::from(within(i))));
+        // What is beyond the lit columns has none.
+        assert_eq!(lit_tiles(([600, 0], [610, 5]), [500, 300]).count(), 0);
+    }
 }

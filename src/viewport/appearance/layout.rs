@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use scene::appearance::{
-    AppearanceData, BLOCK, BLOCK_M, BLOCKS, BLOCKS_FROM_M, CONTRAST, FAR_M, HEAD_NEAR_M2, HIGHEST_M,
-    KERB_EDGE_M, KERB_M, KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, MIRROR_M, NX, NY,
-    NZ, PART_WORDS, SECTIONS, SHADOW_M, SURFACE, THING_WORDS, TRUNK,
+    AppearanceData, BIN_COLUMNS, BLOCK, BLOCK_M, CONTRAST, FAR_M, FieldShape, HEAD_NEAR_M2, HIGHEST_M,
+    KERB_EDGE_M, KERB_M, KERB_SEEN_M, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, LEAVES, MIRROR_M, NZ,
+    PART_WORDS, SECTIONS, SHADOW_M, SKYLINE_M, SURFACE, THING_WORDS, TRUNK,
 };
-use scene::{BevLayer, Camera, Class, GridSpec, PolylineKind};
+use scene::{BevLayer, Camera, Class, Extent, PolylineKind};
 
 /// The uniform, see `View` in the shader.
 #[repr(C)]
@@ -19,6 +19,10 @@ pub(super) struct GpuView {
     air: [[f32; 4]; 8],
     turn: [f32; 4],
     shift: [f32; 4],
+    field: [u32; 4],
+    bins: [u32; 4],
+    low: [f32; 4],
+    middle: [f32; 4],
     columns: [[f32; 4]; 3],
     place: [f32; 4],
     lens: [f32; 4],
@@ -38,11 +42,22 @@ impl GpuView {
         let pixel = (1.0 / camera.focal_px[0].max(1e-3)) as f32;
         let [[fx, fy], [cx, cy]] = [camera.focal_px, camera.center_px];
         let [x, y, z] = appearance.shift_m;
+        let shape = FieldShape::of(appearance.extent);
+        let ([blocks_x, blocks_y], [bins_x, bins_y]) = (shape.blocks, shape.bins);
         let view = GpuView {
             at: appearance.at,
             air: appearance.air,
             turn: appearance.turn,
             shift: [x, y, z, 0.0],
+            field: [shape.nx, shape.ny, blocks_x, blocks_y].map(|n| n as u32),
+            bins: [bins_x as u32, bins_y as u32, 0, 0],
+            low: [
+                shape.low_m.x,
+                shape.low_m.y,
+                shape.blocks_from_m.x,
+                shape.blocks_from_m.y,
+            ],
+            middle: shape.middle_m.extend(shape.skyline).extend(0.0).to_array(),
             columns: [column(0), column(1), column(2)],
             place: pose.translation_m.as_vec3().extend(pixel).to_array(),
             lens: [fx, fy, cx, cy].map(|v| v as f32),
@@ -65,14 +80,8 @@ pub fn appearance_source() -> &'static str {
     SOURCE.get_or_init(|| {
         let mut out = String::new();
         let counts = [
-            ("NX", NX),
-            ("NY", NY),
             ("NZ", NZ),
-            ("CX", NX - 1),
-            ("CY", NY - 1),
-            ("GRID", GridSpec::NX),
             ("BLOCK", BLOCK),
-            ("BLOCKS", BLOCKS),
             ("THING_WORDS", THING_WORDS),
             ("PART_WORDS", PART_WORDS),
             ("TRUNK", usize::from(TRUNK)),
@@ -96,7 +105,12 @@ pub fn appearance_source() -> &'static str {
         ];
         let numbers = [
             ("BLOCK_M", BLOCK_M),
-            ("BLOCKS_FROM_M", BLOCKS_FROM_M),
+            ("BOTTOM_M", Extent::BOTTOM_M as f32),
+            ("VOXEL_M", Extent::VOXEL_M as f32),
+            ("BIN_M", (BIN_COLUMNS as f64 * Extent::VOXEL_M) as f32),
+            ("SKYLINE_0_M", SKYLINE_M[0]),
+            ("SKYLINE_1_M", SKYLINE_M[1]),
+            ("SKYLINE_2_M", SKYLINE_M[2]),
             ("SURFACE", SURFACE),
             ("LEAVES", LEAVES),
             ("KERB_M", KERB_M),

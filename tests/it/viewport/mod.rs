@@ -1,6 +1,7 @@
 //! The viewport drawn for real, on whatever adapter there is (Mesa's software one at least); without
 //! any adapter these tests fail.
 
+mod map;
 mod parts;
 mod pixels;
 mod street;

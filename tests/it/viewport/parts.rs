@@ -1,6 +1,6 @@
 //! Only what a change touches is drawn again.
 
-use scene::{BevLayer, Class, GridSpec, SceneBox, SensorRig};
+use scene::{BevLayer, Class, SceneBox, SensorRig, Window};
 use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
@@ -32,7 +32,7 @@ fn a_part_drawn_again_gives_the_same_picture_as_all_of_it() {
                 let i = step % boxes.len();
                 boxes[i].center_m.x += 0.4;
             }
-            2 => bev[at[0] * GridSpec::NY + at[1]] ^= BevLayer::PedCrossing.bit() | 1,
+            2 => bev[at[0] * Window::NY + at[1]] ^= BevLayer::PedCrossing.bit() | 1,
             3 => sweep
                 .points
                 .iter_mut()

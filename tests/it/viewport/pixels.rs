@@ -1,7 +1,7 @@
 //! Pixels that must have a certain colour: projection, occlusion, picking, what is skipped.
 
 use glam::{DVec2, DVec3};
-use scene::{BevLayer, BoxId, BoxLabel, Class, GridSpec, SceneBox, SensorRig, VoxelGrid};
+use scene::{BevLayer, BoxId, BoxLabel, Class, SceneBox, SensorRig, VoxelGrid, Window};
 use viewport::{
     Background, LayoutPlane, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, ViewportError,
     headless_device,
@@ -77,7 +77,7 @@ impl Picture {
 }
 
 /// Angle between two colours, degrees: what shading leaves alone.
-fn hue_apart(a: [u8; 4], b: [u8; 3]) -> f64 {
+pub fn hue_apart(a: [u8; 4], b: [u8; 3]) -> f64 {
     let v = |c: &[u8]| DVec3::new(f64::from(c[0]), f64::from(c[1]), f64::from(c[2]));
     v(&a[..3]).angle_between(v(&b)).to_degrees()
 }
@@ -122,7 +122,7 @@ fn a_voxel_has_its_colour_where_it_is_projected_and_the_ray_there_hits_it() {
             for camera in cameras() {
                 let picture = bench.picture(&camera, &grid);
                 for (y, z) in [(90, 3), (100, 6), (112, 1)] {
-                    let on_face = GridSpec::center(130, y, z) - DVec3::X * 0.2;
+                    let on_face = Window::center(130, y, z) - DVec3::X * 0.2;
                     let pixel = camera.project(on_face, SIZE).expect("in view");
                     let found = picture.at(pixel);
                     assert_eq!(found[3], 255);
@@ -146,7 +146,7 @@ fn march(grid: &VoxelGrid, origin: DVec3, dir: DVec3) -> Option<[usize; 3]> {
     let nearest = (DVec3::ZERO - origin).dot(dir);
     (0..200_000).find_map(|i| {
         let t = nearest - 100.0 + f64::from(i) * 1e-3;
-        let [x, y, z] = GridSpec::voxel_at(origin + dir * t.max(0.0))?;
+        let [x, y, z] = Window::voxel_at(origin + dir * t.max(0.0))?;
         (grid.get(x, y, z) != Class::FREE).then_some([x, y, z])
     })
 }
@@ -168,7 +168,7 @@ fn the_nearer_wall_hides_the_farther_one() {
             };
             camera.focus(DVec3::new(12.0, 0.0, 1.0), 9.0);
             let pixel = camera
-                .project(GridSpec::center(near, 100, 4), SIZE)
+                .project(Window::center(near, 100, 4), SIZE)
                 .expect("in view");
             let found = bench.picture(&camera, &grid).at(pixel);
             assert!(hue_apart(found, Class::Pedestrian.color()) < 12.0, "{found:?}");
@@ -210,13 +210,13 @@ fn heights_above_the_clip_are_hidden() {
 #[test]
 fn markings_lie_on_ground_voxels_and_the_plane_where_there_are_none() {
     let mut bench = Bench::new();
-    let mut bev = vec![0; GridSpec::COLUMNS];
+    let mut bev = vec![0; Window::COLUMNS];
     let mut grid = VoxelGrid::new();
     for x in 80..120 {
         for y in 80..120 {
-            bev[x * GridSpec::NY + y] = BevLayer::DrivableArea.bit();
+            bev[x * Window::NY + y] = BevLayer::DrivableArea.bit();
             if y < 105 {
-                bev[x * GridSpec::NY + y] |= BevLayer::RoadDivider.bit();
+                bev[x * Window::NY + y] |= BevLayer::RoadDivider.bit();
             }
             if x >= 100 {
                 grid.set(x, y, 0, Class::DriveableSurface.id());
@@ -226,7 +226,7 @@ fn markings_lie_on_ground_voxels_and_the_plane_where_there_are_none() {
     bench.options.layout_opacity = 1.0;
     let (rig, mut options) = (bench.rig.clone(), bench.options.clone());
     let top = ViewCamera::preset(ViewPreset::Top);
-    let at = |x, y| top.project(GridSpec::center(x, y, 0), SIZE).expect("in view");
+    let at = |x, y| top.project(Window::center(x, y, 0), SIZE).expect("in view");
     let mut pixel_at = |options: &ViewOptions, x, y| {
         let scene = ViewScene {
             bev: &bev,
@@ -266,7 +266,7 @@ fn unchanged_scenes_cost_nothing_and_every_change_is_drawn() {
     other_rig.ego_size_m[0] += 0.5;
     let mut edited = grid.clone();
     edited.set(100, 100, 3, 4);
-    let bev = vec![1; GridSpec::COLUMNS];
+    let bev = vec![1; Window::COLUMNS];
     let (rig, options) = (bench.rig.clone(), bench.options.clone());
     let hidden = ViewOptions {
         hidden_classes: 1 << 4,

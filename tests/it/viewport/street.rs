@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use scene::{
-    BevLayer, BevLayout, BoxId, BoxLabel, Class, GridSpec, LidarPoint, LidarSweep, Polyline, PolylineKind,
-    SceneBox, VoxelGrid, raster,
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, LidarPoint, LidarSweep, Polyline, PolylineKind, SceneBox,
+    VoxelGrid, Window, raster,
 };
 
 pub struct Street {
@@ -27,9 +27,9 @@ pub fn street() -> Street {
     // A main road along x and a side road along y at x = 14 m.
     let road = |x: f64, y: f64| (-8.0..8.0).contains(&y) || (10.0..19.0).contains(&x);
     let walk = |x: f64, y: f64| (-11.5..11.5).contains(&y) || (6.8..22.2).contains(&x);
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            let c = GridSpec::center(x, y, 0);
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
+            let c = Window::center(x, y, 0);
             if road(c.x, c.y) {
                 layout.set(BevLayer::DrivableArea, x, y, true);
                 grid.set(x, y, 0, Class::DriveableSurface.id());
@@ -154,9 +154,9 @@ fn buildings(grid: &mut VoxelGrid) {
         (24.0, 39.8, -27.0, -13.0, 13),
     ];
     for (x0, x1, y0, y1, top) in blocks {
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                let c = GridSpec::center(x, y, 0);
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
+                let c = Window::center(x, y, 0);
                 if !((x0..x1).contains(&c.x) && (y0..y1).contains(&c.y)) {
                     continue;
                 }
@@ -174,16 +174,16 @@ fn buildings(grid: &mut VoxelGrid) {
 }
 
 fn tree(grid: &mut VoxelGrid, x_m: f64, y_m: f64) {
-    let Some([cx, cy]) = GridSpec::column_at(x_m, y_m) else {
+    let Some([cx, cy]) = Window::column_at(x_m, y_m) else {
         return;
     };
     let size = 3.2 + 2.2 * noise(cx, cy, 3);
     for z in 1..6 {
         grid.set(cx, cy, z, Class::Vegetation.id());
     }
-    for x in cx.saturating_sub(7)..(cx + 8).min(GridSpec::NX) {
-        for y in cy.saturating_sub(7)..(cy + 8).min(GridSpec::NY) {
-            for z in 4..GridSpec::NZ {
+    for x in cx.saturating_sub(7)..(cx + 8).min(Window::NX) {
+        for y in cy.saturating_sub(7)..(cy + 8).min(Window::NY) {
+            for z in 4..Window::NZ {
                 let d = DVec3::new(
                     x as f64 - cx as f64,
                     y as f64 - cy as f64,
@@ -200,10 +200,10 @@ fn tree(grid: &mut VoxelGrid, x_m: f64, y_m: f64) {
 
 /// Voxels of a box, two bins lower than physical, rounded like a car where it is one.
 fn solid_box(grid: &mut VoxelGrid, b: &SceneBox) {
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
-            for z in 0..GridSpec::NZ {
-                let p = b.to_local(GridSpec::center(x, y, z) + DVec3::Z * 0.6) / (b.size_m / 2.0);
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
+            for z in 0..Window::NZ {
+                let p = b.to_local(Window::center(x, y, z) + DVec3::Z * 0.6) / (b.size_m / 2.0);
                 let cabin = !matches!(b.class, Class::Car) || p.z < 0.1 || (-0.75..0.35).contains(&p.x);
                 if p.abs().max_element() <= 1.05 && cabin {
                     grid.set(x, y, z, b.class.id());
@@ -229,7 +229,7 @@ fn sweep(grid: &VoxelGrid) -> LidarSweep {
             let mut t = 2.5;
             while t < 60.0 {
                 let p = origin + dir * t;
-                if let Some([x, y, z]) = GridSpec::voxel_at(p)
+                if let Some([x, y, z]) = Window::voxel_at(p)
                     && let Some(class) = Class::from_id(grid.get(x, y, z)).filter(|c| *c != Class::Free)
                 {
                     points.push(LidarPoint {

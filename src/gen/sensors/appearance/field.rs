@@ -2,15 +2,15 @@
 //! voxels, so that walls, crowns and poles lose their steps. What reaches the top of the grid goes on
 //! above it: buildings up to a height of their own, crowns as domes.
 
-use glam::{IVec3, Vec2, Vec3};
+mod build;
 
-use super::noise::{floor, hash1, unit, value3};
-use scene::appearance::{AppearanceData, BLOCK, BLOCKS, LEAVES, NX, NY, NZ, SURFACE, Section, TRUNK};
-use scene::{Class, GridSpec, VoxelGrid};
+use glam::{Vec2, Vec3};
 
-/// Cells between the middles of voxels.
-const CX: usize = NX - 1;
-const CY: usize = NY - 1;
+use super::noise::{floor, value3};
+use build::{raise, spread, structures, trunks, weights};
+use scene::appearance::{AppearanceData, BLOCK, FieldShape, LEAVES, NZ, SURFACE, Section};
+use scene::{Class, VoxelGrid};
+
 /// A cell whose corners all stay below this cannot hold a surface, roughness of leaves included.
 const FLOOR: u8 = 40;
 
@@ -33,6 +33,9 @@ pub struct Structure {
 
 /// Occupancy as a field.
 pub struct Field {
+    shape: FieldShape,
+    cells: [usize; 2],   // between the middles of voxels
+    end: Vec3,           // the same along all axes
     weight: Vec<u8>,     // [x][y][z], padded
     label: Vec<u8>,      // the same; free voxels hold a neighbour's
     mask: Vec<u64>,      // cells [x][y]
@@ -52,33 +55,26 @@ pub struct FieldHit {
     pub label: u8,
 }
 
-#[inline]
-fn at(x: usize, y: usize, z: usize) -> usize {
-    (x * NY + y) * NZ + z
-}
-
-/// Ego frame to field units: cell = floor, corner i is voxel i - 1.
-#[inline]
-fn to_field(p: Vec3) -> Vec3 {
-    (p + Vec3::new(40.0, 40.0, 1.0)) * 2.5 + 0.5
-}
-
 impl Field {
     /// From what stands on the ground (physical heights).
     pub fn new(grid: &VoxelGrid, seed: u32) -> Self {
-        let mut solid = vec![Class::FREE; NX * NY * NZ];
+        let shape = FieldShape::of(grid.extent());
+        let at = |x: usize, y: usize, z: usize| shape.at(x, y, z);
+        let mut solid = vec![Class::FREE; shape.nx * shape.ny * NZ];
         for (x, y, z, label) in grid.iter_set() {
             solid[at(x + 1, y + 1, z + 1)] = if label > Class::FREE { 0 } else { label };
         }
-        let (structure, mut structures) = structures(&solid, seed);
-        raise(&mut solid, &structure, &mut structures);
-        trunks(&mut solid);
-        let weight = weights(&solid, &structure, &structures);
-        let label = spread(&solid);
-        let (mut mask, mut blocks) = (vec![0u64; CX * CY], vec![0u64; BLOCKS * BLOCKS]);
+        let (structure, mut structures) = structures(&shape, &solid, seed);
+        raise(&shape, &mut solid, &structure, &mut structures);
+        trunks(&shape, &mut solid);
+        let weight = weights(&shape, &solid, &structure, &structures);
+        let label = spread(&shape, &solid);
+        let [cx, cy] = [shape.nx - 1, shape.ny - 1];
+        let [blocks_x, blocks_y] = shape.blocks;
+        let (mut mask, mut blocks) = (vec![0u64; cx * cy], vec![0u64; blocks_x * blocks_y]);
         let mut top = 0;
-        for x in 0..CX {
-            for y in 0..CY {
+        for x in 0..cx {
+            for y in 0..cy {
                 let mut column = 0u64;
                 for (dx, dy) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                     let from = at(x + dx, y + dy, 0);
@@ -89,12 +85,15 @@ impl Field {
                         }
                     }
                 }
-                mask[x * CY + y] = column;
-                blocks[x / BLOCK * BLOCKS + y / BLOCK] |= column;
+                mask[x * cy + y] = column;
+                blocks[x / BLOCK * blocks_y + y / BLOCK] |= column;
                 top = top.max(64 - column.leading_zeros());
             }
         }
         Self {
+            shape,
+            cells: [cx, cy],
+            end: Vec3::new(cx as f32, cy as f32, (NZ - 1) as f32),
             weight,
             label,
             mask,
@@ -103,6 +102,22 @@ impl Field {
             structures,
             highest: top as f32 * 0.4 - 1.2,
         }
+    }
+
+    /// How it covers the map.
+    pub fn shape(&self) -> &FieldShape {
+        &self.shape
+    }
+
+    /// Ego frame to field units: cell = floor, corner i is voxel i - 1.
+    #[inline(always)]
+    fn to_field(&self, p: Vec3) -> Vec3 {
+        (p - self.shape.low_m) * 2.5 + 0.5
+    }
+
+    #[inline(always)]
+    fn inside(&self, q: Vec3) -> bool {
+        q.x >= 0.0 && q.y >= 0.0 && q.z >= 0.0 && q.x < self.end.x && q.y < self.end.y && q.z < self.end.z
     }
 
     /// For the graphics card.
@@ -133,8 +148,9 @@ impl Field {
 
     /// The structure over a point.
     pub fn structure_at(&self, p: Vec3) -> Option<&Structure> {
-        let q = to_field(p).truncate().round().max(Vec2::ZERO).as_uvec2();
-        let (x, y) = ((q.x as usize).min(NX - 1), (q.y as usize).min(NY - 1));
+        let q = self.to_field(p).truncate().round().max(Vec2::ZERO).as_uvec2();
+        let FieldShape { nx, ny, .. } = self.shape;
+        let (x, y) = ((q.x as usize).min(nx - 1), (q.y as usize).min(ny - 1));
         // The surface may lie half a voxel outside.
         for (dx, dy) in [
             (1, 1),
@@ -148,10 +164,10 @@ impl Field {
             (2, 2),
         ] {
             let (x, y) = (
-                (x + dx).saturating_sub(1).min(NX - 1),
-                (y + dy).saturating_sub(1).min(NY - 1),
+                (x + dx).saturating_sub(1).min(nx - 1),
+                (y + dy).saturating_sub(1).min(ny - 1),
             );
-            if let i @ 1.. = self.structure[x * NY + y] {
+            if let i @ 1.. = self.structure[x * ny + y] {
                 return self.structures.get(usize::from(i) - 1);
             }
         }
@@ -161,12 +177,12 @@ impl Field {
     /// The field without leaves at a point.
     #[inline]
     pub fn value(&self, p: Vec3) -> f32 {
-        let q = to_field(p);
+        let q = self.to_field(p);
         let c = q.map(floor);
         if !(c.x >= 0.0 && c.y >= 0.0 && c.z >= 0.0)
-            || c.x >= CX as f32
-            || c.y >= CY as f32
-            || c.z >= (NZ - 1) as f32
+            || c.x >= self.end.x
+            || c.y >= self.end.y
+            || c.z >= self.end.z
         {
             return 0.0;
         }
@@ -176,9 +192,10 @@ impl Field {
     /// The same, but 0 in cells that hold no surface.
     #[inline]
     pub fn dense(&self, p: Vec3) -> f32 {
-        let q = to_field(p);
+        let q = self.to_field(p);
         // Written so that NaN fails too.
-        if !inside(q) || self.mask[q.x as usize * CY + q.y as usize] >> (q.z as u32) & 1 == 0 {
+        if !self.inside(q) || self.mask[q.x as usize * self.cells[1] + q.y as usize] >> (q.z as u32) & 1 == 0
+        {
             return 0.0;
         }
         self.blend(q, q.map(floor))
@@ -187,11 +204,11 @@ impl Field {
     #[inline(always)]
     fn blend(&self, q: Vec3, c: Vec3) -> f32 {
         let f = q - c;
-        let i = at(c.x as usize, c.y as usize, c.z as usize);
+        let i = self.shape.at(c.x as usize, c.y as usize, c.z as usize);
         let w = |i: usize| f32::from(self.weight[i]);
         let column = |i: usize| w(i) + (w(i + 1) - w(i)) * f.z;
         let low = column(i) + (column(i + NZ) - column(i)) * f.y;
-        let j = i + NY * NZ;
+        let j = i + self.shape.ny * NZ;
         let high = column(j) + (column(j + NZ) - column(j)) * f.y;
         (low + (high - low) * f.x) * (1.0 / 255.0)
     }
@@ -200,18 +217,18 @@ impl Field {
     fn label_near(&self, q: Vec3) -> u8 {
         let r = q + 0.5;
         let (x, y, z) = (
-            (r.x as usize).min(NX - 1),
-            (r.y as usize).min(NY - 1),
+            (r.x as usize).min(self.shape.nx - 1),
+            (r.y as usize).min(self.shape.ny - 1),
             (r.z as usize).min(NZ - 1),
         );
-        self.label[at(x, y, z)]
+        self.label[self.shape.at(x, y, z)]
     }
 
     /// The field with the roughness of leaves where plants are; `p` in the ego frame, `anchor` takes it
     /// to the frame in which the leaves stay.
     #[inline]
     fn rough(&self, p: Vec3, anchor: &impl Fn(Vec3) -> Vec3) -> f32 {
-        let q = to_field(p);
+        let q = self.to_field(p);
         let value = self.blend(q, q.map(floor));
         if value > 0.1 && self.label_near(q) == Class::Vegetation.id() {
             return value + leaves(anchor(p)) * LEAVES;
@@ -262,19 +279,21 @@ impl Field {
             }
             (u64::MAX << lo as u32) & (u64::MAX >> (63 - hi as u32))
         };
-        let (qo, qd) = (to_field(o), d * 2.5);
+        let (qo, qd) = (self.to_field(o), d * 2.5);
         let z = |t: f32| qo.z + qd.z * t;
         if self.blocks[index] & z_bits(z(t_in), z(t_out)) == 0 {
             return None;
         }
-        let (bx, by) = (index / BLOCKS * BLOCK, index % BLOCKS * BLOCK);
+        let [cx, cy] = self.cells;
+        let [_, blocks_y] = self.shape.blocks;
+        let (bx, by) = (index / blocks_y * BLOCK, index % blocks_y * BLOCK);
         let middle = (t_in + t_out) * 0.5;
         let clamp = |v: f32, lo: usize, n: usize| (v.max(0.0) as usize).clamp(lo, (lo + BLOCK).min(n) - 1);
         // Columns of the block along the ray.
         let enter = t_in + (middle - t_in) * 1e-4;
         let mut cell = [
-            clamp(qo.x + qd.x * enter, bx, CX),
-            clamp(qo.y + qd.y * enter, by, CY),
+            clamp(qo.x + qd.x * enter, bx, cx),
+            clamp(qo.y + qd.y * enter, by, cy),
         ];
         let inv = [1.0 / qd.x, 1.0 / qd.y];
         let mut t = t_in;
@@ -287,24 +306,24 @@ impl Field {
             };
             let (tx, ty) = (next(0), next(1));
             let t_end = tx.min(ty).min(t_out);
-            let mask = self.mask[cell[0] * CY + cell[1]];
+            let mask = self.mask[cell[0] * cy + cell[1]];
             if mask & z_bits(z(t), z(t_end)) != 0 {
                 let mut k = (t / step).ceil() * step;
                 while k < t_end {
                     let p = o + d * k;
-                    let q = to_field(p);
+                    let q = self.to_field(p);
                     if q.z >= 0.0 && q.z < (NZ - 1) as f32 && mask >> (q.z as u32) & 1 == 1 {
                         let value = |p: Vec3| {
                             if leaves {
                                 self.rough(p, anchor)
                             } else {
-                                let q = to_field(p);
+                                let q = self.to_field(p);
                                 self.blend(q, q.map(floor))
                             }
                         };
-                        if inside(q) && value(p) > SURFACE {
+                        if self.inside(q) && value(p) > SURFACE {
                             return Some(self.refine(o, d, (k - step).max(0.0), k, |p| {
-                                inside(to_field(p)) && value(p) > SURFACE
+                                self.inside(self.to_field(p)) && value(p) > SURFACE
                             }));
                         }
                     }
@@ -316,7 +335,7 @@ impl Field {
             }
             let axis = usize::from(ty < tx);
             let moved = cell[axis].wrapping_add_signed(if qd[axis] > 0.0 { 1 } else { -1 });
-            let (lo, n) = ([bx, by][axis], [CX, CY][axis]);
+            let (lo, n) = ([bx, by][axis], [cx, cy][axis]);
             if moved < lo || moved >= (lo + BLOCK).min(n) {
                 return None;
             }
@@ -344,248 +363,13 @@ impl Field {
         }
         FieldHit {
             t: within,
-            label: self.label_near(to_field(o + d * within)),
+            label: self.label_near(self.to_field(o + d * within)),
         }
     }
-}
-
-#[inline(always)]
-fn inside(q: Vec3) -> bool {
-    q.x >= 0.0
-        && q.y >= 0.0
-        && q.z >= 0.0
-        && q.x < (NX - 1) as f32
-        && q.y < (NY - 1) as f32
-        && q.z < (NZ - 1) as f32
 }
 
 /// Roughness of leaves in -0.5..0.5: clumps and leaves.
 #[inline]
 fn leaves(p: Vec3) -> f32 {
     0.62 * value3(p * 2.6, 71) + 0.38 * value3(p * 8.5, 72) - 0.5
-}
-
-/// Buildings and poles by 8-connected columns of "manmade", with the direction of their walls.
-fn structures(solid: &[u8], seed: u32) -> (Vec<u16>, Vec<Structure>) {
-    let made = Class::Manmade.id();
-    let has = |x: usize, y: usize| solid[at(x, y, 0)..at(x, y, 0) + NZ].contains(&made);
-    let mut of = vec![0u16; NX * NY];
-    let mut all = Vec::new();
-    for start in 0..NX * NY {
-        let (sx, sy) = (start / NY, start % NY);
-        if of[start] != 0 || sx == 0 || sy == 0 || sx == NX - 1 || sy == NY - 1 || !has(sx, sy) {
-            continue;
-        }
-        let id = (all.len() as u16).saturating_add(1);
-        let mut stack = vec![start];
-        let mut columns: Vec<usize> = Vec::new();
-        of[start] = id;
-        while let Some(c) = stack.pop() {
-            columns.push(c);
-            for k in 0..9 {
-                let (x, y) = (c / NY + k / 3 - 1, c % NY + k % 3 - 1);
-                if x > 0 && y > 0 && x < NX - 1 && y < NY - 1 && of[x * NY + y] == 0 && has(x, y) {
-                    of[x * NY + y] = id;
-                    stack.push(x * NY + y);
-                }
-            }
-        }
-        // Wall directions from the gradient of the footprint; those at right angles count alike (angle times 4).
-        let member = |x: i32, y: i32| {
-            let inside = (0..NX as i32).contains(&x) && (0..NY as i32).contains(&y);
-            f32::from(u8::from(inside && of[x as usize * NY + y as usize] == id))
-        };
-        let mut sum = Vec2::ZERO;
-        let mut top = 0;
-        let mut wide = false;
-        for &c in &columns {
-            let (x, y) = ((c / NY) as i32, (c % NY) as i32);
-            let mut g = Vec2::ZERO;
-            for dx in -3..=3i32 {
-                for dy in -3..=3i32 {
-                    g += Vec2::new(dx as f32, dy as f32) * member(x + dx, y + dy);
-                }
-            }
-            if g.length() > 4.0 {
-                sum += Vec2::from_angle(g.to_angle() * 4.0) * g.length();
-            }
-            wide |= member(x + 1, y)
-                * member(x, y + 1)
-                * member(x + 1, y + 1)
-                * member(x + 2, y)
-                * member(x, y + 2)
-                > 0.5;
-            let column = &solid[at(c / NY, c % NY, 0)..at(c / NY, c % NY, 0) + NZ];
-            top = top.max(column.iter().rposition(|l| *l == made).unwrap_or(0));
-        }
-        let highest = |c: &&usize| solid[at(**c / NY, **c % NY, 0) + top] == made;
-        let tops: Vec<Vec2> = columns
-            .iter()
-            .filter(highest)
-            .map(|c| Vec2::new((c / NY) as f32, (c % NY) as f32) * 0.4 - 40.2)
-            .collect();
-        let first = columns.iter().min().copied().unwrap_or(0);
-        all.push(Structure {
-            axis: if sum == Vec2::ZERO {
-                Vec2::X
-            } else {
-                Vec2::from_angle(sum.to_angle() / 4.0)
-            },
-            columns: columns.len() as u32,
-            height_m: top as f32 * 0.4 - 1.0,
-            id: hash1(first as u32, seed),
-            thin: columns.len() <= 16 && !wide,
-            top: tops.iter().sum::<Vec2>() / tops.len().max(1) as f32,
-        });
-        if all.len() == usize::from(u16::MAX) - 1 {
-            break;
-        }
-    }
-    (of, all)
-}
-
-/// Continues above the grid what reaches its top.
-fn raise(solid: &mut [u8], structure: &[u16], structures: &mut [Structure]) {
-    let top = GridSpec::NZ; // padded index of the highest voxel
-    let (made, green) = (Class::Manmade.id(), Class::Vegetation.id());
-    for s in structures.iter_mut() {
-        if s.height_m > 5.3 && !s.thin {
-            s.height_m = 7.0 + 6.5 * unit(hash1(s.id, 9));
-        }
-    }
-    // Distance to the edge of the crowns cut off, in voxels.
-    let cut = |x: usize, y: usize, solid: &[u8]| solid[at(x, y, top)] == green;
-    let mut depth = vec![0i32; NX * NY];
-    for round in 1..=5 {
-        let before = depth.clone();
-        for x in 1..NX - 1 {
-            for y in 1..NY - 1 {
-                let around = [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)];
-                if cut(x, y, solid) && around.iter().all(|(x, y)| before[x * NY + y] >= round - 1) {
-                    depth[x * NY + y] = round;
-                }
-            }
-        }
-    }
-    for x in 1..NX - 1 {
-        for y in 1..NY - 1 {
-            let below = solid[at(x, y, top)];
-            let more = if below == green {
-                (depth[x * NY + y] * 3).min(NZ as i32) as usize / 2 + 1
-            } else if below == made && structure[x * NY + y] > 0 {
-                let s = &structures[usize::from(structure[x * NY + y]) - 1];
-                (((s.height_m - 5.4) / 0.4).max(0.0)) as usize
-            } else {
-                0
-            };
-            solid[at(x, y, top) + 1..at(x, y, top) + 1 + more.min(NZ - top - 3)].fill(below);
-        }
-    }
-}
-
-/// Marks the trunks: slim columns of plants from the ground up to a crown.
-fn trunks(solid: &mut [u8]) {
-    let green = Class::Vegetation.id();
-    let before = solid.to_vec();
-    let around = |x: usize, y: usize, z: usize| {
-        let near = (0..9).filter(|k| *k != 4);
-        near.filter(|k| before[at(x + k / 3 - 1, y + k % 3 - 1, z)] == green)
-            .count()
-    };
-    for x in 1..NX - 1 {
-        for y in 1..NY - 1 {
-            let Some(first) = (1..8).find(|z| before[at(x, y, *z)] == green) else {
-                continue;
-            };
-            let slim = (first..NZ - 1)
-                .take_while(|z| before[at(x, y, *z)] == green && around(x, y, *z) <= 4)
-                .count();
-            let crown = before[at(x, y, first + slim)] == green;
-            if first <= 4 && slim >= 2 && crown {
-                for z in first..first + slim {
-                    solid[at(x, y, z)] = TRUNK;
-                }
-            }
-        }
-    }
-}
-
-/// Occupancy softened: 55 % of the voxel itself and 45 % of its binomial 3x3x3 blur; a single voxel
-/// keeps a surface, poles become slim.
-fn weights(solid: &[u8], structure: &[u16], structures: &[Structure]) -> Vec<u8> {
-    let n = solid.len();
-    let own: Vec<u8> = solid
-        .iter()
-        .map(|l| if *l == Class::FREE { 0 } else { 255 })
-        .collect();
-    let mut blurred: Vec<u8> = own.clone();
-    for stride in [1, NZ, NY * NZ] {
-        let from = blurred.clone();
-        for i in stride..n - stride {
-            let sum = u32::from(from[i - stride]) + 2 * u32::from(from[i]) + u32::from(from[i + stride]);
-            blurred[i] = (sum / 4) as u8;
-        }
-    }
-    let mut out: Vec<u8> = (0..n)
-        .map(|i| ((u32::from(own[i]) * 55 + u32::from(blurred[i]) * 45) / 100) as u8)
-        .collect();
-    for (out, label) in out.iter_mut().zip(solid) {
-        if *label == Class::Vegetation.id() {
-            // Thin plants do not fall to pieces under their leaves.
-            *out = (*out).max(205);
-        } else if *label == TRUNK {
-            *out = 186;
-        }
-    }
-    for x in 1..NX - 1 {
-        for y in 1..NY - 1 {
-            let i = structure[x * NY + y];
-            if i > 0 && structures[usize::from(i) - 1].thin {
-                for z in 0..NZ {
-                    let v = at(x, y, z);
-                    if solid[v] == Class::Manmade.id() {
-                        out[v] = 172;
-                    } else {
-                        out[v] = out[v].min(40);
-                    }
-                }
-            }
-        }
-    }
-    out
-}
-
-/// Labels with those of free voxels taken from a neighbour, plants last.
-fn spread(solid: &[u8]) -> Vec<u8> {
-    let mut out = solid.to_vec();
-    let steps: Vec<isize> = [
-        IVec3::X,
-        IVec3::Y,
-        IVec3::Z,
-        IVec3::new(1, 1, 0),
-        IVec3::new(1, -1, 0),
-        IVec3::new(1, 0, 1),
-        IVec3::new(1, 0, -1),
-        IVec3::new(0, 1, 1),
-        IVec3::new(0, 1, -1),
-    ]
-    .iter()
-    .map(|s| (s.x as isize * NY as isize + s.y as isize) * NZ as isize + s.z as isize)
-    .collect();
-    for (i, label) in solid.iter().enumerate() {
-        if *label == Class::FREE {
-            continue;
-        }
-        for step in &steps {
-            for j in [i as isize + step, i as isize - step] {
-                if let Some(to) = out.get_mut(j as usize)
-                    && (*to == Class::FREE
-                        || (*to == Class::Vegetation.id() && solid[j as usize] == Class::FREE))
-                {
-                    *to = *label;
-                }
-            }
-        }
-    }
-    out
 }

@@ -8,13 +8,20 @@ use glam::{Vec2, Vec3};
 use super::noise::{floor, ramp, value2};
 use crate::march::ground::Ground as Columns;
 use scene::appearance::{AppearanceData, HIGHEST_M, KERB_M, Section};
-use scene::{BevLayer, BevLayout, Class, GridSpec};
+use scene::{BevLayer, BevLayout, Class, Extent};
 
 /// Width of the blur's kernel in columns: its standard deviation is about 1.2.
 const BLURS: usize = 3;
 
 /// Shares of road, sidewalk, other flat ground and terrain, `[x][y]`, each 0..1, adding up to 1.
 pub struct Ground {
+    /// Lower corner, m.
+    low: Vec2,
+    /// Columns along x and along y, and the same as numbers.
+    size: [usize; 2],
+    size_f: Vec2,
+    /// In the arrays from a column to the next one along x and along y; 0 where there is none.
+    next: [usize; 2],
     share: Vec<[f32; 4]>,
     /// Columns with nothing but road around: level.
     level: Vec<bool>,
@@ -43,10 +50,11 @@ fn slot(class: u8) -> usize {
 impl Ground {
     /// From the labelled ground; columns without any take the layout's or that of the nearest one.
     pub fn new(columns: &Columns, layout: &BevLayout) -> Self {
-        let n = GridSpec::COLUMNS;
+        let extent = layout.extent();
+        let (n, [nx, ny]) = (extent.columns(), [extent.nx(), extent.ny()]);
         let mut kind: Vec<Option<usize>> = (0..n)
             .map(|i| {
-                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+                let [x, y] = extent.column(i);
                 let bits = layout.cells()[i];
                 let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
                 let seen = columns.at(x, y).map(|(class, _)| slot(class));
@@ -56,17 +64,17 @@ impl Ground {
             .collect();
         let mut queue: VecDeque<usize> = (0..n).filter(|i| kind[*i].is_some()).collect();
         while let Some(i) = queue.pop_front() {
-            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
-            for (nx, ny) in [
+            let [x, y] = extent.column(i);
+            for (x, y) in [
                 (x.wrapping_sub(1), y),
                 (x + 1, y),
                 (x, y.wrapping_sub(1)),
                 (x, y + 1),
             ] {
-                if nx < GridSpec::NX && ny < GridSpec::NY && kind[nx * GridSpec::NY + ny].is_none() {
+                if extent.holds(x, y) && kind[extent.index(x, y)].is_none() {
                     // Far from any label it is terrain, not road.
-                    kind[nx * GridSpec::NY + ny] = kind[i];
-                    queue.push_back(nx * GridSpec::NY + ny);
+                    kind[extent.index(x, y)] = kind[i];
+                    queue.push_back(extent.index(x, y));
                 }
             }
         }
@@ -80,17 +88,24 @@ impl Ground {
             .collect();
         for _ in 0..BLURS {
             for axis in 0..2 {
-                share = blurred(&share, axis);
+                share = blurred(extent, &share, axis);
             }
         }
         let level = (0..n)
             .map(|i| {
-                let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
-                let near = |c: usize| c.saturating_sub(3)..(c + 4).min(GridSpec::NX);
-                near(x).all(|x| near(y).all(|y| share[x * GridSpec::NY + y][0] > 0.99))
+                let [x, y] = extent.column(i);
+                let near = |c: usize, n: usize| c.saturating_sub(3)..(c + 4).min(n);
+                near(x, nx).all(|x| near(y, ny).all(|y| share[extent.index(x, y)][0] > 0.99))
             })
             .collect();
-        Self { share, level }
+        Self {
+            low: extent.min_m().truncate().as_vec2(),
+            size: [nx, ny],
+            size_f: Vec2::new(nx as f32, ny as f32),
+            next: [if nx > 1 { ny } else { 0 }, usize::from(ny > 1)],
+            share,
+            level,
+        }
     }
 
     /// For the graphics card.
@@ -105,17 +120,19 @@ impl Ground {
     /// True if there is nothing but level road within a metre of a point.
     #[inline]
     pub fn is_level(&self, p: Vec2) -> bool {
-        let q = ((p + 40.0) * 2.5).clamp(Vec2::ZERO, Vec2::splat(GridSpec::NX as f32 - 0.5));
-        self.level[q.x as usize * GridSpec::NY + q.y as usize]
+        let q = ((p - self.low) * 2.5).clamp(Vec2::ZERO, self.size_f - 0.5);
+        self.level[q.x as usize * self.size[1] + q.y as usize]
     }
 
     fn shares(&self, p: Vec2) -> [f32; 4] {
-        let q = ((p + 40.0) * 2.5 - 0.5).clamp(Vec2::ZERO, Vec2::splat(GridSpec::NX as f32 - 1.001));
+        let most = (self.size_f - 1.001).max(Vec2::ZERO);
+        let q = ((p - self.low) * 2.5 - 0.5).clamp(Vec2::ZERO, most);
         let c = q.map(floor);
         let f = q - c;
-        let i = c.x as usize * GridSpec::NY + c.y as usize;
-        let (a, b) = (&self.share[i], &self.share[i + 1]);
-        let (c, d) = (&self.share[i + GridSpec::NY], &self.share[i + GridSpec::NY + 1]);
+        let i = c.x as usize * self.size[1] + c.y as usize;
+        let [right, up] = self.next;
+        let (a, b) = (&self.share[i], &self.share[i + up]);
+        let (c, d) = (&self.share[i + right], &self.share[i + right + up]);
         std::array::from_fn(|k| {
             let low = a[k] + (b[k] - a[k]) * f.y;
             let high = c[k] + (d[k] - c[k]) * f.y;
@@ -206,16 +223,16 @@ impl Ground {
 }
 
 /// One pass of the kernel 1 2 1 along an axis, edges repeated.
-fn blurred(share: &[[f32; 4]], axis: usize) -> Vec<[f32; 4]> {
-    let n = GridSpec::NX;
-    let at = |x: usize, y: usize| share[x * GridSpec::NY + y];
+fn blurred(extent: Extent, share: &[[f32; 4]], axis: usize) -> Vec<[f32; 4]> {
+    let [nx, ny] = [extent.nx(), extent.ny()];
+    let at = |x: usize, y: usize| share[extent.index(x, y)];
     (0..share.len())
         .map(|i| {
-            let (x, y) = (i / GridSpec::NY, i % GridSpec::NY);
+            let [x, y] = extent.column(i);
             let (a, b) = if axis == 0 {
-                (at(x.saturating_sub(1), y), at((x + 1).min(n - 1), y))
+                (at(x.saturating_sub(1), y), at((x + 1).min(nx - 1), y))
             } else {
-                (at(x, y.saturating_sub(1)), at(x, (y + 1).min(n - 1)))
+                (at(x, y.saturating_sub(1)), at(x, (y + 1).min(ny - 1)))
             };
             let m = share[i];
             std::array::from_fn(|k| (a[k] + 2.0 * m[k] + b[k]) / 4.0)

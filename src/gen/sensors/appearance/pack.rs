@@ -14,6 +14,7 @@ impl Appearance {
         let with = |v: Vec3, w: f32| v.extend(w).to_array();
         let (turn, shift) = self.anchoring();
         let mut out = AppearanceData {
+            extent: self.field.shape().extent,
             air: [
                 with(air.to_sun, air.clouds),
                 with(air.sun, air.haze_per_m),

@@ -8,8 +8,8 @@ use super::sky::Air;
 use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
-use scene::appearance::{BLOCK_M, BLOCKS, BLOCKS_FROM_M, FAR_M};
-use scene::{Conditions, Frame, SceneBox, SensorRig};
+use scene::appearance::{BLOCK_M, FAR_M};
+use scene::{Conditions, Extent, Frame, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
@@ -84,16 +84,19 @@ pub struct Appearance {
 }
 
 impl Appearance {
-    /// Prepares a frame: some 50 ms.
+    /// Prepares a frame: some 50 ms for a window. Of a map that reaches farther than one can see from the ego vehicle, the
+    /// rest is left out.
     pub fn new(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Self {
         let seed = (conditions.seed ^ conditions.seed >> 32) as u32;
-        let (mut grid, mut columns) = ground::split(&frame.occupancy, GroundHeight::Physical);
+        let extent = in_sight(frame.extent());
+        let (occupancy, layout) = (frame.occupancy.crop(extent), frame.layout.crop(extent));
+        let (mut grid, mut columns) = ground::split(&occupancy, GroundHeight::Physical);
         let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
         for b in &boxes {
             remove_voxels(&mut grid, &mut columns, b, GroundHeight::Physical, STRAY_M);
         }
         let field = Field::new(&grid, seed);
-        let ground = Ground::new(&columns, &frame.layout);
+        let ground = Ground::new(&columns, &layout);
         let mut things: Vec<Thing> = boxes
             .iter()
             .filter_map(|b| Thing::of(b, seed))
@@ -112,7 +115,8 @@ impl Appearance {
         } else {
             Quat::IDENTITY
         };
-        let mut lists = vec![Vec::new(); BLOCKS * BLOCKS];
+        let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);
+        let mut lists = vec![Vec::new(); blocks_x * blocks_y];
         for (i, thing) in things.iter_mut().enumerate() {
             // Nobody stands in the pavement.
             let p = thing.foot.truncate();
@@ -121,11 +125,10 @@ impl Appearance {
                 thing.foot.z = thing.foot.z.max(height);
             }
             let reach = thing.reach().truncate() + NEAR_M;
-            let block = |v: f32| ((v - BLOCKS_FROM_M) / BLOCK_M).floor().clamp(-1.0, BLOCKS as f32);
-            let (lo, hi) = (p - reach, p + reach);
-            for x in block(lo.x).max(0.0) as usize..(block(hi.x) + 1.0).min(BLOCKS as f32) as usize {
-                for y in block(lo.y).max(0.0) as usize..(block(hi.y) + 1.0).min(BLOCKS as f32) as usize {
-                    lists[x * BLOCKS + y].push(i as u16);
+            let (lo, hi) = ((p - reach - from) / BLOCK_M, (p + reach - from) / BLOCK_M);
+            for x in within(lo.x, hi.x, blocks_x) {
+                for y in within(lo.y, hi.y, blocks_y) {
+                    lists[x * blocks_y + y].push(i as u16);
                 }
             }
         }
@@ -138,7 +141,7 @@ impl Appearance {
             ground,
             things,
             lists,
-            paint: Paint::new(&frame.layout),
+            paint: Paint::new(&layout),
             lamps,
             air,
             seed,
@@ -181,9 +184,11 @@ impl Appearance {
 
     /// Things near a point of the ground.
     pub(super) fn things_near(&self, p: Vec2) -> &[u16] {
-        let c = ((p - BLOCKS_FROM_M) / BLOCK_M).floor();
-        if c.cmpge(Vec2::ZERO).all() && c.cmplt(Vec2::splat(BLOCKS as f32)).all() {
-            &self.lists[c.x as usize * BLOCKS + c.y as usize]
+        let shape = self.field.shape();
+        let [x, y] = shape.blocks;
+        let c = ((p - shape.blocks_from_m) / BLOCK_M).floor();
+        if c.cmpge(Vec2::ZERO).all() && c.cmplt(Vec2::new(x as f32, y as f32)).all() {
+            &self.lists[c.x as usize * y + c.y as usize]
         } else {
             &[]
         }
@@ -238,11 +243,12 @@ impl Appearance {
     /// Visits the blocks along a ray until `visit` says that it has its hit.
     #[inline]
     fn walk(&self, o: Vec3, d: Vec3, limit: f32, mut visit: impl FnMut(usize, f32, f32) -> bool) {
-        let size = BLOCKS as f32 * BLOCK_M;
+        let (blocks, from) = (self.field.shape().blocks, self.field.shape().blocks_from_m);
+        let size = blocks.map(|n| n as f32 * BLOCK_M);
         let (mut t0, mut t1) = (0.0f32, limit);
         let bounds = [
-            (BLOCKS_FROM_M, BLOCKS_FROM_M + size),
-            (BLOCKS_FROM_M, BLOCKS_FROM_M + size),
+            (from.x, from.x + size[0]),
+            (from.y, from.y + size[1]),
             (-0.4, self.highest),
         ];
         for (axis, (lo, hi)) in bounds.into_iter().enumerate() {
@@ -260,12 +266,12 @@ impl Appearance {
         if !inside {
             return;
         }
-        let q = (o.truncate() - BLOCKS_FROM_M) / BLOCK_M;
+        let q = (o.truncate() - from) / BLOCK_M;
         let qd = d.truncate() / BLOCK_M;
-        let start = |a: usize| ((q[a] + qd[a] * (t0 + 1e-4)).max(0.0) as usize).min(BLOCKS - 1);
+        let start = |a: usize| ((q[a] + qd[a] * (t0 + 1e-4)).max(0.0) as usize).min(blocks[a] - 1);
         let mut cell = [start(0), start(1)];
         let mut t = t0;
-        for _ in 0..2 * BLOCKS + 2 {
+        for _ in 0..blocks[0] + blocks[1] + 2 {
             let next = |a: usize| {
                 if qd[a].abs() < 1e-9 {
                     return f32::INFINITY;
@@ -274,12 +280,12 @@ impl Appearance {
             };
             let (tx, ty) = (next(0), next(1));
             let t_out = tx.min(ty).min(t1);
-            if visit(cell[0] * BLOCKS + cell[1], t, t_out) || t_out >= t1 {
+            if visit(cell[0] * blocks[1] + cell[1], t, t_out) || t_out >= t1 {
                 return;
             }
             let axis = usize::from(ty < tx);
             let moved = cell[axis].wrapping_add_signed(if qd[axis] > 0.0 { 1 } else { -1 });
-            if moved >= BLOCKS {
+            if moved >= blocks[axis] {
                 return;
             }
             cell[axis] = moved;
@@ -322,6 +328,25 @@ impl Appearance {
             _ => hit.normal,
         }
     }
+}
+
+/// Blocks `0..n` along an axis between two places, in blocks.
+fn within(from: f32, to: f32, n: usize) -> std::ops::Range<usize> {
+    let block = |v: f32| v.floor().clamp(-1.0, n as f32);
+    block(from).max(0.0) as usize..(block(to) + 1.0).min(n as f32) as usize
+}
+
+/// The part of a map that can be seen from near the ego vehicle; a single column if none can.
+fn in_sight(map: Extent) -> Extent {
+    let columns = (f64::from(FAR_M) / Extent::VOXEL_M).ceil() as usize;
+    let far = Extent::new([-(columns as i32); 2], [2 * columns; 2]);
+    let seen = far.ok().and_then(|far| far.overlap(&map).map(|part| (far, part)));
+    let corner = |from: [i32; 2], at: [usize; 2]| [0, 1].map(|i| from[i] + at[i] as i32);
+    let seen = match seen {
+        Some((far, part)) => Extent::new(corner(far.from(), part.here), part.size),
+        None => Extent::new(map.from(), [1; 2]),
+    };
+    seen.unwrap_or(map)
 }
 
 fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lamp> {

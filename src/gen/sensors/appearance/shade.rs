@@ -6,7 +6,7 @@ use super::material::Surface;
 use super::noise::ramp;
 use super::prepared::{Appearance, Beam, Hit, What};
 use scene::appearance::{
-    FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M,
+    FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M, SKYLINE_M,
 };
 
 /// A sample of a picture: its light and what was seen, to find edges.
@@ -63,10 +63,13 @@ impl Appearance {
     /// What stands outside the grid in front of `limit`, hazed.
     fn beyond(&self, o: Vec3, d: Vec3, limit: f32) -> Option<Vec3> {
         let flat = d.truncate().length_squared();
-        for radius in [72.0, 150.0, 320.0f32] {
-            // The circle around the grid's middle, from inside.
-            let b = o.truncate().dot(d.truncate());
-            let c = o.truncate().length_squared() - radius * radius;
+        let shape = self.field.shape();
+        let eye = o.truncate() - shape.middle_m;
+        for (ring, radius) in SKYLINE_M.into_iter().enumerate() {
+            let radius = radius * shape.skyline;
+            // The circle around the map's middle, from inside.
+            let b = eye.dot(d.truncate());
+            let c = eye.length_squared() - radius * radius;
             let disc = b * b - flat * c;
             if flat < 1e-8 || disc <= 0.0 || c > 0.0 {
                 continue;
@@ -76,18 +79,19 @@ impl Appearance {
             if t > limit || p.z < 0.0 || p.z > 60.0 {
                 continue;
             }
-            // Streets that leave the grid stay open in front.
+            let from_middle = p - shape.middle_m.extend(0.0);
+            // Streets that leave the map stay open in front.
             let mut open = 0.0;
-            if radius < 100.0 {
+            if ring == 0 {
                 // Lower and lower towards the gap.
-                let aside = p.truncate().perp().normalize_or_zero();
+                let aside = from_middle.truncate().perp().normalize_or_zero();
                 for k in -3..=3 {
                     let q = p.truncate() + aside * (k as f32 * 2.6);
                     open += ramp(0.15, 0.6, self.ground.at(q, q).share[0]) / 4.0;
                 }
                 open = f32::min(open, 1.0);
             }
-            let around = self.anchor_dir(p);
+            let around = self.anchor_dir(from_middle);
             if let Some(color) = self.air.skyline(around, radius, open) {
                 return Some(self.air.through(color, t, self.anchor_dir(d)));
             }

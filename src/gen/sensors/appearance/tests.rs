@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::*;
-use scene::{BoxId, Class, GridSpec, Pose, SceneBox, Sun, TimeOfDay, VoxelGrid, Weather};
+use scene::{BoxId, Class, Extent, Pose, SceneBox, Sun, TimeOfDay, VoxelGrid, Weather};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
@@ -139,8 +139,8 @@ fn threads_do_not_matter_and_the_seed_does() {
 #[test]
 fn places_look_the_same_from_everywhere() {
     let mut grid = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Extent::WINDOW.nx() {
+        for y in 0..Extent::WINDOW.ny() {
             let class = if y > 105 {
                 Class::Sidewalk
             } else {
@@ -193,8 +193,8 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
         label: Default::default(),
     };
     let mut grid = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Extent::WINDOW.nx() {
+        for y in 0..Extent::WINDOW.ny() {
             grid.set(x, y, 0, Class::DriveableSurface.id());
         }
     }
@@ -237,8 +237,8 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
 #[test]
 fn bears_anything() {
     let mut full = VoxelGrid::new();
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Extent::WINDOW.nx() {
+        for y in 0..Extent::WINDOW.ny() {
             full.column_mut(x, y)
                 .fill([15, 16, 0, 4, 200][(x / 9 + y / 7) % 5]);
         }
@@ -323,6 +323,86 @@ fn bears_anything() {
                 let sample = appearance.light_along(o, d, 0.001);
                 assert!(!sample.color.is_nan(), "{o} {d} {:?}", sample);
             }
+        }
+    }
+}
+
+/// A wall 100 m ahead on a map: a ray finds it, a picture shows it, and the skyline stands behind it.
+#[test]
+fn a_map_is_seen_as_far_as_it_reaches() {
+    let map = Extent::new([-150, -110], [480, 320]).expect("a sound size");
+    let mut grid = VoxelGrid::over(map);
+    for [x, y] in map.all_columns() {
+        grid.set(x, y, 0, Class::DriveableSurface.id());
+    }
+    let bare = Frame::new(scene::BevLayout::over(map), Default::default(), grid.clone());
+    let [x0, y0] = map.column_at(100.1, -10.0).expect("on the map");
+    for i in 0..5 * 50 {
+        grid.column_mut(x0 + i % 5, y0 + i / 5)[1..14].fill(Class::Manmade.id());
+    }
+    let frame = Frame::new(scene::BevLayout::over(map), Default::default(), grid);
+    let (rig, conditions) = (SensorRig::default(), of(TimeOfDay::Day, Weather::Clear));
+    let of_frame = |frame: &Frame| Appearance::new(frame, &rig, &conditions);
+    let (with, without) = (of_frame(&frame), of_frame(&bare));
+    let cropped = of_frame(&frame.crop(Extent::WINDOW));
+    let eye = glam::Vec3::new(1.7, 0.0, 1.6);
+    let ahead = |appearance: &Appearance| appearance.light_along(eye, glam::Vec3::X, 0.001);
+    let met = ahead(&with).t;
+    assert!((met - 98.3).abs() < 0.4, "{met}");
+    assert_eq!(
+        (ahead(&without).t, ahead(&cropped).t),
+        (f32::INFINITY, f32::INFINITY)
+    );
+    // Down to the road, beyond the window and 5 m in front of the wall.
+    let road = (glam::Vec3::new(95.0, 3.0, 0.0) - eye).normalize();
+    assert!((with.light_along(eye, road, 0.001).t - 93.36).abs() < 0.1);
+    let camera = rig.cameras.iter().find(|c| {
+        let ahead = c.ego_from_camera().rotation * DVec3::Z;
+        ahead.x > 0.99
+    });
+    let camera = camera.expect("one looks ahead");
+    let [a, b] = [&with, &without].map(|l| l.render(camera, 160, 90, Quality::Preview).rgba);
+    let differing = a.chunks_exact(4).zip(b.chunks_exact(4)).filter(|(a, b)| a != b);
+    let differing = differing.count();
+    assert!(
+        (40..4000).contains(&differing),
+        "{differing} pixels show the wall"
+    );
+    let data = with.data();
+    assert_eq!(data.extent, map);
+    // Much farther than one can see nothing is prepared.
+    let far = Extent::new([-2000, -2000], [4000, 2000]).expect("a sound size");
+    let far = Frame::new(
+        scene::BevLayout::over(far),
+        Default::default(),
+        VoxelGrid::over(far),
+    );
+    assert_eq!(
+        of_frame(&far).data().extent,
+        Extent::new([-1000, -1000], [2000, 1000]).expect("sound")
+    );
+}
+
+/// Maps of odd sizes, of one column too, are drawn without a panic.
+#[test]
+fn bears_any_extent() {
+    let world = World::random(9);
+    let whole = Frame::new(
+        world.layout.clone(),
+        world.boxes.clone(),
+        complete(&world, Vertical::Occ3d),
+    );
+    let rig = SensorRig::default();
+    for (from, size) in [
+        ([0, 0], [1, 1]),
+        ([-3, 5], [1, 40]),
+        ([-60, -60], [90, 1]),
+        ([5000, 5000], [7, 9]),
+        ([-100, -40], [203, 77]),
+    ] {
+        let frame = whole.crop(Extent::new(from, size).expect("a sound size"));
+        for image in pictures(&frame, &rig, [24, 14], of(TimeOfDay::Night, Weather::Rain)) {
+            assert_eq!(image.rgba.len(), 24 * 14 * 4);
         }
     }
 }
