@@ -2,6 +2,7 @@
 
 use std::io::{self, Cursor, Write as _};
 
+use bytemuck::NoUninit;
 use npyz::{AutoSerialize, WriteOptions, WriterBuilder};
 
 /// One array of an archive.
@@ -43,16 +44,19 @@ pub fn to_bytes(arrays: &[Array<'_>]) -> io::Result<Vec<u8>> {
     Ok(zip.finish()?.into_inner())
 }
 
-fn npy<T: AutoSerialize + Copy>(shape: &[usize], values: &[T]) -> io::Result<Vec<u8>> {
-    let mut out = Vec::with_capacity(size_of_val(values) + 128);
+/// The values go in at once: npyz writes them one by one.
+fn npy<T: AutoSerialize + NoUninit>(shape: &[usize], values: &[T]) -> io::Result<Vec<u8>> {
+    if shape.iter().product::<usize>() != values.len() {
+        let what = format!("{} values in an array of shape {shape:?}", values.len());
+        return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+    }
     let shape: Vec<u64> = shape.iter().map(|n| *n as u64).collect();
-    let mut writer = WriteOptions::<T>::new()
+    let mut out = WriteOptions::<T>::new()
         .default_dtype()
         .shape(&shape)
-        .writer(&mut out)
-        .begin_nd()?;
-    writer.extend(values.iter().copied())?;
-    writer.finish()?;
+        .writer(Vec::with_capacity(size_of_val(values) + 128))
+        .write_header_only()?;
+    out.extend_from_slice(bytemuck::cast_slice(values));
     Ok(out)
 }
 

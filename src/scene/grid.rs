@@ -31,6 +31,7 @@ impl GridSpec {
 
     /// The voxel that holds a point of the ego frame; half-open cells, `None` outside or for NaN.
     /// Works in voxel units: 0.4 is not exact in binary.
+    #[inline]
     pub fn voxel_at(p_in_ego: DVec3) -> Option<[usize; 3]> {
         let u = Self::to_voxel_units(p_in_ego);
         let n = [Self::NX, Self::NY, Self::NZ];
@@ -47,22 +48,26 @@ impl GridSpec {
     }
 
     /// The BEV cell under a point of the ego frame.
+    #[inline]
     pub fn column_at(x_m: f64, y_m: f64) -> Option<[usize; 2]> {
         Self::voxel_at(DVec3::new(x_m, y_m, 0.0)).map(|v| [v[0], v[1]])
     }
 
     /// Ego-frame metres to voxel units (0 at the lower corner, 1 per voxel).
+    #[inline]
     pub fn to_voxel_units(p_in_ego: DVec3) -> DVec3 {
         // (p - min) / 0.4 as (p - min) * 2.5: 2.5 is exact.
         (p_in_ego - DVec3::from_array(Self::MIN_M)) * 2.5
     }
 
     /// Voxel units to ego-frame metres.
+    #[inline]
     pub fn from_voxel_units(u: DVec3) -> DVec3 {
         u / 2.5 + DVec3::from_array(Self::MIN_M)
     }
 
     /// Centre of a voxel in the ego frame, m.
+    #[inline]
     pub fn center(x: usize, y: usize, z: usize) -> DVec3 {
         Self::from_voxel_units(DVec3::new(x as f64 + 0.5, y as f64 + 0.5, z as f64 + 0.5))
     }

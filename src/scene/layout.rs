@@ -75,6 +75,7 @@ impl BevLayout {
     }
 
     /// Bits of every cell, `[x][y]`.
+    #[inline]
     pub fn cells(&self) -> &[u32] {
         &self.cells
     }
