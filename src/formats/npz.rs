@@ -2,6 +2,7 @@
 
 use std::io::{self, Cursor, Write as _};
 
+use bytemuck::cast_slice;
 use npyz::{AutoSerialize, WriteOptions, WriterBuilder};
 
 /// One array of an archive.
@@ -31,29 +32,29 @@ pub fn to_bytes(arrays: &[Array<'_>]) -> io::Result<Vec<u8>> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     let options = zip::write::SimpleFileOptions::default().last_modified_time(zip::DateTime::default());
     for a in arrays {
-        let npy = match &a.values {
-            Values::U8(values) => npy(a.shape, values),
-            Values::U16(values) => npy(a.shape, values),
-            Values::U32(values) => npy(a.shape, values),
-            Values::F32(values) => npy(a.shape, values),
-        }?;
+        let (header, values): (_, &[u8]) = match &a.values {
+            Values::U8(values) => (header::<u8>(a.shape, values.len())?, values),
+            Values::U16(values) => (header::<u16>(a.shape, values.len())?, cast_slice(values)),
+            Values::U32(values) => (header::<u32>(a.shape, values.len())?, cast_slice(values)),
+            Values::F32(values) => (header::<f32>(a.shape, values.len())?, cast_slice(values)),
+        };
         zip.start_file(npyz::npz::file_name_from_array_name(a.name), options)?;
-        zip.write_all(&npy)?;
+        zip.write_all(&header)?;
+        // At once: npyz writes values one by one.
+        zip.write_all(values)?;
     }
     Ok(zip.finish()?.into_inner())
 }
 
-fn npy<T: AutoSerialize + Copy>(shape: &[usize], values: &[T]) -> io::Result<Vec<u8>> {
-    let mut out = Vec::with_capacity(size_of_val(values) + 128);
+/// What comes before so many values as they lie in memory.
+fn header<T: AutoSerialize>(shape: &[usize], values: usize) -> io::Result<Vec<u8>> {
+    if shape.iter().product::<usize>() != values {
+        let what = format!("{values} values in an array of shape {shape:?}");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+    }
     let shape: Vec<u64> = shape.iter().map(|n| *n as u64).collect();
-    let mut writer = WriteOptions::<T>::new()
-        .default_dtype()
-        .shape(&shape)
-        .writer(&mut out)
-        .begin_nd()?;
-    writer.extend(values.iter().copied())?;
-    writer.finish()?;
-    Ok(out)
+    let options = WriteOptions::<T>::new().default_dtype().shape(&shape);
+    options.writer(Vec::new()).write_header_only()
 }
 
 #[cfg(test)]

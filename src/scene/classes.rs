@@ -123,11 +123,13 @@ impl Class {
     ];
 
     /// The class with label value `id`, if `id` is one of 0..=17.
+    #[inline]
     pub fn from_id(id: u8) -> Option<Class> {
         Self::ALL.get(id as usize).copied()
     }
 
     /// The label value.
+    #[inline]
     pub fn id(self) -> u8 {
         self as u8
     }
@@ -181,6 +183,7 @@ impl Class {
     }
 
     /// True for surfaces one stands on: ids 11 to 14.
+    #[inline]
     pub fn is_ground(self) -> bool {
         (11..=14).contains(&self.id())
     }
@@ -276,6 +279,7 @@ impl BevLayer {
     ];
 
     /// This layer's bit in a cell of a layout.
+    #[inline]
     pub fn bit(self) -> u32 {
         1 << self as u32
     }

@@ -134,6 +134,7 @@ impl BevLayout {
     }
 
     /// Bits of every cell, `[x][y]`.
+    #[inline]
     pub fn cells(&self) -> &[u32] {
         &self.cells
     }

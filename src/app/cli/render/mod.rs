@@ -16,7 +16,7 @@ use app::graphics::Graphics;
 use app::{open, picture};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
-use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderContext, RenderOptions, SourceId};
+use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
 use sensors::lidar;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 
@@ -82,7 +82,7 @@ impl Render {
         }
     }
 
-    /// Renders and writes the pictures of one source, camera by camera.
+    /// Renders and writes the pictures of one source, a few cameras at a time if they are small, else one.
     fn cameras(
         &self,
         scene: &Scene,
@@ -104,18 +104,17 @@ impl Render {
                 Quality::Full
             },
         };
-        for (i, camera) in scene.rig.cameras.iter().enumerate() {
+        let all = &scene.rig.cameras;
+        let mut place = 0;
+        for group in all.chunks(ready.side_by_side(&options)) {
             let start = Instant::now();
-            let context = RenderContext {
-                card: card
-                    .as_mut()
-                    .filter(|_| on_card)
-                    .map(|card| card as &mut dyn Card),
-                ..RenderContext::processor()
-            };
-            let picture = ready.render(camera, &options, context)?;
+            let card = card.as_mut().filter(|_| on_card);
+            let pictures = ready.render_all(group, &options, card.map(|card| card as &mut dyn Card))?;
             time_s += start.elapsed().as_secs_f64();
-            writer.camera(picture, &cameras.views, (i, scene.rig.cameras.len()))?;
+            for picture in pictures {
+                writer.camera(picture, &cameras.views, (place, all.len()))?;
+                place += 1;
+            }
         }
         writer.finish_sheet(&cameras.views)?;
         *wall_s.entry(cameras.source.report_key()).or_default() += time_s;

@@ -3,9 +3,13 @@
 /// Most pixels of one picture: 8K (7680 x 4320) fits, 8192 x 8192 does not.
 pub const MAX_IMAGE_PIXELS: u64 = 1 << 25;
 
-/// Most memory that the pictures of one run take, bytes. They are rendered and written one after another, so it counts
-/// what one picture takes and what is kept until the end, such as a sheet of all of them.
+/// Most memory that the pictures of one run take, bytes. They are rendered and written one after another (small ones in
+/// groups, which take less than a large one), so it counts what one picture takes and what is kept until the end, such
+/// as a sheet of all of them.
 pub const MAX_RUN_BYTES: u64 = 3 << 30;
+
+/// Memory of pictures that are small enough to be rendered side by side, bytes.
+const SIDE_BY_SIDE_BYTES: u64 = 64_000_000;
 
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -55,4 +59,10 @@ pub fn check([width, height]: [u32; 2], bytes_per_pixel: u64, kept_bytes: u64) -
         true => Err(CameraError::Memory { width, height, bytes }),
         false => Ok(()),
     }
+}
+
+/// How many pictures of a size of which one takes `bytes_per_pixel` are rendered side by side, at least one.
+pub fn side_by_side([width, height]: [u32; 2], bytes_per_pixel: u64) -> usize {
+    let one = (u64::from(width) * u64::from(height)).saturating_mul(bytes_per_pixel);
+    (SIDE_BY_SIDE_BYTES / one.max(1)).max(1) as usize
 }

@@ -19,7 +19,9 @@ pub use marched::march_scene;
 pub use picture::CameraPicture;
 pub use view::{Knob, SourceId, View, ViewId};
 
-use super::appearance::{Appearance, CameraImage, Quality};
+use rayon::prelude::*;
+
+use super::appearance::{CameraImage, Look, Quality};
 use super::cloud::GaussianCloud;
 use super::march::GroundHeight;
 use scene::Conditions;
@@ -190,7 +192,7 @@ pub trait CameraSource: Sync {
 }
 
 /// A scene made ready by one source.
-pub trait PreparedCameras {
+pub trait PreparedCameras: Sync {
     /// True for what a graphics card can draw.
     fn suits_card(&self) -> bool {
         false
@@ -237,6 +239,33 @@ impl<'a> Ready<'a> {
             return Err(CameraError::Cancelled);
         }
         Ok(self.scene.draw(camera, options, context.card))
+    }
+
+    /// How many cameras [`Self::render_all`] is best given at once, at least one.
+    pub fn side_by_side(&self, options: &RenderOptions) -> usize {
+        bounds::side_by_side(options.size, self.source.bytes_per_pixel())
+    }
+
+    /// What each of these cameras shows, by the card if there is one, else by the processor side by side: one small
+    /// picture does not fill the cores. Errors as [`Self::render`].
+    pub fn render_all(
+        &self,
+        cameras: &[Camera],
+        options: &RenderOptions,
+        card: Option<&mut dyn Card>,
+    ) -> Result<Vec<CameraPicture>, CameraError> {
+        let Some(card) = card else {
+            let processor = |c| self.render(c, options, RenderContext::processor());
+            return cameras.par_iter().map(processor).collect();
+        };
+        let mut on_card = |camera| {
+            let context = RenderContext {
+                card: Some(&mut *card),
+                ..RenderContext::processor()
+            };
+            self.render(camera, options, context)
+        };
+        cameras.iter().map(&mut on_card).collect()
     }
 }
 

@@ -159,3 +159,36 @@ fn every_source_keeps_the_bounds_and_stops_when_cancelled() {
     assert!(bounds::check([100, 100], 10, bounds::MAX_RUN_BYTES).is_err());
     assert!(bounds::check([u32::MAX; 2], u64::MAX, u64::MAX).is_err());
 }
+
+#[test]
+fn small_pictures_side_by_side_are_those_one_after_another() {
+    let (frame, rig) = (street(), SensorRig::default());
+    let options = RenderOptions {
+        size: [80, 45],
+        quality: Quality::Preview,
+    };
+    for source in all() {
+        let (name, view) = (source.id().name(), source.views()[0].id);
+        let input = CameraInput {
+            frame: &frame,
+            rig: &rig,
+            background: &Background::default(),
+            conditions: Conditions::default(),
+            detail: Detail::Full,
+        };
+        let ready = Ready::new(*source, &input);
+        assert!(ready.side_by_side(&options) >= rig.cameras.len(), "{name}");
+        let all = ready
+            .render_all(&rig.cameras, &options, None)
+            .expect("small pictures");
+        assert_eq!(all.len(), rig.cameras.len());
+        for (camera, picture) in rig.cameras.iter().zip(&all) {
+            let alone = ready
+                .render(camera, &options, RenderContext::processor())
+                .expect("small");
+            assert!(picture.rgba(view, 12.0) == alone.rgba(view, 12.0), "{name}");
+        }
+    }
+    assert_eq!(bounds::side_by_side([3840, 2160], 80), 1);
+    assert_eq!(bounds::side_by_side([u32::MAX; 2], u64::MAX), 1);
+}
