@@ -17,7 +17,7 @@ use numeric::philox::{Stream, normal_field};
 use rayon::prelude::*;
 use safetensors::{Dtype, tensor::TensorView};
 use scene::splats::SplatOptions;
-use scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use scene::{Class, SensorRig, VoxelGrid, Window};
 use sensors::cloud::GaussianCloud;
 use sensors::raycast::ColumnMasks;
 use sensors::splat;
@@ -126,14 +126,14 @@ fn main() {
             })
         })
         .collect();
-    let origin = DVec3::new(40.0, 40.0, 2.24) / GridSpec::VOXEL_M;
+    let origin = DVec3::new(40.0, 40.0, 2.24) / Window::VOXEL_M;
     let cast = || -> Vec<f32> {
         let mut ranges = vec![0.0f32; rays.len()];
         let pairs = ranges.par_chunks_mut(512).zip(rays.par_chunks(512));
         pairs.for_each(|(out, rays)| {
             for (out, d) in out.iter_mut().zip(rays) {
                 let hit = masks.cast_in_voxels(origin, *d, f64::INFINITY);
-                *out = hit.map_or(f32::INFINITY, |h| (h.0 * GridSpec::VOXEL_M) as f32);
+                *out = hit.map_or(f32::INFINITY, |h| (h.0 * Window::VOXEL_M) as f32);
             }
         });
         ranges

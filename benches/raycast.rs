@@ -5,7 +5,7 @@
 use glam::DVec3;
 use numeric::quantile::median;
 use rayon::prelude::*;
-use scene::{Class, GridSpec, SensorRig, VoxelGrid};
+use scene::{Class, SensorRig, VoxelGrid, Window};
 use sensors::caster::Caster;
 use sensors::lidar;
 use sensors::raycast::{ColumnMasks, LANES, Packet};
@@ -38,7 +38,7 @@ fn main() {
             })
         })
         .collect();
-    let origin = DVec3::new(40.0, 40.0, 2.24) / GridSpec::VOXEL_M;
+    let origin = DVec3::new(40.0, 40.0, 2.24) / Window::VOXEL_M;
     let cast = |d: &DVec3| {
         masks
             .cast_in_voxels(origin, *d, f64::INFINITY)

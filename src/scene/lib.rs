@@ -44,8 +44,6 @@ pub use classes::{BevLayer, Class};
 pub use conditions::{Conditions, Sun, TimeOfDay, Weather};
 pub use density::Density;
 pub use edit::{Edit, EditError};
-#[doc(hidden)]
-pub use grid::Window as GridSpec; // until every caller has its new name
 pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};

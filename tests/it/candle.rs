@@ -11,7 +11,7 @@ use nets::{
 use nn::weights::WeightFile;
 use nn::{Ops, Precision};
 use nn_candle::Candle;
-use scene::GridSpec;
+use scene::Window;
 
 /// Numbers in -1..1 from a hash of their index.
 fn numbers(count: usize, stream: u32) -> Vec<f32> {
@@ -128,7 +128,7 @@ fn vae_agrees_with_candle() {
     let ours = models.vae.encode(&frame.dense).expect("a sound grid");
     let theirs = candle.encode(&frame.dense).expect("a sound grid");
     agree(&ours, &theirs, "latent");
-    let observed: Vec<u32> = (0..GridSpec::COLUMNS as u32)
+    let observed: Vec<u32> = (0..Window::COLUMNS as u32)
         .map(|c| c * 7919 % (1 << 17))
         .collect();
     let informed = DecoderInput {
@@ -145,7 +145,7 @@ fn vae_agrees_with_candle() {
             .decode_with(&theirs, &cells, input)
             .expect("a sound latent");
         let differ = ours.count_different(&theirs);
-        assert!(differ <= GridSpec::VOXELS / 10_000, "{differ} labels differ");
+        assert!(differ <= Window::VOXELS / 10_000, "{differ} labels differ");
     }
     let [a, b] = [
         models

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use formats::{box_list, export, import, loom};
-use scene::{Class, GridSpec};
+use scene::{Class, Window};
 use serde_json::Value;
 
 fn sceneloom(args: &[&str]) -> (i32, String, String) {
@@ -38,7 +38,7 @@ fn a_point_cloud_becomes_a_scene() {
     let occupancy = &scene.frame().occupancy;
     let mut cloud = Vec::new();
     for (x, y, z, class) in occupancy.iter_set() {
-        let at = GridSpec::center(x, y, z).as_vec3();
+        let at = Window::center(x, y, z).as_vec3();
         cloud.extend([at.x, at.y, at.z].into_iter().flat_map(f32::to_le_bytes));
         cloud.push(class);
     }

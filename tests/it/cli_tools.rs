@@ -13,7 +13,7 @@ use serde_json::Value;
 use app::open;
 use editor::Edit;
 use formats::loom;
-use scene::{BoxId, Class, Form, GridSpec, Scene};
+use scene::{BoxId, Class, Form, Scene, Window};
 use sensors::lidar;
 
 fn sceneloom(args: &[&str]) -> Output {
@@ -365,7 +365,7 @@ fn differences_are_counted() {
     );
     assert!(report["lidar"]["rays_changed"].is_u64());
     let picture = image::open(&sheet).expect("a picture");
-    assert!(picture.width() > 3 * GridSpec::NY as u32);
+    assert!(picture.width() > 3 * Window::NY as u32);
     // Nothing differs from itself.
     let (report, _) = run(&["diff", &pa, &pa]);
     assert_eq!(report["voxels_changed"], 0);

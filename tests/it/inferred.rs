@@ -7,7 +7,7 @@ use dataset::occupancy_frame;
 use editor::{Document, Edit, Shape};
 use formats::{loom, occ3d};
 use job::region::Region;
-use scene::{BevLayer, BoxId, Class, GridSpec, Scene, Unobserved};
+use scene::{BevLayer, BoxId, Class, Scene, Unobserved, Window};
 
 /// Simulated labels, imported from a file as a user would.
 fn imported() -> Scene {
@@ -21,7 +21,7 @@ fn imported() -> Scene {
 #[test]
 fn an_imported_frame_is_marked_and_survives_saving() {
     let mut scene = imported();
-    let mut words = vec![0u16; GridSpec::COLUMNS];
+    let mut words = vec![0u16; Window::COLUMNS];
     words[..700].fill(0xa001);
     scene.frame_mut().inferred.unobserved = Unobserved::from_words(scene::Extent::WINDOW, words);
     let frame = scene.frame();

@@ -9,7 +9,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
 use nets::OccModels;
 use scene::raster::box_cells;
-use scene::{BoxId, Class, Frame, GridSpec, Scene, SensorRig};
+use scene::{BoxId, Class, Frame, Scene, SensorRig, Window};
 use world::voxelize::{Vertical, complete};
 use world::{World, template, traffic};
 
@@ -165,10 +165,14 @@ fn results_do_not_depend_on_the_number_of_threads() {
 fn a_region_is_inpainted_and_nothing_outside_it() {
     let document = Document::new(scene());
     let source = document.scene().frame().source.occupancy.clone();
-    let inpaint = InpaintMask::of_rect(DVec2::new(-12.0, 8.0), DVec2::new(4.0, 24.0));
+    let inpaint = InpaintMask::of_rect(
+        scene::Extent::WINDOW,
+        DVec2::new(-12.0, 8.0),
+        DVec2::new(4.0, 24.0),
+    );
     let draw = |seed: u64| {
         let params = GenParams {
-            inpaint,
+            inpaint: inpaint.clone(),
             strength: 0.9,
             seed,
             ..params()
@@ -187,10 +191,13 @@ fn a_region_is_inpainted_and_nothing_outside_it() {
     assert_eq!(result.report.tokens, OccModels::TOKENS);
     assert_eq!(result.report.untouched_voxels_changed, 0);
     let mut changed = 0;
-    for x in 0..GridSpec::NX {
-        for y in 0..GridSpec::NY {
+    for x in 0..Window::NX {
+        for y in 0..Window::NY {
             let differs = result.occupancy.column(x, y) != source.column(x, y);
-            assert!(!differs || inpaint.has(x / 4, y / 4), "column ({x}, {y})");
+            assert!(
+                !differs || inpaint.has_column(scene::Extent::WINDOW, [x, y]),
+                "column ({x}, {y})"
+            );
             changed += usize::from(differs);
         }
     }

@@ -9,8 +9,8 @@ use app::open;
 use editor::{Document, Edit, Shape};
 use glam::{DVec2, DVec3};
 use numeric::splitmix::SplitMix64;
-use scene::grid::{BRICKS, NOT_PAINTED};
-use scene::{BevLayer, BoxId, Class, Frame, GridSpec, Scene, SceneBox, SceneRev};
+use scene::grid::NOT_PAINTED;
+use scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, Window};
 
 const COMMANDS: u64 = 10_000;
 /// States are compared voxel by voxel at every so many commands; by everything else at each.
@@ -178,21 +178,21 @@ fn frame_is_sound(frame: &Frame) {
         "a guess without a box"
     );
     for layout in [&frame.layout, &frame.source.layout] {
-        assert_eq!(layout.cells().len(), GridSpec::COLUMNS);
+        assert_eq!(layout.cells().len(), Window::COLUMNS);
         assert!(
             layout.cells().iter().all(|c| c >> BevLayer::MAP.len() == 0),
             "bits of objects in the map"
         );
     }
-    assert_eq!(frame.occupancy.bricks().len(), BRICKS * BRICKS);
-    assert_eq!(frame.painted.bricks().len(), BRICKS * BRICKS);
+    assert_eq!(frame.occupancy.bricks().len(), 13 * 13);
+    assert_eq!(frame.painted.bricks().len(), 13 * 13);
 }
 
 /// The grids: labels within the palette, paint shown as it was painted, nothing beyond the grid's last row.
 fn grids_are_sound(frame: &Frame) {
     for (x, y, z, label) in frame.occupancy.iter_set() {
         assert!(
-            label < Class::FREE && x < GridSpec::NX && y < GridSpec::NY,
+            label < Class::FREE && x < Window::NX && y < Window::NY,
             "{label} at {x}, {y}, {z}"
         );
     }
@@ -361,7 +361,7 @@ fn random_commands_break_nothing() {
                 // A result comes: for this state, or too late for another.
                 let mut occupancy = before.frame().occupancy.clone();
                 for [x, y, z] in cells(&mut random) {
-                    if x < GridSpec::NX && y < GridSpec::NY && z < GridSpec::NZ {
+                    if x < Window::NX && y < Window::NY && z < Window::NZ {
                         occupancy.set(x, y, z, Class::Vegetation.id());
                     }
                 }

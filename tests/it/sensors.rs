@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use npyz::NpyFile;
-use scene::{CameraMaps, Class, GridSpec, SensorRig, VoxelGrid};
+use scene::{CameraMaps, Class, SensorRig, VoxelGrid, Window};
 use sensors::{cloud, color, lidar, order, project, raycast, splat};
 
 use crate::splat_reference::{camera_of, floats, json, reference_cloud};
@@ -44,7 +44,7 @@ fn row_45_raycast_reference() {
     let grid = VoxelGrid::from_dense(&labels).expect("640,000 labels");
     let masks = raycast::ColumnMasks::from_grid(&grid);
     // The reference's grid starts at 0; ours at its lower corner.
-    let origin = DVec3::from_slice(&floats(&meta["origin_m"])) / GridSpec::VOXEL_M;
+    let origin = DVec3::from_slice(&floats(&meta["origin_m"])) / Window::VOXEL_M;
     let (mut hits, mut mismatches, mut other_voxel, mut gap_m) = (0, 0, 0, 0.0f64);
     for beam in 0..beams {
         for step in 0..azimuths {
@@ -61,7 +61,7 @@ fn row_45_raycast_reference() {
             if let Some((t, _)) = got {
                 hits += 1;
                 if open3d[ray].is_finite() {
-                    gap_m = gap_m.max((t * GridSpec::VOXEL_M - f64::from(open3d[ray])).abs());
+                    gap_m = gap_m.max((t * Window::VOXEL_M - f64::from(open3d[ray])).abs());
                 }
             }
         }
@@ -193,7 +193,7 @@ fn cameras_and_lidar_look_the_right_way() {
         // On a face of its voxel, at its range from the sensor.
         let from = DVec3::from(rig.lidars[0].translation_m);
         assert!((at.distance(from) - f64::from(p.range_m)).abs() < 1e-4);
-        let u = GridSpec::to_voxel_units(at);
+        let u = Window::to_voxel_units(at);
         let from_face = (u - u.round()).abs().min_element();
         assert!(from_face < 1e-3, "{at}");
         match p.class {

@@ -15,7 +15,7 @@ use crate::tools::{Choose, ToolCommand};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard};
 use editor::tools::{Act, voxel};
-use scene::{Frame, GridSpec};
+use scene::{Frame, Window};
 
 impl SceneloomApp {
     /// Carries out one command of the tools.
@@ -188,7 +188,7 @@ pub(crate) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'st
 /// True if an edit adds a box whose middle is beside the grid.
 fn lies_outside(edit: &Edit) -> bool {
     match edit {
-        Edit::AddBox { center_m, .. } => GridSpec::column_at(center_m.x, center_m.y).is_none(),
+        Edit::AddBox { center_m, .. } => Window::column_at(center_m.x, center_m.y).is_none(),
         _ => false,
     }
 }

@@ -13,8 +13,6 @@ use super::Class;
 
 /// Edge of a brick in voxels; the grid is one brick high.
 pub const BRICK: usize = 16;
-#[doc(hidden)]
-pub const BRICKS: usize = 13; // until every caller asks its grid
 const BRICK_VOXELS: usize = BRICK * BRICK * BRICK;
 
 /// One brick: labels `[x][y][z]`, z fastest, so that a column is 16 bytes in a row.

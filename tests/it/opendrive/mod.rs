@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use formats::opendrive::{self, LayoutImport, RoadNetwork};
 use glam::DVec2;
-use scene::{BevLayer, GridSpec};
+use scene::{BevLayer, Window};
 
 /// The bundled roads.
 const OWN: [&str; 6] = [
@@ -50,12 +50,12 @@ fn data_dir() -> Option<PathBuf> {
 
 /// Area of a layer, m2.
 fn area_m2(import: &LayoutImport, layer: BevLayer) -> f64 {
-    import.layout.count(layer) as f64 * GridSpec::VOXEL_M * GridSpec::VOXEL_M
+    import.layout.count(layer) as f64 * Window::VOXEL_M * Window::VOXEL_M
 }
 
 /// The map layers at a place of the ego frame.
 fn layers_at(import: &LayoutImport, x_m: f64, y_m: f64) -> Vec<BevLayer> {
-    let [x, y] = GridSpec::column_at(x_m, y_m).expect("inside the window");
+    let [x, y] = Window::column_at(x_m, y_m).expect("inside the window");
     BevLayer::MAP
         .into_iter()
         .filter(|l| import.layout.has(*l, x, y))

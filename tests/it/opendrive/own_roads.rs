@@ -6,7 +6,7 @@ use formats::opendrive::geometry::Shape;
 use formats::opendrive::lanes::MarkStyle;
 use formats::opendrive::objects::ObjectKind;
 use glam::DVec2;
-use scene::{BevLayer, GridSpec, PolylineKind};
+use scene::{BevLayer, PolylineKind, Window};
 
 use super::{OWN, area_m2, layers_at, own, same_heading, window_at};
 
@@ -116,12 +116,12 @@ fn a_junction_is_whole_and_symmetric() {
 
     let import = network.to_layout(DVec2::ZERO, 0.0);
     // Nothing enclosed: every cell that cannot be driven on is reached from the corners of the window.
-    let mut reached = vec![false; GridSpec::COLUMNS];
-    let last = GridSpec::NX - 1;
+    let mut reached = vec![false; Window::COLUMNS];
+    let last = Window::NX - 1;
     let mut stack = vec![(0, 0), (0, last), (last, 0), (last, last)];
     while let Some((x, y)) = stack.pop() {
         if import.layout.has(BevLayer::DrivableArea, x, y)
-            || std::mem::replace(&mut reached[x * GridSpec::NY + y], true)
+            || std::mem::replace(&mut reached[x * Window::NY + y], true)
         {
             continue;
         }
@@ -132,7 +132,7 @@ fn a_junction_is_whole_and_symmetric() {
             (x, (y + 1).min(last)),
         ]);
     }
-    let free = GridSpec::COLUMNS - import.layout.count(BevLayer::DrivableArea);
+    let free = Window::COLUMNS - import.layout.count(BevLayer::DrivableArea);
     assert_eq!(reached.iter().filter(|r| **r).count(), free);
 
     for kind in [PolylineKind::RoadDivider, PolylineKind::LaneDivider] {
@@ -225,9 +225,9 @@ fn every_kind_of_geometry_joins_and_is_paved() {
     for s in [30.0, 90.0, 125.0, 150.0] {
         let here = reference.at(s);
         let import = window_at(&network, 0, s);
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
-                let cell = GridSpec::center(x, y, 0).truncate();
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
+                let cell = Window::center(x, y, 0).truncate();
                 let p = here.position_m + DVec2::from_angle(here.heading_rad).rotate(cell);
                 let distance = samples
                     .iter()

@@ -16,8 +16,8 @@ use nets::lidar::{LearnedRay, LidarNet};
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::{
-    CELLS, CHANNELS, ColumnHeights, DecoderInput, DitCondition, KeysValues, LATENT, ModelError, OccModels,
-    OccVae, Window, fine_vae, tokens_of,
+    CELLS, CHANNELS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, LATENT, ModelError,
+    OccModels, OccVae, fine_vae, tokens_of,
 };
 use safetensors::{Dtype, SafeTensors};
 use scene::VoxelGrid;
@@ -179,7 +179,7 @@ fn vae_agrees_with_python() {
 fn refiner_agrees_with_python() {
     let golden = Golden::open("parity_refiner.safetensors");
     let net = Refiner::bundled().expect("the shipped weights load");
-    let window = Window {
+    let window = CellRect {
         x: 3,
         y: 20,
         rows: 7,

@@ -6,7 +6,7 @@ use editor::Shape;
 use glam::{DVec2, DVec3};
 use numeric::splitmix::scatter;
 use scene::raster::line_cells;
-use scene::{GridSpec, LidarPattern, SensorRig};
+use scene::{LidarPattern, SensorRig, Window};
 use sensors::lidar::Rays;
 
 /// Row 34: any point is in range or none, and its voxel's centre is within half a voxel.
@@ -37,11 +37,11 @@ fn row_34_points_and_centres() {
             _ => scatter(i * 7 + k) * 90.0 - 45.0,
         };
         let p = DVec3::new(at(0), at(1), at(2) / if i % 2 == 0 { 8.0 } else { 1.0 });
-        let Some([x, y, z]) = GridSpec::voxel_at(p) else {
+        let Some([x, y, z]) = Window::voxel_at(p) else {
             continue;
         };
-        assert!(x < GridSpec::NX && y < GridSpec::NY && z < GridSpec::NZ);
-        let off = (GridSpec::center(x, y, z) - p).abs().max_element();
+        assert!(x < Window::NX && y < Window::NY && z < Window::NZ);
+        let off = (Window::center(x, y, z) - p).abs().max_element();
         assert!(off <= 0.2 + 1e-12, "{p}: {off}");
         inside += 1;
     }
@@ -80,7 +80,7 @@ fn row_36_strokes() {
     };
     assert_eq!(
         wide.cells(scene::Extent::WINDOW).expect("all of it").len(),
-        GridSpec::COLUMNS
+        Window::COLUMNS
     );
 }
 

@@ -1,14 +1,14 @@
 //! A street made of boxes of voxels, for the sensors' tests and benchmarks.
 
-use scene::{BevLayer, Class, GridSpec, VoxelGrid};
+use scene::{BevLayer, Class, VoxelGrid, Window};
 
 /// Fills the voxels between two corners (ego frame, metres) with a class.
 pub fn fill(grid: &mut VoxelGrid, min_m: [f64; 3], max_m: [f64; 3], class: Class) {
-    let u = |p: [f64; 3]| GridSpec::to_voxel_units(p.into()).round().max(glam::DVec3::ZERO);
+    let u = |p: [f64; 3]| Window::to_voxel_units(p.into()).round().max(glam::DVec3::ZERO);
     let (low, high) = (u(min_m), u(max_m));
-    for x in low.x as usize..(high.x as usize).min(GridSpec::NX) {
-        for y in low.y as usize..(high.y as usize).min(GridSpec::NY) {
-            for z in low.z as usize..(high.z as usize).min(GridSpec::NZ) {
+    for x in low.x as usize..(high.x as usize).min(Window::NX) {
+        for y in low.y as usize..(high.y as usize).min(Window::NY) {
+            for z in low.z as usize..(high.z as usize).min(Window::NZ) {
                 grid.set(x, y, z, class.id());
             }
         }
@@ -69,16 +69,16 @@ pub fn street() -> (VoxelGrid, Vec<u32>) {
     fill(g, [14.0, -2.8, ground], [20.8, -0.4, 3.0], Class::Truck);
     fill(g, [-22.0, 0.6, ground], [-11.0, 3.4, 3.4], Class::Bus);
     fill(g, [8.0, 4.0, ground], [8.8, 4.8, 1.8], Class::Pedestrian);
-    let mut bev = vec![0; GridSpec::COLUMNS];
-    for x in 0..GridSpec::NX {
-        bev[x * GridSpec::NY + 100] |= BevLayer::RoadDivider.bit();
+    let mut bev = vec![0; Window::COLUMNS];
+    for x in 0..Window::NX {
+        bev[x * Window::NY + 100] |= BevLayer::RoadDivider.bit();
         if x % 10 < 5 {
-            bev[x * GridSpec::NY + 91] |= BevLayer::LaneDivider.bit();
-            bev[x * GridSpec::NY + 109] |= BevLayer::LaneDivider.bit();
+            bev[x * Window::NY + 91] |= BevLayer::LaneDivider.bit();
+            bev[x * Window::NY + 109] |= BevLayer::LaneDivider.bit();
         }
         if (122..130).contains(&x) {
             for y in 82..118 {
-                bev[x * GridSpec::NY + y] |= BevLayer::PedCrossing.bit();
+                bev[x * Window::NY + y] |= BevLayer::PedCrossing.bit();
             }
         }
     }

@@ -15,7 +15,7 @@ use glam::DVec2;
 use job::composite::{composite, untouched_voxels_changed};
 use job::region::Region;
 use job::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode, Stage};
-use scene::{BoxId, Class, Frame, GridSpec, Scene, SceneBox, VoxelGrid, draft};
+use scene::{BoxId, Class, Frame, Scene, SceneBox, VoxelGrid, Window, draft};
 use world::template;
 
 /// What a test tells the running job.
@@ -61,8 +61,8 @@ impl Pipeline for Scripted {
             }
         }
         let mut new = VoxelGrid::new();
-        for x in 0..GridSpec::NX {
-            for y in 0..GridSpec::NY {
+        for x in 0..Window::NX {
+            for y in 0..Window::NY {
                 new.column_mut(x, y)[0] = Class::Vegetation.id();
             }
         }

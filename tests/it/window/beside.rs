@@ -11,7 +11,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
 use scene::background::{Building, Line, LineKind, Tree, TreeKind};
-use scene::{Background, Class, Form, GridSpec, ThingId};
+use scene::{Background, Class, Form, ThingId, Window};
 
 use super::bench::Bench;
 
@@ -71,7 +71,7 @@ fn a_building_is_drawn_and_raised_a_row_deleted_a_hedge_drawn_and_all_undone() {
     let height = |b: &Bench| b.background().get(id).map(|t| t.form.height_m());
     assert_eq!(height(&bench), Some(12.0));
     assert_eq!(bench.things_chosen(), [4]);
-    let [x, y] = GridSpec::column_at(6.0, 20.0).expect("inside");
+    let [x, y] = Window::column_at(6.0, 20.0).expect("inside");
     assert_eq!(bench.frame().occupancy.get(x, y, 5), Class::Manmade.id());
     assert_eq!(
         bench.frame().occupancy,

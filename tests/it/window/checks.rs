@@ -7,7 +7,7 @@ use app::settings::Settings;
 use editor::Edit;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use scene::{BoxId, Class, GridSpec};
+use scene::{BoxId, Class, Window};
 
 use super::bench::Bench;
 
@@ -36,7 +36,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
     let mut bench = Bench::new();
     bench.off();
     // Three voxels in the air, beside the road.
-    let [x, y] = GridSpec::column_at(-20.0, 30.0).expect("inside");
+    let [x, y] = Window::column_at(-20.0, 30.0).expect("inside");
     let cells = vec![[x, y, 9], [x, y, 10], [x + 1, y, 10]];
     let class = Class::Manmade;
     let paint = Edit::PaintVoxels {

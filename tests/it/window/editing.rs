@@ -5,7 +5,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
 use job::RegionMode;
-use scene::{BevLayer, BoxId, Class, GridSpec};
+use scene::{BevLayer, BoxId, Class, Window};
 
 use super::bench::{Bench, Do, car};
 
@@ -30,7 +30,7 @@ fn a_stroke_is_one_undo_step_and_shows_at_once() {
     bench.steps(2);
     assert_eq!(bench.history(), ["Open", "Paint layer"]);
     let painted = bench.frame();
-    let [x, y] = GridSpec::column_at(-10.0, 25.0).expect("inside");
+    let [x, y] = Window::column_at(-10.0, 25.0).expect("inside");
     assert!(painted.layout.has(BevLayer::CarparkArea, x, y));
     assert_eq!(painted.occupancy.get(x, y, 0), Class::DriveableSurface.id());
     bench.key(Modifiers::CTRL, Key::Z);
@@ -73,7 +73,7 @@ fn a_box_is_added_moved_turned_copied_and_deleted() {
         "stands on the ground"
     );
     assert!(bench.app().state.selected == Some(BoxId(8)));
-    let [x, y] = GridSpec::column_at(-15.0, 2.0).expect("inside");
+    let [x, y] = Window::column_at(-15.0, 2.0).expect("inside");
     assert_eq!(
         bench.frame().occupancy.get(x, y, 1),
         Class::Truck.id(),
@@ -155,7 +155,7 @@ fn an_edit_is_generated_in_the_background_and_adopted() {
     bench.wait_until("the result", |b| b.app().generation.live.running.is_none());
     bench.steps(3);
     let frame = bench.frame();
-    let [x, y] = GridSpec::column_at(14.0, 3.0).expect("inside");
+    let [x, y] = Window::column_at(14.0, 3.0).expect("inside");
     assert_eq!(frame.occupancy.get(x, y, 0), Class::Vegetation.id(), "adopted");
     assert_eq!(
         frame.occupancy, frame.source.occupancy,

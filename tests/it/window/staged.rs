@@ -8,7 +8,7 @@ use egui::Modifiers;
 use egui_kittest::kittest::Queryable;
 use job::RegionMode;
 use job::inpaint::InpaintMask;
-use scene::{Class, GridSpec, VoxelGrid};
+use scene::{Class, VoxelGrid, Window};
 use world::scenery::Setting;
 
 use super::bench::{Bench, Do, PATIENCE};
@@ -38,8 +38,8 @@ fn seed_of(bench: &mut Bench) -> Option<u64> {
 
 fn vegetation(bench: &Bench) -> usize {
     let frame = bench.frame();
-    let column = |c: usize| frame.occupancy.column(c / GridSpec::NY, c % GridSpec::NY)[0];
-    (0..GridSpec::COLUMNS)
+    let column = |c: usize| frame.occupancy.column(c / Window::NY, c % Window::NY)[0];
+    (0..Window::COLUMNS)
         .filter(|c| column(*c) == Class::Vegetation.id())
         .count()
 }
@@ -55,10 +55,10 @@ fn a_result_is_shown_beside_the_old_and_declined_or_accepted() {
     assert_eq!(bench.app().state.compare, CompareMode::Off);
     // What was declined can be had back.
     bench.key(Modifiers::COMMAND, egui::Key::Y);
-    assert_eq!(vegetation(&bench), GridSpec::COLUMNS);
+    assert_eq!(vegetation(&bench), Window::COLUMNS);
     let (mut bench, _) = generated();
     bench.click("Accept");
-    assert_eq!(vegetation(&bench), GridSpec::COLUMNS);
+    assert_eq!(vegetation(&bench), Window::COLUMNS);
     assert!(bench.app().staged().is_none());
     assert_eq!(bench.app().state.compare, CompareMode::Off);
     assert!(bench.harness.query_by_label("Decline").is_none());
@@ -91,7 +91,7 @@ fn another_seed_takes_its_place() {
         .as_ref()
         .expect("asked for")
         .key
-        .params;
+        .params.clone();
     assert_eq!((params.seed, params.region), (seed + 1, RegionMode::Full));
     finish(&mut bench);
     assert_eq!(bench.history(), ["Open", "Generate"]);
@@ -112,12 +112,12 @@ fn a_part_is_accepted_by_region_or_class() {
     bench.click("Accept a part");
     bench.click("In the marked region");
     assert_eq!(bench.history(), ["Open", "Accept a part"]);
-    let [x, y] = GridSpec::column_at(8.0, 16.0).expect("inside");
+    let [x, y] = Window::column_at(8.0, 16.0).expect("inside");
     let frame = bench.frame();
     assert_eq!(frame.occupancy.column(x, y)[0], Class::Vegetation.id());
-    let changed = (0..GridSpec::COLUMNS)
+    let changed = (0..Window::COLUMNS)
         .filter(|c| {
-            let (x, y) = (c / GridSpec::NY, c % GridSpec::NY);
+            let (x, y) = (c / Window::NY, c % Window::NY);
             frame.occupancy.column(x, y) != before.column(x, y)
         })
         .count();
@@ -139,7 +139,7 @@ fn a_part_is_accepted_by_region_or_class() {
     bench.steps(3);
     let frame = bench.frame();
     let cars = |g: &VoxelGrid| {
-        let columns = (0..GridSpec::COLUMNS).map(|c| *g.column(c / GridSpec::NY, c % GridSpec::NY));
+        let columns = (0..Window::COLUMNS).map(|c| *g.column(c / Window::NY, c % Window::NY));
         columns.flatten().filter(|l| *l == Class::Car.id()).count()
     };
     assert!(cars(&before) > 0 && cars(&frame.occupancy) == 0);
@@ -195,7 +195,8 @@ fn scenery_is_regenerated_by_rules_everywhere_or_in_a_region() {
     assert_ne!(things(&mut bench), second);
     let second = things(&mut bench);
     // Only what lies in a region is taken.
-    bench.app().state.tools.region = InpaintMask::of_rect([0.0, -40.0].into(), [40.0, 40.0].into());
+    bench.app().state.tools.region =
+        InpaintMask::of_rect(scene::Extent::WINDOW, [0.0, -40.0].into(), [40.0, 40.0].into());
     bench.steps(2);
     bench.click("Accept a part");
     bench.click("In the marked region");
@@ -203,7 +204,7 @@ fn scenery_is_regenerated_by_rules_everywhere_or_in_a_region() {
     let part = things(&mut bench);
     assert!(part.len() > 2 && part.len() < second.len(), "{}", part.len());
     let frame = bench.frame();
-    let behind = (0..99).flat_map(|x| (0..GridSpec::NY).map(move |y| (x, y)));
+    let behind = (0..99).flat_map(|x| (0..Window::NY).map(move |y| (x, y)));
     for (x, y) in behind {
         let columns = [&frame.occupancy, &before].map(|g| *g.column(x, y));
         assert_eq!(columns[0], columns[1], "({x}, {y})");

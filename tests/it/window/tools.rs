@@ -11,7 +11,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::{DVec2, DVec3};
 use job::RegionMode;
-use scene::{BevLayer, BoxId, Class, GridSpec, PolylineKind, SceneBox};
+use scene::{BevLayer, BoxId, Class, PolylineKind, SceneBox, Window};
 
 use super::bench::Bench;
 
@@ -54,7 +54,7 @@ impl Bench {
     }
 
     fn has(&self, layer: BevLayer, x_m: f64, y_m: f64) -> bool {
-        let [x, y] = GridSpec::column_at(x_m, y_m).expect("inside");
+        let [x, y] = Window::column_at(x_m, y_m).expect("inside");
         self.frame().layout.has(layer, x, y)
     }
 }
@@ -346,7 +346,7 @@ fn a_street_across_a_street_makes_a_junction_in_one_step() {
     for x in 0..200 {
         for y in 0..200 {
             let was_road = before.layout.has(BevLayer::DrivableArea, x, y);
-            let p = scene::GridSpec::center(x, y, 0);
+            let p = scene::Window::center(x, y, 0);
             if !was_road {
                 continue;
             }
@@ -505,7 +505,7 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
         .as_ref()
         .expect("asked for")
         .key
-        .params;
+        .params.clone();
     assert_eq!(params.inpaint, bench.app().state.tools.region);
     assert!(params.strength > 0.0);
     assert_eq!(

@@ -20,7 +20,7 @@ fn a_preset_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost()
     );
     let presets = bench.app().generation.tuning.presets.all.clone();
     let draft = presets.iter().position(|s| s.name == "draft").expect("shipped");
-    let params = bench.app().generation.live.params;
+    let params = bench.app().generation.live.params.clone();
     let now = bench
         .app()
         .generation
@@ -32,7 +32,7 @@ fn a_preset_changes_the_next_edit_and_the_receipt_tells_what_the_last_one_cost()
     let predicted = bench.app().generation.tuning.predicted()[draft].1.clone();
     bench.click(&format!("Draft   {predicted}"));
     bench.steps(2);
-    let params = bench.app().generation.live.params;
+    let params = bench.app().generation.live.params.clone();
     assert_eq!(PresetKnobs::of(&params), presets[draft].knobs);
     assert_eq!(bench.app().generation.tuning.current(&params), Some(draft));
     assert!(bench.harness.query_by_label("Quality: draft").is_some());

@@ -21,7 +21,7 @@ pub use view::{Knob, SourceId, View, ViewId};
 
 use rayon::prelude::*;
 
-use super::appearance::{CameraImage, Look, Quality};
+use super::appearance::{Appearance, CameraImage, Quality};
 use super::cloud::GaussianCloud;
 use super::march::GroundHeight;
 use scene::Conditions;
