@@ -293,6 +293,14 @@ pub enum EditError {
         /// The grid.
         extent: Extent,
     },
+    /// A result of another map than the frame's.
+    #[error("a result of {found} is no result of this frame, expected {expected}")]
+    OtherExtent {
+        /// Of the result.
+        found: Extent,
+        /// Of the frame.
+        expected: Extent,
+    },
     /// A shape that misses the grid or every cell centre.
     #[error("the shape covers no cell of the grid")]
     NoCell,

@@ -123,7 +123,11 @@ impl SceneloomApp {
         if !added.ids.is_empty() {
             self.apply(label, &added.edits);
             self.state.choose(&added.ids, Choose::Only);
-            let outside = added.edits.iter().filter(|e| lies_outside(e)).count();
+            let outside = added
+                .edits
+                .iter()
+                .filter(|e| lies_outside(self.document.scene().frame().extent(), e))
+                .count();
             if outside > 0 {
                 let text = format!("{outside} of {} lie outside the map", added.ids.len());
                 let now_s = self.now_s();
@@ -185,10 +189,10 @@ pub(crate) fn of<T>(ids: &[T], one: &'static str, several: &'static str) -> &'st
     if ids.len() > 1 { several } else { one }
 }
 
-/// True if an edit adds a box whose middle is beside the grid.
-fn lies_outside(edit: &Edit) -> bool {
+/// True if an edit adds a box whose middle is beside the map.
+fn lies_outside(extent: Extent, edit: &Edit) -> bool {
     match edit {
-        Edit::AddBox { center_m, .. } => Window::column_at(center_m.x, center_m.y).is_none(),
+        Edit::AddBox { center_m, .. } => extent.column_at(center_m.x, center_m.y).is_none(),
         _ => false,
     }
 }

@@ -334,10 +334,11 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
     let taken = |thing: &&Thing| match part {
         Part::Class(class) => thing.form.class() == *class,
         Part::Columns(columns) => {
+            let extent = after.frame().extent();
             let to_ego = after.frame().world_from_ego.inverse();
             let mut inside = true;
-            authoring::scenery_around::columns(&thing.form.in_frame(&to_ego), 0.0, |x, y| {
-                inside &= columns[before.frame().extent().index(x, y)];
+            authoring::scenery_around::columns(extent, &thing.form.in_frame(&to_ego), 0.0, |x, y| {
+                inside &= columns[extent.index(x, y)];
             });
             inside
         }
@@ -359,7 +360,7 @@ fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
     let things = state.tools.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
     for thing in in_extent(extent, things, &frame.world_from_ego) {
-        authoring::scenery_around::columns(&thing.form, Extent::VOXEL_M, &mut set);
+        authoring::scenery_around::columns(extent, &thing.form, Extent::VOXEL_M, &mut set);
     }
     columns
 }

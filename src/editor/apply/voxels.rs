@@ -37,11 +37,7 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
 pub(crate) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) -> Result<(), EditError> {
     let (found, expected) = (occupancy.extent(), frame.extent());
     if found != expected {
-        return Err(EditError::BadMoment(format!(
-            "the result covers {found} voxels from column {:?}, expected {expected} from {:?} as the frame",
-            found.from(),
-            expected.from()
-        )));
+        return Err(EditError::OtherExtent { found, expected });
     }
     for (x, y, z, class) in frame.painted.iter_set() {
         occupancy.set(x, y, z, class);

@@ -3,7 +3,7 @@
 use super::{Context, Finding, Findings, Fix, MOST, Severity, middle, removal};
 use crate::Edit;
 use scene::raster::box_cells;
-use scene::{Class, Extent, infer, support};
+use scene::{Class, infer, support};
 
 pub const NAME: &str = "occupancy_without_box";
 /// Voxels this far outside a box still belong to it, m: networks draw objects up to a voxel and a half too wide.
@@ -71,13 +71,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
 
 /// Boxes around the voxels, as a correction: the voxels stay as they are.
 fn boxes_for(context: &Context<'_>, class: Class, group: &[[usize; 3]]) -> Vec<Edit> {
-    let found = infer::boxes_around(class, group);
-    // These count columns from the window's corner.
-    let shift_m = Extent::WINDOW.min_m() - context.frame.extent().min_m();
+    let found = infer::boxes_around(context.frame.extent(), class, group);
     let add = |b: scene::SceneBox| Edit::Correct {
         edit: Box::new(Edit::AddBox {
             class,
-            center_m: b.center_m - shift_m,
+            center_m: b.center_m,
             size_m: b.size_m,
             yaw_deg: b.yaw_rad.to_degrees(),
             velocity_mps: None,

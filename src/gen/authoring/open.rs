@@ -143,7 +143,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         let background = match things_of_file < ENOUGH_THINGS {
             true => {
                 let drawn = scenery::background(&import.layout, &boxes, seed);
-                scenery_around::merged(import.background, &drawn)
+                scenery_around::merged(scene::Extent::WINDOW, import.background, &drawn)
             }
             false => import.background,
         };

@@ -71,22 +71,28 @@ impl SceneryWish {
     }
 
     /// Edits that regenerate the scenery of a scene's current frame: what stands whole in the region goes, so do voxels of
-    /// scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border.
+    /// scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border. On a
+    /// larger map all of that happens in the networks' window.
     pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
+        let map = scene.frame().extent();
+        let scene = &*scene.in_window();
         let frame = scene.frame();
         let to_ego = frame.world_from_ego.inverse();
         let columns = self.columns();
         let whole = |form: &Form| {
-            let mut inside = true;
-            scenery_around::columns(form, Window::VOXEL_M, |x, y| {
+            let (mut inside, mut beyond) = (true, true);
+            scenery_around::columns(Extent::WINDOW, form, Window::VOXEL_M, |x, y| {
                 inside &= columns[x * Window::NY + y];
+                beyond = false;
             });
-            inside
+            (inside, beyond)
         };
+        let whole_or_beyond = |form: &Form| whole(form).0;
+        let stands_whole = |form: &Form| whole(form) == (true, false);
         let (mut ids, mut stays) = (Vec::<ThingId>::new(), Background::default());
         for thing in scene.background.iter() {
             let form = thing.form.in_frame(&to_ego);
-            match whole(&form) {
+            match stands_whole(&form) {
                 true => ids.push(thing.id),
                 false => drop(stays.add(form)),
             }
@@ -98,18 +104,21 @@ impl SceneryWish {
             }
             Drawer::Network => self.by_network(scene, &columns)?,
         };
-        let drawn: Background = drawn.iter().filter(|t| whole(&t.form)).cloned().collect();
+        let drawn: Background = drawn
+            .iter()
+            .filter(|t| whole_or_beyond(&t.form))
+            .cloned()
+            .collect();
         let known = stays.len();
-        let merged = scenery_around::merged(stays, &drawn);
+        let merged = scenery_around::merged(Extent::WINDOW, stays, &drawn);
         let come = merged.iter().skip(known);
         let forms: Vec<Form> = come.map(|t| t.form.in_frame(&frame.world_from_ego)).collect();
-        let cells = (0..Window::COLUMNS).filter(|c| columns[*c]);
-        let cells = cells.map(|c| [c / Window::NY, c % Window::NY]).collect();
         let mut edits = Vec::new();
         if !ids.is_empty() {
             edits.push(Edit::RemoveThings { ids });
         }
-        let shape = (!self.region.is_empty()).then_some(Shape::Cells(cells));
+        let everywhere = self.region.is_empty() && map == Extent::WINDOW;
+        let shape = (!everywhere).then(|| Shape::Cells(on_map(map, &columns)));
         edits.push(Edit::ClearScenery { shape });
         if !forms.is_empty() {
             edits.push(Edit::AddThings { forms });
@@ -162,6 +171,13 @@ impl SceneryWish {
     }
 }
 
+/// Columns of a map, `[x, y]`, out of flags of the window's columns.
+fn on_map(map: Extent, of_window: &[bool]) -> Vec<[usize; 2]> {
+    let flags = map.crop(&Extent::WINDOW, of_window, false);
+    let set = map.all_columns().zip(flags).filter(|(_, set)| *set);
+    set.map(|(column, _)| column).collect()
+}
+
 /// Columns on which nothing that a network draws may stand.
 struct Paved {
     /// Road, car park and boxes.
@@ -206,7 +222,7 @@ impl Paved {
             return Window::column_at(at.x, at.y).is_none_or(|[x, y]| !taken[x * Window::NY + y]);
         }
         let (mut on, mut columns) = (0, 0);
-        scenery_around::columns(form, 0.0, |x, y| {
+        scenery_around::columns(Extent::WINDOW, form, 0.0, |x, y| {
             on += usize::from(taken[x * Window::NY + y]);
             columns += 1;
         });

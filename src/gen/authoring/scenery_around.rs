@@ -3,21 +3,25 @@
 use glam::DVec2;
 
 use scene::raster::{disc_cells, line_cells, polygon_cells};
-use scene::{Background, Extent, Form, Window};
+use scene::{Background, Extent, Form};
 
 /// Room around a thing of the file, m.
 const ROOM_M: f64 = 1.0;
 
-/// The things that are there, and of the drawn ones those that keep clear of them.
-pub fn merged(there: Background, drawn: &Background) -> Background {
-    let mut taken = vec![false; Window::COLUMNS];
+/// The things that are there, and of those drawn on a map the ones that keep clear of them.
+pub fn merged(extent: Extent, there: Background, drawn: &Background) -> Background {
+    let mut taken = vec![false; extent.columns()];
     for thing in there.iter() {
-        columns(&thing.form, ROOM_M, |x, y| taken[x * Window::NY + y] = true);
+        columns(extent, &thing.form, ROOM_M, |x, y| {
+            taken[extent.index(x, y)] = true
+        });
     }
     let mut out = there;
     for thing in drawn.iter() {
         let mut free = true;
-        columns(&thing.form, 0.0, |x, y| free &= !taken[x * Window::NY + y]);
+        columns(extent, &thing.form, 0.0, |x, y| {
+            free &= !taken[extent.index(x, y)]
+        });
         if free {
             out.add(thing.form.clone());
         }
@@ -25,20 +29,20 @@ pub fn merged(there: Background, drawn: &Background) -> Background {
     out
 }
 
-/// The columns that a form stands on or hangs over, grown by a margin.
-pub fn columns(form: &Form, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
+/// The columns of a map that a form stands on or hangs over, grown by a margin.
+pub fn columns(extent: Extent, form: &Form, margin_m: f64, mut visit: impl FnMut(usize, usize)) {
     let around = |outline_m: &[DVec2], visit: &mut dyn FnMut(usize, usize)| {
-        polygon_cells(Extent::WINDOW, outline_m, &mut *visit);
+        polygon_cells(extent, outline_m, &mut *visit);
         let ring: Vec<DVec2> = outline_m.iter().chain(outline_m.first()).copied().collect();
-        line_cells(Extent::WINDOW, &ring, margin_m + Window::VOXEL_M / 2.0, visit);
+        line_cells(extent, &ring, margin_m + Extent::VOXEL_M / 2.0, visit);
     };
     match form {
         Form::Building(b) => around(&b.outline_m, &mut visit),
         Form::Shrubs(s) => around(&s.outline_m, &mut visit),
-        Form::Line(l) => line_cells(Extent::WINDOW, &l.points_m, l.width_m / 2.0 + margin_m, visit),
-        Form::Bridge(b) => line_cells(Extent::WINDOW, &b.points_m, b.width_m / 2.0 + margin_m, visit),
-        Form::Tree(t) => disc_cells(Extent::WINDOW, t.position_m, t.crown_radius_m + margin_m, visit),
-        Form::Post(p) => disc_cells(Extent::WINDOW, p.position_m, form.overhang_m() + margin_m, visit),
+        Form::Line(l) => line_cells(extent, &l.points_m, l.width_m / 2.0 + margin_m, visit),
+        Form::Bridge(b) => line_cells(extent, &b.points_m, b.width_m / 2.0 + margin_m, visit),
+        Form::Tree(t) => disc_cells(extent, t.position_m, t.crown_radius_m + margin_m, visit),
+        Form::Post(p) => disc_cells(extent, p.position_m, form.overhang_m() + margin_m, visit),
     }
 }
 
@@ -64,7 +68,7 @@ mod tests {
         for x in [-20.0, 0.0, 6.0, 20.0] {
             drawn.add(tree(x));
         }
-        let both = merged(there, &drawn);
+        let both = merged(Extent::WINDOW, there, &drawn);
         let forms: Vec<Form> = both.iter().map(|t| t.form.clone()).collect();
         assert_eq!(forms, [Form::Building(house), tree(-20.0), tree(20.0)]);
     }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use scene::graph::LaneRole;
-use scene::{BevLayer, BevLayout, PolylineKind, Window};
+use scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A point in the middle of a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,7 +154,10 @@ impl<'a> LaneMap<'a> {
 
     /// True if any of the layers is there.
     pub fn has(&self, bits: u32, p: DVec2) -> bool {
-        Window::column_at(p.x, p.y).is_some_and(|[x, y]| self.layout.cell(x, y) & bits != 0)
+        self.layout
+            .extent()
+            .column_at(p.x, p.y)
+            .is_some_and(|[x, y]| self.layout.cell(x, y) & bits != 0)
     }
 
     /// The nearest lane point.

@@ -13,7 +13,7 @@ use scene::graph::{
     Edge, LaneRole, Locked, NodeKind, ObjectNode, ObjectState, RelationKind, SceneGraph, SizeHint,
 };
 use scene::raster::box_cells;
-use scene::{BevLayer, BevLayout, BoxId, Class, Extent, SceneBox};
+use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox};
 use world::draw::Draw;
 
 /// As far off, m, is wholly wrong for what should be near.
@@ -567,7 +567,7 @@ impl Placer<'_> {
             _ => u32::MAX,
         };
         if allowed != u32::MAX {
-            box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+            box_cells(self.map.layout.extent(), b, 0.0, |x, y| {
                 on &= self.map.layout.cell(x, y) & allowed != 0
             });
         }

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::spots::Gather;
 use scene::graph::LaneRole;
-use scene::{BevLayer, Class, Window};
+use scene::{BevLayer, Class};
 
 impl Gather<'_, '_> {
     /// At the outer edge of the outermost lanes, in the direction of the lane.
@@ -106,10 +106,11 @@ impl Gather<'_, '_> {
     }
 
     pub(super) fn cells(&mut self, bits: u32, step: usize, yaw: impl Fn(DVec2) -> f64) {
-        for x in (0..Window::NX).step_by(step) {
-            for y in (0..Window::NY).step_by(step) {
+        let extent = self.map.layout.extent();
+        for x in (0..extent.nx()).step_by(step) {
+            for y in (0..extent.ny()).step_by(step) {
                 if self.map.layout.cell(x, y) & bits != 0 {
-                    let p = Window::center(x, y, 0).truncate();
+                    let p = extent.center(x, y, 0).truncate();
                     let jitter = DVec2::new(self.draw.range(-0.2, 0.2), self.draw.range(-0.2, 0.2));
                     self.push(p + jitter, yaw(p));
                 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use crate::{BoxId, BoxLabel, Class, Frame, Relief, SceneBox, VoxelGrid, Window};
+use crate::{BoxId, BoxLabel, Class, Extent, Frame, Relief, SceneBox, VoxelGrid, Window};
 
 /// Fewest voxels of a component that is worth a box.
 const LEAST_VOXELS: usize = 4;
@@ -34,16 +34,16 @@ pub fn boxes(labels: &VoxelGrid) -> BTreeMap<BoxId, SceneBox> {
     out
 }
 
-/// Boxes around voxels `[x, y, z]` of one class that are taken to touch each other; several where they are too many
+/// Boxes around voxels `[x, y, z]` of one class on a map that are taken to touch each other; several where they are too many
 /// for one object. The ids count from 1.
-pub fn boxes_around(class: Class, voxels: &[[usize; 3]]) -> Vec<SceneBox> {
+pub fn boxes_around(extent: Extent, class: Class, voxels: &[[usize; 3]]) -> Vec<SceneBox> {
     let mut columns: Vec<[usize; 2]> = voxels.iter().map(|&[x, y, _]| [x, y]).collect();
     columns.sort_unstable();
     columns.dedup();
     let component = Component {
         points_m: columns
             .iter()
-            .map(|&[x, y]| Window::center(x, y, 0).truncate())
+            .map(|&[x, y]| extent.center(x, y, 0).truncate())
             .collect(),
         top: voxels.iter().map(|v| v[2]).max().unwrap_or(0),
     };

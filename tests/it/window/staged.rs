@@ -91,7 +91,8 @@ fn another_seed_takes_its_place() {
         .as_ref()
         .expect("asked for")
         .key
-        .params.clone();
+        .params
+        .clone();
     assert_eq!((params.seed, params.region), (seed + 1, RegionMode::Full));
     finish(&mut bench);
     assert_eq!(bench.history(), ["Open", "Generate"]);

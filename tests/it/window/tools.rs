@@ -505,7 +505,8 @@ fn a_region_is_marked_and_asked_for_though_nothing_was_edited() {
         .as_ref()
         .expect("asked for")
         .key
-        .params.clone();
+        .params
+        .clone();
     assert_eq!(params.inpaint, bench.app().state.tools.region);
     assert!(params.strength > 0.0);
     assert_eq!(

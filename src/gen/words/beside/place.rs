@@ -8,14 +8,15 @@ use glam::DVec2;
 use super::{SideOf, Where};
 use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
 use scene::road_map::RoadMap;
-use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox, Window};
+use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox};
 use world::scenery::distance_cells;
 
 /// Things end at the border of the grid, m.
-const BORDER_M: f64 = 39.4;
+const BORDER_M: f64 = 0.6;
 
 /// A scene's ground with room for new things; all in the ego frame.
 pub struct Ground {
+    extent: Extent,
     /// Lanes, crossings and junctions.
     pub roads: RoadMap,
     to_paved: Vec<f32>,
@@ -28,16 +29,16 @@ impl Ground {
     pub fn new(layout: &BevLayout, boxes: &BTreeMap<BoxId, SceneBox>, things: &Background) -> Self {
         let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
         let roads = RoadMap::new(layout);
+        let extent = layout.extent();
         let mut out = Self {
+            extent,
             own: OnceCell::new(),
             roads,
             to_paved: distance_cells(|c| layout.cells()[c] & paved != 0),
-            taken: vec![false; Window::COLUMNS],
+            taken: vec![false; extent.columns()],
         };
         for b in boxes.values() {
-            box_cells(Extent::WINDOW, b, 0.4, |x, y| {
-                out.taken[x * Window::NY + y] = true
-            });
+            box_cells(extent, b, 0.4, |x, y| out.taken[extent.index(x, y)] = true);
         }
         for thing in things.iter() {
             out.take(&thing.form);
@@ -47,49 +48,59 @@ impl Ground {
 
     /// Marks the ground of a form as taken.
     pub fn take(&mut self, form: &Form) {
-        let taken = &mut self.taken;
-        let take = |x: usize, y: usize| taken[x * Window::NY + y] = true;
+        let (extent, taken) = (self.extent, &mut self.taken);
+        let take = |x: usize, y: usize| taken[extent.index(x, y)] = true;
         match form {
-            Form::Building(b) => polygon_cells(Extent::WINDOW, &b.outline_m, take),
-            Form::Line(l) => line_cells(Extent::WINDOW, &l.points_m, l.width_m / 2.0 + 0.2, take),
-            Form::Bridge(b) => line_cells(Extent::WINDOW, &b.points_m, b.width_m / 2.0, take),
-            Form::Tree(t) => disc_cells(Extent::WINDOW, t.position_m, 1.0, take),
-            Form::Post(p) => disc_cells(Extent::WINDOW, p.position_m, 0.6, take),
+            Form::Building(b) => polygon_cells(extent, &b.outline_m, take),
+            Form::Line(l) => line_cells(extent, &l.points_m, l.width_m / 2.0 + 0.2, take),
+            Form::Bridge(b) => line_cells(extent, &b.points_m, b.width_m / 2.0, take),
+            Form::Tree(t) => disc_cells(extent, t.position_m, 1.0, take),
+            Form::Post(p) => disc_cells(extent, p.position_m, 0.6, take),
             // Other things may grow or stand among shrubs.
             Form::Shrubs(_) => {}
         }
     }
 
     fn own(&self) -> &[DVec2] {
-        let all = || (0..Window::COLUMNS).map(|c| self.roads.along_ego_lane(middle_m(c)));
+        let all = || (0..self.extent.columns()).map(|c| self.roads.along_ego_lane(self.middle_m(c)));
         self.own.get_or_init(|| all().collect())
     }
 
     /// Distance from paved ground, m.
     pub fn paved_m(&self, p: DVec2) -> f64 {
-        Window::column_at(p.x, p.y).map_or(0.0, |[x, y]| {
-            f64::from(self.to_paved[x * Window::NY + y]) * Window::VOXEL_M
+        self.extent.column_at(p.x, p.y).map_or(0.0, |[x, y]| {
+            f64::from(self.to_paved[self.extent.index(x, y)]) * Extent::VOXEL_M
         })
     }
 
+    /// True inside the map, that far from its sides and a little more.
+    fn is_within(&self, p: DVec2, margin_m: f64) -> bool {
+        let (min, max) = (self.extent.min_m().truncate(), self.extent.max_m().truncate());
+        let margin_m = margin_m + BORDER_M;
+        p.cmpgt(min + margin_m).all() && p.cmplt(max - margin_m).all()
+    }
+
+    fn middle_m(&self, c: usize) -> DVec2 {
+        let [x, y] = self.extent.column(c);
+        self.extent.center(x, y, 0).truncate()
+    }
+
     fn is_free(&self, x: usize, y: usize, gap_m: f64) -> bool {
-        let c = x * Window::NY + y;
-        !self.taken[c] && f64::from(self.to_paved[c]) * Window::VOXEL_M > gap_m
+        let c = self.extent.index(x, y);
+        !self.taken[c] && f64::from(self.to_paved[c]) * Extent::VOXEL_M > gap_m
     }
 
     /// True if a disc is free and off the paved ground.
     pub fn has_room(&self, p: DVec2, radius_m: f64) -> bool {
-        let mut free = p.abs().max_element() < BORDER_M - radius_m;
-        disc_cells(Extent::WINDOW, p, radius_m, |x, y| {
-            free &= self.is_free(x, y, 0.3)
-        });
+        let mut free = self.is_within(p, radius_m);
+        disc_cells(self.extent, p, radius_m, |x, y| free &= self.is_free(x, y, 0.3));
         free
     }
 
     /// True if an outline is free, off the paved ground and in the grid.
     pub fn has_room_for(&self, outline_m: &[DVec2]) -> bool {
-        let mut free = outline_m.iter().all(|p| p.abs().max_element() < BORDER_M);
-        polygon_cells(Extent::WINDOW, outline_m, |x, y| free &= self.is_free(x, y, 0.4));
+        let mut free = outline_m.iter().all(|p| self.is_within(*p, 0.0));
+        polygon_cells(self.extent, outline_m, |x, y| free &= self.is_free(x, y, 0.4));
         free
     }
 
@@ -118,10 +129,10 @@ impl Ground {
         fits: &dyn Fn(DVec2) -> bool,
     ) -> Option<DVec2> {
         let all = self.own();
-        let mut order: Vec<(f64, usize)> = (0..Window::COLUMNS)
+        let mut order: Vec<(f64, usize)> = (0..self.extent.columns())
             .filter(|c| !self.taken[*c])
             .filter_map(|c| {
-                let paved = f64::from(self.to_paved[c]) * Window::VOXEL_M;
+                let paved = f64::from(self.to_paved[c]) * Extent::VOXEL_M;
                 let own = all[c];
                 // Beside the own road rather than beside one that leads away from it.
                 let cost = (own.x - along_m).abs() * 2.0 + own.y.abs() * 0.25 + (paved - from_paved_m).abs();
@@ -130,10 +141,10 @@ impl Ground {
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let found = order.iter().find(|(_, c)| {
-            let p = middle_m(*c);
+            let p = self.middle_m(*c);
             self.fits(place, p) && fits(p)
         });
-        found.map(|(_, c)| middle_m(*c))
+        found.map(|(_, c)| self.middle_m(*c))
     }
 
     /// Lines beside the ego's road at a distance from its paved ground, in order along it; gaps where there is no room.
@@ -146,8 +157,8 @@ impl Ground {
         let mut at: BTreeMap<i64, (f64, DVec2)> = BTreeMap::new();
         let all = self.own();
         for (c, own) in all.iter().enumerate() {
-            let p = middle_m(c);
-            let paved = f64::from(self.to_paved[c]) * Window::VOXEL_M;
+            let p = self.middle_m(c);
+            let paved = f64::from(self.to_paved[c]) * Extent::VOXEL_M;
             let wrong_side = (own.y > 0.0) != (side == SideOf::Left);
             if wrong_side
                 || (paved - from_paved_m).abs() > 0.3
@@ -178,8 +189,4 @@ impl Ground {
             .map(|l| l.into_iter().map(|(.., p)| p).collect())
             .collect()
     }
-}
-
-fn middle_m(c: usize) -> DVec2 {
-    Window::center(c / Window::NY, c % Window::NY, 0).truncate()
 }
