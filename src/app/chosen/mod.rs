@@ -15,7 +15,7 @@ use crate::tools::{Choose, ToolCommand};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard};
 use editor::tools::{Act, voxel};
-use scene::{Frame, Window};
+use scene::{Extent, Frame};
 
 impl SceneloomApp {
     /// Carries out one command of the tools.
