@@ -23,6 +23,8 @@ struct Step {
     label: Label, // of the edit that led here
     scene: Arc<Scene>,
     bytes: usize, // not shared with the step before; 0 for the first
+    /// Revisions that this very content had while other frames of it were shown.
+    shown_before: Vec<SceneRev>,
 }
 
 /// What an undo step is called.
@@ -35,6 +37,9 @@ pub type Label = std::borrow::Cow<'static, str>;
 pub struct Stale;
 
 impl Document {
+    /// Changes of the shown frame after which a running job can no longer be told to belong to a step.
+    const SHOWN_BEFORE: usize = 256;
+
     /// States kept at most, the current one included, however small they are.
     pub const MAX_STEPS: usize = 4096;
     /// Memory that the history may take unless the user wants otherwise.
@@ -49,6 +54,7 @@ impl Document {
             label: "Open".into(),
             scene: Arc::new(scene),
             bytes: 0,
+            shown_before: Vec::new(),
         };
         Self {
             steps: vec![first],
@@ -203,17 +209,14 @@ impl Document {
         self.saved = SceneRev::fresh();
     }
 
-    /// Puts a generated occupancy into the step that is shown, if that is the state `rev` which it was generated for. It
-    /// becomes the occupancy and the source of the frame; painted voxels stay. No undo step is added. Returns the new
-    /// revision of the step.
-    pub fn adopt(&mut self, rev: SceneRev, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
-        let step = &mut self.steps[self.at];
-        if self.drag.is_some() || step.scene.rev != rev {
-            return Err(Stale);
-        }
-        let mut scene = Scene::clone(&step.scene);
-        super::apply::adopt(scene.frame_mut(), occupancy).map_err(|_| Stale)?;
+    /// Puts a generated occupancy into a frame of the step that is shown, if that is the state `rev` which it was generated
+    /// for; another frame may be shown by now. It becomes the occupancy and the source of the frame; painted voxels stay. No
+    /// undo step is added. Returns the new revision of the step.
+    pub fn adopt(&mut self, rev: SceneRev, frame: usize, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
+        let scene = self.with_result(rev, frame, occupancy)?;
         let rev = scene.rev;
+        let step = &mut self.steps[self.at];
+        step.shown_before.clear();
         step.scene = Arc::new(scene);
         self.weigh(self.at);
         self.weigh(self.at + 1);
@@ -226,18 +229,29 @@ impl Document {
         &mut self,
         label: impl Into<Label>,
         rev: SceneRev,
+        frame: usize,
         occupancy: VoxelGrid,
     ) -> Result<SceneRev, Stale> {
-        if self.drag.is_some() || self.settled_scene().rev != rev {
-            return Err(Stale);
-        }
-        let mut scene = Scene::clone(self.settled_scene());
-        super::apply::adopt(scene.frame_mut(), occupancy).map_err(|_| Stale)?;
+        let scene = self.with_result(rev, frame, occupancy)?;
         self.push(label.into(), scene);
         Ok(self.settled_scene().rev)
     }
 
-    /// Like [`Self::adopt_as_step`], and replaces the things beside the roads, whose voxels are in the occupancy.
+    /// The step that is shown, with a generated occupancy in one of its frames.
+    fn with_result(&self, rev: SceneRev, frame: usize, occupancy: VoxelGrid) -> Result<Scene, Stale> {
+        let step = &self.steps[self.at];
+        let is_current = step.scene.rev == rev || step.shown_before.contains(&rev);
+        if self.drag.is_some() || !is_current {
+            return Err(Stale);
+        }
+        let mut scene = Scene::clone(&step.scene);
+        let frame = scene.frames.get_mut(frame).ok_or(Stale)?;
+        super::apply::adopt(Arc::make_mut(frame), occupancy).map_err(|_| Stale)?;
+        scene.rev = SceneRev::fresh();
+        Ok(scene)
+    }
+
+    /// Like [`Self::adopt_as_step`] for the frame that is shown, and replaces the things beside the roads, whose voxels are in the occupancy.
     pub fn adopt_with_things(
         &mut self,
         label: impl Into<Label>,
@@ -270,6 +284,10 @@ impl Document {
         self.drag = None;
         if step.scene.current != index {
             let was_saved = self.saved == step.scene.rev;
+            step.shown_before.push(step.scene.rev);
+            if step.shown_before.len() > Self::SHOWN_BEFORE {
+                step.shown_before.remove(0);
+            }
             let scene = Arc::make_mut(&mut step.scene);
             scene.current = index;
             scene.rev = SceneRev::fresh();
@@ -296,6 +314,7 @@ impl Document {
             label,
             scene: Arc::new(scene),
             bytes,
+            shown_before: Vec::new(),
         });
         self.at = self.steps.len() - 1;
         self.forget_oldest();

@@ -218,10 +218,10 @@ proptest! {
                 Action::Adopt => {
                     let mut result = before.frame().occupancy.clone();
                     result.set(3, 3, 3, 16);
-                    let rev = document.adopt(before.rev, result).expect("current");
+                    let rev = document.adopt(before.rev, 0, result).expect("current");
                     prop_assert_eq!(rev, document.scene().rev);
                     prop_assert_eq!(document.scene().frame().occupancy.get(3, 3, 3), 16);
-                    prop_assert!(document.adopt(before.rev, VoxelGrid::new()).is_err());
+                    prop_assert!(document.adopt(before.rev, 0, VoxelGrid::new()).is_err());
                     model[at] = Scene::clone(document.scene());
                 }
                 Action::Jump(index) => {
@@ -343,7 +343,7 @@ fn results_settle_their_state_and_late_ones_are_refused() {
     let rev = document.scene().rev;
     let mut result = VoxelGrid::new();
     result.set(10, 10, 5, Class::Vegetation.id());
-    let settled = document.adopt(rev, result.clone()).expect("current");
+    let settled = document.adopt(rev, 0, result.clone()).expect("current");
     assert_ne!(settled, rev);
     assert_eq!(document.history().len(), 2, "no new step");
     let frame = document.scene().frame().clone();
@@ -351,11 +351,11 @@ fn results_settle_their_state_and_late_ones_are_refused() {
     assert_eq!(frame.source.occupancy, result);
     assert_eq!(frame.source.boxes, frame.boxes);
     // Late: another edit, a drag, the old revision.
-    assert_eq!(document.adopt(rev, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.adopt(rev, 0, VoxelGrid::new()), Err(Stale));
     document.preview(&slide(3.0)).expect("sound");
     let dragged = document.scene().rev;
-    assert_eq!(document.adopt(dragged, VoxelGrid::new()), Err(Stale));
-    assert_eq!(document.adopt(settled, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.adopt(dragged, 0, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.adopt(settled, 0, VoxelGrid::new()), Err(Stale));
     document.cancel_drag();
     // Undo leads to the state before, redo to the settled one.
     document.undo();
@@ -380,13 +380,42 @@ fn saved_and_dirty() {
     assert!(document.is_dirty());
     document.redo();
     let rev = document.scene().rev;
-    document.adopt(rev, VoxelGrid::new()).expect("current");
+    document.adopt(rev, 0, VoxelGrid::new()).expect("current");
     assert!(document.is_dirty(), "the file lacks the result");
     document.mark_saved();
     assert!(document.select_frame(1));
     assert!(!document.is_dirty(), "looking at another frame is no change");
     assert_eq!(document.scene().current, 1);
     assert!(!document.select_frame(2));
+}
+
+/// A job runs while the user looks at another frame: its result goes where it belongs.
+#[test]
+fn a_result_is_adopted_into_the_frame_it_was_made_for() {
+    let mut document = Document::new(start());
+    let asked = document.scene().clone();
+    assert!(document.select_frame(1));
+    let mut result = VoxelGrid::new();
+    result.set(7, 8, 9, Class::Vegetation.id());
+    assert_eq!(document.adopt(asked.rev, 2, result.clone()), Err(Stale));
+    let shown = document.scene().frames[1].clone();
+    document
+        .adopt(asked.rev, 0, result.clone())
+        .expect("the same content");
+    let scene = document.scene();
+    assert_eq!((scene.current, &scene.frames[0].occupancy), (1, &result));
+    assert!(
+        Arc::ptr_eq(&scene.frames[1], &shown),
+        "the frame that is shown stays"
+    );
+    // Adopted or edited since, it is too late.
+    assert_eq!(document.adopt(asked.rev, 0, result.clone()), Err(Stale));
+    let asked = document.scene().clone();
+    document.select_frame(0);
+    document
+        .apply("Remove", &Edit::RemoveBox { id: BoxId(1) })
+        .expect("there");
+    assert_eq!(document.adopt(asked.rev, 1, result), Err(Stale));
 }
 
 #[test]
@@ -480,7 +509,7 @@ fn the_history_is_bounded_by_bytes() {
     let mut grid = large.scene().frame().occupancy.clone();
     (0..Extent::WINDOW.nx()).for_each(|x| grid.set(x, 9, 9, Class::Vegetation.id()));
     let before = large.history_bytes();
-    large.adopt(large.scene().rev, grid).expect("shown");
+    large.adopt(large.scene().rev, 0, grid).expect("shown");
     assert_ne!(large.history_bytes(), before);
 }
 
@@ -491,7 +520,7 @@ fn what_was_inpainted_can_be_undone() {
     let mut occupancy = before.frame().occupancy.clone();
     occupancy.set(3, 4, 5, Class::Manmade.id());
     let rev = document
-        .adopt_as_step("Generate", before.rev, occupancy.clone())
+        .adopt_as_step("Generate", before.rev, 0, occupancy.clone())
         .expect("shown");
     assert_eq!(document.scene().rev, rev);
     assert_eq!(document.scene().frame().occupancy, occupancy);
@@ -502,7 +531,7 @@ fn what_was_inpainted_can_be_undone() {
     assert_eq!(document.redo(), Some("Generate"));
     // Too late: another state is shown by now.
     assert_eq!(
-        document.adopt_as_step("Generate", before.rev, occupancy),
+        document.adopt_as_step("Generate", before.rev, 0, occupancy),
         Err(Stale)
     );
 }

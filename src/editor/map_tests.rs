@@ -272,7 +272,7 @@ fn a_result_settles_what_was_authored_within_the_window() {
     assert_eq!(scene.frame().source, source);
     let mut document = Document::new(scene);
     let rev = document.scene().rev;
-    assert_eq!(document.adopt(rev, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.adopt(rev, 0, VoxelGrid::new()), Err(Stale));
     assert_eq!(document.scene().rev, rev);
     assert_eq!(start.source.layout, start.layout);
 }

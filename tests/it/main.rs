@@ -11,6 +11,7 @@ mod diffusion;
 mod fuzz;
 mod house;
 mod inferred;
+mod map;
 mod opendrive;
 mod parity;
 mod pipeline;

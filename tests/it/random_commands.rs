@@ -367,7 +367,10 @@ fn random_commands_break_nothing() {
                 }
                 let late = random.one_in(3);
                 let rev = if late { SceneRev::fresh() } else { before.rev };
-                assert_eq!(document.adopt(rev, occupancy).is_err(), late);
+                assert_eq!(
+                    document.adopt(rev, document.scene().current, occupancy).is_err(),
+                    late
+                );
                 model.states[model.at] = document.settled_scene().clone();
             }
             _ => match random.below(3) {

@@ -49,7 +49,7 @@ pub fn run_and_adopt(
         params,
     };
     let result = progress.with_ctx(|ctx| pipeline.run(&job, ctx))?;
-    document.adopt(result.rev(), result.occupancy.clone())?;
+    document.adopt(result.rev(), result.frame, result.occupancy.clone())?;
     Ok(result)
 }
 

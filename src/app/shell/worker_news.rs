@@ -158,11 +158,11 @@ impl SceneloomApp {
         let adopted = match own_step_label {
             Some(label) => self
                 .document
-                .adopt_as_step(label, result.rev(), result.occupancy.clone())
+                .adopt_as_step(label, result.rev(), result.frame, result.occupancy.clone())
                 .is_ok(),
             None => self
                 .document
-                .adopt(result.rev(), result.occupancy.clone())
+                .adopt(result.rev(), result.frame, result.occupancy.clone())
                 .is_ok(),
         };
         if adopted {
@@ -222,8 +222,10 @@ impl SceneloomApp {
             .take()
             .filter(|(rev, _)| *rev == before.rev);
         let adopted = match drawn {
-            Some(_) => self.document.adopt(before.rev, occupancy),
-            None => self.document.adopt_as_step(label, before.rev, occupancy),
+            Some(_) => self.document.adopt(before.rev, before.current, occupancy),
+            None => self
+                .document
+                .adopt_as_step(label, before.rev, before.current, occupancy),
         };
         if adopted.is_ok() {
             let note = format!("After {step} of {steps} steps");

@@ -1,6 +1,6 @@
 //! Occupancy as Occ3D labels.
 
-use scene::Class;
+use scene::{Class, Extent};
 
 use super::{Exporter, OutFile};
 use crate::{FormatError, Holds, occ3d};
@@ -13,7 +13,8 @@ pub const EXPORTER: Exporter = Exporter {
     holds: &[Holds::Occupancy],
     needs: &[],
     write: |scene, _| {
-        let occupancy = &scene.frame().occupancy;
+        // A map of another extent is cut to what the format holds.
+        let occupancy = &scene.frame().occupancy.crop(Extent::WINDOW);
         if let Some((x, y, z, label)) = occupancy.iter_set().find(|(.., label)| *label > Class::FREE) {
             let free = Class::FREE;
             return Err(FormatError::new(format!(

@@ -35,7 +35,8 @@ impl AgreementCount {
             .sum();
         let road_bits = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         for (c, cell) in frame.bev_channels().into_iter().enumerate() {
-            let column = occupancy.column(c / Window::NY, c % Window::NY);
+            let [x, y] = frame.extent().column(c);
+            let column = occupancy.column(x, y);
             let holds = |test: fn(Class) -> bool| column.iter().any(|v| Class::from_id(*v).is_some_and(test));
             let mut count = |pair: fn(&mut Self) -> &mut [u64; 2], wanted: bool, found: bool| {
                 pair(self)[0] += u64::from(wanted && found);

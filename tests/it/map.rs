@@ -1,0 +1,217 @@
+//! A map of 480 x 320 x 16, larger than the networks' window: made, generated within the window, edited in it and far
+//! beyond it, seen by the sensors, saved, and worked on by the command line.
+
+use std::sync::Arc;
+
+use editor::{Document, Edit};
+use formats::loom;
+use glam::{DVec2, DVec3};
+use job::pipeline::OccPipeline;
+use job::{GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
+use scene::{
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Extent, Frame, Scene, SensorRig, Shape,
+    VoxelGrid, draft,
+};
+use sensors::appearance::Quality;
+use sensors::cameras::{self, CameraInput, Detail, Ready, RenderContext, RenderOptions};
+
+use super::cli::{Folder, json, sceneloom};
+
+fn map() -> Extent {
+    Extent::new([-150, -110], [480, 320]).expect("a sound size")
+}
+
+/// A road of 192 m along x over the whole map, walkways beside it, and its rough voxels.
+fn road() -> Scene {
+    let layout = BevLayout::over(map());
+    let frame = Frame::new(layout, Default::default(), VoxelGrid::over(map()));
+    let mut document = Document::new(Scene::single("map", frame, Arc::new(SensorRig::default()), 3));
+    let strip = |layer, low, high| Edit::PaintBev {
+        layer,
+        shape: Shape::Rect {
+            min_m: DVec2::new(-1e4, low),
+            max_m: DVec2::new(1e4, high),
+        },
+        value: true,
+    };
+    let strips = [
+        strip(BevLayer::DrivableArea, -5.2, 3.6),
+        strip(BevLayer::Walkway, 3.6, 6.0),
+        strip(BevLayer::Walkway, -7.6, -5.2),
+    ];
+    document.apply_all("Paint", &strips).expect("on the map");
+    let layout = document.scene().frame().layout.clone();
+    assert_eq!(layout.count(BevLayer::DrivableArea), 480 * 22, "over all of it");
+    let voxels = draft::draft(&layout, std::iter::empty());
+    let frame = Frame::new(layout, Default::default(), voxels);
+    Scene::single("map", frame, Arc::new(SensorRig::default()), 3)
+}
+
+fn car(id: u32, at_m: DVec2) -> Edit {
+    Edit::AddBox {
+        class: Class::Car,
+        center_m: at_m.extend(0.8),
+        size_m: DVec3::new(4.6, 1.9, 1.6),
+        yaw_deg: 0.0,
+        velocity_mps: None,
+        id: Some(BoxId(id)),
+        label: BoxLabel::default(),
+    }
+}
+
+fn generate(pipeline: &mut OccPipeline, document: &mut Document, region: RegionMode) -> GenResult {
+    let params = GenParams {
+        steps: 4,
+        region,
+        ..GenParams::default()
+    };
+    let job = Job {
+        scene: document.scene().clone(),
+        params,
+    };
+    let result = pipeline.run(&job, &JobCtx::detached()).expect("a result");
+    document
+        .adopt(result.rev(), result.frame, result.occupancy.clone())
+        .expect("the current state");
+    result
+}
+
+/// Voxels that differ, within the window and beyond it.
+fn differing(a: &VoxelGrid, b: &VoxelGrid) -> [usize; 2] {
+    let all = a.count_different(b);
+    let within = a.crop(Extent::WINDOW).count_different(&b.crop(Extent::WINDOW));
+    [within, all - within]
+}
+
+const NEAR: BoxId = BoxId(1);
+const FAR: BoxId = BoxId(2);
+
+/// The road with a generated window, a car in it and one far beyond it.
+fn edited() -> Document {
+    let mut document = Document::new(road());
+    let mut pipeline = OccPipeline::bundled().expect("the shipped weights load");
+    let rough = document.scene().frame().occupancy.clone();
+    generate(&mut pipeline, &mut document, RegionMode::Full);
+    let generated = document.scene().frame().occupancy.clone();
+    let [within, beyond] = differing(&rough, &generated);
+    assert!(within > 10_000 && beyond == 0, "{within} and {beyond} changed");
+    // A car in the window: it is generated, and nothing else changes.
+    document
+        .apply("Add", &car(NEAR.0, DVec2::new(14.0, -1.8)))
+        .expect("on the map");
+    let result = generate(&mut pipeline, &mut document, RegionMode::Auto);
+    assert!(result.report.network_calls > 0 && result.report.untouched_voxels_changed == 0);
+    let with_car = document.scene().frame().occupancy.clone();
+    let [within, beyond] = differing(&generated, &with_car);
+    assert!(
+        within > 50 && within < 3000 && beyond == 0,
+        "{within} and {beyond}"
+    );
+    // A car beyond it: its rough voxels are there at once, no network is asked, and it stays to be generated.
+    document
+        .apply("Add", &car(FAR.0, DVec2::new(100.0, 0.0)))
+        .expect("on the map");
+    let result = generate(&mut pipeline, &mut document, RegionMode::Auto);
+    assert_eq!(result.report.network_calls, 0);
+    let [within, beyond] = differing(&with_car, &document.scene().frame().occupancy);
+    assert!(within == 0 && beyond > 100, "{within} and {beyond}");
+    let frame = document.scene().frame();
+    assert!(frame.source.boxes.contains_key(&NEAR) && !frame.source.boxes.contains_key(&FAR));
+    document
+}
+
+#[test]
+fn the_window_is_one_part_of_a_larger_map() {
+    let mut document = edited();
+    let scene = document.scene().clone();
+    let frame = scene.frame();
+
+    // The LiDAR and the front camera meet the far car where it stands.
+    let sweep = sensors::lidar::rig_sweep(&frame.occupancy, &scene.rig).expect("a LiDAR");
+    let near_far_car =
+        |p: DVec3| (97.0..103.0).contains(&p.x) && p.y.abs() < 1.6 && (0.2..2.0).contains(&p.z);
+    let far_points = sweep
+        .points
+        .iter()
+        .filter(|p| near_far_car(DVec3::from_array(p.position_in_ego.map(f64::from))));
+    assert!(far_points.clone().count() > 0, "no return from the far car");
+    assert!(far_points.clone().all(|p| p.class == Class::Car));
+    let front = scene
+        .rig
+        .cameras
+        .iter()
+        .find(|c| c.name.contains("FRONT") && !c.name.contains("FRONT_"));
+    let front = front.expect("a front camera");
+    let input = CameraInput {
+        frame,
+        rig: &scene.rig,
+        background: &scene.background,
+        conditions: Conditions::default(),
+        detail: Detail::Full,
+    };
+    let options = RenderOptions {
+        size: [400, 225],
+        quality: Quality::Preview,
+    };
+    for source in cameras::all() {
+        Ready::new(*source, &input)
+            .render(front, &options, RenderContext::processor())
+            .unwrap_or_else(|e| panic!("{}: {e}", source.id().name()));
+    }
+
+    // Saved, it comes back the same, and undo leads to the very state before.
+    let folder = Folder::new();
+    let path = folder.path("map.loom");
+    loom::save(path.as_ref(), &scene).expect("saved");
+    let again = loom::load(path.as_ref()).expect("opens");
+    assert!(again.frames == scene.frames);
+    while document.undo().is_some() {}
+    assert!(document.scene().frames == road().frames);
+}
+
+#[test]
+fn the_commands_work_on_a_larger_map() {
+    let (document, folder) = (edited(), Folder::new());
+    let path = folder.path("map.loom");
+    loom::save(path.as_ref(), document.scene()).expect("saved");
+    let out = folder.path("pictures");
+    let what = "semantic,depth,lidar,appearance";
+    let size = ["--size", "240x135", "--preview", "--json"];
+    json(&sceneloom(
+        &[&["render", &path, "--what", what, "-o", &out], &size[..]].concat(),
+    ));
+    let report = json(&sceneloom(&["check", &path, "--json"]));
+    assert!(report.get("findings").is_some(), "{report}");
+    let edits = folder.write(
+        "edits.json",
+        r#"[{"remove_box": {"id": 1}}, {"remove_box": {"id": 2}}]"#,
+    );
+    let edited = folder.path("edited.loom");
+    json(&sceneloom(&[
+        "edit", &path, "--edits", &edits, "--steps", "4", "-o", &edited, "--json",
+    ]));
+    let after = loom::load(edited.as_ref()).expect("opens");
+    assert_eq!(after.frame().extent(), map());
+    assert!(after.frame().boxes.is_empty());
+    let cars = |scene: &Scene| scene.frame().occupancy.class_counts()[usize::from(Class::Car.id())];
+    assert!(
+        cars(document.scene()) > 100 && cars(&after) == 0,
+        "{}",
+        cars(&after)
+    );
+    let report = json(&sceneloom(&["diff", &path, &edited, "--json"]));
+    assert_eq!(
+        report["boxes"]["removed"].as_array().map(Vec::len),
+        Some(2),
+        "{report}"
+    );
+    // Files of other programs hold the networks' window, as their readers expect.
+    let npz = folder.path("labels.npz");
+    json(&sceneloom(&[
+        "export", &path, "--to", "occ3d", "-o", &npz, "--json",
+    ]));
+    let labels = formats::occ3d::load(npz.as_ref())
+        .expect("a file of Occ3D")
+        .labels;
+    assert_eq!(labels, document.scene().frame().occupancy.crop(Extent::WINDOW));
+}
