@@ -1,7 +1,7 @@
 //! The house as docs/architecture.md describes it: who knows whom, how long files are, which licences are used, and that a
 //! reader finds things where the document says.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 const DOCUMENT: &str = include_str!("../../docs/architecture.md");
@@ -86,6 +86,64 @@ fn rooms_know_only_whom_they_may() {
             assert!(may, "{name} must not know {other}");
         }
     }
+}
+
+/// Files of the rooms that work on maps of any extent which may name the networks' window: they talk to the networks, or
+/// show what those did.
+const MAY_NAME_THE_WINDOW: [&str; 8] = [
+    "src/app/canvas.rs",
+    "src/app/canvas_draw.rs",
+    "src/app/cli/diff.rs",
+    "src/app/cli/region_arg.rs",
+    "src/app/marks.rs",
+    "src/app/panes/modelled.rs",
+    "src/editor/apply/voxels.rs",
+    "src/gen/sensors/learned.rs",
+];
+
+#[test]
+fn rooms_that_work_on_maps_name_no_window() {
+    let of_window = |line: &str| {
+        line.contains("Extent::WINDOW")
+            || ["N", "COLUMNS", "V", "M", "center", "column_at", "to_", "from_"]
+                .iter()
+                .any(|name| line.contains(&format!("Window::{name}")))
+    };
+    let rooms = [
+        "app",
+        "editor",
+        "viewport",
+        "gen/place",
+        "gen/sensors",
+        "gen/words",
+    ];
+    let (mut named, mut wrong) = (BTreeSet::new(), Vec::new());
+    for path in rooms.iter().flat_map(|room| rust(&format!("src/{room}"))) {
+        let name = path
+            .strip_prefix(root())
+            .expect("below the root")
+            .display()
+            .to_string();
+        let text = read(&path);
+        let code = text.split("#[cfg(test)]").next().unwrap_or("");
+        let is_test = name.contains("test");
+        if is_test || !code.lines().any(of_window) {
+            continue;
+        }
+        match MAY_NAME_THE_WINDOW.contains(&name.as_str()) {
+            true => drop(named.insert(name)),
+            false => wrong.push(name),
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "use the extent of the frame, layout or grid: {wrong:?}"
+    );
+    assert_eq!(
+        named.len(),
+        MAY_NAME_THE_WINDOW.len(),
+        "shorten the list: {named:?}"
+    );
 }
 
 #[test]

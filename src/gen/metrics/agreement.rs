@@ -1,6 +1,6 @@
 //! Does occupancy obey its layout? Columns that hold a class against columns that the layout sets.
 
-use scene::{BevLayer, Class, Frame, VoxelGrid, Window};
+use scene::{BevLayer, Class, Frame, VoxelGrid};
 
 /// IoU over BEV columns of what the layout asks for and what the occupancy holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
