@@ -11,6 +11,7 @@ use app::settings::Settings;
 use app::{open, text as app_text};
 use diffusion::solver::SolverKind;
 use editor::{Document, Edit, Shape};
+use formats::import::{Content, Source, pcd};
 use formats::{box_list, loom, occ3d, opendrive};
 use glam::{DVec2, DVec3};
 use graph_layout::memory::{Bank, RoadRef};
@@ -28,7 +29,9 @@ use place::to_graph::to_graph;
 use scene::graph::SceneGraph;
 use scene::grid::NOT_PAINTED;
 use scene::road_map::RoadMap;
-use scene::{BevLayer, BevLayout, BoxId, Class, Frame, Relief, Scene, SensorRig, TimeOfDay, Weather, infer};
+use scene::{
+    BevLayer, BevLayout, BoxId, Class, Extent, Frame, Relief, Scene, SensorRig, TimeOfDay, Weather, infer,
+};
 use sensors::lidar::Rays;
 use sensors::project::View;
 use trade::Presets;
@@ -41,9 +44,10 @@ use world::{template, traffic};
 pub type Target = fn(&[u8]);
 
 /// All of them by name.
-pub const ALL: [(&str, Target); 17] = [
+pub const ALL: [(&str, Target); 18] = [
     ("project", project_file),
     ("occ3d", occ3d_file),
+    ("pcd", point_cloud),
     ("opendrive", opendrive_file),
     ("boxes", box_file),
     ("rig", rig_file),
@@ -104,7 +108,11 @@ pub fn project_file(bytes: &[u8]) {
                 }
                 RoadMap::new(&frame.layout);
                 LaneMap::new(&frame.layout);
-                traffic::place(&frame.layout, 1, &traffic::TrafficSpec::NORMAL);
+                traffic::place(
+                    &frame.layout.crop(Extent::WINDOW),
+                    1,
+                    &traffic::TrafficSpec::NORMAL,
+                );
             }
             let again = loom::to_bytes(&scene).expect("what was read can be written");
             let twice = loom::from_bytes(&again).expect("what was written can be read");
@@ -123,6 +131,15 @@ pub fn occ3d_file(bytes: &[u8]) {
             assert!(boxes.values().all(|b| b.problem().is_none()));
             infer::layout(&frame.labels);
         }
+    }
+}
+
+/// A point cloud; what was read is a sound scene.
+pub fn point_cloud(bytes: &[u8]) {
+    match (pcd::IMPORTER.read)(&Source { bytes, name: "cloud" }) {
+        Err(error) => one_line(error),
+        Ok(Content::Scene(loaded)) => frame_is_sound(loaded.scene.frame()),
+        Ok(Content::Roads(_)) => panic!("a cloud is no road"),
     }
 }
 

@@ -163,10 +163,31 @@ fn repacked(whole: &[u8], dice: &mut SplitMix64) -> Option<Vec<u8>> {
 fn project_files() {
     run(
         "project",
-        vec![file("assets/scenes/first_light.loom")],
+        vec![
+            file("assets/scenes/first_light.loom"),
+            file("tests/reference/loom/v4.loom"),
+        ],
         220,
         repacked,
     );
+}
+
+#[test]
+fn point_clouds() {
+    let header = |data: &str, points: usize| {
+        format!(
+            "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH {points}\n\
+             HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points}\nDATA {data}\n"
+        )
+    };
+    let ascii = header("ascii", 2) + "10.1 -3.1 0.1 4\n-7 3 1.9 11\n";
+    let mut binary = header("binary", 3).into_bytes();
+    for i in 0..3u8 {
+        let numbers = [f32::from(i) * 3.0, -2.5, 0.4];
+        binary.extend(numbers.iter().flat_map(|v| v.to_le_bytes()));
+        binary.push(i);
+    }
+    plain("pcd", vec![ascii.into_bytes(), binary], 400);
 }
 
 /// An npy of nothing but brackets ended the program before headers were checked.
