@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use editor::pick::{self, Hit, Ray};
 use editor::pick_things;
 use editor::tools::{Mark, View, ViewKind, Wants, point_of, select};
-use scene::{BoxId, Class, LidarSweep, Scene, SceneBox};
+use scene::{BoxId, Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     lidar_colors,
@@ -122,9 +122,9 @@ impl View3d {
         self.colors = None;
     }
 
-    /// Takes a standard viewpoint.
-    pub fn preset(&mut self, preset: ViewPreset) {
-        self.camera = ViewCamera::preset(preset);
+    /// Takes a standard viewpoint over a map.
+    pub fn preset(&mut self, preset: ViewPreset, extent: Extent) {
+        self.camera = ViewCamera::preset_over(preset, extent);
     }
 
     /// Brings a box into the middle.

@@ -239,11 +239,6 @@ impl ViewCamera {
         self.focus(middle, (high - low).truncate().max_element() / 2.0 * 1.1);
     }
 
-    #[doc(hidden)] // until every caller names its map
-    pub fn focus_all(&mut self) {
-        self.focus_map(Extent::default());
-    }
-
     /// Half of the depth that an orthographic view shows about its target, m.
     fn half_depth_m(&self) -> f64 {
         ORTHO_HALF_DEPTH_M.max(self.distance_m)

@@ -413,10 +413,10 @@ fn what_is_missing_or_unknown_is_named() {
     assert!(missing.contains("missing field `seed`"), "{missing}");
     let count = json_refusal("manifest.json", "\"frames\":3", "\"frames\":2");
     assert!(count.contains("3 frames, expected 2"), "{count}");
-    let version = json_refusal("manifest.json", "\"version\":3,", "\"version\":4,\"new_key\":0,");
+    let version = json_refusal("manifest.json", "\"version\":4,", "\"version\":5,\"new_key\":0,");
     assert_eq!(
         version,
-        "manifest.json: version is 4, expected 3; open it with the sceneloom that wrote it"
+        "manifest.json: version is 5, expected 4; open it with the sceneloom that wrote it"
     );
     let format = json_refusal("manifest.json", "\"sceneloom\"", "\"krita\"");
     assert_eq!(
@@ -506,7 +506,7 @@ fn old_files_take_their_conditions_from_the_prompt() {
             let text = || String::from_utf8(content.clone()).expect("JSON");
             if name == "manifest.json" {
                 *content = text()
-                    .replace("\"version\":3", &format!("\"version\":{version}"))
+                    .replace("\"version\":4", &format!("\"version\":{version}"))
                     .into_bytes();
             } else if name == "scene.json" {
                 let mut json: serde_json::Value = serde_json::from_str(&text()).expect("JSON");
@@ -578,8 +578,8 @@ fn background_and_relief_come_back_and_version_1_opens() {
         .expect("there")
         .1;
     let text = String::from_utf8(manifest.clone()).expect("JSON");
-    assert!(text.contains("\"version\":3"), "{text}");
-    *manifest = text.replace("\"version\":3", "\"version\":1").into_bytes();
+    assert!(text.contains("\"version\":4"), "{text}");
+    *manifest = text.replace("\"version\":4", "\"version\":1").into_bytes();
     let old = loom::from_bytes(&pack(&entries)).expect("version 1 opens");
     assert!(old.background.is_empty() && old.frames[0].layout.relief.is_flat());
 

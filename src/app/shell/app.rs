@@ -10,7 +10,7 @@ use egui::Ui;
 use editor::Document;
 use job::worker::GenWorker;
 use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline};
-use scene::Scene;
+use scene::{Extent, Scene};
 
 use super::checking::Checking;
 use super::dock::Dock;
@@ -193,6 +193,11 @@ impl SceneloomApp {
             },
             ctx: ctx.clone(),
         })
+    }
+
+    /// Which part of the ground the frame that is shown covers.
+    pub(crate) fn extent(&self) -> Extent {
+        self.document.scene().frame().extent()
     }
 
     /// Seconds since the start.

@@ -10,7 +10,7 @@ use crate::panes::compare::Compare;
 use crate::panes::pane::Pane;
 use crate::panes::prompt::field::PromptField;
 use crate::view3d::View3d;
-use scene::SceneBox;
+use scene::{Extent, SceneBox};
 
 /// Owner of everything that draws the scene.
 pub struct Views {
@@ -58,8 +58,8 @@ impl Views {
     }
 
     /// Brings everything into both large views.
-    pub(crate) fn frame_all(&mut self) {
-        self.view3d.camera.focus_all();
+    pub(crate) fn frame_all(&mut self, extent: Extent) {
+        self.view3d.camera.focus_map(extent);
         self.canvas.frame_all_again();
     }
 }

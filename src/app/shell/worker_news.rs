@@ -282,7 +282,8 @@ impl SceneloomApp {
                     self.preferences.settings.remember(path);
                 }
                 // What the camera looked at is not there any more.
-                self.views.view3d.camera.focus_all();
+                let extent = self.extent();
+                self.views.view3d.camera.focus_map(extent);
                 // Saving must not replace the file of another scene without asking.
                 self.files.path = opening.path;
                 self.state.choose(&[], crate::tools::Choose::Only);

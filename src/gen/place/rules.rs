@@ -567,8 +567,9 @@ impl Placer<'_> {
             _ => u32::MAX,
         };
         if allowed != u32::MAX {
-            box_cells(self.map.layout.extent(), b, 0.0, |x, y| {
-                on &= self.map.layout.cell(x, y) & allowed != 0
+            let layout = self.map.layout;
+            box_cells(layout.extent(), b, 0.0, |x, y| {
+                on &= layout.cell(x, y) & allowed != 0
             });
         }
         if !on {

@@ -433,7 +433,11 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     let mut bench = Bench::with(true);
     bench.off();
     bench.steps(4);
-    bench.app().views.view3d.preset(viewport::ViewPreset::Top);
+    bench
+        .app()
+        .views
+        .view3d
+        .preset(viewport::ViewPreset::Top, scene::Extent::WINDOW);
     bench.steps(4);
     let pane = bench.pane("3D view");
     let at = |x: f32, y: f32| pane.center() + egui::vec2(x, y);
@@ -469,7 +473,11 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     let vegetation = count(&bench, Class::Vegetation);
     assert!(vegetation >= block);
     // Pulled up from above nothing moves along the ray; seen from the side it does.
-    bench.app().views.view3d.preset(viewport::ViewPreset::Perspective);
+    bench
+        .app()
+        .views
+        .view3d
+        .preset(viewport::ViewPreset::Perspective, scene::Extent::WINDOW);
     bench.steps(4);
     bench.ask(ToolCommand::Shortcut("symmetry"));
     bench.ask(ToolCommand::Shortcut("voxel_fill"));
