@@ -75,6 +75,9 @@ impl SceneryWish {
     /// larger map all of that happens in the networks' window.
     pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
         let map = scene.frame().extent();
+        if map.overlap(&Extent::WINDOW).is_none() {
+            return Err(GenError::failed(job::pipeline::BESIDE_THE_MAP));
+        }
         let scene = &*scene.in_window();
         let frame = scene.frame();
         let to_ego = frame.world_from_ego.inverse();

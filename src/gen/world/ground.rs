@@ -135,9 +135,11 @@ fn classes(layout: &BevLayout, seed: u64) -> Vec<Class> {
     let has = |cell: u32, layer: BevLayer| cell & layer.bit() != 0;
     let mut draw = Draw::new(seed, "ground");
     // Some verges are paved (plazas, traffic islands): "other flat" in nuScenes.
-    let to_road = draw
-        .chance(0.25)
-        .then(|| scenery::distance_cells(|c| has(layout.cells()[c], BevLayer::DrivableArea)));
+    let to_road = draw.chance(0.25).then(|| {
+        scenery::distance_cells(layout.extent(), |c| {
+            has(layout.cells()[c], BevLayer::DrivableArea)
+        })
+    });
     let mut out = Vec::with_capacity(Window::COLUMNS);
     for (c, &cell) in layout.cells().iter().enumerate() {
         out.push(

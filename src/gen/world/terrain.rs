@@ -84,7 +84,7 @@ impl Terrain {
         };
         let cells = layout.cells();
         let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit() | BevLayer::Walkway.bit();
-        let to_paved = distance_cells(|c| cells[c] & paved != 0);
+        let to_paved = distance_cells(layout.extent(), |c| cells[c] & paved != 0);
         let [long, bank_noise, rough_noise] = [0x9177, 0xba2c, 0x4011].map(|salt| Noise::new(seed ^ salt));
         let road = |p: DVec2| {
             // A parabola near the ego that turns into a straight grade.

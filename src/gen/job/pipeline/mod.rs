@@ -37,6 +37,7 @@ use standing::Standing;
 
 pub use network::Ablation;
 pub use round_trip::RoundTrip;
+pub use window::BESIDE_THE_MAP;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;

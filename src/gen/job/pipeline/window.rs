@@ -4,8 +4,8 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::contract::{GenError, GenResult, Job, JobCtx, JobUpdate};
-use scene::VoxelGrid;
+use crate::contract::{GenError, GenResult, Job, JobCtx, JobUpdate, RegionMode};
+use scene::{Extent, VoxelGrid};
 
 /// The same job with its frame cut to the window; `None` if the frame is the window.
 pub(super) fn cut(job: &Job) -> Option<Job> {
@@ -17,6 +17,10 @@ pub(super) fn cut(job: &Job) -> Option<Job> {
         }),
     }
 }
+
+/// Why nothing can be generated on a map.
+pub const BESIDE_THE_MAP: &str =
+    "the networks generate 80 m around the ego vehicle, and none of that lies on this map";
 
 /// Puts a result back: the map around the window stays as the frame shows it.
 fn put_back(map: &VoxelGrid, result: &GenResult) -> GenResult {
@@ -38,6 +42,9 @@ pub(super) fn in_window(
         return run(job, ctx);
     };
     let map = &job.scene.frame().occupancy;
+    if job.params.region == RegionMode::Full && map.extent().overlap(&Extent::WINDOW).is_none() {
+        return Err(GenError::failed(BESIDE_THE_MAP));
+    }
     let report = |update: JobUpdate| match update {
         JobUpdate::Preview(result) => ctx.preview(put_back(map, &result)),
         other => ctx.report(other),
@@ -62,7 +69,7 @@ pub(super) fn in_window(
 mod tests {
     use super::*;
     use crate::contract::{GenParams, GenReport};
-    use scene::{BevLayout, Class, Extent, Frame, Scene, SensorRig};
+    use scene::{BevLayout, Class, Frame, Scene, SensorRig};
 
     #[test]
     fn the_window_changes_and_the_map_around_it_stays() {
@@ -102,5 +109,23 @@ mod tests {
         let previews = previews.into_inner().expect("not poisoned");
         assert_eq!(previews.len(), 1);
         assert_eq!(previews[0].occupancy, result.occupancy);
+    }
+
+    #[test]
+    fn a_map_beside_the_window_is_not_generated() {
+        let extent = Extent::new([300, 300], [40, 40]).expect("sound");
+        let frame = Frame::new(
+            BevLayout::over(extent),
+            Default::default(),
+            VoxelGrid::over(extent),
+        );
+        let scene = Arc::new(Scene::single("away", frame, Arc::new(SensorRig::default()), 1));
+        let job = Job {
+            scene,
+            params: GenParams::whole_scene(),
+        };
+        let run = |_: &Job, _: &JobCtx<'_>| panic!("no network is asked");
+        let error = in_window(&job, &JobCtx::detached(), run).expect_err("beside");
+        assert_eq!(error.to_string(), BESIDE_THE_MAP);
     }
 }

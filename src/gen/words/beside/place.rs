@@ -34,7 +34,7 @@ impl Ground {
             extent,
             own: OnceCell::new(),
             roads,
-            to_paved: distance_cells(|c| layout.cells()[c] & paved != 0),
+            to_paved: distance_cells(extent, |c| layout.cells()[c] & paved != 0),
             taken: vec![false; extent.columns()],
         };
         for b in boxes.values() {

@@ -9,11 +9,11 @@ use scene::raster::{box_cells, disc_cells, line_cells, polygon_cells};
 use scene::road_map::RoadMap;
 use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, SceneBox, Window};
 
-/// Distance in cells from every cell to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
-pub fn distance_cells(set: impl Fn(usize) -> bool) -> Vec<f32> {
+/// Distance in cells from every cell of a map to the nearest cell that is set, capped at 255 (chamfer 1, 1.4).
+pub fn distance_cells(extent: Extent, set: impl Fn(usize) -> bool) -> Vec<f32> {
     const FAR: f32 = 255.0;
     const DIAGONAL: f32 = 1.414;
-    let (nx, ny) = (Window::NX, Window::NY);
+    let (nx, ny) = (extent.nx(), extent.ny());
     // A border of cells that are never nearest spares the loops all tests.
     let row = ny + 2;
     let mut d = vec![2.0 * FAR; (nx + 2) * row];
@@ -85,9 +85,9 @@ impl<'a> Site<'a> {
             layout,
             style,
             roads: RoadMap::new(layout),
-            to_paved: distance_cells(|c| cells[c] & paved != 0),
-            to_road: distance_cells(|c| cells[c] & road != 0),
-            to_box: distance_cells(|c| box_cell[c]),
+            to_paved: distance_cells(Extent::WINDOW, |c| cells[c] & paved != 0),
+            to_road: distance_cells(Extent::WINDOW, |c| cells[c] & road != 0),
+            to_box: distance_cells(Extent::WINDOW, |c| box_cell[c]),
             taken: vec![false; Window::COLUMNS],
             out: Background::default(),
         }

@@ -7,7 +7,7 @@ use scene::{BevLayer, Extent, Form, Window};
 
 #[test]
 fn distance_is_zero_on_the_set_and_grows() {
-    let d = distance_cells(|c| c == 100 * Window::NY + 100);
+    let d = distance_cells(scene::Extent::WINDOW, |c| c == 100 * Window::NY + 100);
     assert_eq!(d[100 * Window::NY + 100], 0.0);
     assert_eq!(d[100 * Window::NY + 110], 10.0);
     assert!((d[103 * Window::NY + 104] - 5.0).abs() < 0.5);
