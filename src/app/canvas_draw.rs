@@ -208,6 +208,36 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
     }
 }
 
+/// On a map that is not just that: a thin dashed frame around what the networks generate, with a word.
+pub(super) fn draw_window(ui: &Ui, map: &ScreenMap, extent: Extent) {
+    if extent == Extent::WINDOW {
+        return;
+    }
+    let color = theme::ON_CANVAS.gamma_multiply(0.5);
+    let (low, high) = (
+        Extent::WINDOW.min_m().truncate(),
+        Extent::WINDOW.max_m().truncate(),
+    );
+    let rect = map.rect_of(low, high);
+    let [a, b, c, d] = [
+        rect.left_top(),
+        rect.right_top(),
+        rect.right_bottom(),
+        rect.left_bottom(),
+    ];
+    let frame = egui::Shape::dashed_line(&[a, b, c, d, a], Stroke::new(1.0, color), 5.0, 4.0);
+    ui.painter().extend(frame);
+    let font = egui::FontId::proportional(12.0);
+    let at = a + egui::vec2(4.0, 2.0);
+    ui.painter().text(
+        at,
+        egui::Align2::LEFT_TOP,
+        "The networks generate this part",
+        font,
+        color,
+    );
+}
+
 /// A dashed frame around what is still to be generated, in columns of the networks' window.
 pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, unsettled: &[Bounds], generating: bool) {
     let color = if generating {
