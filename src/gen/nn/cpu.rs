@@ -4,10 +4,13 @@
 use rayon::prelude::*;
 
 use crate::Precision;
+use crate::graph;
 use crate::kernels;
 use crate::layers::{Linear, NORM_EPS, Norm, ResBlock};
 use crate::map::Map;
-use crate::ops::{BlockParts, Ops, OpsError, Values};
+use crate::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use crate::rules::RuleBook;
+use crate::sparse::{Convolution, Residual};
 use crate::transformer::Block;
 
 /// Rows of a map that are normed in one piece.
@@ -57,6 +60,11 @@ impl Ops for Cpu {
     type Residual = ResBlock;
     type Table = Table;
     type Block = Block;
+    type SparseConvolution = Convolution;
+    type SparseResidual = Residual;
+    type Room = Vec<f32>;
+    type Messages = MessageParts<Linear>;
+    type NodeBlock = NodeBlockParts<Linear>;
 
     fn upload(&self, map: Map) -> Result<Map, OpsError> {
         Ok(map)
@@ -91,6 +99,27 @@ impl Ops for Cpu {
 
     fn block_from(&self, parts: BlockParts<Linear>) -> Result<Block, OpsError> {
         Ok(Block::new(parts))
+    }
+
+    fn sparse_from(&self, weight: &[f32], bias: Vec<f32>, taps: usize) -> Result<Convolution, OpsError> {
+        Ok(Convolution::from_parts(weight, bias, taps))
+    }
+
+    fn sparse_residual_from(
+        &self,
+        norm: Norm,
+        convolution: Convolution,
+        linear: Linear,
+    ) -> Result<Residual, OpsError> {
+        Ok(Residual::from_parts(norm, convolution, linear))
+    }
+
+    fn messages_from(&self, parts: MessageParts<Linear>) -> Result<MessageParts<Linear>, OpsError> {
+        Ok(parts)
+    }
+
+    fn node_block_from(&self, parts: NodeBlockParts<Linear>) -> Result<NodeBlockParts<Linear>, OpsError> {
+        Ok(parts)
     }
 
     fn apply(&self, linear: &Linear, x: &Map, piece: usize) -> Result<Map, OpsError> {
@@ -187,6 +216,71 @@ impl Ops for Cpu {
                     .for_each(|(logits, labels)| kernels::likeliest(logits, labels));
             });
         Ok(labels)
+    }
+
+    fn sparse(&self, convolution: &Convolution, x: &Map, rules: &RuleBook) -> Result<Map, OpsError> {
+        let data = convolution.apply(&x.data, rules);
+        Ok(Map {
+            data,
+            rows: rules.rows(),
+            columns: 1,
+            width: convolution.outputs(),
+        })
+    }
+
+    fn sparse_onto(
+        &self,
+        convolution: &Convolution,
+        x: &Map,
+        rules: &RuleBook,
+        mut onto: Map,
+    ) -> Result<Map, OpsError> {
+        convolution.add(&x.data, rules, &mut onto.data);
+        Ok(onto)
+    }
+
+    fn sparse_residual(
+        &self,
+        block: &Residual,
+        mut x: Map,
+        rules: &RuleBook,
+        room: &mut Vec<f32>,
+    ) -> Result<Map, OpsError> {
+        block.apply(&mut x.data, rules, room);
+        Ok(x)
+    }
+
+    fn messages(&self, round: &MessageParts<Linear>, mut x: Map, edges: &[Edge]) -> Result<Map, OpsError> {
+        graph::messages(round, &mut x.data, x.width, edges);
+        Ok(x)
+    }
+
+    fn node_block(
+        &self,
+        block: &NodeBlockParts<Linear>,
+        mut x: Map,
+        ada: &Map,
+        context: Option<&Map>,
+        bias: &Map,
+    ) -> Result<Map, OpsError> {
+        let context = context.map_or(&[][..], |c| &c.data);
+        graph::block(block, &mut x.data, &ada.data, context, &bias.data);
+        Ok(x)
+    }
+
+    fn relu(&self, mut x: Map) -> Result<Map, OpsError> {
+        x.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        Ok(x)
+    }
+
+    fn gelu(&self, mut x: Map) -> Result<Map, OpsError> {
+        kernels::gelu_all(&mut x.data);
+        Ok(x)
+    }
+
+    fn tanh(&self, mut x: Map) -> Result<Map, OpsError> {
+        x.data.iter_mut().for_each(|v| *v = v.tanh());
+        Ok(x)
     }
 
     fn silu(&self, mut x: Map) -> Result<Map, OpsError> {
