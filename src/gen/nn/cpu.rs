@@ -43,15 +43,6 @@ fn with(map: &Map, data: Vec<f32>, width: usize) -> Map {
     Map { data, width, ..*map }
 }
 
-fn normed(x: &Map, scale: &[f32], shift: &[f32]) -> Map {
-    let mut out = vec![0.0; x.data.len()];
-    let norm = |out: &mut [f32], x: &[f32]| kernels::norm_rows(x, NORM_EPS, scale, shift, out);
-    out.par_chunks_mut(PIECE * x.width)
-        .zip(x.data.par_chunks(PIECE * x.width))
-        .for_each(|(out, x)| norm(out, x));
-    with(x, out, x.width)
-}
-
 impl Ops for Cpu {
     const NAME: &'static str = "cpu";
     type Tensor = Map;
@@ -136,14 +127,25 @@ impl Ops for Cpu {
         Ok(each.map(|l| with(x, l.vector(&x.data), l.outputs())).collect())
     }
 
-    fn norm(&self, norm: &Norm, x: Map) -> Result<Map, OpsError> {
-        Ok(normed(&x, &norm.scale, &norm.shift))
+    fn norm(&self, norm: &Norm, mut x: Map) -> Result<Map, OpsError> {
+        // In place: fresh memory costs as much as what is written into it.
+        let pieces = x.data.par_chunks_mut(PIECE * x.width);
+        pieces.for_each_init(Vec::new, |before: &mut Vec<f32>, x| {
+            before.clear();
+            before.extend_from_slice(x);
+            norm.rows(before, x);
+        });
+        Ok(x)
     }
 
     fn modulate(&self, x: &Map, ada: &Map) -> Result<Map, OpsError> {
         let (shift, scale) = ada.data.split_at(x.width);
         let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
-        Ok(normed(x, &scale, shift))
+        let mut out = vec![0.0; x.data.len()];
+        out.par_chunks_mut(PIECE * x.width)
+            .zip(x.data.par_chunks(PIECE * x.width))
+            .for_each(|(out, x)| kernels::norm_rows(x, NORM_EPS, &scale, shift, out));
+        Ok(with(x, out, x.width))
     }
 
     fn residual(&self, block: &ResBlock, mut x: Map) -> Result<Map, OpsError> {

@@ -63,7 +63,8 @@ struct Unet<B: Ops> {
 pub struct LidarNet<B: Ops = Cpu> {
     ops: B,
     config: LidarConfig,
-    table: B::Table, // classes, then heights
+    class_table: Vec<f32>,
+    height_table: Vec<f32>,
     unet: Option<Unet<B>>,
     norm: B::Norm,
     geometry: B::Linear,
@@ -171,9 +172,6 @@ impl<B: Ops> LidarNet<B> {
             );
             return Err(w.config_error("log_s", reason));
         }
-        let classes = w.take("class_table", &[CLASSES, w0])?;
-        let heights = w.take("height_table", &[Window::NZ, w0])?;
-        let table = ops.table_from([classes, heights].concat(), w0);
         let mut linear = |name: &str, inputs, outputs| ops.linear(&mut w, name, [inputs, outputs], &[]);
         let net = Self {
             geometry: linear("geometry", w0, HIDDEN + 4)?,
@@ -183,7 +181,8 @@ impl<B: Ops> LidarNet<B> {
                 linear("ray1", RAY_WIDTH, RAY_WIDTH)?,
                 linear("ray2", RAY_WIDTH, 2)?,
             ],
-            table: table.map_err(|e| w.backend_error(e))?,
+            class_table: w.take("class_table", &[CLASSES, w0])?,
+            height_table: w.take("height_table", &[Window::NZ, w0])?,
             norm: ops.load_norm(&mut w, "norm", w0)?,
             unet,
             head,
@@ -275,12 +274,21 @@ impl<B: Ops> LidarNet<B> {
     /// What the UNet makes of the voxels, `[site][channel]`.
     fn features(&self, keys: &[u32], classes: &[u8]) -> Result<B::Tensor, OpsError> {
         let width = self.config.widths[0];
-        let nothing = self.ops.sequence(vec![0.0; keys.len() * width], width)?;
-        let x = self.ops.bag(&self.table, nothing, |site, _| {
-            let class = usize::from(classes[site]).min(CLASSES - 1);
-            let z = keys[site] as usize % SHAPE[2];
-            [class, CLASSES + z].into_iter()
-        })?;
+        let mut x = vec![0.0; keys.len() * width];
+        x.par_chunks_mut(PIECE * width)
+            .zip(keys.par_chunks(PIECE))
+            .zip(classes.par_chunks(PIECE))
+            .for_each(|((x, keys), classes)| {
+                for ((x, key), class) in x.chunks_exact_mut(width).zip(keys).zip(classes) {
+                    let z = *key as usize % SHAPE[2];
+                    let of_class = &self.class_table[usize::from(*class) * width..][..width];
+                    let of_height = &self.height_table[z * width..][..width];
+                    for ((x, a), b) in x.iter_mut().zip(of_class).zip(of_height) {
+                        *x = a + b;
+                    }
+                }
+            });
+        let x = self.ops.sequence(x, width)?;
         match &self.unet {
             Some(unet) => unet.apply(&self.ops, x, &Sites::new(SHAPE, keys.to_vec())),
             None => Ok(x),
