@@ -1,9 +1,18 @@
 //! The networks on the processor's kernels against the same networks on candle (f32 both; features `cuda` and `metal`:
 //! on a card).
 
+use std::sync::Arc;
+
 use dataset::occupancy_frame;
+use glam::DVec3;
+use nets::layout::input::{EdgeInput, LayoutInput, MAP_CHANNELS, MAP_SIDE, NodeInput, Shape, VALUES};
+use nets::layout::net::LayoutNet;
+use nets::lidar::LidarNet;
+use nets::lidar::field::{Field, Ray};
+use nets::lidar::update::Changed;
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
+use nets::text::TextEncoder;
 use nets::{
     CELLS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, Middle, OccDit, OccModels,
     OccVae, tokens_of,
@@ -11,7 +20,7 @@ use nets::{
 use nn::weights::WeightFile;
 use nn::{Ops, Precision};
 use nn_candle::Candle;
-use scene::Window;
+use scene::{Class, Window};
 
 /// Numbers in -1..1 from a hash of their index.
 fn numbers(count: usize, stream: u32) -> Vec<f32> {
@@ -35,6 +44,7 @@ fn agree(ours: &[f32], theirs: &[f32], what: &str) {
     let largest = theirs.iter().fold(0f32, |m, v| m.max(v.abs()));
     let pairs = ours.iter().zip(theirs);
     let worst = pairs.fold(0f32, |m, (a, b)| m.max((a - b).abs()));
+    println!("{what}: {worst:.1e} of {largest:.2}");
     assert!(
         largest > 0.1 && worst <= 1e-4 * largest,
         "{what}: {worst} of {largest}"
@@ -194,4 +204,125 @@ fn refiner_and_scenery_agree_with_candle() {
     let a = ours.forward(&x, 700.0, &condition).expect("finite");
     let b = theirs.forward(&x, 700.0, &condition).expect("finite");
     agree(&a, &b, "scenery");
+}
+
+/// All that a field holds of its voxels.
+fn of_voxels(field: &Field) -> [Vec<f32>; 3] {
+    let flat = |lines: &[nets::lidar::field::Line]| lines.iter().flat_map(|l| l.0).collect();
+    let planes = field.planes.iter().flatten().copied().collect();
+    [flat(&field.hidden), flat(&field.appearance), planes]
+}
+
+/// Signed distances along some rays, and the logits of lost echoes.
+fn seen<B: Ops>(net: &LidarNet<B>, field: &Field) -> [Vec<f32>; 2] {
+    let t: Vec<f32> = (0..120).map(|i| 2.0 + 0.25 * i as f32).collect();
+    let mut out = [Vec::new(), Vec::new()];
+    for i in 0..64 {
+        let (around, up) = (f64::from(i) * 0.098, -0.2 + 0.03 * f64::from(i % 8));
+        let ray = Ray {
+            origin: DVec3::new(0.3, -0.2, 1.8),
+            direction: DVec3::new(around.cos() * up.cos(), around.sin() * up.cos(), up.sin()),
+            range_m: [1.0, 60.0],
+        };
+        let (distances, met) = net.probe(field, &ray, &t).expect("a device");
+        out[0].extend(distances);
+        out[1].push(met.drop_logit);
+    }
+    out
+}
+
+/// A field, the field after a change, and what rays see of it.
+#[test]
+fn lidar_agrees_with_candle() {
+    let ours = LidarNet::bundled().expect("the shipped weights load");
+    let theirs = LidarNet::on(candle(), file(assets::weights::LIDAR)).expect("the shipped weights load");
+    let grid = occupancy_frame(3, 1, |_| None).dense;
+    let mut changed = grid.clone();
+    for (x, y) in (118..130).flat_map(|x| (106..111).map(move |y| (x, y))) {
+        (2..6).for_each(|z| changed.set(x, y, z, Class::Car.id()));
+    }
+    let mut a = ours.field(&grid).expect("finite");
+    let mut b = theirs.field(&grid).expect("finite");
+    assert!(a.keys == b.keys && a.keys.len() > 10_000);
+    let compare = |a: &Field, b: &Field, when: &str| {
+        let names = ["hidden", "appearance", "planes"];
+        for ((a, b), name) in of_voxels(a).iter().zip(&of_voxels(b)).zip(names) {
+            agree(a, b, &format!("{name} {when}"));
+        }
+        let names = ["signed distance", "lost echoes"];
+        for ((a, b), name) in seen(&ours, a).iter().zip(&seen(&theirs, b)).zip(names) {
+            agree(a, b, &format!("{name} {when}"));
+        }
+    };
+    compare(&a, &b, "at first");
+    let found = ours.update(&mut a, &changed).expect("finite");
+    assert!(matches!(&found, Changed::In(regions) if !regions.is_empty()));
+    assert_eq!(theirs.update(&mut b, &changed).expect("finite"), found);
+    compare(&a, &b, "after a change");
+}
+
+/// Nodes of every kind, half of the edges with a distance; with and without a map.
+fn layout_input(nodes: usize, map: bool) -> LayoutInput {
+    let values = numbers(nodes * VALUES, 7);
+    let node = |(i, values): (usize, &[f32])| NodeInput {
+        kind: (i % 27) as u8,
+        state: (i % 4) as u8,
+        size: (i % 3) as u8,
+        shape: [Shape::None, Shape::Box, Shape::Line][i % 3],
+        locked: i % 5 == 0,
+        values: values.try_into().expect("the numbers of a node"),
+    };
+    let edge = |i: usize| EdgeInput {
+        from: (i * 7 % nodes) as u16,
+        to: (i * 11 % nodes) as u16,
+        relation: (i % 19) as u8,
+        distance_m: (i % 2 == 0).then_some(i as f32 / 3.0),
+    };
+    let cells = MAP_SIDE * MAP_SIDE * MAP_CHANNELS;
+    LayoutInput {
+        nodes: values.chunks_exact(VALUES).enumerate().map(node).collect(),
+        edges: (0..3 * nodes).map(edge).collect(),
+        map: map.then(|| Arc::new((0..cells).map(|i| (i * 7919 % 256) as u8).collect())),
+    }
+}
+
+#[test]
+fn layout_agrees_with_candle() {
+    let ours = LayoutNet::bundled().expect("the shipped weights load");
+    let theirs = LayoutNet::on(candle(), file(assets::weights::LAYOUT)).expect("the shipped weights load");
+    let single = |v: Vec<f64>| -> Vec<f32> { v.into_iter().map(|v| v as f32).collect() };
+    for (nodes, map) in [(1, false), (40, true), (77, false)] {
+        let mut input = layout_input(nodes, map);
+        if nodes == 1 {
+            input.nodes[0].shape = Shape::Box;
+            input.nodes[0].locked = false;
+            input.edges.clear();
+        }
+        let a = ours.embed(&input).expect("a sound graph");
+        let b = theirs.embed(&input).expect("a sound graph");
+        let x: Vec<f64> = numbers(nodes * VALUES, 8).into_iter().map(f64::from).collect();
+        for t in [0.0, 437.5, 999.0] {
+            let a = single(ours.predict(&a, &x, t).expect("finite"));
+            let b = single(theirs.predict(&b, &x, t).expect("finite"));
+            agree(&a, &b, &format!("layout of {nodes} nodes at {t}"));
+        }
+    }
+}
+
+#[test]
+fn text_agrees_with_candle() {
+    let ours = TextEncoder::bundled().expect("the shipped weights load");
+    let theirs = TextEncoder::on(candle(), file(assets::weights::TEXT)).expect("the shipped weights load");
+    let of = |text: &str| {
+        [
+            ours.encode(text).expect("a device"),
+            theirs.encode(text).expect("a device"),
+        ]
+    };
+    for text in ["night", "two buses wait at a roundabout in the rain, many people"] {
+        let [a, b] = of(text);
+        agree(&a, &b, text);
+    }
+    let [a, b] = of("");
+    assert!(a == b && a.iter().all(|v| *v == 0.0));
 }

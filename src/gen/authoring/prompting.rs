@@ -149,13 +149,14 @@ pub fn lay_out_graph(
     let mut remembered = None;
     let mut proposed = None;
     if how.memory && graphed.is_none() {
-        match memory(how) {
-            Ok((memory, problems)) => {
+        let asked = memory(how).and_then(|(memory, problems)| {
+            let found = fill_in(&memory, prompt, &mut description, seed)?;
+            Ok((found, problems))
+        });
+        match asked {
+            Ok((found, problems)) => {
                 notes.extend(problems);
-                if let Some((found, road)) = fill_in(&memory, prompt, &mut description, seed) {
-                    proposed = Some(road);
-                    remembered = Some(found);
-                }
+                (remembered, proposed) = found.unzip();
             }
             Err(error) => notes.push(format!("memory is not used: {error:#}")),
         }

@@ -12,6 +12,7 @@ use super::describe::sentence;
 use super::facts::{Environment, Facts, RoadKind};
 use super::graph_of::graph_of;
 use nets::text::{TextEncoder, cosine};
+use nn::ops::OpsError;
 use nn::weights::WeightsError;
 use scene::graph::SceneGraph;
 use scene::road_map::RoadMap;
@@ -24,7 +25,7 @@ pub const VERSION: u32 = 1;
 /// Entries that a proposal is made from.
 pub const NEAREST: usize = 5;
 
-/// What is wrong with a bank.
+/// What is wrong with a bank, or why a text could not be encoded.
 #[derive(Debug, Error)]
 pub enum MemoryError {
     /// Not JSON of this shape.
@@ -33,6 +34,9 @@ pub enum MemoryError {
     /// The encoder's weights.
     #[error(transparent)]
     Weights(#[from] WeightsError),
+    /// The encoder.
+    #[error(transparent)]
+    Encoder(#[from] OpsError),
 }
 
 /// Where the road of an entry comes from.
@@ -249,22 +253,22 @@ impl Memory {
         if let Some(memory) = MEMORY.get() {
             return Ok(memory.clone());
         }
-        let memory = Self::new(TextEncoder::bundled()?, Bank::bundled()?.entries);
+        let memory = Self::new(TextEncoder::bundled()?, Bank::bundled()?.entries)?;
         Ok(MEMORY.get_or_init(|| Arc::new(memory)).clone())
     }
 
-    /// With these entries.
-    pub fn new(encoder: Arc<TextEncoder>, entries: Vec<Entry>) -> Self {
-        let vectors = entries.iter().map(|e| encoder.encode(&e.text)).collect();
-        Self {
+    /// With these entries. Errors, as all below that encode a text, if the encoder cannot compute.
+    pub fn new(encoder: Arc<TextEncoder>, entries: Vec<Entry>) -> Result<Self, MemoryError> {
+        let vectors = entries.iter().map(|e| encoder.encode(&e.text));
+        Ok(Self {
+            vectors: vectors.collect::<Result<_, _>>()?,
             encoder,
             entries,
-            vectors,
-        }
+        })
     }
 
     /// Bundled entries and these besides: the user's own scenes.
-    pub fn with(&self, more: Vec<Entry>) -> Self {
+    pub fn with(&self, more: Vec<Entry>) -> Result<Self, MemoryError> {
         let mut entries = self.entries.clone();
         entries.extend(more);
         Self::new(self.encoder.clone(), entries)
@@ -276,12 +280,17 @@ impl Memory {
     }
 
     /// The `k` entries nearest to a text, the best first; ties by their order.
-    pub fn nearest(&self, text: &str, k: usize) -> Vec<Retrieved> {
+    pub fn nearest(&self, text: &str, k: usize) -> Result<Vec<Retrieved>, MemoryError> {
         self.ranked(text, k, |_| 0.0)
     }
 
-    fn ranked(&self, text: &str, k: usize, penalty: impl Fn(&Entry) -> f64) -> Vec<Retrieved> {
-        let wanted = self.encoder.encode(text);
+    fn ranked(
+        &self,
+        text: &str,
+        k: usize,
+        penalty: impl Fn(&Entry) -> f64,
+    ) -> Result<Vec<Retrieved>, MemoryError> {
+        let wanted = self.encoder.encode(text)?;
         let mut all: Vec<Retrieved> = self
             .vectors
             .iter()
@@ -299,15 +308,17 @@ impl Memory {
             .collect();
         all.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.entry.cmp(&b.entry)));
         all.truncate(k);
-        all
+        Ok(all)
     }
 
     /// Proposes what a prompt leaves open, from the [`NEAREST`] entries; which of them gives the road is drawn from `seed`
     /// in proportion to exp(score / 0.1). `None` if the memory is empty.
-    pub fn fill_in(&self, open: &Open, seed: u64) -> Option<Proposal> {
+    pub fn fill_in(&self, open: &Open, seed: u64) -> Result<Option<Proposal>, MemoryError> {
         const SHARPNESS: f64 = 0.1;
-        let from = self.ranked(&open.text, NEAREST, |e| contradictions(open, &e.facts));
-        let best = from.first()?.score;
+        let from = self.ranked(&open.text, NEAREST, |e| contradictions(open, &e.facts))?;
+        let Some(best) = from.first().map(|r| r.score) else {
+            return Ok(None);
+        };
         let weights: Vec<f64> = from
             .iter()
             .map(|r| ((r.score - best) / SHARPNESS).exp())
@@ -354,7 +365,7 @@ impl Memory {
                 seed: hash(seed),
             }
         };
-        Some(Proposal {
+        Ok(Some(Proposal {
             from,
             road,
             road_kind,
@@ -362,7 +373,7 @@ impl Memory {
             night: open.night.or(night),
             weather: open.weather.or(weather),
             counts,
-        })
+        }))
     }
 }
 

@@ -1,6 +1,5 @@
-//! The networks. Those of occupancy and scenery are written against [`nn::Ops`] and run on any backend; those of LiDAR, layout
-//! and text on the processor. Trained by `training/`, whose
-//! files have the same names and the same order of blocks.
+//! The networks, written against [`nn::Ops`]: they run on any backend. Trained by `training/`, whose files have the same names
+//! and the same order of blocks.
 
 pub mod column_heights;
 pub mod encoder;

@@ -5,8 +5,9 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Deserialize;
 
-use nn::layers::Linear;
+use nn::ops::OpsError;
 use nn::weights::{WeightFile, WeightsError};
+use nn::{Cpu, Ops};
 use numeric::hash::fnv1a_32;
 
 /// File name of the weights.
@@ -58,12 +59,13 @@ pub struct TextConfig {
     pub buckets: usize,
 }
 
-/// The network.
-pub struct TextEncoder {
+/// The network, on a backend.
+pub struct TextEncoder<B: Ops = Cpu> {
+    ops: B,
     width: usize,
-    table: Vec<f32>,
-    first: Linear,
-    second: Linear,
+    table: B::Table,
+    first: B::Linear,
+    second: B::Linear,
 }
 
 impl TextEncoder {
@@ -78,8 +80,15 @@ impl TextEncoder {
         Ok(ENCODER.get_or_init(|| Arc::new(encoder)).clone())
     }
 
-    /// Takes all tensors of the file.
-    pub fn new(mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
+    /// On the processor. Takes all tensors of the file.
+    pub fn new(w: WeightFile<'_>) -> Result<Self, WeightsError> {
+        Self::on(Cpu, w)
+    }
+}
+
+impl<B: Ops> TextEncoder<B> {
+    /// The same on a backend.
+    pub fn on(ops: B, mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
         let c: TextConfig = w.config("config")?;
         if c.buckets != BUCKETS || !(1..=1024).contains(&c.width) {
             let reason = format!(
@@ -88,36 +97,37 @@ impl TextEncoder {
             );
             return Err(w.config_error("config", reason));
         }
+        let table = ops.table_from(w.take("table.weight", &[BUCKETS, c.width])?, c.width);
         let out = Self {
             width: c.width,
-            table: w.take("table.weight", &[BUCKETS, c.width])?,
-            first: Linear::new(&mut w, "first", c.width, c.width, &[])?,
-            second: Linear::new(&mut w, "second", c.width, c.width, &[])?,
+            table: table.map_err(|e| w.backend_error(e))?,
+            first: ops.linear(&mut w, "first", [c.width, c.width], &[])?,
+            second: ops.linear(&mut w, "second", [c.width, c.width], &[])?,
+            ops,
         };
         w.finish()?;
         Ok(out)
     }
 
-    /// A unit vector; of a text without words, zeros.
-    pub fn encode(&self, text: &str) -> Vec<f32> {
-        let ids = token_ids(text);
-        let mut sum = vec![0.0f32; self.width];
-        for id in &ids {
-            let row = &self.table[*id as usize * self.width..][..self.width];
-            sum.iter_mut().zip(row).for_each(|(s, r)| *s += r);
-        }
+    /// A unit vector; of a text without words, zeros. Errors if the backend cannot compute.
+    pub fn encode(&self, text: &str) -> Result<Vec<f32>, OpsError> {
+        let (ops, ids) = (&self.ops, token_ids(text));
+        let nothing = vec![0.0; self.width];
         if ids.is_empty() {
-            return sum;
+            return Ok(nothing);
         }
+        let entries = |_, _| ids.iter().map(|id| *id as usize);
+        let sum = ops.bag(&self.table, ops.vector(nothing)?, entries)?;
+        let mut sum = ops.download(sum)?.data;
         let scale = 1.0 / (ids.len() as f32).sqrt();
         sum.iter_mut().for_each(|s| *s *= scale);
-        let mut hidden = self.first.vector(&sum);
-        hidden.iter_mut().for_each(|v| *v = v.tanh());
-        let mut out = self.second.vector(&hidden);
-        out.iter_mut().zip(&sum).for_each(|(o, s)| *o += s);
+        let sum = ops.vector(sum)?;
+        let hidden = ops.tanh(ops.apply(&self.first, &sum, 1)?)?;
+        let out = ops.add(ops.apply(&self.second, &hidden, 1)?, &sum)?;
+        let mut out = ops.download(out)?.data;
         let norm = out.iter().map(|v| v * v).sum::<f32>().sqrt().max(1e-12);
         out.iter_mut().for_each(|v| *v /= norm);
-        out
+        Ok(out)
     }
 }
 

@@ -4,10 +4,13 @@
 use rayon::prelude::*;
 
 use crate::Precision;
+use crate::graph;
 use crate::kernels;
 use crate::layers::{Linear, NORM_EPS, Norm, ResBlock};
 use crate::map::Map;
-use crate::ops::{BlockParts, Ops, OpsError, Values};
+use crate::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use crate::rules::RuleBook;
+use crate::sparse::{Convolution, Residual};
 use crate::transformer::Block;
 
 /// Rows of a map that are normed in one piece.
@@ -40,15 +43,6 @@ fn with(map: &Map, data: Vec<f32>, width: usize) -> Map {
     Map { data, width, ..*map }
 }
 
-fn normed(x: &Map, scale: &[f32], shift: &[f32]) -> Map {
-    let mut out = vec![0.0; x.data.len()];
-    let norm = |out: &mut [f32], x: &[f32]| kernels::norm_rows(x, NORM_EPS, scale, shift, out);
-    out.par_chunks_mut(PIECE * x.width)
-        .zip(x.data.par_chunks(PIECE * x.width))
-        .for_each(|(out, x)| norm(out, x));
-    with(x, out, x.width)
-}
-
 impl Ops for Cpu {
     const NAME: &'static str = "cpu";
     type Tensor = Map;
@@ -57,6 +51,11 @@ impl Ops for Cpu {
     type Residual = ResBlock;
     type Table = Table;
     type Block = Block;
+    type SparseConvolution = Convolution;
+    type SparseResidual = Residual;
+    type Room = Vec<f32>;
+    type Messages = MessageParts<Linear>;
+    type NodeBlock = NodeBlockParts<Linear>;
 
     fn upload(&self, map: Map) -> Result<Map, OpsError> {
         Ok(map)
@@ -93,6 +92,27 @@ impl Ops for Cpu {
         Ok(Block::new(parts))
     }
 
+    fn sparse_from(&self, weight: &[f32], bias: Vec<f32>, taps: usize) -> Result<Convolution, OpsError> {
+        Ok(Convolution::from_parts(weight, bias, taps))
+    }
+
+    fn sparse_residual_from(
+        &self,
+        norm: Norm,
+        convolution: Convolution,
+        linear: Linear,
+    ) -> Result<Residual, OpsError> {
+        Ok(Residual::from_parts(norm, convolution, linear))
+    }
+
+    fn messages_from(&self, parts: MessageParts<Linear>) -> Result<MessageParts<Linear>, OpsError> {
+        Ok(parts)
+    }
+
+    fn node_block_from(&self, parts: NodeBlockParts<Linear>) -> Result<NodeBlockParts<Linear>, OpsError> {
+        Ok(parts)
+    }
+
     fn apply(&self, linear: &Linear, x: &Map, piece: usize) -> Result<Map, OpsError> {
         // One piece is not worth waking other threads for.
         let data = match x.rows * x.columns <= piece {
@@ -107,14 +127,25 @@ impl Ops for Cpu {
         Ok(each.map(|l| with(x, l.vector(&x.data), l.outputs())).collect())
     }
 
-    fn norm(&self, norm: &Norm, x: Map) -> Result<Map, OpsError> {
-        Ok(normed(&x, &norm.scale, &norm.shift))
+    fn norm(&self, norm: &Norm, mut x: Map) -> Result<Map, OpsError> {
+        // In place: fresh memory costs as much as what is written into it.
+        let pieces = x.data.par_chunks_mut(PIECE * x.width);
+        pieces.for_each_init(Vec::new, |before: &mut Vec<f32>, x| {
+            before.clear();
+            before.extend_from_slice(x);
+            norm.rows(before, x);
+        });
+        Ok(x)
     }
 
     fn modulate(&self, x: &Map, ada: &Map) -> Result<Map, OpsError> {
         let (shift, scale) = ada.data.split_at(x.width);
         let scale: Vec<f32> = scale.iter().map(|s| 1.0 + s).collect();
-        Ok(normed(x, &scale, shift))
+        let mut out = vec![0.0; x.data.len()];
+        out.par_chunks_mut(PIECE * x.width)
+            .zip(x.data.par_chunks(PIECE * x.width))
+            .for_each(|(out, x)| kernels::norm_rows(x, NORM_EPS, &scale, shift, out));
+        Ok(with(x, out, x.width))
     }
 
     fn residual(&self, block: &ResBlock, mut x: Map) -> Result<Map, OpsError> {
@@ -187,6 +218,71 @@ impl Ops for Cpu {
                     .for_each(|(logits, labels)| kernels::likeliest(logits, labels));
             });
         Ok(labels)
+    }
+
+    fn sparse(&self, convolution: &Convolution, x: &Map, rules: &RuleBook) -> Result<Map, OpsError> {
+        let data = convolution.apply(&x.data, rules);
+        Ok(Map {
+            data,
+            rows: rules.rows(),
+            columns: 1,
+            width: convolution.outputs(),
+        })
+    }
+
+    fn sparse_onto(
+        &self,
+        convolution: &Convolution,
+        x: &Map,
+        rules: &RuleBook,
+        mut onto: Map,
+    ) -> Result<Map, OpsError> {
+        convolution.add(&x.data, rules, &mut onto.data);
+        Ok(onto)
+    }
+
+    fn sparse_residual(
+        &self,
+        block: &Residual,
+        mut x: Map,
+        rules: &RuleBook,
+        room: &mut Vec<f32>,
+    ) -> Result<Map, OpsError> {
+        block.apply(&mut x.data, rules, room);
+        Ok(x)
+    }
+
+    fn messages(&self, round: &MessageParts<Linear>, mut x: Map, edges: &[Edge]) -> Result<Map, OpsError> {
+        graph::messages(round, &mut x.data, x.width, edges);
+        Ok(x)
+    }
+
+    fn node_block(
+        &self,
+        block: &NodeBlockParts<Linear>,
+        mut x: Map,
+        ada: &Map,
+        context: Option<&Map>,
+        bias: &Map,
+    ) -> Result<Map, OpsError> {
+        let context = context.map_or(&[][..], |c| &c.data);
+        graph::block(block, &mut x.data, &ada.data, context, &bias.data);
+        Ok(x)
+    }
+
+    fn relu(&self, mut x: Map) -> Result<Map, OpsError> {
+        x.data.iter_mut().for_each(|v| *v = v.max(0.0));
+        Ok(x)
+    }
+
+    fn gelu(&self, mut x: Map) -> Result<Map, OpsError> {
+        kernels::gelu_all(&mut x.data);
+        Ok(x)
+    }
+
+    fn tanh(&self, mut x: Map) -> Result<Map, OpsError> {
+        x.data.iter_mut().for_each(|v| *v = v.tanh());
+        Ok(x)
     }
 
     fn silu(&self, mut x: Map) -> Result<Map, OpsError> {

@@ -3,6 +3,7 @@
 mod cpu;
 #[cfg(test)]
 mod golden;
+pub mod graph;
 pub mod int8;
 pub mod int8_attention;
 pub mod kernels;
@@ -11,6 +12,8 @@ pub mod map;
 pub mod ops;
 pub mod packed_matrix;
 mod precision;
+pub mod rules;
+pub mod sparse;
 pub mod transformer;
 pub mod weights;
 

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::Precision;
 use crate::map::Map;
+use crate::rules::RuleBook;
 use crate::weights::{WeightFile, WeightsError};
 
 /// Why a backend could not compute. One line. The processor's never fails.
@@ -60,6 +61,49 @@ pub struct BlockParts<L> {
     pub side: usize,
 }
 
+/// A directed edge of a graph ([`Ops::messages`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// The node that speaks.
+    pub from: usize,
+    /// The node that listens.
+    pub to: usize,
+    /// What they are to each other.
+    pub relation: usize,
+    /// How far apart they are said to be, and 1 if anything is said.
+    pub distance: [f32; 2],
+}
+
+/// Parts of a round of messages along the edges of a graph ([`Ops::messages`]).
+pub struct MessageParts<L> {
+    /// Of the node that speaks: `width` to `width`.
+    pub source: L,
+    /// Of the node that listens: `width` to `width`.
+    pub target: L,
+    /// `[relation][width]`.
+    pub relation: Vec<f32>,
+    /// [`Edge::distance`] to `width`.
+    pub distance: L,
+    /// `width` to `width`.
+    pub out: L,
+}
+
+/// Parts of a transformer block over the nodes of a graph ([`Ops::node_block`]).
+pub struct NodeBlockParts<L> {
+    /// Added to what modulates the block: shift, scale and gate of attention, then of the MLP, `[6][width]`.
+    pub shift: Vec<f32>,
+    /// Queries, keys and values: `width` to `3 width`.
+    pub qkv: L,
+    /// `width` to `width`.
+    pub proj: L,
+    /// First layer of the MLP.
+    pub fc1: L,
+    /// Second layer of the MLP, to `width`.
+    pub fc2: L,
+    /// Attention heads.
+    pub heads: usize,
+}
+
 /// A backend. The `_from` functions make a block of its numbers, the named ones take those numbers from a weight file;
 /// the others compute.
 pub trait Ops: Send + Sync + Sized + 'static {
@@ -77,6 +121,16 @@ pub trait Ops: Send + Sync + Sized + 'static {
     type Table: Send + Sync;
     /// A transformer block with modulation by time (adaLN-Zero).
     type Block: Send + Sync;
+    /// A convolution over sites: rows by way of a rule book.
+    type SparseConvolution: Send + Sync;
+    /// x + W relu(convolution(norm(x))) of sites.
+    type SparseResidual: Send + Sync;
+    /// Memory that sparse blocks may use again; what is in it means nothing.
+    type Room: Default;
+    /// A round of messages along the edges of a graph.
+    type Messages: Send + Sync;
+    /// A transformer block over the nodes of a graph, modulated by time.
+    type NodeBlock: Send + Sync;
 
     /// Values of the processor to the backend.
     fn upload(&self, map: Map) -> Result<Self::Tensor, OpsError>;
@@ -100,6 +154,25 @@ pub trait Ops: Send + Sync + Sized + 'static {
     fn table_from(&self, entries: Vec<f32>, width: usize) -> Result<Self::Table, OpsError>;
     /// A transformer block.
     fn block_from(&self, parts: BlockParts<Self::Linear>) -> Result<Self::Block, OpsError>;
+
+    /// A sparse convolution; `weight` is `[tap][input][output]`.
+    fn sparse_from(
+        &self,
+        weight: &[f32],
+        bias: Vec<f32>,
+        taps: usize,
+    ) -> Result<Self::SparseConvolution, OpsError>;
+    /// A residual block of sites; the convolution keeps their number and width.
+    fn sparse_residual_from(
+        &self,
+        norm: Self::Norm,
+        convolution: Self::SparseConvolution,
+        linear: Self::Linear,
+    ) -> Result<Self::SparseResidual, OpsError>;
+    /// A round of messages.
+    fn messages_from(&self, parts: MessageParts<Self::Linear>) -> Result<Self::Messages, OpsError>;
+    /// A transformer block over nodes.
+    fn node_block_from(&self, parts: NodeBlockParts<Self::Linear>) -> Result<Self::NodeBlock, OpsError>;
 
     /// At every place; the processor works on `piece` places at a time.
     fn apply(&self, linear: &Self::Linear, x: &Self::Tensor, piece: usize) -> Result<Self::Tensor, OpsError>;
@@ -146,6 +219,57 @@ pub trait Ops: Send + Sync + Sized + 'static {
         piece: usize,
     ) -> Result<Vec<u8>, OpsError>;
 
+    /// One place per row of the rule book, `[rows][outputs]`: the bias and the sum over its taps. `x` holds the sites that the
+    /// rules speak of.
+    fn sparse(
+        &self,
+        convolution: &Self::SparseConvolution,
+        x: &Self::Tensor,
+        rules: &RuleBook,
+    ) -> Result<Self::Tensor, OpsError>;
+    /// `onto` + [`sparse`](Self::sparse).
+    fn sparse_onto(
+        &self,
+        convolution: &Self::SparseConvolution,
+        x: &Self::Tensor,
+        rules: &RuleBook,
+        onto: Self::Tensor,
+    ) -> Result<Self::Tensor, OpsError>;
+    /// A residual block of sites; the rules lead from sites to the same sites.
+    fn sparse_residual(
+        &self,
+        block: &Self::SparseResidual,
+        x: Self::Tensor,
+        rules: &RuleBook,
+        room: &mut Self::Room,
+    ) -> Result<Self::Tensor, OpsError>;
+
+    /// x + out(m) of the nodes `x`: m is the mean over the edges to a node of gelu(source(y of the one that speaks) + target(y
+    /// of the node) + relation + distance), 0 without an edge; y is x after a layer norm without learned numbers.
+    fn messages(
+        &self,
+        round: &Self::Messages,
+        x: Self::Tensor,
+        edges: &[Edge],
+    ) -> Result<Self::Tensor, OpsError>;
+    /// A transformer block over the nodes `x`, which also see the keys and values of `context`, `[token][keys | values]`.
+    /// `bias`, `[head][query][key]`, is added to the scores of nodes. `ada` is one
+    /// place of `6 width`, see [`NodeBlockParts::shift`].
+    fn node_block(
+        &self,
+        block: &Self::NodeBlock,
+        x: Self::Tensor,
+        ada: &Self::Tensor,
+        context: Option<&Self::Tensor>,
+        bias: &Self::Tensor,
+    ) -> Result<Self::Tensor, OpsError>;
+
+    /// max(x, 0).
+    fn relu(&self, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// x Phi(x), exactly.
+    fn gelu(&self, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
+    /// Hyperbolic tangent.
+    fn tanh(&self, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
     /// x * sigmoid(x).
     fn silu(&self, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;
     /// x + y, or x + one place at every place if `y` is one place.
@@ -157,14 +281,20 @@ pub trait Ops: Send + Sync + Sized + 'static {
     /// [`Map::unfold`].
     fn unfold(&self, x: &Self::Tensor) -> Result<Self::Tensor, OpsError>;
 
-    /// One place of these numbers.
-    fn vector(&self, numbers: Vec<f32>) -> Result<Self::Tensor, OpsError> {
+    /// Places of `width` numbers, one after the other.
+    fn sequence(&self, numbers: Vec<f32>, width: usize) -> Result<Self::Tensor, OpsError> {
         self.upload(Map {
-            rows: 1,
+            rows: numbers.len() / width.max(1),
             columns: 1,
-            width: numbers.len(),
+            width,
             data: numbers,
         })
+    }
+
+    /// One place of these numbers.
+    fn vector(&self, numbers: Vec<f32>) -> Result<Self::Tensor, OpsError> {
+        let width = numbers.len();
+        self.sequence(numbers, width)
     }
 
     /// Takes `name.weight` [outputs, inputs] and `name.bias`; `tail` is what the stored shape has after those two (1x1 of a
@@ -179,6 +309,18 @@ pub trait Ops: Send + Sync + Sized + 'static {
         let weight = w.take(&format!("{name}.weight"), &[&[outputs, inputs], tail].concat())?;
         let bias = w.take(&format!("{name}.bias"), &[outputs])?;
         self.linear_from(&weight, bias, inputs)
+            .map_err(|e| w.backend_error(e))
+    }
+
+    /// The same without a bias, of the shape `[outputs, inputs]`.
+    fn linear_without_bias(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        [inputs, outputs]: [usize; 2],
+    ) -> Result<Self::Linear, WeightsError> {
+        let weight = w.take(&format!("{name}.weight"), &[outputs, inputs])?;
+        self.linear_from(&weight, vec![0.0; outputs], inputs)
             .map_err(|e| w.backend_error(e))
     }
 
@@ -239,5 +381,33 @@ pub trait Ops: Send + Sync + Sized + 'static {
             side,
         };
         self.block_from(parts).map_err(|e| w.backend_error(e))
+    }
+    /// Takes `name.weight` of the stored `shape`, in the order `[tap][input][output]`, and `name.bias`.
+    fn load_sparse(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        [taps, outputs]: [usize; 2],
+        shape: &[usize],
+    ) -> Result<Self::SparseConvolution, WeightsError> {
+        let weight = w.take(&format!("{name}.weight"), shape)?;
+        let bias = w.take(&format!("{name}.bias"), &[outputs])?;
+        self.sparse_from(&weight, bias, taps)
+            .map_err(|e| w.backend_error(e))
+    }
+
+    /// Takes `name.norm`, `name.conv` and `name.linear`.
+    fn load_sparse_residual(
+        &self,
+        w: &mut WeightFile<'_>,
+        name: &str,
+        [taps, width]: [usize; 2],
+    ) -> Result<Self::SparseResidual, WeightsError> {
+        let norm = self.load_norm(w, &format!("{name}.norm"), width)?;
+        let convolution =
+            self.load_sparse(w, &format!("{name}.conv"), [taps, width], &[taps * width, width])?;
+        let linear = self.linear(w, &format!("{name}.linear"), [width, width], &[])?;
+        self.sparse_residual_from(norm, convolution, linear)
+            .map_err(|e| w.backend_error(e))
     }
 }

@@ -1,8 +1,8 @@
 //! A transformer block with candle's own operations, as plainly as it goes.
 
-use candle_core::{D, Device, Result, Tensor};
+use candle_core::{Device, Result, Tensor};
 
-use super::{Linear, index, modulated};
+use super::{Linear, by_head, index, modulated, softmax};
 use nn::ops::BlockParts;
 
 /// A block with its weights.
@@ -64,18 +64,12 @@ impl Block {
             newest[*place] = tokens + i;
         }
         let keys_values = both.index_select(&index(newest.into_iter(), device)?, 0)?;
-        let size = width / self.heads;
-        let heads = |t: Tensor, n: usize| {
-            t.reshape((n, self.heads, size))?.transpose(0, 1)?.contiguous() // [heads, n, size]
-        };
-        let queries = heads(qkv.narrow(1, 0, width)?.contiguous()?, count)?;
-        let keys = heads(keys_values.narrow(1, 0, width)?.contiguous()?, tokens)?;
+        let queries = by_head(&qkv.narrow(1, 0, width)?, self.heads)?;
+        let keys = by_head(&keys_values.narrow(1, 0, width)?, self.heads)?;
         let all_values = keys_values.narrow(1, width, width)?.contiguous()?;
-        let values = heads(all_values.clone(), tokens)?;
-        let scores = (queries.matmul(&keys.t()?)? / (size as f64).sqrt())?;
-        let scores = scores.broadcast_sub(&scores.max_keepdim(D::Minus1)?)?.exp()?;
-        let weights = scores.broadcast_div(&scores.sum_keepdim(D::Minus1)?)?;
-        let mixed = weights.matmul(&values)?.transpose(0, 1)?;
+        let values = by_head(&all_values, self.heads)?;
+        let scores = (queries.matmul(&keys.t()?)? / ((width / self.heads) as f64).sqrt())?;
+        let mixed = softmax(&scores)?.matmul(&values)?.transpose(0, 1)?;
         let mut mixed = mixed.contiguous()?.reshape((count, width))?;
         if let Some((weight, bias)) = &self.local {
             let map = all_values

@@ -3,13 +3,18 @@
 //! contain candle.
 
 mod block;
+mod graph;
+mod sparse;
 
 use candle_core::{D, Device, Result as CandleResult, Tensor};
 
 use block::Block;
+use graph::{Messages, NodeBlock};
 use nn::Precision;
 use nn::map::Map;
-use nn::ops::{BlockParts, Ops, OpsError, Values};
+use nn::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use nn::rules::RuleBook;
+use sparse::Convolution;
 
 /// Epsilon of every norm, as on the processor.
 const EPSILON: f64 = nn::layers::NORM_EPS;
@@ -107,6 +112,19 @@ fn modulated(x: &Tensor, shift: &Tensor, scale: &Tensor) -> CandleResult<Tensor>
     unit(x)?.broadcast_mul(&(scale + 1.0)?)?.broadcast_add(shift)
 }
 
+/// `[n, width]` to `[head, n, width / heads]`.
+fn by_head(x: &Tensor, heads: usize) -> CandleResult<Tensor> {
+    let (n, width) = x.dims2()?;
+    let x = x.contiguous()?.reshape((n, heads, width / heads))?;
+    x.transpose(0, 1)?.contiguous()
+}
+
+/// Of every row.
+fn softmax(scores: &Tensor) -> CandleResult<Tensor> {
+    let scores = scores.broadcast_sub(&scores.max_keepdim(D::Minus1)?)?.exp()?;
+    scores.broadcast_div(&scores.sum_keepdim(D::Minus1)?)
+}
+
 /// A residual block.
 pub struct Residual {
     norm: Norm,
@@ -150,6 +168,11 @@ impl Ops for Candle {
     type Residual = Residual;
     type Table = Tensor;
     type Block = Block;
+    type SparseConvolution = Convolution;
+    type SparseResidual = sparse::Residual;
+    type Room = ();
+    type Messages = Messages;
+    type NodeBlock = NodeBlock;
 
     fn upload(&self, map: Map) -> Result<CandleMap, OpsError> {
         let (rows, columns, width) = (map.rows, map.columns, map.width);
@@ -222,6 +245,31 @@ impl Ops for Candle {
 
     fn block_from(&self, parts: BlockParts<Linear>) -> Result<Block, OpsError> {
         Block::new(parts, &self.0).map_err(refused)
+    }
+
+    fn sparse_from(&self, weight: &[f32], bias: Vec<f32>, taps: usize) -> Result<Convolution, OpsError> {
+        Convolution::new(weight, bias, taps, &self.0).map_err(refused)
+    }
+
+    fn sparse_residual_from(
+        &self,
+        norm: Norm,
+        convolution: Convolution,
+        linear: Linear,
+    ) -> Result<sparse::Residual, OpsError> {
+        Ok(sparse::Residual {
+            norm,
+            convolution,
+            linear,
+        })
+    }
+
+    fn messages_from(&self, parts: MessageParts<Linear>) -> Result<Messages, OpsError> {
+        Messages::new(parts, &self.0).map_err(refused)
+    }
+
+    fn node_block_from(&self, parts: NodeBlockParts<Linear>) -> Result<NodeBlock, OpsError> {
+        NodeBlock::new(parts, &self.0).map_err(refused)
     }
 
     fn apply(&self, linear: &Linear, x: &CandleMap, _: usize) -> Result<CandleMap, OpsError> {
@@ -321,6 +369,75 @@ impl Ops for Candle {
         };
         let best = run().map_err(refused)?;
         Ok(best.into_iter().map(|class| class as u8).collect())
+    }
+
+    fn sparse(
+        &self,
+        convolution: &Convolution,
+        x: &CandleMap,
+        rules: &RuleBook,
+    ) -> Result<CandleMap, OpsError> {
+        let run = || {
+            let data = convolution.forward(&x.data, rules)?;
+            let (rows, width) = data.dims2()?;
+            Ok(CandleMap {
+                data,
+                rows,
+                columns: 1,
+                width,
+            })
+        };
+        run().map_err(refused)
+    }
+
+    fn sparse_onto(
+        &self,
+        convolution: &Convolution,
+        x: &CandleMap,
+        rules: &RuleBook,
+        onto: CandleMap,
+    ) -> Result<CandleMap, OpsError> {
+        self.add(onto, &self.sparse(convolution, x, rules)?)
+    }
+
+    fn sparse_residual(
+        &self,
+        block: &sparse::Residual,
+        x: CandleMap,
+        rules: &RuleBook,
+        (): &mut (),
+    ) -> Result<CandleMap, OpsError> {
+        let y = block.forward(&x.data, rules);
+        y.and_then(|y| x.with(y)).map_err(refused)
+    }
+
+    fn messages(&self, round: &Messages, x: CandleMap, edges: &[Edge]) -> Result<CandleMap, OpsError> {
+        let y = round.forward(&x.data, edges);
+        y.and_then(|y| x.with(y)).map_err(refused)
+    }
+
+    fn node_block(
+        &self,
+        block: &NodeBlock,
+        x: CandleMap,
+        ada: &CandleMap,
+        context: Option<&CandleMap>,
+        bias: &CandleMap,
+    ) -> Result<CandleMap, OpsError> {
+        let y = block.forward(&x.data, &ada.data, context.map(|c| &c.data), &bias.data);
+        y.and_then(|y| x.with(y)).map_err(refused)
+    }
+
+    fn relu(&self, x: CandleMap) -> Result<CandleMap, OpsError> {
+        x.data.relu().and_then(|y| x.with(y)).map_err(refused)
+    }
+
+    fn gelu(&self, x: CandleMap) -> Result<CandleMap, OpsError> {
+        x.data.gelu_erf().and_then(|y| x.with(y)).map_err(refused)
+    }
+
+    fn tanh(&self, x: CandleMap) -> Result<CandleMap, OpsError> {
+        x.data.tanh().and_then(|y| x.with(y)).map_err(refused)
     }
 
     fn silu(&self, x: CandleMap) -> Result<CandleMap, OpsError> {

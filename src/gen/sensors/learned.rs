@@ -89,11 +89,18 @@ pub fn rays_of(pattern: &LidarPattern, rays: &Rays) -> Vec<Ray> {
     (0..rays.directions.len()).map(ray).collect()
 }
 
-/// Casts the pattern through the grid alone, beam-major; only what was met and not dropped becomes a point.
-pub fn sweep(net: &LidarNet, field: &Field, pattern: &LidarPattern, drops: Drops) -> LidarSweep {
+/// Casts the pattern through the grid alone, beam-major; only what was met and not dropped becomes a point. Errors if the
+/// network cannot compute.
+pub fn sweep(
+    net: &LidarNet,
+    field: &Field,
+    pattern: &LidarPattern,
+    drops: Drops,
+) -> Result<LidarSweep, ModelError> {
     let rays = rays(pattern, 0.0);
-    let answers = net.shoot(field, &rays, Sampling::Prior);
-    points(&rays, &answers, pattern.columns_in_sector(), drops, None)
+    let answers = net.shoot(field, &rays, Sampling::Prior)?;
+    let columns = pattern.columns_in_sector();
+    Ok(points(&rays, &answers, columns, drops, None))
 }
 
 /// The sweep of the first LiDAR of a rig on its moving vehicle, with the vehicle itself and what lies beyond the grid;
@@ -112,7 +119,7 @@ pub fn rig_sweep(
     let shape = Rays::new(pattern, rig.ego_speed_mps);
     let around = Around::new(grid, SEEN, pattern, &shape, ego, Height::Physical);
     let rays = rays_of(pattern, &shape);
-    let answers = net.shoot(&field, &rays, Sampling::Prior);
+    let answers = net.shoot(&field, &rays, Sampling::Prior)?;
     let columns = pattern.columns_in_sector();
     Ok(points(&rays, &answers, columns, drops, Some(&around)))
 }
@@ -205,7 +212,7 @@ mod tests {
                 .expect("a pool");
             pool.install(|| {
                 let field = field(&net, &grid, None).expect("a finite field");
-                sweep(&net, &field, pattern, Drops::Drawn(4))
+                sweep(&net, &field, pattern, Drops::Drawn(4)).expect("finite")
             })
         };
         let found = made(1);
@@ -248,7 +255,7 @@ mod tests {
                 ] {
                     pattern.translation_m = place;
                     pattern.rotation_wxyz = [1.0, 0.0, 0.0, 0.0];
-                    let found = sweep(&net, &field, &pattern, Drops::Keep);
+                    let found = sweep(&net, &field, &pattern, Drops::Keep).expect("finite");
                     assert_eq!(found.rays, 40);
                     assert!(
                         found

@@ -61,7 +61,7 @@ impl LearnedCaster {
         let field = learned::field(&net, grid, exclude)?;
         let shape = Rays::new(pattern, ego_speed_mps);
         let rays = learned::rays_of(pattern, &shape);
-        let answers = net.shoot(&field, &rays, Sampling::Prior);
+        let answers = net.shoot(&field, &rays, Sampling::Prior)?;
         Ok(Self {
             exclude,
             around: Around::new(grid, SEEN, pattern, &shape, exclude, Height::Physical),
@@ -88,18 +88,18 @@ impl LearnedCaster {
         let seen = learned::seen(grid, self.exclude);
         self.shot = match self.net.update(&mut self.field, &seen)? {
             Changed::Everywhere => {
-                self.answers = self.net.shoot(&self.field, &self.rays, Sampling::Prior);
+                self.answers = self.net.shoot(&self.field, &self.rays, Sampling::Prior)?;
                 (0..self.rays.len() as u32).collect()
             }
-            Changed::In(regions) => self.shoot_again(&regions),
+            Changed::In(regions) => self.shoot_again(&regions)?,
         };
         self.around.update(grid, SEEN, &self.pattern, &self.shape);
         Ok(())
     }
 
-    fn shoot_again(&mut self, regions: &[Region]) -> Vec<u32> {
+    fn shoot_again(&mut self, regions: &[Region]) -> Result<Vec<u32>, ModelError> {
         if regions.is_empty() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let boxes: Vec<[DVec3; 2]> = regions.iter().map(reached).collect();
         let rays = self.rays.par_iter().zip(&self.answers).with_min_len(CHUNK);
@@ -109,11 +109,11 @@ impl LearnedCaster {
         });
         let again: Vec<usize> = touched.map(|(i, _)| i).collect();
         let rays: Vec<Ray> = again.iter().map(|i| self.rays[*i]).collect();
-        let answers = self.net.shoot(&self.field, &rays, Sampling::Prior);
+        let answers = self.net.shoot(&self.field, &rays, Sampling::Prior)?;
         for (i, answer) in again.iter().zip(answers) {
             self.answers[*i] = answer;
         }
-        again.into_iter().map(|i| i as u32).collect()
+        Ok(again.into_iter().map(|i| i as u32).collect())
     }
 
     /// The points, beam-major.

@@ -434,7 +434,7 @@ fn lidar_agrees_with_python() {
             direction: vector(d),
             range_m: [1.0, 100.0],
         };
-        let (f, answer) = net.probe(&field, &ray, t);
+        let (f, answer) = net.probe(&field, &ray, t).expect("the processor never fails");
         sdf.extend(f);
         met.push(answer);
     }

@@ -36,7 +36,7 @@ pub(super) fn memory(how: &How) -> anyhow::Result<(Arc<Memory>, Vec<String>)> {
         return Ok((bundled, Vec::new()));
     };
     let (own, problems) = own_scenes(folder);
-    Ok((Arc::new(bundled.with(own)), problems))
+    Ok((Arc::new(bundled.with(own)?), problems))
 }
 
 /// Fills what a description leaves open from the nearest scenes; the road that they propose.
@@ -45,7 +45,7 @@ pub(super) fn fill_in(
     prompt: &str,
     d: &mut Description,
     seed: u64,
-) -> Option<(Remembered, RoadRef)> {
+) -> anyhow::Result<Option<(Remembered, RoadRef)>> {
     let mut counts: BTreeMap<Class, usize> = BTreeMap::new();
     for o in &d.foreground {
         *counts.entry(o.class).or_insert(0) += o.count.n as usize;
@@ -61,7 +61,9 @@ pub(super) fn fill_in(
         weather: d.weather.and_then(weather_index),
         counts,
     };
-    let proposal = memory.fill_in(&open, seed)?;
+    let Some(proposal) = memory.fill_in(&open, seed)? else {
+        return Ok(None);
+    };
     let mut filled = Vec::new();
     if let (None, Some(night)) = (d.time_of_day, proposal.night) {
         let time = if night { TimeOfDay::Night } else { TimeOfDay::Day };
@@ -111,7 +113,7 @@ pub(super) fn fill_in(
         .iter()
         .map(|r| (memory.entries()[r.entry].text.clone(), r.similarity))
         .collect();
-    Some((
+    Ok(Some((
         Remembered {
             scenes,
             filled,
@@ -119,13 +121,13 @@ pub(super) fn fill_in(
             nearest: proposal.from.first().map(|r| memory.entries()[r.entry].clone()),
         },
         proposal.road,
-    ))
+    )))
 }
 
 /// What memory would put into a description; none without its weights.
 pub fn recall(prompt: &str, description: &Description, seed: u64) -> Option<Remembered> {
     let (memory, _) = memory(&How::default()).ok()?;
-    let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed)?;
+    let (found, _) = fill_in(&memory, prompt, &mut description.clone(), seed).ok()??;
     Some(found)
 }
 

@@ -83,13 +83,13 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
         let scene = bare_scene(i);
         let (world, _) = world_of(TEST_SEED, i, |_| None);
         let field = net.field(&scene.frame().occupancy)?;
-        let exact = net.shoot(&field, &few, Sampling::Uniform(REFERENCE_SAMPLES));
+        let exact = net.shoot(&field, &few, Sampling::Uniform(REFERENCE_SAMPLES))?;
         for (k, (_, sampling)) in ways.iter().enumerate() {
             forget_peak_memory();
             let (found, times) = timed(repeats, || net.shoot(&field, &rays, *sampling));
             peaks[k] = peak_rss_mb();
             walls[k].extend(times);
-            let some: Vec<LearnedRay> = found.into_iter().step_by(COMPARED).collect();
+            let some: Vec<LearnedRay> = found?.into_iter().step_by(COMPARED).collect();
             let both = || some.iter().zip(&exact).filter(|(a, b)| a.is_hit() && b.is_hit());
             let gaps: Vec<f64> = both()
                 .map(|(a, b)| f64::from(a.met.median_m - b.met.median_m).abs())

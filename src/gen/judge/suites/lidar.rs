@@ -215,7 +215,7 @@ impl Suite {
         let start = Instant::now();
         let field = net.field(grid)?;
         let field_s = start.elapsed().as_secs_f64();
-        let answers = net.shoot(&field, rays, Sampling::Prior);
+        let answers = net.shoot(&field, rays, Sampling::Prior)?;
         let wall_s = start.elapsed().as_secs_f64();
         self.field_s.push(field_s);
         self.shoot_s.push(wall_s - field_s);
@@ -230,12 +230,12 @@ impl Suite {
             .add(rays, truth, &ranges(&answers), |_| true, wall_s);
         self.echoes.add(rays, truth, &answers);
         let start = Instant::now();
-        let answers = net.shoot(&field, rays, Sampling::Uniform(UNIFORM));
+        let answers = net.shoot(&field, rays, Sampling::Uniform(UNIFORM))?;
         let wall_s = field_s + start.elapsed().as_secs_f64();
         self.uniform
             .add(rays, truth, &ranges(&answers), |i| kept(&answers, i), wall_s);
         let start = Instant::now();
-        let answers = flat.shoot(&flat.field(grid)?, rays, Sampling::Prior);
+        let answers = flat.shoot(&flat.field(grid)?, rays, Sampling::Prior)?;
         let wall_s = start.elapsed().as_secs_f64();
         self.flat
             .add(rays, truth, &ranges(&answers), |i| kept(&answers, i), wall_s);

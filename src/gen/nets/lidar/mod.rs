@@ -6,7 +6,8 @@ pub mod field;
 pub mod neus;
 pub mod prior;
 pub mod sites;
-pub mod sparse;
+#[cfg(test)]
+mod sparse_tests;
 pub mod update;
 
 use std::path::Path;
@@ -19,11 +20,11 @@ use self::field::{
     APPEARANCE, Field, HIDDEN, Line, Met, RAY_INPUTS, Ray, Room, Sampling, SdfHead, shoot_all,
 };
 use self::prior::Cells;
-use self::sites::{CHILDREN, Sites, Volume, physical, surface};
-use self::sparse::{Block, Convolution};
+use self::sites::{CHILDREN, Sites, TAPS, Volume, physical, surface};
 use super::{ModelError, check_finite};
-use nn::layers::{Linear, Norm};
+use nn::ops::OpsError;
 use nn::weights::{self, WeightFile, WeightsError};
+use nn::{Cpu, Ops};
 use scene::{Class, VoxelGrid, Window};
 
 /// File name of the weights.
@@ -50,25 +51,26 @@ pub struct LidarConfig {
 }
 
 /// Convolutions between the embedding and the heads.
-struct Unet {
-    enter: [Block; 2],
-    middle: [Block; 2],
-    leave: [Block; 2], // level 1, level 0
-    down: [Convolution; 2],
-    up: [Convolution; 2], // to level 1, to level 0
+struct Unet<B: Ops> {
+    enter: [B::SparseResidual; 2],
+    middle: [B::SparseResidual; 2],
+    leave: [B::SparseResidual; 2], // level 1, level 0
+    down: [B::SparseConvolution; 2],
+    up: [B::SparseConvolution; 2], // to level 1, to level 0
 }
 
-/// The network.
-pub struct LidarNet {
+/// The network, on a backend. Rays are followed through the field on the processor, whatever the backend.
+pub struct LidarNet<B: Ops = Cpu> {
+    ops: B,
     config: LidarConfig,
     class_table: Vec<f32>,
     height_table: Vec<f32>,
-    unet: Option<Unet>,
-    norm: Norm,
-    geometry: Linear,
-    appearance: Linear,
+    unet: Option<Unet<B>>,
+    norm: B::Norm,
+    geometry: B::Linear,
+    appearance: B::Linear,
     head: SdfHead,
-    ray: [Linear; 3],
+    ray: [B::Linear; 3],
     trained: String,
 }
 
@@ -132,8 +134,15 @@ impl LidarNet {
         Ok(Arc::new(Self::new(WeightFile::parse(FILE, &bytes)?)?))
     }
 
-    /// Takes every tensor of the file.
-    pub fn new(mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
+    /// On the processor. Takes every tensor of the file.
+    pub fn new(w: WeightFile<'_>) -> Result<Self, WeightsError> {
+        Self::on(Cpu, w)
+    }
+}
+
+impl<B: Ops> LidarNet<B> {
+    /// The same on a backend.
+    pub fn on(ops: B, mut w: WeightFile<'_>) -> Result<Self, WeightsError> {
         let config: LidarConfig = w.config("config")?;
         let w0 = config.widths[0];
         if config.widths.iter().any(|v| !(1..=1024).contains(v)) {
@@ -143,7 +152,7 @@ impl LidarNet {
             ));
         }
         let unet = match config.unet {
-            true => Some(Unet::new(&mut w, config.widths)?),
+            true => Some(Unet::new(&ops, &mut w, config.widths)?),
             false => None,
         };
         let array = |values: Vec<f32>| -> [f32; HIDDEN] { std::array::from_fn(|i| values[i]) };
@@ -163,21 +172,23 @@ impl LidarNet {
             );
             return Err(w.config_error("log_s", reason));
         }
+        let mut linear = |name: &str, inputs, outputs| ops.linear(&mut w, name, [inputs, outputs], &[]);
         let net = Self {
+            geometry: linear("geometry", w0, HIDDEN + 4)?,
+            appearance: linear("appearance", w0, APPEARANCE)?,
+            ray: [
+                linear("ray0", RAY_INPUTS, RAY_WIDTH)?,
+                linear("ray1", RAY_WIDTH, RAY_WIDTH)?,
+                linear("ray2", RAY_WIDTH, 2)?,
+            ],
             class_table: w.take("class_table", &[CLASSES, w0])?,
             height_table: w.take("height_table", &[Window::NZ, w0])?,
+            norm: ops.load_norm(&mut w, "norm", w0)?,
             unet,
-            norm: Norm::new(&mut w, "norm", w0)?,
-            geometry: Linear::new(&mut w, "geometry", w0, HIDDEN + 4, &[])?,
-            appearance: Linear::new(&mut w, "appearance", w0, APPEARANCE, &[])?,
             head,
-            ray: [
-                Linear::new(&mut w, "ray0", RAY_INPUTS, RAY_WIDTH, &[])?,
-                Linear::new(&mut w, "ray1", RAY_WIDTH, RAY_WIDTH, &[])?,
-                Linear::new(&mut w, "ray2", RAY_WIDTH, 2, &[])?,
-            ],
             trained: format!("lidar ({} steps)", w.metadata("steps").unwrap_or("?")),
             config,
+            ops,
         };
         w.finish()?;
         Ok(net)
@@ -231,36 +242,37 @@ impl LidarNet {
         [hidden, appearance]: [&mut [Line]; 2],
         planes: &mut [[f32; 4]],
     ) -> Result<(), ModelError> {
-        let x = self.features(keys, classes);
-        let width = self.config.widths[0];
-        x.par_chunks(PIECE * width)
+        if keys.is_empty() {
+            return Ok(());
+        }
+        let ops = &self.ops;
+        let normed = ops.norm(&self.norm, self.features(keys, classes)?)?;
+        let geometry = ops.download(ops.apply(&self.geometry, &normed, PIECE)?)?.data;
+        let looks = ops.download(ops.apply(&self.appearance, &normed, PIECE)?)?.data;
+        geometry
+            .par_chunks(PIECE * (HIDDEN + 4))
+            .zip(looks.par_chunks(PIECE * APPEARANCE))
             .zip(hidden.par_chunks_mut(PIECE))
             .zip(appearance.par_chunks_mut(PIECE))
             .zip(planes.par_chunks_mut(PIECE))
-            .try_for_each_init(
-                || (vec![0.0; PIECE * width], vec![0.0; PIECE * (HIDDEN + 4)]),
-                |(normed, out), (((x, hidden), appearance), planes)| {
-                    let (rows, normed) = (x.len() / width, &mut normed[..x.len()]);
-                    self.norm.rows(x, normed);
-                    check_finite("features of the LiDAR's voxels", normed)?;
-                    self.geometry.rows(normed, &mut out[..rows * (HIDDEN + 4)]);
-                    let rows_of = out.chunks_exact(HIDDEN + 4).zip(&mut *hidden).zip(planes);
-                    for ((row, hidden), plane) in rows_of.take(rows) {
-                        hidden.0.copy_from_slice(&row[..HIDDEN]);
-                        plane.copy_from_slice(&row[HIDDEN..]);
-                    }
-                    self.appearance.rows(normed, &mut out[..rows * APPEARANCE]);
-                    let rows_of = out.chunks_exact(APPEARANCE).zip(&mut *appearance);
-                    for (row, looks) in rows_of.take(rows) {
-                        looks.0.copy_from_slice(row);
-                    }
-                    Ok(())
-                },
-            )
+            .try_for_each(|((((geometry, looks), hidden), appearance), planes)| {
+                for values in [geometry, looks] {
+                    check_finite("features of the LiDAR's voxels", values)?;
+                }
+                let rows = geometry.chunks_exact(HIDDEN + 4);
+                for ((row, hidden), plane) in rows.zip(hidden).zip(planes) {
+                    hidden.0.copy_from_slice(&row[..HIDDEN]);
+                    plane.copy_from_slice(&row[HIDDEN..]);
+                }
+                for (row, appearance) in looks.chunks_exact(APPEARANCE).zip(appearance) {
+                    appearance.0.copy_from_slice(row);
+                }
+                Ok(())
+            })
     }
 
     /// What the UNet makes of the voxels, `[site][channel]`.
-    fn features(&self, keys: &[u32], classes: &[u8]) -> Vec<f32> {
+    fn features(&self, keys: &[u32], classes: &[u8]) -> Result<B::Tensor, OpsError> {
         let width = self.config.widths[0];
         let mut x = vec![0.0; keys.len() * width];
         x.par_chunks_mut(PIECE * width)
@@ -276,24 +288,32 @@ impl LidarNet {
                     }
                 }
             });
+        let x = self.ops.sequence(x, width)?;
         match &self.unet {
-            Some(unet) if !keys.is_empty() => unet.apply(x, &Sites::new(SHAPE, keys.to_vec())),
-            _ => x,
+            Some(unet) => unet.apply(&self.ops, x, &Sites::new(SHAPE, keys.to_vec())),
+            None => Ok(x),
         }
     }
 
-    /// What rays meet, in their order, on all cores; the same on any number of threads.
-    pub fn shoot(&self, field: &Field, rays: &[Ray], sampling: Sampling) -> Vec<LearnedRay> {
-        let piece = |rays: &[Ray]| -> Vec<LearnedRay> {
+    /// What rays meet, in their order, on all cores; the same on any number of threads. Errors if the backend cannot compute.
+    pub fn shoot(
+        &self,
+        field: &Field,
+        rays: &[Ray],
+        sampling: Sampling,
+    ) -> Result<Vec<LearnedRay>, ModelError> {
+        let piece = |rays: &[Ray]| {
             let mut met = vec![Met::default(); rays.len()];
             shoot_all(field, &self.head, rays, sampling, &mut Room::default(), &mut met);
             self.heads(&met)
         };
-        rays.par_chunks(RAYS).flat_map_iter(piece).collect()
+        let pieces: Vec<_> = rays.par_chunks(RAYS).map(piece).collect::<Result<_, _>>()?;
+        Ok(pieces.concat())
     }
 
-    /// Signed distances at positions along a ray and what it meets there; for tests and pictures.
-    pub fn probe(&self, field: &Field, ray: &Ray, t: &[f32]) -> (Vec<f32>, LearnedRay) {
+    /// Signed distances at positions along a ray and what it meets there; for tests and pictures. Errors if the backend cannot
+    /// compute.
+    pub fn probe(&self, field: &Field, ray: &Ray, t: &[f32]) -> Result<(Vec<f32>, LearnedRay), ModelError> {
         let [o, d] = [ray.origin, ray.direction].map(|v| v.as_vec3().to_array());
         let f: Vec<f32> = t
             .iter()
@@ -301,28 +321,29 @@ impl LidarNet {
             .collect();
         let tails: Vec<f32> = f.iter().map(|f| neus::tail(self.head.s * f)).collect();
         let met = field.render(self.head.s, [o, d], [t, &f, &tails], &mut Vec::new());
-        (f, self.heads(&[met])[0])
+        Ok((f, self.heads(&[met])?[0]))
     }
 
     /// Echo strength and drops of some rays.
-    fn heads(&self, met: &[Met]) -> Vec<LearnedRay> {
-        let mut x: Vec<f32> = met.iter().flat_map(|m| m.inputs).collect();
-        for (i, (layer, width)) in self.ray.iter().zip([RAY_WIDTH, RAY_WIDTH, 2]).enumerate() {
-            let mut out = vec![0.0; met.len() * width];
-            layer.rows(&x, &mut out);
+    fn heads(&self, met: &[Met]) -> Result<Vec<LearnedRay>, OpsError> {
+        let (ops, rows) = (&self.ops, met.len());
+        let inputs = met.iter().flat_map(|m| m.inputs).collect();
+        let mut x = ops.sequence(inputs, RAY_INPUTS)?;
+        for (i, layer) in self.ray.iter().enumerate() {
+            x = ops.apply(layer, &x, rows)?;
             if i < 2 {
-                out.iter_mut().for_each(|v| *v = v.max(0.0));
+                x = ops.relu(x)?;
             }
-            x = out;
         }
-        met.iter()
-            .zip(x.chunks_exact(2))
+        let numbers = ops.download(x)?.data;
+        let each = met.iter().zip(numbers.chunks_exact(2));
+        Ok(each
             .map(|(met, out)| LearnedRay {
                 met: *met,
                 intensity: (out[0].clamp(0.0, 1.0).powi(2)) * 255.0,
                 drop_logit: out[1],
             })
-            .collect()
+            .collect())
     }
 }
 
@@ -337,35 +358,39 @@ fn voxels(grid: &VoxelGrid) -> (Vec<u32>, Vec<u8>) {
     (keys, classes)
 }
 
-impl Unet {
-    fn new(w: &mut WeightFile<'_>, [w0, w1, w2]: [usize; 3]) -> Result<Self, WeightsError> {
-        let strided = |w: &mut WeightFile<'_>, name: &str, from: usize, to: usize| {
-            Convolution::new(w, name, [CHILDREN, from, to], &[CHILDREN, from, to])
+impl<B: Ops> Unet<B> {
+    fn new(ops: &B, w: &mut WeightFile<'_>, [w0, w1, w2]: [usize; 3]) -> Result<Self, WeightsError> {
+        let strided = |w: &mut WeightFile<'_>, name: &str, from, to| {
+            ops.load_sparse(w, name, [CHILDREN, to], &[CHILDREN, from, to])
         };
+        let (down, up) = (
+            [strided(w, "down0", w0, w1)?, strided(w, "down1", w1, w2)?],
+            [strided(w, "up1", w2, w1)?, strided(w, "up0", w1, w0)?],
+        );
+        let mut block = |name: &str, width| ops.load_sparse_residual(w, name, [TAPS, width]);
         Ok(Self {
-            enter: [Block::new(w, "enter0", w0)?, Block::new(w, "enter1", w1)?],
-            middle: [Block::new(w, "middle0", w2)?, Block::new(w, "middle1", w2)?],
-            leave: [Block::new(w, "leave1", w1)?, Block::new(w, "leave0", w0)?],
-            down: [strided(w, "down0", w0, w1)?, strided(w, "down1", w1, w2)?],
-            up: [strided(w, "up1", w2, w1)?, strided(w, "up0", w1, w0)?],
+            enter: [block("enter0", w0)?, block("enter1", w1)?],
+            middle: [block("middle0", w2)?, block("middle1", w2)?],
+            leave: [block("leave1", w1)?, block("leave0", w0)?],
+            down,
+            up,
         })
     }
 
-    fn apply(&self, mut x0: Vec<f32>, sites: &Sites) -> Vec<f32> {
+    fn apply(&self, ops: &B, x: B::Tensor, sites: &Sites) -> Result<B::Tensor, OpsError> {
         let [l0, l1, l2] = &sites.levels;
         // One buffer for all norms: fresh memory costs as much as what is written into it.
-        let mut room = Vec::new();
-        self.enter[0].apply(&mut x0, &l0.around, &mut room);
-        let mut x1 = self.down[0].apply(&x0, &l1.children);
-        self.enter[1].apply(&mut x1, &l1.around, &mut room);
-        let mut x2 = self.down[1].apply(&x1, &l2.children);
+        let mut room = B::Room::default();
+        let x0 = ops.sparse_residual(&self.enter[0], x, &l0.around, &mut room)?;
+        let x1 = ops.sparse(&self.down[0], &x0, &l1.children)?;
+        let x1 = ops.sparse_residual(&self.enter[1], x1, &l1.around, &mut room)?;
+        let mut x2 = ops.sparse(&self.down[1], &x1, &l2.children)?;
         for block in &self.middle {
-            block.apply(&mut x2, &l2.around, &mut room);
+            x2 = ops.sparse_residual(block, x2, &l2.around, &mut room)?;
         }
-        self.up[0].add(&x2, &l1.parent, &mut x1);
-        self.leave[0].apply(&mut x1, &l1.around, &mut room);
-        self.up[1].add(&x1, &l0.parent, &mut x0);
-        self.leave[1].apply(&mut x0, &l0.around, &mut room);
-        x0
+        let x1 = ops.sparse_onto(&self.up[0], &x2, &l1.parent, x1)?;
+        let x1 = ops.sparse_residual(&self.leave[0], x1, &l1.around, &mut room)?;
+        let x0 = ops.sparse_onto(&self.up[1], &x1, &l0.parent, x0)?;
+        ops.sparse_residual(&self.leave[1], x0, &l0.around, &mut room)
     }
 }

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::sparse::Gather;
+use nn::rules::RuleBook;
 use scene::{Class, VoxelGrid, Window};
 
 /// How far the ground lies below its place in labels, and how far everything else is smeared down, in bins
@@ -109,11 +109,11 @@ pub struct Level {
     /// Where they are.
     pub volume: Volume,
     /// 27 taps (dx, dy, dz) with dz fastest.
-    pub around: Gather,
+    pub around: RuleBook,
     /// 8 taps: sites of the finer level by corner (x, y, z), z fastest; no rows at the finest.
-    pub children: Gather,
+    pub children: RuleBook,
     /// 8 taps: the coarse site above, at the corner that this one is; no rows at the coarsest.
-    pub parent: Gather,
+    pub parent: RuleBook,
 }
 
 impl Level {
@@ -123,7 +123,7 @@ impl Level {
         let first = volume.steps[0] + volume.steps[1] + 1;
         let steps: [usize; TAPS] =
             std::array::from_fn(|tap| tap / 9 * volume.steps[0] + tap / 3 % 3 * volume.steps[1] + tap % 3);
-        let around = Gather::new(keys.len(), TAPS, keys.len(), |row, tap| {
+        let around = RuleBook::new(keys.len(), TAPS, keys.len(), |row, tap| {
             volume.sites[places[row] as usize - first + steps[tap]]
         });
         Self {
@@ -131,8 +131,8 @@ impl Level {
             keys,
             volume,
             around,
-            children: Gather::none(),
-            parent: Gather::none(),
+            children: RuleBook::none(),
+            parent: RuleBook::none(),
         }
     }
 
@@ -234,11 +234,11 @@ fn coarser(fine: &mut Level) -> Level {
             [coarse.volume.at(place), corner]
         })
         .collect();
-    fine.parent = Gather::new(fine_sites, CHILDREN, sites, |row, tap| {
+    fine.parent = RuleBook::new(fine_sites, CHILDREN, sites, |row, tap| {
         let [parent, corner] = parents[row];
         if corner == tap as u32 { parent } else { u32::MAX }
     });
-    coarse.children = Gather::new(sites, CHILDREN, fine_sites, |row, tap| {
+    coarse.children = RuleBook::new(sites, CHILDREN, fine_sites, |row, tap| {
         let [x, y, z] = Level::place(shape, coarse.keys[row]);
         fine.volume
             .at([2 * x + tap / 4, 2 * y + tap / 2 % 2, 2 * z + tap % 2])

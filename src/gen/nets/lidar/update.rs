@@ -6,6 +6,7 @@ use super::prior::Cells;
 use super::sites::{Level, Volume};
 use super::{LidarNet, SHAPE, voxels};
 use crate::ModelError;
+use nn::Ops;
 use scene::VoxelGrid;
 
 /// How far along x and y a voxel's numbers depend on others: one voxel and one cell of 2 on the way in and on the way
@@ -75,7 +76,7 @@ impl Region {
     }
 }
 
-impl LidarNet {
+impl<B: Ops> LidarNet<B> {
     /// Brings a field up to date with a grid, see [`LidarNet::field`].
     pub fn update(&self, field: &mut Field, grid: &VoxelGrid) -> Result<Changed, ModelError> {
         let (keys, classes) = voxels(grid);

@@ -9,7 +9,7 @@ mod tokens;
 
 use super::{CHANNELS, LATENT, ModelError, check_finite, check_length};
 use nn::map::Map;
-use nn::ops::{Ops, OpsError, Values};
+use nn::ops::{Ops, Values};
 use nn::transformer::piece_of;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Precision};
@@ -113,11 +113,8 @@ impl<B: Ops> OccDit<B> {
             ops.load_block(w, &name, width, shape, config.local)
         });
         let blocks = blocks.collect::<Result<_, _>>()?;
-        // The condition has no bias.
         let row = PATCH_CELLS * CONDITION;
-        let weight = w.take("embed_condition.weight", &[width, row])?;
-        let embed_condition = ops.linear_from(&weight, vec![0.0; width], row);
-        let embed_condition = embed_condition.map_err(|e| w.backend_error(e))?;
+        let embed_condition = ops.linear_without_bias(w, "embed_condition", [row, width])?;
         let mut linear = |name: &str, inputs, outputs| ops.linear(w, name, [inputs, outputs], &[]);
         let dit = Self {
             embed_x: linear("embed_x", PATCH_CELLS * CHANNELS, width)?,
@@ -162,10 +159,10 @@ impl<B: Ops> OccDit<B> {
     ) -> Result<Prepared<B::Tensor>, ModelError> {
         condition.check()?;
         let (ops, width) = (&self.ops, self.config.width);
-        let features = self.sequence(condition.features(&tokens), tokens.len())?;
+        let features = ops.sequence(condition.features(&tokens), PATCH_CELLS * CONDITION)?;
         let embedded = ops.apply(&self.embed_condition, &features, piece_of(tokens.len()))?;
         let places = tokens.iter().flat_map(|t| &self.positions[t * width..][..width]);
-        let positions = self.sequence(places.copied().collect(), tokens.len())?;
+        let positions = ops.sequence(places.copied().collect(), width)?;
         let named = ops.vector(condition.named_numbers())?;
         let named = ops.silu(ops.apply(&self.named1, &named, 1)?)?;
         Ok(Prepared {
@@ -174,16 +171,6 @@ impl<B: Ops> OccDit<B> {
             draft: condition.draft_latent.clone(),
             given: condition.given.iter().map(|g| g.iter().product()).collect(),
             named: ops.apply(&self.named2, &named, 1)?,
-        })
-    }
-
-    /// Numbers of some tokens, one after the other.
-    fn sequence(&self, data: Vec<f32>, tokens: usize) -> Result<B::Tensor, OpsError> {
-        self.ops.upload(Map {
-            width: data.len() / tokens.max(1),
-            data,
-            rows: tokens,
-            columns: 1,
         })
     }
 
@@ -235,7 +222,7 @@ impl<B: Ops> OccDit<B> {
 
         let cells = || places.iter().flat_map(|token| patch(*token));
         let patches = cells().flat_map(|cell| &x[cell * CHANNELS..][..CHANNELS]);
-        let patches = self.sequence(patches.copied().collect(), places.len())?;
+        let patches = ops.sequence(patches.copied().collect(), PATCH_CELLS * CHANNELS)?;
         let piece = piece_of(places.len());
         let tokens = ops.apply(&self.embed_x, &patches, piece)?;
         let tokens = ops.add(tokens, &condition.embedded)?;
@@ -262,7 +249,7 @@ impl<B: Ops> OccDit<B> {
         let row = 2 * self.config.width;
         if keys_values.0.is_empty() {
             check_length("tokens", tokens, TOKENS)?;
-            let empty = |_: &B::Block| self.sequence(vec![0.0; TOKENS * row], TOKENS);
+            let empty = |_: &B::Block| self.ops.sequence(vec![0.0; TOKENS * row], row);
             keys_values.0 = self.blocks.iter().map(empty).collect::<Result<_, _>>()?;
         }
         check_length("keys and values", keys_values.0.len(), self.blocks.len())?;
@@ -289,7 +276,7 @@ impl<B: Ops> OccDit<B> {
             let skips = matches!(&middle, Middle::Reused(added) if added.len() == tokens.numbers());
             match &mut middle {
                 Middle::Reused(added) if skips && i == 1 && last > 1 => {
-                    let added = self.sequence(added.to_vec(), places.len())?;
+                    let added = ops.sequence(added.to_vec(), tokens.width())?;
                     tokens = ops.add(tokens, &added)?;
                 }
                 Middle::Kept(_) if i == 1 => before = Some(tokens.clone()),
