@@ -20,7 +20,7 @@ use job::region::Region;
 use job::{GenError, GenParams, GenReport, Job, JobCtx, Pipeline, Precision, RegionMode};
 use metrics::iou::Confusion;
 use nets::{LATENT, OccModels};
-use scene::{Class, Scene, VoxelGrid, Window};
+use scene::{Class, Extent, Scene, VoxelGrid, Window};
 use world::draw::{Draw, hash};
 
 /// Settings whose sources stand ready side by side while their runs take turns.
@@ -164,13 +164,18 @@ impl Bench {
             RegionMode::Full => Region::full(),
             RegionMode::Auto => inpaint::region_of(case.after.frame(), params),
         };
+        // On a larger map only the networks' window is judged.
+        let (result, wanted) = (
+            result.crop(Extent::WINDOW),
+            reference.occupancy.crop(Extent::WINDOW),
+        );
         let (mut differ, mut occupied, mut both) = (0usize, 0usize, 0usize);
         let mut outside = 0u64;
         let mut confusion = Confusion::default();
         let (mut truth, mut found) = (VoxelGrid::new(), VoxelGrid::new());
         for x in 0..Window::NX {
             for y in 0..Window::NY {
-                let (a, b) = (result.column(x, y), reference.occupancy.column(x, y));
+                let (a, b) = (result.column(x, y), wanted.column(x, y));
                 if !region.columns[x * Window::NY + y] {
                     outside = a.iter().fold(outside, |h, v| hash(h ^ u64::from(*v)));
                     continue;
