@@ -552,9 +552,6 @@ impl Placer<'_> {
             .footprint()
             .iter()
             .all(|c| c.abs().max_element() < REACH_M + 0.6);
-        if !inside {
-            return false;
-        }
         let vehicle = class.is_vehicle() || class == Class::Motorcycle;
         let surface = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
         let walk = BevLayer::Walkway.bit() | BevLayer::PedCrossing.bit();
@@ -567,12 +564,10 @@ impl Placer<'_> {
             _ => u32::MAX,
         };
         if allowed != u32::MAX {
-            let layout = self.map.layout;
-            box_cells(layout.extent(), b, 0.0, |x, y| {
-                on &= layout.cell(x, y) & allowed != 0
-            });
+            let map = self.map.layout;
+            box_cells(map.extent(), b, 0.0, |x, y| on &= map.cell(x, y) & allowed != 0);
         }
-        if !on {
+        if !(inside && on) {
             return false;
         }
         let margin = |other: Class| match (class, other) {

@@ -208,12 +208,14 @@ impl Bench {
             latent_error,
             invented: match params.region {
                 RegionMode::Full => 0.0, // all of it is new
-                RegionMode::Auto => Invented::count(case.after.frame(), result, &region).total() as f64,
+                RegionMode::Auto => {
+                    Invented::count(case.after.in_window().frame(), &result, &region).total() as f64
+                }
             },
             seam: report.seam_change_share,
             untouched_voxels_changed: report.untouched_voxels_changed,
             untouched_hash: outside,
-            result_hash: label_hash(result),
+            result_hash: label_hash(&result),
             tokens: report.tokens,
             network_calls: report.network_calls - report.inversion_calls,
             stages_s: report.wall_s.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect(),
