@@ -288,7 +288,7 @@ impl Canvas {
             );
         }
         if let (true, Some(sweep)) = (state.show_lidar_bev, input.lidar) {
-            draw_points(ui, map, sweep, state);
+            draw_points(ui, map, sweep, &state.lidar);
         }
         let hovered = response
             .hover_pos()

@@ -7,6 +7,7 @@ use editor::pick;
 use editor::tools::select;
 use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
+use super::camera_views::LidarShown;
 use super::screen_map::ScreenMap;
 use super::state::UiState;
 use crate::shell::live::Bounds;
@@ -94,8 +95,8 @@ fn draw_direction(painter: &egui::Painter, points: &[Pos2], color: Color32) {
     ));
 }
 
-pub(super) fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, state: &UiState) {
-    let colors = viewport::lidar_colors(sweep, state.lidar_colors);
+pub(super) fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, shown: &LidarShown) {
+    let colors = viewport::lidar_colors(sweep, shown.colors);
     let mut mesh = egui::Mesh::default();
     for (point, [r, g, b, _]) in sweep.points.iter().zip(colors) {
         let [x, y, _] = point.position_in_ego;

@@ -6,21 +6,10 @@ use glam::DVec2;
 
 use editor::Edit;
 use job::Named;
-use sensors::cameras::{self, CameraSource, SourceId, ViewId};
-use viewport::LidarColorMode;
 
+use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::id::PaneId;
 use super::tools::{Hand, ToolState, Toolbox};
-
-/// How the LiDAR sweep is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum LidarModel {
-    /// Every ray to the first voxel.
-    #[default]
-    Exact,
-    /// The network: ranges within voxels, intensity, lost echoes.
-    Learned,
-}
 
 /// How two states are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -96,18 +85,10 @@ pub struct UiState {
     pub correcting: bool,
     /// Densities that generation is asked for.
     pub named: Named,
-    /// Colour of LiDAR returns.
-    pub lidar_colors: LidarColorMode,
-    /// What the camera strip shows.
-    pub camera_view: ViewId,
-    /// What it is rendered from, where several sources give it.
-    pub camera_source: SourceId,
-    /// Depth of the plane that is shown, m.
-    pub plane_m: f64,
-    /// Bit per camera that is not rendered.
-    pub cameras_hidden: u32,
-    /// How the LiDAR sweep is computed.
-    pub lidar_model: LidarModel,
+    /// What the pictures of the cameras show.
+    pub cameras: CamerasShown,
+    /// What the LiDAR sweep shows.
+    pub lidar: LidarShown,
     /// How the present state is compared with the version before.
     pub compare: CompareMode,
     /// The key that shows the version before is held.
@@ -120,8 +101,6 @@ pub struct UiState {
     pub sensors_open: bool,
     /// The sensor chosen in it.
     pub sensor: SensorChoice,
-    /// Camera that is enlarged.
-    pub inspected: Option<usize>,
     /// Pane under the pointer in the last frame.
     pub hovered_pane: Option<PaneId>,
     /// What the pane under the pointer says about it; shown in the status bar.
@@ -137,23 +116,6 @@ pub struct UiState {
 }
 
 impl UiState {
-    /// True if a camera of the rig is not rendered.
-    pub fn camera_hidden(&self, camera: usize) -> bool {
-        camera < 32 && self.cameras_hidden >> camera & 1 == 1
-    }
-
-    /// The source of what the camera strip shows.
-    pub fn shown_source(&self) -> &'static dyn CameraSource {
-        cameras::source_of(self.camera_view, self.camera_source)
-    }
-
-    /// After a camera was taken away, those behind it move up.
-    pub fn forget_camera(&mut self, camera: usize) {
-        let below = (1u32 << camera.min(31)) - 1;
-        self.cameras_hidden = (self.cameras_hidden & below) | (self.cameras_hidden >> 1 & !below);
-        self.inspected = None;
-    }
-
     /// The edits as they are; or as corrections while the user corrects what was inferred.
     pub fn as_meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
         let authored = |edit: &Edit| {
@@ -201,19 +163,14 @@ impl Default for UiState {
             show_unobserved: false,
             correcting: false,
             named: Named::default(),
-            lidar_colors: LidarColorMode::Range,
-            camera_view: ViewId::SEMANTIC,
-            camera_source: SourceId::default(),
-            plane_m: 12.0,
-            cameras_hidden: 0,
-            lidar_model: LidarModel::default(),
+            cameras: CamerasShown::default(),
+            lidar: LidarShown::default(),
             compare: CompareMode::Off,
             holding_before: false,
             wipe_at: 0.5,
             finding_marks: None,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),
-            inspected: None,
             hovered_pane: None,
             readout: String::new(),
             log_open: false,
@@ -251,19 +208,6 @@ mod tests {
             edit: Box::new(remove),
         };
         assert_eq!(ui.as_meant(edits), [corrected, voxels]);
-    }
-
-    #[test]
-    fn hidden_cameras_stay_hidden_when_another_goes() {
-        let mut ui = UiState {
-            cameras_hidden: 0b10_1001,
-            ..UiState::default()
-        };
-        assert!(ui.camera_hidden(3) && !ui.camera_hidden(4) && !ui.camera_hidden(40));
-        ui.forget_camera(2);
-        assert_eq!(ui.cameras_hidden, 0b1_0101);
-        ui.forget_camera(0);
-        assert_eq!(ui.cameras_hidden, 0b1010);
     }
 
     #[test]

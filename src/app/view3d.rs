@@ -346,7 +346,7 @@ impl View3d {
         }
         let size = self.size_px();
         let frame = input.scene.frame();
-        self.refresh_colors(input.lidar, state.lidar_colors);
+        self.refresh_colors(input.lidar, state.lidar.colors);
         let brushed = marks.iter().find_map(|mark| match mark {
             Mark::Voxels(cells, color) => Some((&cells[..], *color)),
             _ => None,

@@ -34,7 +34,7 @@ impl Pane for Cameras {
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let cameras = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing);
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            cx.strip.controls(ui, &cameras, cx.state, commands);
+            cx.strip.controls(ui, &cameras, &mut cx.state.cameras, commands);
         });
     }
 
@@ -79,7 +79,7 @@ pub(super) fn compared(
             draw(ui, second, cx.strip, &now, cx.state);
         }
         (CompareMode::Wipe, Some(other)) => {
-            let textures = cx.compare.strip.textures(ui, &other, cx.state);
+            let textures = cx.compare.strip.textures(ui, &other, &cx.state.cameras);
             cx.strip.wipe(Some((textures, cx.state.wipe_at)));
             draw(ui, area, cx.strip, &now, cx.state);
         }

@@ -51,13 +51,13 @@ impl Pane for Lidar {
             (LidarColorMode::Intensity, "Echo"),
             (LidarColorMode::Drop, "Loss"),
         ];
-        let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar_colors);
+        let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar.colors);
         egui::ComboBox::from_id_salt("sweep colours")
             .selected_text(shown.map_or("Range", |(_, name)| name))
             .width(84.0)
             .show_ui(ui, |ui| {
                 for (mode, name) in colors {
-                    ui.selectable_value(&mut cx.state.lidar_colors, mode, name);
+                    ui.selectable_value(&mut cx.state.lidar.colors, mode, name);
                 }
             })
             .response
@@ -128,7 +128,7 @@ impl SweepPicture {
         };
         let rings = lidar.elevations_deg.len().max(1);
         let mount = DVec3::from_array(lidar.translation_m);
-        let mode = state.lidar_colors;
+        let mode = state.lidar.colors;
         let known = |(of, m, n, _): &(Arc<LidarSweep>, LidarColorMode, usize, _)| {
             Arc::ptr_eq(of, sweep) && *m == mode && *n == rings
         };

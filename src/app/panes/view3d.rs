@@ -6,8 +6,9 @@ use super::areas::{clipped, halves, in_rect, left_part, sides};
 use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
+use crate::camera_views::LidarModel;
 use crate::command::{Command, FileCommand, ViewCommand};
-use crate::state::{LidarModel, UiState};
+use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 use widgets::icons::{self, Icon};
@@ -153,7 +154,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
     ui.label(egui::RichText::new("LiDAR").small().color(theme::text_weak()));
     icons::segments(
         ui,
-        &mut state.lidar_model,
+        &mut state.lidar.model,
         &[
             (LidarModel::Exact, "Exact", "every ray to the first voxel"),
             (
@@ -170,7 +171,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
     );
     icons::segments(
         ui,
-        &mut state.lidar_colors,
+        &mut state.lidar.colors,
         &[
             (LidarColorMode::Range, "Range", "near warm, far cool"),
             (LidarColorMode::Class, "Class", "of the voxel hit"),

@@ -113,8 +113,8 @@ impl SceneloomApp {
     fn escape(&mut self) {
         if self.document.is_dragging() {
             self.document.cancel_drag();
-        } else if self.state.inspected.is_some() {
-            self.state.inspected = None;
+        } else if self.state.cameras.enlarged.is_some() {
+            self.state.cameras.enlarged = None;
         } else if !self.state.tools.voxels.is_empty() {
             self.state.tools.voxels.clear();
         } else if self.state.tool != select::ID {

@@ -36,7 +36,7 @@ impl SceneloomApp {
             ViewCommand::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
             ViewCommand::LookThrough(index) => self.look_through(index),
-            ViewCommand::Inspect(camera) => self.state.inspected = camera,
+            ViewCommand::Inspect(camera) => self.state.cameras.enlarged = camera,
             ViewCommand::SwapPanes => self.views.dock.swap(PaneId::BEV, PaneId::VIEW3D),
             ViewCommand::ShowPane(pane) => self.views.dock.open(pane),
             ViewCommand::TogglePane(pane) => self.views.dock.toggle(pane),

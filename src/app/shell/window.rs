@@ -187,11 +187,12 @@ impl SceneloomApp {
             .cloned();
         let senses = held || matches!(self.state.compare, CompareMode::Wipe | CompareMode::Side);
         let ctx = ui.ctx().clone();
-        self.views
-            .compare
-            .prepare(before, Wanted::of(&self.state), senses, move || {
-                ctx.request_repaint()
-            });
+        self.views.compare.prepare(
+            before,
+            Wanted::of(&self.state.cameras, &self.state.lidar),
+            senses,
+            move || ctx.request_repaint(),
+        );
     }
 
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {

@@ -82,13 +82,13 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
     for (i, camera) in rig.cameras.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let shown = !state.camera_hidden(i);
+            let shown = !state.cameras.is_hidden(i);
             let (icon, hint) = match shown {
                 true => (Icon::Eye, "in the strip and in the 3D view"),
                 false => (Icon::EyeOff, "not rendered"),
             };
             if icons::button(ui, icon, &format!("Show {}", camera.name), hint, false, true).clicked() {
-                state.cameras_hidden ^= 1 << i;
+                state.cameras.hidden ^= 1 << i;
             }
             let right = format!("{:.0}°", camera.fov_deg());
             let chosen = state.sensor == SensorChoice::Camera(i);
@@ -174,7 +174,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
                 SensorChoice::Lidar(i) => drop(r.lidars.remove(i)),
             });
             if let SensorChoice::Camera(i) = what {
-                state.forget_camera(i);
+                state.cameras.forget(i);
             }
             commands.push(Command::Apply("Remove sensor", vec![rest]));
         }
