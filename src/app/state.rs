@@ -8,38 +8,9 @@ use editor::Edit;
 use job::Named;
 
 use super::camera_views::{CamerasShown, LidarShown};
+use super::panes::comparing::Comparing;
 use super::panes::id::PaneId;
 use super::tools::{Hand, ToolState, Toolbox};
-
-/// How two states are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CompareMode {
-    /// Only the present state is shown.
-    #[default]
-    Off,
-    /// Before on the left of a line, after on its right.
-    Wipe,
-    /// Before beside after.
-    Side,
-    /// Voxels that differ are marked.
-    Difference,
-}
-
-impl CompareMode {
-    /// Every mode with its name and what it does.
-    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
-        (CompareMode::Off, "Off", "only the present state"),
-        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
-        (CompareMode::Side, "Side", "before beside after"),
-        (CompareMode::Difference, "Diff", "voxels that differ"),
-    ];
-
-    /// The next one.
-    pub fn next(self) -> Self {
-        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
-        Self::ALL[(at + 1) % Self::ALL.len()].0
-    }
-}
 
 /// A sensor of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,11 +61,7 @@ pub struct UiState {
     /// What the LiDAR sweep shows.
     pub lidar: LidarShown,
     /// How the present state is compared with the version before.
-    pub compare: CompareMode,
-    /// The key that shows the version before is held.
-    pub holding_before: bool,
-    /// Where the line of the wipe stands, 0 to 1.
-    pub wipe_at: f32,
+    pub compare: Comparing,
     /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both large views.
     pub finding_marks: Option<std::sync::Arc<super::finding_marks::FindingMarks>>,
     /// The sensors' window is open.
@@ -165,9 +132,7 @@ impl Default for UiState {
             named: Named::default(),
             cameras: CamerasShown::default(),
             lidar: LidarShown::default(),
-            compare: CompareMode::Off,
-            holding_before: false,
-            wipe_at: 0.5,
+            compare: Comparing::default(),
             finding_marks: None,
             sensors_open: false,
             sensor: SensorChoice::Camera(0),

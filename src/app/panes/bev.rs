@@ -44,7 +44,7 @@ impl Pane for Bev {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
 
-        let mode = cx.compare.mode(cx.state);
+        let mode = cx.compare.mode(&cx.state.compare);
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
         let input = CanvasInput {
@@ -54,7 +54,7 @@ impl Pane for Bev {
             unsettled: cx.unsettled.clone(),
             generating: cx.generating,
         };
-        if cx.compare.shows_before(cx.state, scene)
+        if cx.compare.shows_before(&cx.state.compare, scene)
             && let Some(map) = cx.canvas.map
         {
             clipped(ui, area, |ui| {
@@ -81,11 +81,11 @@ impl Pane for Bev {
                 sides(ui, left, right);
             }
             CompareMode::Wipe => {
-                let part = left_part(area, cx.state.wipe_at);
+                let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
                     cx.compare.canvas.still(ui, area, &map, &before, cx.state);
                 });
-                wipe_line(ui, area, &mut cx.state.wipe_at);
+                wipe_line(ui, area, &mut cx.state.compare.wipe_at);
             }
             CompareMode::Difference => {
                 if let Some((difference, texture)) = cx.compare.difference(ui, scene) {

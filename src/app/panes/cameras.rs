@@ -51,7 +51,7 @@ pub(super) fn compared(
     commands: &mut Vec<Command>,
 ) {
     let area = ui.available_rect_before_wrap().shrink2(egui::vec2(8.0, 2.0));
-    let mode = cx.compare.mode(cx.state);
+    let mode = cx.compare.mode(&cx.state.compare);
     let now = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing);
     let before = cx.compare.before.clone();
     let other = match (&before, &cx.compare.sensing) {
@@ -66,7 +66,7 @@ pub(super) fn compared(
             });
         };
     match (mode, other) {
-        (_, Some(other)) if cx.compare.shows_before(cx.state, cx.scene) => {
+        (_, Some(other)) if cx.compare.shows_before(&cx.state.compare, cx.scene) => {
             draw(ui, area, &mut cx.compare.strip, &other, cx.state);
         }
         (CompareMode::Side, Some(other)) => {
@@ -80,7 +80,7 @@ pub(super) fn compared(
         }
         (CompareMode::Wipe, Some(other)) => {
             let textures = cx.compare.strip.textures(ui, &other, &cx.state.cameras);
-            cx.strip.wipe(Some((textures, cx.state.wipe_at)));
+            cx.strip.wipe(Some((textures, cx.state.compare.wipe_at)));
             draw(ui, area, cx.strip, &now, cx.state);
         }
         _ => {

@@ -68,10 +68,10 @@ impl Pane for Lidar {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
 
-        let mode = cx.compare.mode(cx.state);
+        let mode = cx.compare.mode(&cx.state.compare);
         let before = cx.compare.before.clone();
         let other = cx.compare.sensing.as_ref().and_then(|s| s.lidar()).cloned();
-        if let (true, Some(before)) = (cx.state.holding_before, &before) {
+        if let (true, Some(before)) = (cx.state.compare.holding_before, &before) {
             let sweep = &mut cx.compare.sweep;
             sweep.show(ui, before, other.as_ref(), cx.state);
             return;
@@ -87,13 +87,13 @@ impl Pane for Lidar {
                 cx.compare.sweep.show(ui, &before, other.as_ref(), cx.state);
             }),
             CompareMode::Wipe => {
-                let part = left_part(area, cx.state.wipe_at);
+                let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
                     in_rect(ui, area, |ui| {
                         cx.compare.sweep.show(ui, &before, other.as_ref(), cx.state);
                     });
                 });
-                wipe_line(ui, area, &mut cx.state.wipe_at);
+                wipe_line(ui, area, &mut cx.state.compare.wipe_at);
             }
             _ => {}
         }

@@ -11,6 +11,7 @@ pub mod camera_strip;
 mod cameras;
 pub mod checks;
 pub mod compare;
+pub mod comparing;
 mod conditions;
 pub mod history;
 pub mod id;

@@ -59,10 +59,10 @@ impl Pane for View3dPane {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
 
-        let mode = cx.compare.mode(cx.state);
+        let mode = cx.compare.mode(&cx.state.compare);
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
-        let shows_before = cx.compare.shows_before(cx.state, scene);
+        let shows_before = cx.compare.shows_before(&cx.state.compare, scene);
         let difference = match mode {
             CompareMode::Difference => cx.compare.difference(ui, scene).map(|(d, _)| d),
             _ => None,
@@ -113,9 +113,9 @@ impl Pane for View3dPane {
             clipped(ui, left, |ui| other.still(ui, left, seen_from, &input, cx.state));
             sides(ui, left, right);
         } else {
-            let part = left_part(area, cx.state.wipe_at);
+            let part = left_part(area, cx.state.compare.wipe_at);
             clipped(ui, part, |ui| other.still(ui, area, seen_from, &input, cx.state));
-            wipe_line(ui, area, &mut cx.state.wipe_at);
+            wipe_line(ui, area, &mut cx.state.compare.wipe_at);
         }
     }
 }

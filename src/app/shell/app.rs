@@ -223,7 +223,7 @@ impl SceneloomApp {
 
     /// The document's scene, or a preview of its generation.
     pub(crate) fn shown_scene(&self) -> Arc<Scene> {
-        if let (true, Some(before)) = (self.state.holding_before, &self.views.compare.before) {
+        if let (true, Some(before)) = (self.state.compare.holding_before, &self.views.compare.before) {
             return before.clone();
         }
         match &self.generation.preview {

@@ -7,7 +7,7 @@ use crate::state::UiState;
 
 /// One line: buttons and held keys, as they count in the view under the pointer.
 pub fn hint(state: &UiState) -> String {
-    if state.holding_before {
+    if state.compare.holding_before {
         return "The state before; nothing can be changed while the key is held".into();
     }
     let view = match state.hovered_pane {

@@ -72,12 +72,12 @@ impl SceneloomApp {
             before: before.clone(),
             again,
             changed,
-            compare: self.state.compare,
+            compare: self.state.compare.mode,
         };
         if beside {
             self.views.compare.chosen = Some(before);
-            if self.state.compare == CompareMode::Off {
-                self.state.compare = CompareMode::Wipe;
+            if self.state.compare.mode == CompareMode::Off {
+                self.state.compare.mode = CompareMode::Wipe;
             }
         }
         self.generation.staged = Some(staged);
@@ -99,8 +99,8 @@ impl SceneloomApp {
     fn end_staging(&mut self) -> Option<Staged> {
         let staged = self.generation.staged.take()?;
         // If the user chose another way to compare meanwhile, that stays.
-        if staged.again.is_some() && self.state.compare == CompareMode::Wipe {
-            self.state.compare = staged.compare;
+        if staged.again.is_some() && self.state.compare.mode == CompareMode::Wipe {
+            self.state.compare.mode = staged.compare;
         }
         self.views.compare.chosen = None;
         Some(staged)

@@ -4,8 +4,8 @@ use super::app::SceneloomApp;
 use super::dock::Dock;
 use super::workspace::Workspace;
 use crate::command::{ViewCommand, Window};
+use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
-use crate::state::CompareMode;
 use crate::tools::ToolId;
 use editor::tools::{brush, region, select, voxel};
 
@@ -22,11 +22,11 @@ impl SceneloomApp {
                     .of(rev)
                     .map(|i| &self.generation.versions.list()[i]);
                 self.views.compare.chosen = version.map(|v| v.scene.clone());
-                if self.state.compare == CompareMode::Off {
-                    self.state.compare = CompareMode::Wipe;
+                if self.state.compare.mode == CompareMode::Off {
+                    self.state.compare.mode = CompareMode::Wipe;
                 }
             }
-            ViewCommand::CycleCompare => self.state.compare = self.state.compare.next(),
+            ViewCommand::CycleCompare => self.state.compare.mode = self.state.compare.mode.next(),
             ViewCommand::FrameSelection => self.frame_selection(),
             ViewCommand::FrameAll => match self.state.hovered_pane {
                 Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_map(self.extent()),

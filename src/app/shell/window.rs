@@ -10,12 +10,12 @@ use crate::camera_views::Wanted;
 use crate::command::{Command, FileCommand};
 use crate::panes;
 use crate::panes::camera_strip::CamerasInput;
+use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
 use crate::shell::keys;
 use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
-use crate::state::CompareMode;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
@@ -46,7 +46,7 @@ impl SceneloomApp {
         let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
         // What is shown is not what a key would change.
-        if !dialog && !self.state.holding_before {
+        if !dialog && !self.state.compare.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
                 flying: secondary && self.state.hovered_pane == Some(PaneId::VIEW3D),
@@ -175,17 +175,17 @@ impl SceneloomApp {
         let held = !ui.ctx().text_edit_focused()
             && ui.input(|i| {
                 let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
-                down && (self.state.holding_before || !i.pointer.any_down())
+                down && (self.state.compare.holding_before || !i.pointer.any_down())
             });
-        self.state.holding_before = held;
+        self.state.compare.holding_before = held;
         let rev = self.document.settled_scene().rev;
-        let active = held || self.state.compare != CompareMode::Off;
+        let active = held || self.state.compare.mode != CompareMode::Off;
         let chosen = self.views.compare.chosen.as_ref().filter(|s| s.rev != rev);
         let before = chosen
             .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)
             .cloned();
-        let senses = held || matches!(self.state.compare, CompareMode::Wipe | CompareMode::Side);
+        let senses = held || matches!(self.state.compare.mode, CompareMode::Wipe | CompareMode::Side);
         let ctx = ui.ctx().clone();
         self.views.compare.prepare(
             before,
