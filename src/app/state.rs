@@ -11,15 +11,7 @@ use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
 use super::panes::id::PaneId;
 use super::tools::{Hand, ToolState, Toolbox};
-
-/// A sensor of the rig.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SensorChoice {
-    /// By index.
-    Camera(usize),
-    /// By index.
-    Lidar(usize),
-}
+use super::windows::open::OpenWindows;
 
 /// What lies under the layers of the bird's-eye view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -64,22 +56,12 @@ pub struct UiState {
     pub compare: Comparing,
     /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both large views.
     pub finding_marks: Option<std::sync::Arc<super::finding_marks::FindingMarks>>,
-    /// The sensors' window is open.
-    pub sensors_open: bool,
-    /// The sensor chosen in it.
-    pub sensor: SensorChoice,
     /// Pane under the pointer in the last frame.
     pub hovered_pane: Option<PaneId>,
     /// What the pane under the pointer says about it; shown in the status bar.
     pub readout: String,
-    /// The log is open.
-    pub log_open: bool,
-    /// The sheet of keys is open.
-    pub keys_open: bool,
-    /// The settings are open.
-    pub settings_open: bool,
-    /// The start screen is open.
-    pub start_open: bool,
+    /// Which windows are open.
+    pub windows: OpenWindows,
 }
 
 impl UiState {
@@ -134,14 +116,9 @@ impl Default for UiState {
             lidar: LidarShown::default(),
             compare: Comparing::default(),
             finding_marks: None,
-            sensors_open: false,
-            sensor: SensorChoice::Camera(0),
             hovered_pane: None,
             readout: String::new(),
-            log_open: false,
-            keys_open: false,
-            settings_open: false,
-            start_open: false,
+            windows: OpenWindows::default(),
         }
     }
 }

@@ -92,12 +92,12 @@ impl SceneloomApp {
         match window {
             Window::Export => self.toggle_export(),
             Window::Palette => self.overlays.palette.toggle(),
-            Window::Settings => self.state.settings_open = !self.state.settings_open,
-            Window::Start => self.state.start_open = !self.state.start_open,
-            Window::Sensors => self.state.sensors_open = !self.state.sensors_open,
+            Window::Settings => self.state.windows.settings = !self.state.windows.settings,
+            Window::Start => self.state.windows.start = !self.state.windows.start,
+            Window::Sensors => self.state.windows.sensors = !self.state.windows.sensors,
             Window::Performance => self.frames.perf.open = !self.frames.perf.open,
-            Window::Log => self.state.log_open = !self.state.log_open,
-            Window::Keys => self.state.keys_open = !self.state.keys_open,
+            Window::Log => self.state.windows.log = !self.state.windows.log,
+            Window::Keys => self.state.windows.keys = !self.state.windows.keys,
         }
     }
 }

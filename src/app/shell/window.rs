@@ -16,6 +16,7 @@ use crate::shell::keys;
 use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
+use crate::state::UiState;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
@@ -77,8 +78,8 @@ impl SceneloomApp {
     pub(crate) fn has_dialog(&self) -> bool {
         self.files.unsaved.is_some()
             || self.files.dialogs.is_open()
-            || self.state.keys_open
-            || self.state.start_open
+            || self.state.windows.keys
+            || self.state.windows.start
             || self.overlays.palette.open
             || self.asks_to_recover()
             || self.state.tools.row_open
@@ -202,9 +203,10 @@ impl SceneloomApp {
             .strip
             .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);
         self.toasts
-            .log_window(ui, self.views.center, &mut self.state.log_open);
-        if self.state.sensors_open {
-            sensors_ui(ui, &scene.rig, &mut self.state, commands);
+            .log_window(ui, self.views.center, &mut self.state.windows.log);
+        if self.state.windows.sensors {
+            let UiState { windows, cameras, .. } = &mut self.state;
+            sensors_ui(ui, &scene.rig, windows, cameras, commands);
         }
         crate::windows::row::show(ui, scene.frame(), &mut self.state, commands);
         let recent = &self.preferences.settings.recent;
@@ -213,12 +215,16 @@ impl SceneloomApp {
             .show(ui, &self.preferences.keymap, recent, &mut self.state, commands);
         self.overlays
             .shortcuts
-            .show(ui, &mut self.preferences.keymap, &mut self.state.keys_open);
-        settings_ui(ui, &mut self.preferences.settings, &mut self.state.settings_open);
+            .show(ui, &mut self.preferences.keymap, &mut self.state.windows.keys);
+        settings_ui(
+            ui,
+            &mut self.preferences.settings,
+            &mut self.state.windows.settings,
+        );
         start_ui(
             ui,
             &mut self.preferences.settings,
-            &mut self.state.start_open,
+            &mut self.state.windows.start,
             commands,
         );
         // Over the 3D view, where it hides no list.

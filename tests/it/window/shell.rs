@@ -149,9 +149,12 @@ fn settings_are_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("settings.json");
     let mut bench = Bench::with_settings(&file);
-    assert!(bench.app().state.start_open, "a new user sees the start screen");
+    assert!(
+        bench.app().state.windows.start,
+        "a new user sees the start screen"
+    );
     bench.click("Go on with this scene");
-    assert!(!bench.app().state.start_open);
+    assert!(!bench.app().state.windows.start);
     bench.app().preferences.settings.theme = Theme::Light;
     bench.app().preferences.settings.start_screen = false;
     bench.click("Sensors");
@@ -160,7 +163,7 @@ fn settings_are_kept() {
     });
     drop(bench);
     let mut again = Bench::with_settings(&file);
-    assert!(!again.app().state.start_open);
+    assert!(!again.app().state.windows.start);
     assert!(again.harness.query_by_label("LiDAR sweep").is_some());
     again.app().preferences.settings.theme = Theme::Dark; // the colours of a theme are the process's
     again.steps(3);
