@@ -25,8 +25,9 @@ use super::command::Command;
 use super::marks::{self, Board};
 use super::pointer::{self, Held, Step};
 pub use super::screen_map::ScreenMap;
-use super::state::{UiState, Underlay};
+use super::state::UiState;
 use super::thing_outlines;
+use super::views_shown::Underlay;
 use crate::shell::live::Bounds;
 use crate::windows::row;
 use widgets::theme;
@@ -260,18 +261,18 @@ impl Canvas {
         }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let scene = input.scene;
-        if state.underlay != Underlay::Layout {
+        if state.shown.underlay != Underlay::Layout {
             painter.image(self.occupancy_texture(ui, scene), grid, whole, Color32::WHITE);
         }
-        if state.underlay != Underlay::Occupancy {
+        if state.shown.underlay != Underlay::Occupancy {
             painter.image(self.layers_texture(ui, scene, state), grid, whole, Color32::WHITE);
         }
-        if let (true, Some(mask)) = (state.show_unobserved, &scene.frame().inferred.unobserved) {
+        if let (true, Some(mask)) = (state.shown.unobserved, &scene.frame().inferred.unobserved) {
             let make = || bev_image::unobserved(mask);
             let veil = texture(ui, &mut self.unobserved, scene.rev, "unobserved", make);
             painter.image(veil, grid, whole, Color32::WHITE);
         }
-        if state.show_grid {
+        if state.shown.grid {
             draw_grid(ui, map, grid);
         }
         painter.rect_stroke(
@@ -280,14 +281,14 @@ impl Canvas {
             Stroke::new(1.0, Color32::from_white_alpha(34)),
             StrokeKind::Outside,
         );
-        if state.show_lines && state.underlay != Underlay::Occupancy {
+        if state.shown.lines && state.shown.underlay != Underlay::Occupancy {
             draw_lines(
                 &painter.with_clip_rect(painter.clip_rect().intersect(grid)),
                 map,
                 scene,
             );
         }
-        if let (true, Some(sweep)) = (state.show_lidar_bev, input.lidar) {
+        if let (true, Some(sweep)) = (state.shown.lidar_from_above, input.lidar) {
             draw_points(ui, map, sweep, &state.lidar);
         }
         let hovered = response
@@ -299,12 +300,12 @@ impl Canvas {
         let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
         thing_outlines::outlines(&inside, map, scene, &state.things, hovered);
         draw_ego(ui, map, &scene.rig);
-        if state.show_boxes {
+        if state.shown.boxes {
             draw_boxes(ui, map, response, input.scene, state);
         }
         draw_window(ui, map, self.extent);
         draw_unsettled(ui, map, &input.unsettled, input.generating);
-        if let Some(marks) = &state.finding_marks {
+        if let Some(marks) = &state.shown.finding_marks {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
             marks.draw(&inside, map, scene.frame());
         }
@@ -314,7 +315,7 @@ impl Canvas {
 
     fn layers_texture(&mut self, ui: &Ui, scene: &Scene, state: &UiState) -> egui::TextureId {
         // Alone the picture covers what is behind it; pixels drawn twice cost on a software rasteriser.
-        let (veil, behind) = match state.underlay == Underlay::Both {
+        let (veil, behind) = match state.shown.underlay == Underlay::Both {
             true => (state.tools.layers_opacity, Color32::TRANSPARENT),
             false => (1.0, GROUND),
         };

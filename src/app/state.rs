@@ -11,19 +11,8 @@ use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
 use super::panes::id::PaneId;
 use super::tools::{Hand, ToolState, Toolbox};
+use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;
-
-/// What lies under the layers of the bird's-eye view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Underlay {
-    /// Layers only.
-    #[default]
-    Layout,
-    /// The occupancy from above, layers off.
-    Occupancy,
-    /// Both, the layers translucent.
-    Both,
-}
 
 /// State of the window.
 #[derive(Clone, Debug)]
@@ -32,18 +21,8 @@ pub struct UiState {
     pub tools: ToolState,
     /// The tools themselves.
     pub toolbox: Toolbox,
-    /// What lies under the layers.
-    pub underlay: Underlay,
-    /// Draw boxes.
-    pub show_boxes: bool,
-    /// Draw lane centres and dividers as lines.
-    pub show_lines: bool,
-    /// Draw the 10 m grid, in both views.
-    pub show_grid: bool,
-    /// Draw the LiDAR returns in the bird's-eye view too.
-    pub show_lidar_bev: bool,
-    /// Tint what no sensor of the data set observed, in the bird's-eye view.
-    pub show_unobserved: bool,
+    /// What the two large views show of a scene.
+    pub shown: ViewsShown,
     /// Edits of boxes and map layers correct what was inferred on import: no voxel changes.
     pub correcting: bool,
     /// Densities that generation is asked for.
@@ -54,8 +33,6 @@ pub struct UiState {
     pub lidar: LidarShown,
     /// How the present state is compared with the version before.
     pub compare: Comparing,
-    /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both large views.
-    pub finding_marks: Option<std::sync::Arc<super::finding_marks::FindingMarks>>,
     /// Pane under the pointer in the last frame.
     pub hovered_pane: Option<PaneId>,
     /// What the pane under the pointer says about it; shown in the status bar.
@@ -104,18 +81,12 @@ impl Default for UiState {
         Self {
             tools: ToolState::default(),
             toolbox: Toolbox::default(),
-            underlay: Underlay::Layout,
-            show_boxes: true,
-            show_lines: true,
-            show_grid: true,
-            show_lidar_bev: false,
-            show_unobserved: false,
+            shown: ViewsShown::default(),
             correcting: false,
             named: Named::default(),
             cameras: CamerasShown::default(),
             lidar: LidarShown::default(),
             compare: Comparing::default(),
-            finding_marks: None,
             hovered_pane: None,
             readout: String::new(),
             windows: OpenWindows::default(),

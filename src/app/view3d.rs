@@ -352,7 +352,7 @@ impl View3d {
             _ => None,
         });
         let (cells, color) = brushed.unwrap_or((&[], [0; 3]));
-        let finding = state.finding_marks.as_deref();
+        let finding = state.shown.finding_marks.as_deref();
         let mut brush = vec![BrushCells { cells, color }];
         if cells.is_empty() {
             brush.extend_from_slice(input.marked);
@@ -377,8 +377,8 @@ impl View3d {
         let Some(gpu) = &mut self.gpu else { return };
         let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);
         let options = ViewOptions {
-            grid_lines: state.show_grid,
-            boxes: state.show_boxes,
+            grid_lines: state.shown.grid,
+            boxes: state.shown.boxes,
             samples: if coarse || gpu.software { 1 } else { 4 },
             point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             pixels_per_point: self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
@@ -435,8 +435,8 @@ impl View3d {
         let frame = scene.frame();
         let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
         let options = ViewOptions {
-            grid_lines: state.show_grid,
-            boxes: state.show_boxes,
+            grid_lines: state.shown.grid,
+            boxes: state.shown.boxes,
             pixels_per_point: self.pixels_per_point,
             ..self.options.clone()
         };

@@ -8,7 +8,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::canvas::CanvasInput;
 use crate::command::Command;
-use crate::state::Underlay;
+use crate::views_shown::Underlay;
 use widgets::icons::{self, Icon};
 
 /// The bird's-eye view.
@@ -37,7 +37,12 @@ impl Pane for Bev {
             (Underlay::Occupancy, "Occupancy", "voxels from above"),
             (Underlay::Both, "Both", "layers over voxels"),
         ];
-        icons::choice(ui, &mut cx.state.underlay, &choices, "Bird's-eye view shows");
+        icons::choice(
+            ui,
+            &mut cx.state.shown.underlay,
+            &choices,
+            "Bird's-eye view shows",
+        );
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {

@@ -9,9 +9,10 @@ use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use crate::state::{UiState, Underlay};
+use crate::state::UiState;
 use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, option_rows};
+use crate::views_shown::Underlay;
 use editor::tools::brush;
 use scene::{BevLayer, BevLayout, Frame};
 use widgets::hint::caption;
@@ -60,13 +61,13 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         opacity_rows(ui, state);
         ui.add_space(theme::GAP);
         section(ui, "Overlays");
-        toggle_row(ui, "Boxes", &mut state.show_boxes);
+        toggle_row(ui, "Boxes", &mut state.shown.boxes);
         things_row(ui, state, commands);
-        toggle_row(ui, "Lanes and dividers", &mut state.show_lines);
-        toggle_row(ui, "LiDAR points in BEV", &mut state.show_lidar_bev);
-        toggle_row(ui, "Grid, 10 m", &mut state.show_grid);
+        toggle_row(ui, "Lanes and dividers", &mut state.shown.lines);
+        toggle_row(ui, "LiDAR points in BEV", &mut state.shown.lidar_from_above);
+        toggle_row(ui, "Grid, 10 m", &mut state.shown.grid);
         if frame.inferred.unobserved.is_some() {
-            toggle_row(ui, "Unobserved", &mut state.show_unobserved);
+            toggle_row(ui, "Unobserved", &mut state.shown.unobserved);
         }
         ui.add_space(theme::GAP);
         section(ui, "Scenery");
@@ -212,7 +213,7 @@ fn opacity_rows(ui: &mut Ui, state: &mut UiState) {
         let name = format!("Opacity of {}", state.layer.label());
         slider(ui, "Opacity", &mut state.tools.layer_opacity[k], &name);
     }
-    if state.underlay == Underlay::Both {
+    if state.shown.underlay == Underlay::Both {
         slider(
             ui,
             "All, on voxels",

@@ -65,7 +65,7 @@ impl SceneloomApp {
                 self.views.dock.open(PaneId::PROMPT);
                 self.views.prompt.focus();
             }
-            ViewCommand::ToggleGrid => self.state.show_grid = !self.state.show_grid,
+            ViewCommand::ToggleGrid => self.state.shown.grid = !self.state.shown.grid,
         }
     }
 

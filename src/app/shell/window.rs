@@ -165,7 +165,7 @@ impl SceneloomApp {
         self.dock_ui(ui, scene, commands);
         // What nobody lists is not pointed at.
         if !self.views.dock.is_shown(PaneId::CHECKS) {
-            self.state.finding_marks = None;
+            self.state.shown.finding_marks = None;
         }
         self.generation.live.named = self.state.named;
     }

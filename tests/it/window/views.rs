@@ -23,7 +23,7 @@ fn views_and_layers_answer_their_controls() {
     assert!(swapped.left() > bev.left() + 100.0, "{bev:?} {swapped:?}");
     bench.key(Modifiers::NONE, Key::Tab);
     bench.key(Modifiers::NONE, Key::G);
-    assert!(!bench.app().state.show_grid);
+    assert!(!bench.app().state.shown.grid);
     // The wheel keeps the point under the pointer where it is.
     let at = bench.bev(10.0, -5.0);
     bench.harness.hover_at(at);
