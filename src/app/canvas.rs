@@ -124,7 +124,7 @@ impl Canvas {
         let map = self.navigate(ui, &response, &steps, state);
         state.tools.pointer_m = response.hover_pos().map(|p| map.to_ego(p));
         if let Some(at_m) = state.tools.pointer_m {
-            state.readout = readout(input.scene, at_m);
+            state.pointed.readout = readout(input.scene, at_m);
         }
         self.driver
             .drive(ui, &response, &steps, &seen(input, &map), state, commands);

@@ -9,7 +9,7 @@ use job::Named;
 
 use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
-use super::panes::id::PaneId;
+use super::panes::pointed::Pointed;
 use super::tools::{Hand, ToolState, Toolbox};
 use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;
@@ -33,10 +33,8 @@ pub struct UiState {
     pub lidar: LidarShown,
     /// How the present state is compared with the version before.
     pub compare: Comparing,
-    /// Pane under the pointer in the last frame.
-    pub hovered_pane: Option<PaneId>,
-    /// What the pane under the pointer says about it; shown in the status bar.
-    pub readout: String,
+    /// What the pointer is over.
+    pub pointed: Pointed,
     /// Which windows are open.
     pub windows: OpenWindows,
 }
@@ -87,8 +85,7 @@ impl Default for UiState {
             cameras: CamerasShown::default(),
             lidar: LidarShown::default(),
             compare: Comparing::default(),
-            hovered_pane: None,
-            readout: String::new(),
+            pointed: Pointed::default(),
             windows: OpenWindows::default(),
         }
     }

@@ -157,7 +157,7 @@ impl View3d {
         self.driver = driver;
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
-            state.readout = readout(input.scene, hit, &pointer.ray);
+            state.pointed.readout = readout(input.scene, hit, &pointer.ray);
         }
         let now_s = ui.input(|i| i.time);
         // Where the processor draws, only what a drag or a brush touches is drawn again: that is quick as it is.

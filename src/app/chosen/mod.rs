@@ -62,7 +62,7 @@ impl SceneloomApp {
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
             ToolCommand::Paste => {
-                let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
+                let over_bev = self.state.pointed.pane == Some(PaneId::BEV);
                 let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
                 let added = arrange::paste(&frame, &self.state.tools.clipboard, at_m);
                 let label = of(&added.ids, "Paste box", "Paste boxes");

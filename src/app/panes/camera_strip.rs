@@ -86,7 +86,7 @@ impl CameraStrip {
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
             let hovered = self.picture(ui, rect, i, input.scene, state, commands);
             if let Some(part) = hovered {
-                state.readout = self.pixel_text(input.scene, &cameras[i], part);
+                state.pointed.readout = self.pixel_text(input.scene, &cameras[i], part);
             }
         }
         if shown.is_empty() {
@@ -143,7 +143,7 @@ impl CameraStrip {
         let width = area.width().min(area.height() * aspect).max(40.0);
         let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
         if let Some(part) = self.picture(ui, rect, index, input.scene, state, commands) {
-            state.readout = self.pixel_text(input.scene, camera, part);
+            state.pointed.readout = self.pixel_text(input.scene, camera, part);
         }
     }
 

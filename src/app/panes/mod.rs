@@ -20,6 +20,7 @@ pub mod lidar;
 mod modelled;
 pub mod objects;
 pub mod pane;
+pub mod pointed;
 pub mod prompt;
 mod statistics;
 mod thing_list;

@@ -130,7 +130,7 @@ impl Drawer<'_> {
             tag(ui, area.left_top() + vec2(8.0, 8.0), "before", false);
         }
         if ui.rect_contains_pointer(area) {
-            self.cx.state.hovered_pane = Some(id);
+            self.cx.state.pointed.pane = Some(id);
         }
     }
 

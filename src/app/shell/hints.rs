@@ -10,7 +10,7 @@ pub fn hint(state: &UiState) -> String {
     if state.compare.holding_before {
         return "The state before; nothing can be changed while the key is held".into();
     }
-    let view = match state.hovered_pane {
+    let view = match state.pointed.pane {
         Some(PaneId::VIEW3D) => Some(ViewKind::Space),
         Some(PaneId::BEV) => Some(ViewKind::Bev),
         _ => None,
@@ -34,7 +34,7 @@ mod tests {
         let mut state = UiState::default();
         let mut seen = std::collections::BTreeSet::new();
         for pane in [PaneId::BEV, PaneId::VIEW3D] {
-            state.hovered_pane = Some(pane);
+            state.pointed.pane = Some(pane);
             for tool in all() {
                 state.tool = tool.id;
                 let text = hint(&state);

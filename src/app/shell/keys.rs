@@ -48,7 +48,7 @@ pub fn commands(
             commands.push(nudge);
             continue;
         }
-        let over_3d = state.hovered_pane == Some(PaneId::VIEW3D);
+        let over_3d = state.pointed.pane == Some(PaneId::VIEW3D);
         // With a brush in hand its own letters count.
         let brush = state.tool.def().is_brush;
         let chosen = state.any_chosen() && !state.tool.def().paints;
@@ -201,7 +201,7 @@ mod tests {
             of(Key::B, Modifiers::NONE, &mut state, false),
             [Command::Tools(ToolCommand::Shortcut("brush_tool"))]
         );
-        state.hovered_pane = Some(PaneId::VIEW3D);
+        state.pointed.pane = Some(PaneId::VIEW3D);
         assert_eq!(
             of(Key::B, Modifiers::NONE, &mut state, false),
             [Command::Tools(ToolCommand::Shortcut("voxel_brush"))]

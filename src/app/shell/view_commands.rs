@@ -28,7 +28,7 @@ impl SceneloomApp {
             }
             ViewCommand::CycleCompare => self.state.compare.mode = self.state.compare.mode.next(),
             ViewCommand::FrameSelection => self.frame_selection(),
-            ViewCommand::FrameAll => match self.state.hovered_pane {
+            ViewCommand::FrameAll => match self.state.pointed.pane {
                 Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_map(self.extent()),
                 Some(PaneId::BEV) => self.views.canvas.frame_all_again(),
                 _ => self.views.frame_all(self.extent()),
@@ -43,7 +43,8 @@ impl SceneloomApp {
             ViewCommand::MaximizePane => {
                 if let Some(tile) = self
                     .state
-                    .hovered_pane
+                    .pointed
+                    .pane
                     .and_then(|pane| self.views.dock.find(pane))
                 {
                     self.views.dock.toggle_maximized(tile);
@@ -73,10 +74,10 @@ impl SceneloomApp {
         let Some(b) = self.selected_box() else {
             return self.frame_things();
         };
-        if self.state.hovered_pane != Some(PaneId::VIEW3D) {
+        if self.state.pointed.pane != Some(PaneId::VIEW3D) {
             self.views.canvas.frame_box(&b);
         }
-        if self.state.hovered_pane != Some(PaneId::BEV) {
+        if self.state.pointed.pane != Some(PaneId::BEV) {
             self.views.view3d.frame_box(&b);
         }
     }

@@ -50,7 +50,7 @@ impl SceneloomApp {
         if !dialog && !self.state.compare.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
-                flying: secondary && self.state.hovered_pane == Some(PaneId::VIEW3D),
+                flying: secondary && self.state.pointed.pane == Some(PaneId::VIEW3D),
                 dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
             };
             keys::commands(
@@ -154,13 +154,13 @@ impl SceneloomApp {
             .exact_size(28.0)
             .frame(theme::bar_frame())
             .show_separator_line(false)
-            .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
+            .show(ui, |ui| status_ui(ui, &status, &self.state.pointed, commands));
         // The status bar has shown what the last frame found under the pointer.
-        self.state.readout.clear();
+        self.state.pointed.readout.clear();
     }
 
     pub(crate) fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
-        self.state.hovered_pane = None;
+        self.state.pointed.pane = None;
         self.views.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
         // What nobody lists is not pointed at.

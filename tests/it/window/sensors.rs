@@ -49,7 +49,7 @@ fn the_strip_shows_what_is_asked_for() {
         .harness
         .hover_at(front.center_bottom() - egui::vec2(0.0, 4.0));
     bench.steps(3);
-    let readout = bench.app().state.readout.clone();
+    let readout = bench.app().state.pointed.readout.clone();
     assert!(
         readout.starts_with("Front  ·  driveable surface  ·  ") && readout.contains(" m away"),
         "{readout}"

@@ -167,7 +167,7 @@ fn settings_are_kept() {
     assert!(again.harness.query_by_label("LiDAR sweep").is_some());
     again.app().preferences.settings.theme = Theme::Dark; // the colours of a theme are the process's
     again.steps(3);
-    assert_eq!(again.app().state.hovered_pane, None::<PaneId>);
+    assert_eq!(again.app().state.pointed.pane, None::<PaneId>);
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let pane = bench.pane("3D view");
     bench.harness.hover_at(pane.center());
     bench.steps(2);
-    assert_eq!(bench.app().state.hovered_pane, Some(PaneId::VIEW3D));
+    assert_eq!(bench.app().state.pointed.pane, Some(PaneId::VIEW3D));
     bench.key(Modifiers::NONE, Key::B);
     assert_eq!(
         (bench.app().state.tool, bench.app().state.verb),
