@@ -126,8 +126,14 @@ impl Canvas {
         if let Some(at_m) = state.tools.pointer_m {
             state.pointed.readout = readout(input.scene, at_m);
         }
-        self.driver
-            .drive(ui, &response, &steps, &seen(input, &map), state, commands);
+        self.driver.drive(
+            ui,
+            &response,
+            &steps,
+            &seen(input, &map),
+            &mut state.tools,
+            commands,
+        );
         let map = ScreenMap {
             center_m: self.center_m,
             ..map
@@ -355,7 +361,7 @@ impl Canvas {
         }
         let (marks, cursor) = self
             .driver
-            .sight(ui, response.hover_pos(), &seen(input, map), state);
+            .sight(ui, response.hover_pos(), &seen(input, map), &state.tools);
         let board = Board {
             painter,
             view: map,

@@ -10,17 +10,15 @@ use job::Named;
 use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
 use super::panes::pointed::Pointed;
-use super::tools::{Hand, ToolState, Toolbox};
+use super::tools::{Hand, ToolState};
 use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;
 
 /// State of the window.
 #[derive(Clone, Debug)]
 pub struct UiState {
-    /// What the tools hold: the state is a [`Hand`] with more.
+    /// The tools and what they hold: the state is a [`Hand`] with more.
     pub tools: ToolState,
-    /// The tools themselves.
-    pub toolbox: Toolbox,
     /// What the two large views show of a scene.
     pub shown: ViewsShown,
     /// Edits of boxes and map layers correct what was inferred on import: no voxel changes.
@@ -78,7 +76,6 @@ impl Default for UiState {
     fn default() -> Self {
         Self {
             tools: ToolState::default(),
-            toolbox: Toolbox::default(),
             shown: ViewsShown::default(),
             correcting: false,
             named: Named::default(),

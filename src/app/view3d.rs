@@ -153,7 +153,14 @@ impl View3d {
         let moved = self.navigate(ui, &response, &steps, input, state);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
         let mut driver = self.driver;
-        driver.drive(ui, &response, &steps, &self.seen(input), state, commands);
+        driver.drive(
+            ui,
+            &response,
+            &steps,
+            &self.seen(input),
+            &mut state.tools,
+            commands,
+        );
         self.driver = driver;
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
@@ -167,7 +174,7 @@ impl View3d {
         }
         let (marks, cursor) = self
             .driver
-            .sight(ui, response.hover_pos(), &self.seen(input), state);
+            .sight(ui, response.hover_pos(), &self.seen(input), &state.tools);
         if response.hovered() && !self.driver.is_held() {
             ui.ctx().set_cursor_icon(cursor);
         }
@@ -200,7 +207,7 @@ impl View3d {
         self.options = options.clone();
         if self.gpu.is_some() {
             let now_s = ui.input(|i| i.time);
-            let (marks, _) = self.driver.sight(ui, None, &self.seen(input), state);
+            let (marks, _) = self.driver.sight(ui, None, &self.seen(input), &state.tools);
             self.paint(ui, input, state, (None, &marks), now_s);
         }
     }
@@ -278,7 +285,8 @@ impl View3d {
             }
         }
         // A block that is being drawn takes the wheel for its height.
-        let wheel_taken = self.driver.is_dragging() && state.toolbox.tool(state.tool).wants() == Wants::Wheel;
+        let wheel_taken =
+            self.driver.is_dragging() && state.tools.toolbox.tool(state.tool).wants() == Wants::Wheel;
         if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from((scroll / 260.0).exp() * zoom);

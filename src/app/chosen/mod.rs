@@ -10,8 +10,7 @@ use crate::panes::id::PaneId;
 use crate::shell::actions::ACTIONS;
 use crate::shell::app::SceneloomApp;
 use crate::shell::toasts::Level;
-use crate::state::UiState;
-use crate::tools::{Choose, ToolCommand};
+use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard};
 use editor::tools::{Act, voxel};
@@ -97,8 +96,8 @@ impl SceneloomApp {
             ToolCommand::ToLane => self.apply_some("Snap to lane", arrange::to_lane(&frame, &ids)),
             ToolCommand::Act(act) => self.act(act, ctx),
             ToolCommand::Shortcut(id) => {
-                let UiState { toolbox, tools, .. } = &mut self.state;
-                toolbox.shortcut(&mut tools.hand, id);
+                let ToolState { toolbox, hand, .. } = &mut self.state.tools;
+                toolbox.shortcut(hand, id);
             }
         }
     }

@@ -15,7 +15,7 @@ pub fn hint(state: &UiState) -> String {
         Some(PaneId::BEV) => Some(ViewKind::Bev),
         _ => None,
     };
-    let mut parts = state.toolbox.tool(state.tool).hint(state, view);
+    let mut parts = state.tools.toolbox.tool(state.tool).hint(state, view);
     parts.extend(hint_of(match view {
         Some(ViewKind::Space) => &["Middle orbits", "Right flies", "Wheel zooms"],
         Some(ViewKind::Bev) => &["Middle pans", "Wheel zooms"],
