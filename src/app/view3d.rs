@@ -23,6 +23,8 @@ use super::pointer::{self, Held, Step};
 use super::screen_map::{point, pos};
 use super::state::{UiState, position_text};
 use super::thing_outlines;
+use super::tools::ToolState;
+use super::views_shown::ViewsShown;
 use widgets::software_ui;
 use widgets::theme;
 
@@ -150,7 +152,7 @@ impl View3d {
             return response;
         }
         let steps = pointer::steps(ui, &response);
-        let moved = self.navigate(ui, &response, &steps, input, state);
+        let moved = self.navigate(ui, &response, &steps, input, &state.tools);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
         let mut driver = self.driver;
         driver.drive(
@@ -258,7 +260,7 @@ impl View3d {
         response: &Response,
         steps: &[Step],
         input: &View3dInput<'_>,
-        state: &UiState,
+        tools: &ToolState,
     ) -> bool {
         let before = self.camera;
         let (shift, space) = ui.input(|i| (i.modifiers.shift, i.key_down(egui::Key::Space)));
@@ -285,8 +287,7 @@ impl View3d {
             }
         }
         // A block that is being drawn takes the wheel for its height.
-        let wheel_taken =
-            self.driver.is_dragging() && state.tools.toolbox.tool(state.tool).wants() == Wants::Wheel;
+        let wheel_taken = self.driver.is_dragging() && tools.toolbox.tool(tools.tool).wants() == Wants::Wheel;
         if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from((scroll / 260.0).exp() * zoom);
@@ -433,7 +434,7 @@ impl View3d {
     pub fn screenshot(
         &mut self,
         scene: &Scene,
-        state: &UiState,
+        shown: &ViewsShown,
         size: Option<[u32; 2]>,
     ) -> anyhow::Result<([u32; 2], Vec<u8>)> {
         let size = size.unwrap_or_else(|| self.size_px());
@@ -443,8 +444,8 @@ impl View3d {
         let frame = scene.frame();
         let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
         let options = ViewOptions {
-            grid_lines: state.shown.grid,
-            boxes: state.shown.boxes,
+            grid_lines: shown.grid,
+            boxes: shown.boxes,
             pixels_per_point: self.pixels_per_point,
             ..self.options.clone()
         };

@@ -175,8 +175,8 @@ impl SceneloomApp {
             Act::Note(text) => self.note(&text),
             Act::Ask(id) => {
                 let action = ACTIONS.iter().find(|a| a.id == id);
-                if let Some(command) = action.and_then(|a| a.run(&mut self.state)) {
-                    self.execute(command, ctx);
+                if let Some(action) = action {
+                    self.execute(action.command(), ctx);
                 }
             }
         }

@@ -56,7 +56,7 @@ impl SceneloomApp {
             keys::commands(
                 ui.ctx(),
                 &self.preferences.keymap,
-                &mut self.state,
+                &self.state,
                 hands,
                 &mut commands,
             );
@@ -124,7 +124,7 @@ impl SceneloomApp {
             .exact_size(42.0)
             .frame(theme::bar_frame())
             .show_separator_line(false)
-            .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
+            .show(ui, |ui| toolbar_ui(ui, &input, &self.state.tools, commands));
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
         let touched = self.generation.live.touched_by(&settled, now_s);
@@ -208,11 +208,11 @@ impl SceneloomApp {
             let UiState { windows, cameras, .. } = &mut self.state;
             sensors_ui(ui, &scene.rig, windows, cameras, commands);
         }
-        crate::windows::row::show(ui, scene.frame(), &mut self.state, commands);
+        crate::windows::row::show(ui, scene.frame(), &mut self.state.tools, commands);
         let recent = &self.preferences.settings.recent;
         self.overlays
             .palette
-            .show(ui, &self.preferences.keymap, recent, &mut self.state, commands);
+            .show(ui, &self.preferences.keymap, recent, commands);
         self.overlays
             .shortcuts
             .show(ui, &mut self.preferences.keymap, &mut self.state.windows.keys);
