@@ -1,10 +1,10 @@
-//! What the cameras of the window show: which source of the table, in which colours, for which cameras.
+//! What the sensors of the window show: which camera source of the table, in which colours, for which cameras; which
+//! LiDAR, in which colours.
 
 use std::sync::Arc;
 
 use egui::ColorImage;
 
-use super::state::{LidarModel, UiState};
 use scene::Scene;
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
 use sensors::march::MarchScene;
@@ -14,6 +14,80 @@ pub use sensors::cameras::CameraPicture;
 
 /// Size of the picture that is enlarged.
 pub const LARGE_SIZE: [u32; 2] = [800, 450];
+
+/// What the pictures of the cameras show.
+#[derive(Clone, Debug)]
+pub struct CamerasShown {
+    /// What the camera strip shows.
+    pub view: ViewId,
+    /// What it is rendered from, where several sources give it.
+    pub source: SourceId,
+    /// Depth of the plane that is shown, m.
+    pub plane_m: f64,
+    /// Bit per camera that is not rendered.
+    pub hidden: u32,
+    /// Camera that is enlarged.
+    pub enlarged: Option<usize>,
+}
+
+impl Default for CamerasShown {
+    fn default() -> Self {
+        Self {
+            view: ViewId::SEMANTIC,
+            source: SourceId::default(),
+            plane_m: 12.0,
+            hidden: 0,
+            enlarged: None,
+        }
+    }
+}
+
+impl CamerasShown {
+    /// True if a camera of the rig is not rendered.
+    pub fn is_hidden(&self, camera: usize) -> bool {
+        camera < 32 && self.hidden >> camera & 1 == 1
+    }
+
+    /// The source of what the camera strip shows.
+    pub fn shown_source(&self) -> &'static dyn CameraSource {
+        cameras::source_of(self.view, self.source)
+    }
+
+    /// After a camera was taken away, those behind it move up.
+    pub fn forget(&mut self, camera: usize) {
+        let below = (1u32 << camera.min(31)) - 1;
+        self.hidden = (self.hidden & below) | (self.hidden >> 1 & !below);
+        self.enlarged = None;
+    }
+}
+
+/// How the LiDAR sweep is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum LidarModel {
+    /// Every ray to the first voxel.
+    #[default]
+    Exact,
+    /// The network: ranges within voxels, intensity, lost echoes.
+    Learned,
+}
+
+/// What the LiDAR sweep shows.
+#[derive(Clone, Debug)]
+pub struct LidarShown {
+    /// How the sweep is computed.
+    pub model: LidarModel,
+    /// Colour of the returns.
+    pub colors: LidarColorMode,
+}
+
+impl Default for LidarShown {
+    fn default() -> Self {
+        Self {
+            model: LidarModel::default(),
+            colors: LidarColorMode::Range,
+        }
+    }
+}
 
 /// What is asked of the sensors besides the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,13 +109,13 @@ pub type Pictures = (SourceId, u32);
 
 impl Wanted {
     /// What the window shows.
-    pub fn of(state: &UiState) -> Self {
+    pub fn of(cameras: &CamerasShown, lidar: &LidarShown) -> Self {
         Self {
-            source: state.shown_source().id(),
-            hidden: state.cameras_hidden,
-            enlarged: state.inspected,
-            lidar: state.lidar_model,
-            lost_echoes: state.lidar_colors == LidarColorMode::Drop,
+            source: cameras.shown_source().id(),
+            hidden: cameras.hidden,
+            enlarged: cameras.enlarged,
+            lidar: lidar.model,
+            lost_echoes: lidar.colors == LidarColorMode::Drop,
         }
     }
 
@@ -114,4 +188,22 @@ impl CameraView {
 fn colors(picture: &CameraPicture, view: ViewId, plane_m: f64) -> ColorImage {
     let (size, rgba) = picture.rgba(view, plane_m);
     ColorImage::from_rgba_unmultiplied(size, &rgba)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hidden_cameras_stay_hidden_when_another_goes() {
+        let mut shown = CamerasShown {
+            hidden: 0b10_1001,
+            ..CamerasShown::default()
+        };
+        assert!(shown.is_hidden(3) && !shown.is_hidden(4) && !shown.is_hidden(40));
+        shown.forget(2);
+        assert_eq!(shown.hidden, 0b1_0101);
+        shown.forget(0);
+        assert_eq!(shown.hidden, 0b1010);
+    }
 }

@@ -25,8 +25,10 @@ use super::command::Command;
 use super::marks::{self, Board};
 use super::pointer::{self, Held, Step};
 pub use super::screen_map::ScreenMap;
-use super::state::{UiState, Underlay};
+use super::state::UiState;
 use super::thing_outlines;
+use super::tools::ToolState;
+use super::views_shown::Underlay;
 use crate::shell::live::Bounds;
 use crate::windows::row;
 use widgets::theme;
@@ -120,13 +122,19 @@ impl Canvas {
             self.frame_all(rect);
         }
         let steps = pointer::steps(ui, &response);
-        let map = self.navigate(ui, &response, &steps, state);
+        let map = self.navigate(ui, &response, &steps, &mut state.tools);
         state.tools.pointer_m = response.hover_pos().map(|p| map.to_ego(p));
         if let Some(at_m) = state.tools.pointer_m {
-            state.readout = readout(input.scene, at_m);
+            state.pointed.readout = readout(input.scene, at_m);
         }
-        self.driver
-            .drive(ui, &response, &steps, &seen(input, &map), state, commands);
+        self.driver.drive(
+            ui,
+            &response,
+            &steps,
+            &seen(input, &map),
+            &mut state.tools,
+            commands,
+        );
         let map = ScreenMap {
             center_m: self.center_m,
             ..map
@@ -204,7 +212,7 @@ impl Canvas {
         }
     }
 
-    fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], state: &mut UiState) -> ScreenMap {
+    fn navigate(&mut self, ui: &Ui, response: &Response, steps: &[Step], hand: &mut Hand) -> ScreenMap {
         let mut map = ScreenMap {
             rect: response.rect,
             center_m: self.center_m,
@@ -214,8 +222,8 @@ impl Canvas {
         if let Some(pointer) = response.hover_pos() {
             // With Ctrl held egui turns the wheel into a zoom: here it is the brush's size.
             if (zoom - 1.0).abs() > 1e-3 {
-                state.brush_m =
-                    (state.brush_m * f64::from(zoom)).clamp(*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end());
+                hand.brush_m =
+                    (hand.brush_m * f64::from(zoom)).clamp(*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end());
             } else if scroll != 0.0 {
                 let under = map.to_ego(pointer);
                 let scale = self.scale * f64::from(scroll / 220.0).exp();
@@ -260,18 +268,20 @@ impl Canvas {
         }
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let scene = input.scene;
-        if state.underlay != Underlay::Layout {
+        if state.shown.underlay != Underlay::Layout {
             painter.image(self.occupancy_texture(ui, scene), grid, whole, Color32::WHITE);
         }
-        if state.underlay != Underlay::Occupancy {
-            painter.image(self.layers_texture(ui, scene, state), grid, whole, Color32::WHITE);
+        if state.shown.underlay != Underlay::Occupancy {
+            let over_voxels = state.shown.underlay == Underlay::Both;
+            let layers = self.layers_texture(ui, scene, &state.tools, over_voxels);
+            painter.image(layers, grid, whole, Color32::WHITE);
         }
-        if let (true, Some(mask)) = (state.show_unobserved, &scene.frame().inferred.unobserved) {
+        if let (true, Some(mask)) = (state.shown.unobserved, &scene.frame().inferred.unobserved) {
             let make = || bev_image::unobserved(mask);
             let veil = texture(ui, &mut self.unobserved, scene.rev, "unobserved", make);
             painter.image(veil, grid, whole, Color32::WHITE);
         }
-        if state.show_grid {
+        if state.shown.grid {
             draw_grid(ui, map, grid);
         }
         painter.rect_stroke(
@@ -280,15 +290,15 @@ impl Canvas {
             Stroke::new(1.0, Color32::from_white_alpha(34)),
             StrokeKind::Outside,
         );
-        if state.show_lines && state.underlay != Underlay::Occupancy {
+        if state.shown.lines && state.shown.underlay != Underlay::Occupancy {
             draw_lines(
                 &painter.with_clip_rect(painter.clip_rect().intersect(grid)),
                 map,
                 scene,
             );
         }
-        if let (true, Some(sweep)) = (state.show_lidar_bev, input.lidar) {
-            draw_points(ui, map, sweep, state);
+        if let (true, Some(sweep)) = (state.shown.lidar_from_above, input.lidar) {
+            draw_points(ui, map, sweep, &state.lidar);
         }
         let hovered = response
             .hover_pos()
@@ -299,29 +309,35 @@ impl Canvas {
         let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
         thing_outlines::outlines(&inside, map, scene, &state.things, hovered);
         draw_ego(ui, map, &scene.rig);
-        if state.show_boxes {
-            draw_boxes(ui, map, response, input.scene, state);
+        if state.shown.boxes {
+            draw_boxes(ui, map, response, input.scene, &state.tools);
         }
         draw_window(ui, map, self.extent);
         draw_unsettled(ui, map, &input.unsettled, input.generating);
-        if let Some(marks) = &state.finding_marks {
+        if let Some(marks) = &state.shown.finding_marks {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
             marks.draw(&inside, map, scene.frame());
         }
         draw_scale_bar(ui, map);
-        self.draw_tool(ui, response, map, input, state);
+        self.draw_tool(ui, response, map, input, &state.tools);
     }
 
-    fn layers_texture(&mut self, ui: &Ui, scene: &Scene, state: &UiState) -> egui::TextureId {
+    fn layers_texture(
+        &mut self,
+        ui: &Ui,
+        scene: &Scene,
+        tools: &ToolState,
+        over_voxels: bool,
+    ) -> egui::TextureId {
         // Alone the picture covers what is behind it; pixels drawn twice cost on a software rasteriser.
-        let (veil, behind) = match state.underlay == Underlay::Both {
-            true => (state.tools.layers_opacity, Color32::TRANSPARENT),
+        let (veil, behind) = match over_voxels {
+            true => (tools.layers_opacity, Color32::TRANSPARENT),
             false => (1.0, GROUND),
         };
         let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0).round() as u8;
         let style = LayerStyle {
-            shown: state.layers_shown,
-            opacity: state.tools.layer_opacity.map(byte),
+            shown: tools.layers_shown,
+            opacity: tools.layer_opacity.map(byte),
             veil: byte(veil),
         };
         let key = (scene.rev, style, behind);
@@ -341,20 +357,20 @@ impl Canvas {
         response: &Response,
         map: &ScreenMap,
         input: &CanvasInput<'_>,
-        state: &UiState,
+        tools: &ToolState,
     ) {
         let painter = ui.painter();
-        if state.tool == region::ID || !state.tools.region.is_empty() {
-            marks::region(painter, map, state.tools.region.cells());
+        if tools.tool == region::ID || !tools.region.is_empty() {
+            marks::region(painter, map, tools.region.cells());
         }
-        if state.tools.row_open {
-            for b in row::coming(input.scene.frame(), state) {
+        if tools.row_open {
+            for b in row::coming(input.scene.frame(), tools) {
                 draw_box(ui, map, &b, BoxStyle::Ghost);
             }
         }
         let (marks, cursor) = self
             .driver
-            .sight(ui, response.hover_pos(), &seen(input, map), state);
+            .sight(ui, response.hover_pos(), &seen(input, map), tools);
         let board = Board {
             painter,
             view: map,

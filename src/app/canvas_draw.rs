@@ -7,8 +7,9 @@ use editor::pick;
 use editor::tools::select;
 use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
 
+use super::camera_views::LidarShown;
 use super::screen_map::ScreenMap;
-use super::state::UiState;
+use super::tools::Hand;
 use crate::shell::live::Bounds;
 use widgets::theme;
 
@@ -94,8 +95,8 @@ fn draw_direction(painter: &egui::Painter, points: &[Pos2], color: Color32) {
     ));
 }
 
-pub(super) fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, state: &UiState) {
-    let colors = viewport::lidar_colors(sweep, state.lidar_colors);
+pub(super) fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, shown: &LidarShown) {
+    let colors = viewport::lidar_colors(sweep, shown.colors);
     let mut mesh = egui::Mesh::default();
     for (point, [r, g, b, _]) in sweep.points.iter().zip(colors) {
         let [x, y, _] = point.position_in_ego;
@@ -143,15 +144,15 @@ pub(super) enum BoxStyle {
     Ghost,
 }
 
-pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &Scene, state: &UiState) {
+pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &Scene, hand: &Hand) {
     let frame = scene.frame();
     let hovered = response
         .hover_pos()
-        .filter(|_| state.tool == select::ID)
+        .filter(|_| hand.tool == select::ID)
         .and_then(|p| pick::box_at(frame, map.to_ego(p)));
     for b in frame.boxes.values() {
-        if Some(b.id) != state.selected {
-            let style = if state.is_chosen(b.id) {
+        if Some(b.id) != hand.selected {
+            let style = if hand.is_chosen(b.id) {
                 BoxStyle::Chosen
             } else if Some(b.id) == hovered {
                 BoxStyle::Hovered
@@ -161,9 +162,9 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
             draw_box(ui, map, b, style);
         }
     }
-    if let Some(b) = state.selected.and_then(|id| frame.boxes.get(&id)) {
+    if let Some(b) = hand.selected.and_then(|id| frame.boxes.get(&id)) {
         draw_box(ui, map, b, BoxStyle::Selected);
-        if state.tool == select::ID {
+        if hand.tool == select::ID {
             draw_handles(ui, map, b);
         }
     }

@@ -11,7 +11,7 @@ use scene::Scene;
 use super::command::Command;
 use super::pointer::{self, Step};
 use super::screen_map::point;
-use super::state::UiState;
+use super::tools::ToolState;
 
 /// Who follows the pointer while the button is down.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,14 +51,14 @@ fn modifiers(m: egui::Modifiers) -> Modifiers {
 }
 
 /// Tells the tool in hand of an event.
-fn tell(seen: &Seen<'_>, state: &mut UiState, event: Event, commands: &mut Vec<Command>) -> Answer {
-    let UiState { toolbox, tools, .. } = state;
-    let tool = toolbox.tool_mut(tools.hand.tool);
+fn tell(seen: &Seen<'_>, tools: &mut ToolState, event: Event, commands: &mut Vec<Command>) -> Answer {
+    let ToolState { toolbox, hand, .. } = tools;
+    let tool = toolbox.tool_mut(hand.tool);
     let mut cx = Context {
         scene: seen.scene,
         settled: seen.settled,
         view: seen.view,
-        hand: &mut tools.hand,
+        hand,
     };
     let mut answer = tool.event(&mut cx, &event);
     pointer::carry_out(std::mem::take(&mut answer.acts), commands);
@@ -83,7 +83,7 @@ impl Driver {
         response: &Response,
         steps: &[Step],
         seen: &Seen<'_>,
-        state: &mut UiState,
+        tools: &mut ToolState,
         commands: &mut Vec<Command>,
     ) {
         let in_space = seen.view.kind() == ViewKind::Space;
@@ -96,7 +96,7 @@ impl Driver {
         });
         if escape && self.hold != Hold::Nobody {
             if self.hold == Hold::Tool {
-                tell(seen, state, Event::Cancel, commands);
+                tell(seen, tools, Event::Cancel, commands);
                 commands.push(Command::CancelDrag);
             }
             self.hold = Hold::Waits;
@@ -109,20 +109,20 @@ impl Driver {
             match *step {
                 Step::Press(PointerButton::Primary, p, m) if in_space && (m.alt || space) => {
                     if m.alt {
-                        tell(seen, state, Event::Pick(at(p, m)), commands);
+                        tell(seen, tools, Event::Pick(at(p, m)), commands);
                     }
                     self.hold = Hold::Waits;
                 }
                 Step::Press(PointerButton::Primary, p, m) if !space => {
-                    let answer = tell(seen, state, Event::Press(at(p, m)), commands);
+                    let answer = tell(seen, tools, Event::Press(at(p, m)), commands);
                     self.hold = if answer.holds { Hold::Tool } else { Hold::Waits };
-                    self.drag(seen, state, at(p, m), commands);
+                    self.drag(seen, tools, at(p, m), commands);
                 }
-                Step::Move(p) => self.drag(seen, state, at(p, held), commands),
+                Step::Move(p) => self.drag(seen, tools, at(p, held), commands),
                 Step::Release(PointerButton::Primary, p) if self.hold != Hold::Nobody => {
-                    self.drag(seen, state, at(p, held), commands);
+                    self.drag(seen, tools, at(p, held), commands);
                     if self.hold == Hold::Tool {
-                        tell(seen, state, Event::Release(at(p, held)), commands);
+                        tell(seen, tools, Event::Release(at(p, held)), commands);
                     }
                     self.hold = Hold::Nobody;
                 }
@@ -130,12 +130,12 @@ impl Driver {
             }
         }
         // After the pointer: the click that ends an outline is one of its points.
-        self.keys(ui, response, seen, state, commands);
+        self.keys(ui, response, seen, tools, commands);
     }
 
-    fn drag(&self, seen: &Seen<'_>, state: &mut UiState, pointer: Pointer, commands: &mut Vec<Command>) {
+    fn drag(&self, seen: &Seen<'_>, tools: &mut ToolState, pointer: Pointer, commands: &mut Vec<Command>) {
         if self.hold == Hold::Tool {
-            tell(seen, state, Event::Drag(pointer), commands);
+            tell(seen, tools, Event::Drag(pointer), commands);
         }
     }
 
@@ -145,22 +145,22 @@ impl Driver {
         ui: &Ui,
         response: &Response,
         seen: &Seen<'_>,
-        state: &mut UiState,
+        tools: &mut ToolState,
         commands: &mut Vec<Command>,
     ) {
         let holds = self.hold == Hold::Tool;
-        let wants = state.toolbox.tool(state.tool).wants();
+        let wants = tools.toolbox.tool(tools.hand.tool).wants();
         match wants {
             Wants::Nothing => {}
             Wants::Wheel => {
                 let notches = ui.input(|i| wheel(&i.events));
                 if holds && notches != 0 {
-                    tell(seen, state, Event::Scroll(notches), commands);
+                    tell(seen, tools, Event::Scroll(notches), commands);
                 }
             }
             Wants::Drag => {
                 if holds {
-                    self.steer(ui, seen, state, commands);
+                    self.steer(ui, seen, tools, commands);
                 }
             }
             Wants::Escape | Wants::Points => {
@@ -170,7 +170,7 @@ impl Driver {
                 let twice = response.contains_pointer()
                     && ui.input(|i| i.pointer.button_double_clicked(PointerButton::Primary));
                 if twice && wants == Wants::Points {
-                    tell(seen, state, Event::DoubleClick, commands);
+                    tell(seen, tools, Event::DoubleClick, commands);
                 }
                 let keys = [
                     (Pressed::Escape, Key::Escape),
@@ -181,7 +181,7 @@ impl Driver {
                 for (pressed, key) in &keys[..count] {
                     if ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, *pressed)) {
                         let event = Event::Key(*key, false, Modifiers::default());
-                        tell(seen, state, event, commands);
+                        tell(seen, tools, event, commands);
                     }
                 }
             }
@@ -189,7 +189,7 @@ impl Driver {
     }
 
     /// Keys that steer a drag.
-    fn steer(&mut self, ui: &Ui, seen: &Seen<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
+    fn steer(&mut self, ui: &Ui, seen: &Seen<'_>, tools: &mut ToolState, commands: &mut Vec<Command>) {
         let events = ui.input(|i| i.events.clone());
         let mut left = Vec::with_capacity(events.len());
         for event in events {
@@ -206,7 +206,7 @@ impl Driver {
                 _ => None,
             };
             let answer = told
-                .map(|event| tell(seen, state, event, commands))
+                .map(|event| tell(seen, tools, event, commands))
                 .unwrap_or_default();
             if answer.done {
                 self.hold = Hold::Waits;
@@ -224,7 +224,7 @@ impl Driver {
         ui: &Ui,
         hover: Option<Pos2>,
         seen: &Seen<'_>,
-        state: &UiState,
+        tools: &ToolState,
     ) -> (Vec<Mark>, CursorIcon) {
         let held = ui.input(|i| modifiers(i.modifiers));
         let pointer = hover.map(|p| Pointer { at: point(p), held });
@@ -232,10 +232,10 @@ impl Driver {
             scene: seen.scene,
             settled: seen.settled,
             view: seen.view,
-            hand: state,
+            hand: &tools.hand,
             pointer,
         };
-        let tool = state.toolbox.tool(state.tool);
+        let tool = tools.toolbox.tool(tools.hand.tool);
         (tool.overlay(&sight), icon(tool.cursor(&sight)))
     }
 }

@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow, bail};
 
+use super::camera_views::LidarModel;
 use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
-use super::state::LidarModel;
 use crate::shell::checking;
 use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen};
 use formats::{FormatError, atomic};

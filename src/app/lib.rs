@@ -25,6 +25,7 @@ mod thing_outlines;
 pub mod tools;
 pub mod trade_plot;
 pub mod view3d;
+pub mod views_shown;
 pub mod windows;
 
 pub use authoring::{memory, open, prompting, scenery, text};

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::camera_views::LidarModel;
 use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Wanted, camera_input};
 use super::graphics::Graphics;
-use super::state::LidarModel;
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Worker};
 use nets::lidar::LidarNet;

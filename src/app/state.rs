@@ -6,154 +6,38 @@ use glam::DVec2;
 
 use editor::Edit;
 use job::Named;
-use sensors::cameras::{self, CameraSource, SourceId, ViewId};
-use viewport::LidarColorMode;
 
-use super::panes::id::PaneId;
-use super::tools::{Hand, ToolState, Toolbox};
-
-/// How the LiDAR sweep is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum LidarModel {
-    /// Every ray to the first voxel.
-    #[default]
-    Exact,
-    /// The network: ranges within voxels, intensity, lost echoes.
-    Learned,
-}
-
-/// How two states are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum CompareMode {
-    /// Only the present state is shown.
-    #[default]
-    Off,
-    /// Before on the left of a line, after on its right.
-    Wipe,
-    /// Before beside after.
-    Side,
-    /// Voxels that differ are marked.
-    Difference,
-}
-
-impl CompareMode {
-    /// Every mode with its name and what it does.
-    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
-        (CompareMode::Off, "Off", "only the present state"),
-        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
-        (CompareMode::Side, "Side", "before beside after"),
-        (CompareMode::Difference, "Diff", "voxels that differ"),
-    ];
-
-    /// The next one.
-    pub fn next(self) -> Self {
-        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
-        Self::ALL[(at + 1) % Self::ALL.len()].0
-    }
-}
-
-/// A sensor of the rig.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SensorChoice {
-    /// By index.
-    Camera(usize),
-    /// By index.
-    Lidar(usize),
-}
-
-/// What lies under the layers of the bird's-eye view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Underlay {
-    /// Layers only.
-    #[default]
-    Layout,
-    /// The occupancy from above, layers off.
-    Occupancy,
-    /// Both, the layers translucent.
-    Both,
-}
+use super::camera_views::{CamerasShown, LidarShown};
+use super::panes::comparing::Comparing;
+use super::panes::pointed::Pointed;
+use super::tools::{Hand, ToolState};
+use super::views_shown::ViewsShown;
+use super::windows::open::OpenWindows;
 
 /// State of the window.
 #[derive(Clone, Debug)]
 pub struct UiState {
-    /// What the tools hold: the state is a [`Hand`] with more.
+    /// The tools and what they hold: the state is a [`Hand`] with more.
     pub tools: ToolState,
-    /// The tools themselves.
-    pub toolbox: Toolbox,
-    /// What lies under the layers.
-    pub underlay: Underlay,
-    /// Draw boxes.
-    pub show_boxes: bool,
-    /// Draw lane centres and dividers as lines.
-    pub show_lines: bool,
-    /// Draw the 10 m grid, in both views.
-    pub show_grid: bool,
-    /// Draw the LiDAR returns in the bird's-eye view too.
-    pub show_lidar_bev: bool,
-    /// Tint what no sensor of the data set observed, in the bird's-eye view.
-    pub show_unobserved: bool,
+    /// What the two large views show of a scene.
+    pub shown: ViewsShown,
     /// Edits of boxes and map layers correct what was inferred on import: no voxel changes.
     pub correcting: bool,
     /// Densities that generation is asked for.
     pub named: Named,
-    /// Colour of LiDAR returns.
-    pub lidar_colors: LidarColorMode,
-    /// What the camera strip shows.
-    pub camera_view: ViewId,
-    /// What it is rendered from, where several sources give it.
-    pub camera_source: SourceId,
-    /// Depth of the plane that is shown, m.
-    pub plane_m: f64,
-    /// Bit per camera that is not rendered.
-    pub cameras_hidden: u32,
-    /// How the LiDAR sweep is computed.
-    pub lidar_model: LidarModel,
+    /// What the pictures of the cameras show.
+    pub cameras: CamerasShown,
+    /// What the LiDAR sweep shows.
+    pub lidar: LidarShown,
     /// How the present state is compared with the version before.
-    pub compare: CompareMode,
-    /// The key that shows the version before is held.
-    pub holding_before: bool,
-    /// Where the line of the wipe stands, 0 to 1.
-    pub wipe_at: f32,
-    /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both large views.
-    pub finding_marks: Option<std::sync::Arc<super::finding_marks::FindingMarks>>,
-    /// The sensors' window is open.
-    pub sensors_open: bool,
-    /// The sensor chosen in it.
-    pub sensor: SensorChoice,
-    /// Camera that is enlarged.
-    pub inspected: Option<usize>,
-    /// Pane under the pointer in the last frame.
-    pub hovered_pane: Option<PaneId>,
-    /// What the pane under the pointer says about it; shown in the status bar.
-    pub readout: String,
-    /// The log is open.
-    pub log_open: bool,
-    /// The sheet of keys is open.
-    pub keys_open: bool,
-    /// The settings are open.
-    pub settings_open: bool,
-    /// The start screen is open.
-    pub start_open: bool,
+    pub compare: Comparing,
+    /// What the pointer is over.
+    pub pointed: Pointed,
+    /// Which windows are open.
+    pub windows: OpenWindows,
 }
 
 impl UiState {
-    /// True if a camera of the rig is not rendered.
-    pub fn camera_hidden(&self, camera: usize) -> bool {
-        camera < 32 && self.cameras_hidden >> camera & 1 == 1
-    }
-
-    /// The source of what the camera strip shows.
-    pub fn shown_source(&self) -> &'static dyn CameraSource {
-        cameras::source_of(self.camera_view, self.camera_source)
-    }
-
-    /// After a camera was taken away, those behind it move up.
-    pub fn forget_camera(&mut self, camera: usize) {
-        let below = (1u32 << camera.min(31)) - 1;
-        self.cameras_hidden = (self.cameras_hidden & below) | (self.cameras_hidden >> 1 & !below);
-        self.inspected = None;
-    }
-
     /// The edits as they are; or as corrections while the user corrects what was inferred.
     pub fn as_meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
         let authored = |edit: &Edit| {
@@ -192,34 +76,14 @@ impl Default for UiState {
     fn default() -> Self {
         Self {
             tools: ToolState::default(),
-            toolbox: Toolbox::default(),
-            underlay: Underlay::Layout,
-            show_boxes: true,
-            show_lines: true,
-            show_grid: true,
-            show_lidar_bev: false,
-            show_unobserved: false,
+            shown: ViewsShown::default(),
             correcting: false,
             named: Named::default(),
-            lidar_colors: LidarColorMode::Range,
-            camera_view: ViewId::SEMANTIC,
-            camera_source: SourceId::default(),
-            plane_m: 12.0,
-            cameras_hidden: 0,
-            lidar_model: LidarModel::default(),
-            compare: CompareMode::Off,
-            holding_before: false,
-            wipe_at: 0.5,
-            finding_marks: None,
-            sensors_open: false,
-            sensor: SensorChoice::Camera(0),
-            inspected: None,
-            hovered_pane: None,
-            readout: String::new(),
-            log_open: false,
-            keys_open: false,
-            settings_open: false,
-            start_open: false,
+            cameras: CamerasShown::default(),
+            lidar: LidarShown::default(),
+            compare: Comparing::default(),
+            pointed: Pointed::default(),
+            windows: OpenWindows::default(),
         }
     }
 }
@@ -251,19 +115,6 @@ mod tests {
             edit: Box::new(remove),
         };
         assert_eq!(ui.as_meant(edits), [corrected, voxels]);
-    }
-
-    #[test]
-    fn hidden_cameras_stay_hidden_when_another_goes() {
-        let mut ui = UiState {
-            cameras_hidden: 0b10_1001,
-            ..UiState::default()
-        };
-        assert!(ui.camera_hidden(3) && !ui.camera_hidden(4) && !ui.camera_hidden(40));
-        ui.forget_camera(2);
-        assert_eq!(ui.cameras_hidden, 0b1_0101);
-        ui.forget_camera(0);
-        assert_eq!(ui.cameras_hidden, 0b1010);
     }
 
     #[test]

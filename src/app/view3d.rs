@@ -23,6 +23,8 @@ use super::pointer::{self, Held, Step};
 use super::screen_map::{point, pos};
 use super::state::{UiState, position_text};
 use super::thing_outlines;
+use super::tools::ToolState;
+use super::views_shown::ViewsShown;
 use widgets::software_ui;
 use widgets::theme;
 
@@ -150,14 +152,21 @@ impl View3d {
             return response;
         }
         let steps = pointer::steps(ui, &response);
-        let moved = self.navigate(ui, &response, &steps, input, state);
+        let moved = self.navigate(ui, &response, &steps, input, &state.tools);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
         let mut driver = self.driver;
-        driver.drive(ui, &response, &steps, &self.seen(input), state, commands);
+        driver.drive(
+            ui,
+            &response,
+            &steps,
+            &self.seen(input),
+            &mut state.tools,
+            commands,
+        );
         self.driver = driver;
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
-            state.readout = readout(input.scene, hit, &pointer.ray);
+            state.pointed.readout = readout(input.scene, hit, &pointer.ray);
         }
         let now_s = ui.input(|i| i.time);
         // Where the processor draws, only what a drag or a brush touches is drawn again: that is quick as it is.
@@ -167,7 +176,7 @@ impl View3d {
         }
         let (marks, cursor) = self
             .driver
-            .sight(ui, response.hover_pos(), &self.seen(input), state);
+            .sight(ui, response.hover_pos(), &self.seen(input), &state.tools);
         if response.hovered() && !self.driver.is_held() {
             ui.ctx().set_cursor_icon(cursor);
         }
@@ -200,7 +209,7 @@ impl View3d {
         self.options = options.clone();
         if self.gpu.is_some() {
             let now_s = ui.input(|i| i.time);
-            let (marks, _) = self.driver.sight(ui, None, &self.seen(input), state);
+            let (marks, _) = self.driver.sight(ui, None, &self.seen(input), &state.tools);
             self.paint(ui, input, state, (None, &marks), now_s);
         }
     }
@@ -251,7 +260,7 @@ impl View3d {
         response: &Response,
         steps: &[Step],
         input: &View3dInput<'_>,
-        state: &UiState,
+        tools: &ToolState,
     ) -> bool {
         let before = self.camera;
         let (shift, space) = ui.input(|i| (i.modifiers.shift, i.key_down(egui::Key::Space)));
@@ -278,7 +287,7 @@ impl View3d {
             }
         }
         // A block that is being drawn takes the wheel for its height.
-        let wheel_taken = self.driver.is_dragging() && state.toolbox.tool(state.tool).wants() == Wants::Wheel;
+        let wheel_taken = self.driver.is_dragging() && tools.toolbox.tool(tools.tool).wants() == Wants::Wheel;
         if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from((scroll / 260.0).exp() * zoom);
@@ -346,13 +355,13 @@ impl View3d {
         }
         let size = self.size_px();
         let frame = input.scene.frame();
-        self.refresh_colors(input.lidar, state.lidar_colors);
+        self.refresh_colors(input.lidar, state.lidar.colors);
         let brushed = marks.iter().find_map(|mark| match mark {
             Mark::Voxels(cells, color) => Some((&cells[..], *color)),
             _ => None,
         });
         let (cells, color) = brushed.unwrap_or((&[], [0; 3]));
-        let finding = state.finding_marks.as_deref();
+        let finding = state.shown.finding_marks.as_deref();
         let mut brush = vec![BrushCells { cells, color }];
         if cells.is_empty() {
             brush.extend_from_slice(input.marked);
@@ -377,8 +386,8 @@ impl View3d {
         let Some(gpu) = &mut self.gpu else { return };
         let coarse = moving && (gpu.software || self.frame_s > SLOW_FRAME_S);
         let options = ViewOptions {
-            grid_lines: state.show_grid,
-            boxes: state.show_boxes,
+            grid_lines: state.shown.grid,
+            boxes: state.shown.boxes,
             samples: if coarse || gpu.software { 1 } else { 4 },
             point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             pixels_per_point: self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
@@ -425,7 +434,7 @@ impl View3d {
     pub fn screenshot(
         &mut self,
         scene: &Scene,
-        state: &UiState,
+        shown: &ViewsShown,
         size: Option<[u32; 2]>,
     ) -> anyhow::Result<([u32; 2], Vec<u8>)> {
         let size = size.unwrap_or_else(|| self.size_px());
@@ -435,8 +444,8 @@ impl View3d {
         let frame = scene.frame();
         let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
         let options = ViewOptions {
-            grid_lines: state.show_grid,
-            boxes: state.show_boxes,
+            grid_lines: shown.grid,
+            boxes: shown.boxes,
             pixels_per_point: self.pixels_per_point,
             ..self.options.clone()
         };

@@ -125,7 +125,7 @@ impl SceneloomApp {
     /// At the pointer over the bird's-eye view, else beside where they were; boxes come along.
     fn paste_things(&mut self, scene: &Scene) {
         let frame = scene.frame();
-        let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
+        let over_bev = self.state.pointed.pane == Some(PaneId::BEV);
         let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
         let forms = self.state.tools.things.clipboard.clone();
         let middle = forms.iter().map(Form::middle_m).sum::<DVec2>() / forms.len() as f64;

@@ -10,8 +10,7 @@ use crate::panes::id::PaneId;
 use crate::shell::actions::ACTIONS;
 use crate::shell::app::SceneloomApp;
 use crate::shell::toasts::Level;
-use crate::state::UiState;
-use crate::tools::{Choose, ToolCommand};
+use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard};
 use editor::tools::{Act, voxel};
@@ -62,7 +61,7 @@ impl SceneloomApp {
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
             ToolCommand::Paste => {
-                let over_bev = self.state.hovered_pane == Some(PaneId::BEV);
+                let over_bev = self.state.pointed.pane == Some(PaneId::BEV);
                 let at_m = self.state.tools.pointer_m.filter(|_| over_bev);
                 let added = arrange::paste(&frame, &self.state.tools.clipboard, at_m);
                 let label = of(&added.ids, "Paste box", "Paste boxes");
@@ -97,8 +96,8 @@ impl SceneloomApp {
             ToolCommand::ToLane => self.apply_some("Snap to lane", arrange::to_lane(&frame, &ids)),
             ToolCommand::Act(act) => self.act(act, ctx),
             ToolCommand::Shortcut(id) => {
-                let UiState { toolbox, tools, .. } = &mut self.state;
-                toolbox.shortcut(&mut tools.hand, id);
+                let ToolState { toolbox, hand, .. } = &mut self.state.tools;
+                toolbox.shortcut(hand, id);
             }
         }
     }
@@ -176,8 +175,8 @@ impl SceneloomApp {
             Act::Note(text) => self.note(&text),
             Act::Ask(id) => {
                 let action = ACTIONS.iter().find(|a| a.id == id);
-                if let Some(command) = action.and_then(|a| a.run(&mut self.state)) {
-                    self.execute(command, ctx);
+                if let Some(action) = action {
+                    self.execute(action.command(), ctx);
                 }
             }
         }

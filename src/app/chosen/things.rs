@@ -20,7 +20,7 @@ impl SceneloomApp {
             ThingCommand::Apply(label, edits) => self.apply(label, &edits),
             ThingCommand::Commit(label) => self.document.commit_drag(label),
             ThingCommand::Take(kind) => {
-                self.state.toolbox.put_down();
+                self.state.tools.toolbox.put_down();
                 self.state.take_thing(kind);
             }
             ThingCommand::ToggleShown => self.show_things(!self.state.tools.things.shown),
@@ -42,7 +42,7 @@ impl SceneloomApp {
     fn forget_closed(&mut self) {
         if !self.state.tools.things.is_open() {
             self.state.tools.things.chosen.clear();
-            self.state.toolbox.put_down();
+            self.state.tools.toolbox.put_down();
         }
     }
 

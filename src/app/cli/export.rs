@@ -8,10 +8,10 @@ use serde_json::json;
 
 use super::render::{size, source};
 use super::{Common, Outcome, output};
+use app::camera_views::LidarModel;
 use app::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
 use app::open;
 use app::picture::ShotOptions;
-use app::state::LidarModel;
 use sensors::cameras::SourceId;
 
 /// Arguments.

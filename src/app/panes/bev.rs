@@ -8,7 +8,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::canvas::CanvasInput;
 use crate::command::Command;
-use crate::state::Underlay;
+use crate::views_shown::Underlay;
 use widgets::icons::{self, Icon};
 
 /// The bird's-eye view.
@@ -37,14 +37,19 @@ impl Pane for Bev {
             (Underlay::Occupancy, "Occupancy", "voxels from above"),
             (Underlay::Both, "Both", "layers over voxels"),
         ];
-        icons::choice(ui, &mut cx.state.underlay, &choices, "Bird's-eye view shows");
+        icons::choice(
+            ui,
+            &mut cx.state.shown.underlay,
+            &choices,
+            "Bird's-eye view shows",
+        );
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
 
-        let mode = cx.compare.mode(cx.state);
+        let mode = cx.compare.mode(&cx.state.compare);
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
         let input = CanvasInput {
@@ -54,7 +59,7 @@ impl Pane for Bev {
             unsettled: cx.unsettled.clone(),
             generating: cx.generating,
         };
-        if cx.compare.shows_before(cx.state, scene)
+        if cx.compare.shows_before(&cx.state.compare, scene)
             && let Some(map) = cx.canvas.map
         {
             clipped(ui, area, |ui| {
@@ -81,11 +86,11 @@ impl Pane for Bev {
                 sides(ui, left, right);
             }
             CompareMode::Wipe => {
-                let part = left_part(area, cx.state.wipe_at);
+                let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
                     cx.compare.canvas.still(ui, area, &map, &before, cx.state);
                 });
-                wipe_line(ui, area, &mut cx.state.wipe_at);
+                wipe_line(ui, area, &mut cx.state.compare.wipe_at);
             }
             CompareMode::Difference => {
                 if let Some((difference, texture)) = cx.compare.difference(ui, scene) {

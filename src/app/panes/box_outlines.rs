@@ -3,6 +3,7 @@
 use egui::{Color32, Painter, Pos2, Rect, Stroke, pos2};
 use glam::DVec3;
 
+use crate::camera_views::CamerasShown;
 use crate::state::UiState;
 use scene::{Camera, Scene, SceneBox};
 use sensors::march::GroundHeight;
@@ -28,8 +29,8 @@ const EDGES: [[usize; 2]; 12] = [
 
 /// How far below the physical ground the picture shows what stands on it, m: pictures of voxels have the ground where
 /// labels have it.
-pub fn drop_m(state: &UiState) -> f64 {
-    match state.shown_source().ground() {
+pub fn drop_m(shown: &CamerasShown) -> f64 {
+    match shown.shown_source().ground() {
         GroundHeight::Physical => 0.0,
         GroundHeight::AsLabelled => -GROUND_TOP_M,
     }
@@ -68,7 +69,7 @@ pub fn draw(painter: &Painter, rect: Rect, camera: &Camera, scene: &Scene, state
         let Some(b) = scene.frame().boxes.get(&id).filter(|b| b.problem().is_none()) else {
             continue;
         };
-        let lines: Vec<[Pos2; 2]> = edges(camera, b, drop_m(state))
+        let lines: Vec<[Pos2; 2]> = edges(camera, b, drop_m(&state.cameras))
             .into_iter()
             .map(|ends| ends.map(part))
             .collect();

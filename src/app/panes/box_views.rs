@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
-use crate::state::UiState;
+use crate::tools::Hand;
 use editor::Edit;
 use scene::{Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::GROUND_TOP_M;
@@ -83,7 +83,7 @@ impl Pane for BoxViews {
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let sweep = cx.sensing.lidar().map(|l| &**l);
-        self.show(ui, cx.scene, sweep, cx.state, commands);
+        self.show(ui, cx.scene, sweep, &cx.state.tools, commands);
     }
 }
 
@@ -94,12 +94,12 @@ impl BoxViews {
         ui: &mut Ui,
         scene: &Scene,
         sweep: Option<&LidarSweep>,
-        state: &UiState,
+        hand: &Hand,
         commands: &mut Vec<Command>,
     ) {
         let all = ui.available_rect_before_wrap();
         ui.painter().rect_filled(all, 0.0, theme::well());
-        let Some(b) = state.selected.and_then(|id| scene.frame().boxes.get(&id)) else {
+        let Some(b) = hand.selected.and_then(|id| scene.frame().boxes.get(&id)) else {
             self.held = None;
             hint(ui, all, "Choose a box to see it from three sides.");
             return;

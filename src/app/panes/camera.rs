@@ -40,13 +40,13 @@ impl Pane for Camera {
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
         let views = sensors::cameras::views();
-        let shown = views.iter().find(|view| view.id == cx.state.camera_view);
+        let shown = views.iter().find(|view| view.id == cx.state.cameras.view);
         egui::ComboBox::from_id_salt("camera mode")
             .selected_text(shown.map_or("", |view| view.title))
             .width(96.0)
             .show_ui(ui, |ui| {
                 for view in &views {
-                    ui.selectable_value(&mut cx.state.camera_view, view.id, view.title);
+                    ui.selectable_value(&mut cx.state.cameras.view, view.id, view.title);
                 }
             })
             .response

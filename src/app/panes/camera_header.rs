@@ -2,8 +2,8 @@
 
 use egui::Ui;
 
+use crate::camera_views::CamerasShown;
 use crate::command::{Command, Window};
-use crate::state::UiState;
 use sensors::cameras::{self, Knob};
 use widgets::icons;
 use widgets::theme;
@@ -21,29 +21,25 @@ pub fn header(
     ui: &mut Ui,
     input: &CamerasInput<'_>,
     stale: bool,
-    state: &mut UiState,
+    shown: &mut CamerasShown,
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
         let views = cameras::views();
         let choices: Vec<_> = views.iter().map(|v| (v.id, v.title, v.hint)).collect();
-        icons::segments(ui, &mut state.camera_view, &choices);
+        icons::segments(ui, &mut shown.view, &choices);
         ui.add_space(8.0);
-        let sources = cameras::sources_of(state.camera_view);
+        let sources = cameras::sources_of(shown.view);
         if sources.len() > 1 {
             let choices: Vec<_> = sources.iter().map(|s| (s.id(), s.title(), s.hint())).collect();
-            icons::segments(ui, &mut state.camera_source, &choices);
+            icons::segments(ui, &mut shown.source, &choices);
         }
-        if state.shown_source().needs().conditions {
+        if shown.shown_source().needs().conditions {
             conditions(ui, input.scene, commands);
         }
-        match views
-            .iter()
-            .find(|v| v.id == state.camera_view)
-            .and_then(|v| v.knob)
-        {
+        match views.iter().find(|v| v.id == shown.view).and_then(|v| v.knob) {
             Some(Knob::PlaneDepth) => {
-                let slider = egui::Slider::new(&mut state.plane_m, 0.2..=51.0)
+                let slider = egui::Slider::new(&mut shown.plane_m, 0.2..=51.0)
                     .suffix(" m")
                     .fixed_decimals(1);
                 ui.spacing_mut().slider_width = 220.0;

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::box_outlines;
 use super::camera_header::header;
-use crate::camera_views::{CameraView, march};
+use crate::camera_views::{CameraView, CamerasShown, march};
 use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
 use crate::state::UiState;
@@ -66,10 +66,12 @@ impl CameraStrip {
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
-        self.refresh(ui, input.views, state);
+        self.refresh(ui, input.views, &state.cameras);
         self.note_stale(ui, input.stale);
         let cameras = &input.scene.rig.cameras;
-        let shown: Vec<usize> = (0..cameras.len()).filter(|i| !state.camera_hidden(*i)).collect();
+        let shown: Vec<usize> = (0..cameras.len())
+            .filter(|i| !state.cameras.is_hidden(*i))
+            .collect();
         let count = shown.len().max(1) as f32;
         let gap = 6.0;
         let room = ui.available_size();
@@ -84,7 +86,7 @@ impl CameraStrip {
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
             let hovered = self.picture(ui, rect, i, input.scene, state, commands);
             if let Some(part) = hovered {
-                state.readout = self.pixel_text(input.scene, &cameras[i], part);
+                state.pointed.readout = self.pixel_text(input.scene, &cameras[i], part);
             }
         }
         if shown.is_empty() {
@@ -98,9 +100,9 @@ impl CameraStrip {
         &mut self,
         ui: &Ui,
         input: &CamerasInput<'_>,
-        state: &UiState,
+        shown: &CamerasShown,
     ) -> Vec<Option<TextureHandle>> {
-        self.refresh(ui, input.views, state);
+        self.refresh(ui, input.views, shown);
         self.textures.clone()
     }
 
@@ -114,10 +116,10 @@ impl CameraStrip {
         &self,
         ui: &mut Ui,
         input: &CamerasInput<'_>,
-        state: &mut UiState,
+        shown: &mut CamerasShown,
         commands: &mut Vec<Command>,
     ) {
-        header(ui, input, self.looks_stale, state, commands);
+        header(ui, input, self.looks_stale, shown, commands);
     }
 
     /// Draws one camera into all the space there is.
@@ -129,7 +131,7 @@ impl CameraStrip {
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
-        self.refresh(ui, input.views, state);
+        self.refresh(ui, input.views, &state.cameras);
         self.note_stale(ui, input.stale);
         let area = ui.available_rect_before_wrap();
         let Some(camera) = input.scene.rig.cameras.get(index) else {
@@ -141,7 +143,7 @@ impl CameraStrip {
         let width = area.width().min(area.height() * aspect).max(40.0);
         let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
         if let Some(part) = self.picture(ui, rect, index, input.scene, state, commands) {
-            state.readout = self.pixel_text(input.scene, camera, part);
+            state.pointed.readout = self.pixel_text(input.scene, camera, part);
         }
     }
 
@@ -161,9 +163,9 @@ impl CameraStrip {
         }
     }
 
-    fn refresh(&mut self, ui: &Ui, views: Option<&Arc<Vec<CameraView>>>, state: &UiState) {
+    fn refresh(&mut self, ui: &Ui, views: Option<&Arc<Vec<CameraView>>>, show: &CamerasShown) {
         let Some(views) = views else { return };
-        let (view, plane_m) = (state.camera_view, state.plane_m);
+        let (view, plane_m) = (show.view, show.plane_m);
         if self
             .made_from
             .as_ref()
@@ -259,7 +261,7 @@ impl CameraStrip {
             painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
         }
         box_outlines::draw(&painter, rect, camera, scene, state);
-        let chosen = state.inspected == Some(index);
+        let chosen = state.cameras.enlarged == Some(index);
         let edge = match (chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, theme::accent()),
             (_, true) => Stroke::new(1.0, theme::text_weak()),
@@ -296,7 +298,9 @@ impl CameraStrip {
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
-        let Some(index) = state.inspected else { return };
+        let Some(index) = state.cameras.enlarged else {
+            return;
+        };
         let (Some(texture), Some(camera)) =
             (self.texture(index).cloned(), input.scene.rig.cameras.get(index))
         else {
@@ -337,7 +341,7 @@ impl CameraStrip {
             });
         });
         if !open {
-            state.inspected = None;
+            state.cameras.enlarged = None;
         }
     }
 }

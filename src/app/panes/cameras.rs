@@ -34,7 +34,7 @@ impl Pane for Cameras {
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let cameras = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing);
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            cx.strip.controls(ui, &cameras, cx.state, commands);
+            cx.strip.controls(ui, &cameras, &mut cx.state.cameras, commands);
         });
     }
 
@@ -51,7 +51,7 @@ pub(super) fn compared(
     commands: &mut Vec<Command>,
 ) {
     let area = ui.available_rect_before_wrap().shrink2(egui::vec2(8.0, 2.0));
-    let mode = cx.compare.mode(cx.state);
+    let mode = cx.compare.mode(&cx.state.compare);
     let now = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing);
     let before = cx.compare.before.clone();
     let other = match (&before, &cx.compare.sensing) {
@@ -66,7 +66,7 @@ pub(super) fn compared(
             });
         };
     match (mode, other) {
-        (_, Some(other)) if cx.compare.shows_before(cx.state, cx.scene) => {
+        (_, Some(other)) if cx.compare.shows_before(&cx.state.compare, cx.scene) => {
             draw(ui, area, &mut cx.compare.strip, &other, cx.state);
         }
         (CompareMode::Side, Some(other)) => {
@@ -79,8 +79,8 @@ pub(super) fn compared(
             draw(ui, second, cx.strip, &now, cx.state);
         }
         (CompareMode::Wipe, Some(other)) => {
-            let textures = cx.compare.strip.textures(ui, &other, cx.state);
-            cx.strip.wipe(Some((textures, cx.state.wipe_at)));
+            let textures = cx.compare.strip.textures(ui, &other, &cx.state.cameras);
+            cx.strip.wipe(Some((textures, cx.state.compare.wipe_at)));
             draw(ui, area, cx.strip, &now, cx.state);
         }
         _ => {

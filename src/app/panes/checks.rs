@@ -46,8 +46,8 @@ impl Pane for Checks {
         let marks = theme::panel_frame()
             .show(ui, |ui| checks_ui(ui, &input, commands))
             .inner;
-        if cx.state.finding_marks.as_deref() != marks.as_ref() {
-            cx.state.finding_marks = marks.map(Arc::new);
+        if cx.state.shown.finding_marks.as_deref() != marks.as_ref() {
+            cx.state.shown.finding_marks = marks.map(Arc::new);
             // The views are drawn before this pane or after it.
             ui.ctx().request_repaint();
         }

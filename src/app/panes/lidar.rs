@@ -11,7 +11,6 @@ use super::compare::{CompareMode, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
-use crate::state::UiState;
 use scene::{LidarSweep, Scene};
 use viewport::{LidarColorMode, lidar_colors};
 use widgets::icons::Icon;
@@ -51,13 +50,13 @@ impl Pane for Lidar {
             (LidarColorMode::Intensity, "Echo"),
             (LidarColorMode::Drop, "Loss"),
         ];
-        let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar_colors);
+        let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar.colors);
         egui::ComboBox::from_id_salt("sweep colours")
             .selected_text(shown.map_or("Range", |(_, name)| name))
             .width(84.0)
             .show_ui(ui, |ui| {
                 for (mode, name) in colors {
-                    ui.selectable_value(&mut cx.state.lidar_colors, mode, name);
+                    ui.selectable_value(&mut cx.state.lidar.colors, mode, name);
                 }
             })
             .response
@@ -67,33 +66,37 @@ impl Pane for Lidar {
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
-
-        let mode = cx.compare.mode(cx.state);
+        let (colors, readout) = (cx.state.lidar.colors, &mut cx.state.pointed.readout);
+        let mode = cx.compare.mode(&cx.state.compare);
         let before = cx.compare.before.clone();
         let other = cx.compare.sensing.as_ref().and_then(|s| s.lidar()).cloned();
-        if let (true, Some(before)) = (cx.state.holding_before, &before) {
+        if let (true, Some(before)) = (cx.state.compare.holding_before, &before) {
             let sweep = &mut cx.compare.sweep;
-            sweep.show(ui, before, other.as_ref(), cx.state);
+            sweep.show(ui, before, other.as_ref(), colors, readout);
             return;
         }
         let (top, bottom) = upper_and_lower(area);
         let rect = if mode == CompareMode::Side { bottom } else { area };
         in_rect(ui, rect, |ui| {
-            self.sweep.show(ui, scene, cx.sensing.lidar(), cx.state);
+            self.sweep.show(ui, scene, cx.sensing.lidar(), colors, readout);
         });
         let Some(before) = before else { return };
         match mode {
             CompareMode::Side => in_rect(ui, top, |ui| {
-                cx.compare.sweep.show(ui, &before, other.as_ref(), cx.state);
+                cx.compare
+                    .sweep
+                    .show(ui, &before, other.as_ref(), colors, readout);
             }),
             CompareMode::Wipe => {
-                let part = left_part(area, cx.state.wipe_at);
+                let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
                     in_rect(ui, area, |ui| {
-                        cx.compare.sweep.show(ui, &before, other.as_ref(), cx.state);
+                        cx.compare
+                            .sweep
+                            .show(ui, &before, other.as_ref(), colors, readout);
                     });
                 });
-                wipe_line(ui, area, &mut cx.state.wipe_at);
+                wipe_line(ui, area, &mut cx.state.compare.wipe_at);
             }
             _ => {}
         }
@@ -108,7 +111,14 @@ pub struct SweepPicture {
 
 impl SweepPicture {
     /// Draws the sweep into all the space there is.
-    pub fn show(&mut self, ui: &mut Ui, scene: &Scene, sweep: Option<&Arc<LidarSweep>>, state: &mut UiState) {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        sweep: Option<&Arc<LidarSweep>>,
+        mode: LidarColorMode,
+        readout: &mut String,
+    ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "LiDAR sweep"));
@@ -128,7 +138,6 @@ impl SweepPicture {
         };
         let rings = lidar.elevations_deg.len().max(1);
         let mount = DVec3::from_array(lidar.translation_m);
-        let mode = state.lidar_colors;
         let known = |(of, m, n, _): &(Arc<LidarSweep>, LidarColorMode, usize, _)| {
             Arc::ptr_eq(of, sweep) && *m == mode && *n == rings
         };
@@ -146,7 +155,7 @@ impl SweepPicture {
             let azimuth_deg = 180.0 - f64::from(part.x) * 360.0;
             let ring = (f64::from(1.0 - part.y) * rings as f64) as usize;
             let near = nearest(sweep, mount, ring.min(rings - 1), azimuth_deg);
-            state.readout = match near {
+            *readout = match near {
                 Some((range_m, class)) => {
                     format!("azimuth {azimuth_deg:.0}°  ·  beam {ring}  ·  {range_m:.2} m  ·  {class}")
                 }

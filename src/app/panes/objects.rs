@@ -10,7 +10,7 @@ use crate::command::{Command, ViewCommand};
 use crate::fields::{caption, field, fields, number, numbers};
 use crate::panes::label::label_ui;
 use crate::state::UiState;
-use crate::tools::{Choose, ToolCommand};
+use crate::tools::{Choose, Hand, ToolCommand};
 use editor::transform::Orientation;
 use editor::{Document, Edit, arrange};
 use scene::{BoxId, Class, Frame, SceneBox, Thing};
@@ -61,12 +61,12 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         .max_height((room - below - gap).max(LEAST_INSPECTOR))
         .auto_shrink([false, wanted.is_none()])
         .show(ui, |ui| {
-            inferred(ui, frame, state, commands);
+            inferred(ui, frame, &mut state.correcting, commands);
             section(ui, "Inspector");
             let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
             match state.selected.and_then(|id| frame.boxes.get(&id)) {
-                Some(_) if state.chosen().len() > 1 => several(ui, frame, state, commands),
-                Some(b) => inspector(ui, b, state, commands),
+                Some(_) if state.chosen().len() > 1 => several(ui, frame, &state.tools, commands),
+                Some(b) => inspector(ui, b, &state.tools, commands),
                 None if things.is_empty() => {
                     ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
                 }
@@ -74,7 +74,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             }
             things::inspector(ui, &things, &document.settled_scene().background, commands);
         });
-    let rows = thing_list::rows(&scene.background, state);
+    let rows = thing_list::rows(&scene.background, &state.tools);
     let boxes = match frame.boxes.len() {
         1 => "1 box".to_owned(),
         n => format!("{n} boxes"),
@@ -101,7 +101,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
                     let guess = frame.inferred.boxes.contains(&b.id);
                     box_row(ui, b, guess, state.is_chosen(b.id), commands);
                 }
-                None => thing_list::row_ui(ui, &rows[i - boxes.len()], frame, state, commands),
+                None => thing_list::row_ui(ui, &rows[i - boxes.len()], frame, &mut state.tools, commands),
             }
         }
     });
@@ -173,7 +173,7 @@ fn reveal(
 }
 
 /// What an imported frame did not carry and was guessed: how to correct and to confirm it.
-fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+fn inferred(ui: &mut Ui, frame: &Frame, correcting: &mut bool, commands: &mut Vec<Command>) {
     if !frame.inferred.any() {
         return;
     }
@@ -197,7 +197,7 @@ fn inferred(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<
         ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
     }
     ui.horizontal(|ui| {
-        ui.checkbox(&mut state.correcting, "Correct them").on_hover_text(
+        ui.checkbox(correcting, "Correct them").on_hover_text(
             "While ticked, edits of boxes and map layers change no voxel and generate nothing.",
         );
         let confirm = ui
@@ -227,7 +227,7 @@ fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut 
     }
 }
 
-fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Command>) {
+fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let mut class = b.class;
         let (rect, _) = ui.allocate_exact_size(egui::vec2(16.0, theme::ROW), egui::Sense::hover());
@@ -261,7 +261,7 @@ fn inspector(ui: &mut Ui, b: &SceneBox, state: &UiState, commands: &mut Vec<Comm
     });
     ui.add_space(2.0);
     label_ui(ui, &[*b], commands);
-    let local = state.tools.orientation == Orientation::Local;
+    let local = hand.orientation == Orientation::Local;
     let [mut center, mut size] = [b.center_m, b.size_m];
     let limit = SceneBox::LIMIT_M;
     // In the box's own axes there is no place but where it is: the fields shift it.
@@ -341,8 +341,8 @@ fn shift_start(ui: &Ui, b: &SceneBox) -> SceneBox {
 }
 
 /// Several boxes in numbers: the middle between them shifts all, sizes and headings are set for all.
-fn several(ui: &mut Ui, frame: &Frame, state: &UiState, commands: &mut Vec<Command>) {
-    let ids = state.chosen();
+fn several(ui: &mut Ui, frame: &Frame, hand: &Hand, commands: &mut Vec<Command>) {
+    let ids = hand.chosen();
     let boxes = arrange::boxes_of(frame, &ids);
     let (Some(first), Some(middle_m)) = (boxes.first(), arrange::middle_m(&boxes)) else {
         return;

@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use egui::Ui;
 
 use crate::command::{Command, ViewCommand};
-use crate::state::UiState;
 use crate::tools::things::{ThingCommand, words};
-use crate::tools::{Choose, ToolCommand};
+use crate::tools::{Choose, Hand, ToolCommand};
 use editor::tools::Act;
 use scene::{Background, Frame, Thing, ThingId};
 use widgets::icons;
@@ -22,14 +21,14 @@ pub enum ThingRow<'a> {
 }
 
 /// Rows for all things: kinds in the order of their names, each unfolded or not.
-pub fn rows<'a>(background: &'a Background, state: &UiState) -> Vec<ThingRow<'a>> {
+pub fn rows<'a>(background: &'a Background, hand: &Hand) -> Vec<ThingRow<'a>> {
     let mut kinds: BTreeMap<&'static str, Vec<&Thing>> = BTreeMap::new();
     for thing in background.iter() {
         kinds.entry(thing.form.name()).or_default().push(thing);
     }
     let mut out = Vec::new();
     for (name, things) in kinds {
-        let unfolded = state.tools.things.unfolded.contains(name);
+        let unfolded = hand.things.unfolded.contains(name);
         let listed: Vec<&Thing> = if unfolded { things.clone() } else { Vec::new() };
         out.push(ThingRow::Kind(name, things));
         out.extend(listed.into_iter().map(ThingRow::Thing));
@@ -38,13 +37,7 @@ pub fn rows<'a>(background: &'a Background, state: &UiState) -> Vec<ThingRow<'a>
 }
 
 /// Draws a row.
-pub fn row_ui(
-    ui: &mut Ui,
-    row: &ThingRow<'_>,
-    frame: &Frame,
-    state: &mut UiState,
-    commands: &mut Vec<Command>,
-) {
+pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, frame: &Frame, hand: &mut Hand, commands: &mut Vec<Command>) {
     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
     let how = match (row, adds) {
         (_, false) => Choose::Only,
@@ -53,14 +46,14 @@ pub fn row_ui(
     };
     let (clicked, framed, ids): (bool, bool, Vec<ThingId>) = match row {
         ThingRow::Kind(name, things) => {
-            let chosen = &state.tools.things.chosen;
+            let chosen = &hand.things.chosen;
             let all = things.iter().all(|t| chosen.contains(&t.id));
-            let unfolded = state.tools.things.unfolded.contains(name);
+            let unfolded = hand.things.unfolded.contains(name);
             let response = ui
                 .horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 0.0;
                     if fold(ui, unfolded, name).clicked() {
-                        let kinds = &mut state.tools.things.unfolded;
+                        let kinds = &mut hand.things.unfolded;
                         if !kinds.remove(name) {
                             kinds.insert(name);
                         }
@@ -78,7 +71,7 @@ pub fn row_ui(
         }
         ThingRow::Thing(thing) => {
             let at_m = thing.form.in_frame(&frame.world_from_ego.inverse()).middle_m();
-            let chosen = state.tools.things.chosen.contains(&thing.id);
+            let chosen = hand.things.chosen.contains(&thing.id);
             let name = format!("{} #{}", theme::sentence(thing.form.name()), thing.id.0);
             let right = format!("{:.1} m high   {:.0} m", thing.form.height_m(), at_m.length());
             let label = format!("Thing {} {}", thing.id.0, thing.form.name());
@@ -92,7 +85,7 @@ pub fn row_ui(
             (response.clicked(), response.double_clicked(), vec![thing.id])
         }
     };
-    if clicked && !state.tools.things.is_open() {
+    if clicked && !hand.things.is_open() {
         let why = "Background things are locked or hidden: see the list of layers".to_owned();
         commands.push(Command::Tools(ToolCommand::Act(Act::Note(why))));
     } else if clicked {

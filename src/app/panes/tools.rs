@@ -9,9 +9,10 @@ use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use crate::state::{UiState, Underlay};
+use crate::state::UiState;
 use crate::tools::things::ThingCommand;
-use crate::tools::{ToolCommand, option_rows};
+use crate::tools::{ToolCommand, ToolState, option_rows};
+use crate::views_shown::Underlay;
 use editor::tools::brush;
 use scene::{BevLayer, BevLayout, Frame};
 use widgets::hint::caption;
@@ -51,22 +52,22 @@ impl Pane for Tools {
 /// Draws the pane.
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        options(ui, frame, state, commands);
+        options(ui, frame, &mut state.tools, commands);
         ui.add_space(theme::GAP);
         section(ui, "Map layers");
         for layer in BevLayer::MAP {
-            layer_row(ui, &frame.layout, layer, state, commands);
+            layer_row(ui, &frame.layout, layer, &mut state.tools, commands);
         }
-        opacity_rows(ui, state);
+        opacity_rows(ui, &mut state.tools, state.shown.underlay == Underlay::Both);
         ui.add_space(theme::GAP);
         section(ui, "Overlays");
-        toggle_row(ui, "Boxes", &mut state.show_boxes);
-        things_row(ui, state, commands);
-        toggle_row(ui, "Lanes and dividers", &mut state.show_lines);
-        toggle_row(ui, "LiDAR points in BEV", &mut state.show_lidar_bev);
-        toggle_row(ui, "Grid, 10 m", &mut state.show_grid);
+        toggle_row(ui, "Boxes", &mut state.shown.boxes);
+        things_row(ui, &state.tools, commands);
+        toggle_row(ui, "Lanes and dividers", &mut state.shown.lines);
+        toggle_row(ui, "LiDAR points in BEV", &mut state.shown.lidar_from_above);
+        toggle_row(ui, "Grid, 10 m", &mut state.shown.grid);
         if frame.inferred.unobserved.is_some() {
-            toggle_row(ui, "Unobserved", &mut state.show_unobserved);
+            toggle_row(ui, "Unobserved", &mut state.shown.unobserved);
         }
         ui.add_space(theme::GAP);
         section(ui, "Scenery");
@@ -76,14 +77,14 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         density_row(ui, "Clutter", &mut named.clutter, 0.25);
         density_row(ui, "Completeness", &mut named.completeness, 1.0);
         caption(ui, "What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there.");
-        scenery_row(ui, state, commands);
+        scenery_row(ui, &mut state.tools, commands);
     });
 }
 
 /// What kind of place, and the button that draws it.
-fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
+fn scenery_row(ui: &mut Ui, tools: &mut ToolState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let chosen = &mut state.tools.drawer;
+        let chosen = &mut tools.drawer;
         egui::ComboBox::from_id_salt("setting")
             .width(92.0)
             .selected_text(chosen.label())
@@ -102,7 +103,7 @@ fn scenery_row(ui: &mut Ui, state: &mut UiState, commands: &mut Vec<Command>) {
             commands.push(Command::Generation(GenerationCommand::DrawScenery));
         }
     });
-    let place = match state.tools.region.is_empty() {
+    let place = match tools.region.is_empty() {
         true => "Everywhere; in a region if one is marked (N).",
         false => "In the marked region.",
     };
@@ -134,13 +135,13 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
 }
 
 /// Options of the tool in hand.
-fn options(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
-    state.region_m2 = state.tools.region.count() as f64 * REGION_CELL_M2;
-    let id = state.tool;
-    let settings = state.toolbox.tool(id).options(state);
+fn options(ui: &mut Ui, frame: &Frame, tools: &mut ToolState, commands: &mut Vec<Command>) {
+    tools.region_m2 = tools.region.count() as f64 * REGION_CELL_M2;
+    let id = tools.tool;
+    let settings = tools.toolbox.tool(id).options(&tools.hand);
     for (setting, value) in option_rows::show(ui, &settings) {
-        let UiState { toolbox, tools, .. } = state;
-        let acts = toolbox.tool_mut(id).set(&mut tools.hand, frame, setting, value);
+        let ToolState { toolbox, hand, .. } = tools;
+        let acts = toolbox.tool_mut(id).set(hand, frame, setting, value);
         carry_out(acts, commands);
     }
 }
@@ -149,24 +150,24 @@ fn layer_row(
     ui: &mut Ui,
     layout: &BevLayout,
     layer: BevLayer,
-    state: &mut UiState,
+    tools: &mut ToolState,
     commands: &mut Vec<Command>,
 ) {
     let label = layer.label();
-    let shown = state.shows(layer);
-    let chosen = state.tool == brush::ID && state.layer == layer;
+    let shown = tools.shows(layer);
+    let chosen = tools.tool == brush::ID && tools.layer == layer;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let shows = eye(ui, shown, &format!("Show {label}")).on_hover_text("Alt+click shows it alone");
         if shows.clicked() && ui.input(|i| i.modifiers.alt) {
-            solo(state, layer);
+            solo(tools, layer);
         } else if shows.clicked() {
-            state.layers_shown ^= layer.bit();
-            state.tools.before_solo = None;
+            tools.layers_shown ^= layer.bit();
+            tools.before_solo = None;
         }
-        let locked = state.tools.is_locked(layer);
+        let locked = tools.is_locked(layer);
         if lock(ui, locked, &format!("Lock {label}")).clicked() {
-            state.tools.layers_locked ^= layer.bit();
+            tools.layers_locked ^= layer.bit();
         }
         let share = layout.count(layer) as f64 * 100.0 / layout.extent().columns() as f64;
         let right = match share {
@@ -178,28 +179,28 @@ fn layer_row(
         let name = theme::sentence(&label);
         let row = icons::row(ui, color, &name, &right, chosen, &format!("Paint {label}"));
         if row.on_hover_text("Choose for the brush").clicked() {
-            state.layer = layer;
+            tools.layer = layer;
             commands.push(Command::Tool(brush::ID));
         }
     });
 }
 
 /// Shows one layer alone, or if it is, what was shown before.
-fn solo(state: &mut UiState, layer: BevLayer) {
-    match state.tools.before_solo {
-        Some(before) if state.layers_shown == layer.bit() => {
-            state.layers_shown = before;
-            state.tools.before_solo = None;
+fn solo(tools: &mut ToolState, layer: BevLayer) {
+    match tools.before_solo {
+        Some(before) if tools.layers_shown == layer.bit() => {
+            tools.layers_shown = before;
+            tools.before_solo = None;
         }
         before => {
-            state.tools.before_solo = before.or(Some(state.layers_shown));
-            state.layers_shown = layer.bit();
+            tools.before_solo = before.or(Some(tools.layers_shown));
+            tools.layers_shown = layer.bit();
         }
     }
 }
 
 /// How much the chosen layer hides of those below it, and all of them of the voxels.
-fn opacity_rows(ui: &mut Ui, state: &mut UiState) {
+fn opacity_rows(ui: &mut Ui, tools: &mut ToolState, over_voxels: bool) {
     let slider = |ui: &mut Ui, caption: &str, value: &mut f32, name: &str| {
         ui.horizontal(|ui| {
             ui.label(egui::RichText::new(caption).color(theme::text_weak()));
@@ -208,15 +209,15 @@ fn opacity_rows(ui: &mut Ui, state: &mut UiState) {
             ui.add(slider).on_hover_text(name).accessible_name(name);
         });
     };
-    if let Some(k) = DRAW_ORDER.iter().position(|layer| *layer == state.layer) {
-        let name = format!("Opacity of {}", state.layer.label());
-        slider(ui, "Opacity", &mut state.tools.layer_opacity[k], &name);
+    if let Some(k) = DRAW_ORDER.iter().position(|layer| *layer == tools.layer) {
+        let name = format!("Opacity of {}", tools.layer.label());
+        slider(ui, "Opacity", &mut tools.layer_opacity[k], &name);
     }
-    if state.underlay == Underlay::Both {
+    if over_voxels {
         slider(
             ui,
             "All, on voxels",
-            &mut state.tools.layers_opacity,
+            &mut tools.layers_opacity,
             "Opacity of the layers over voxels",
         );
     }
@@ -255,9 +256,9 @@ fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
 }
 
 /// Outlines of things beside the road: shown or not, locked or not.
-fn things_row(ui: &mut Ui, state: &UiState, commands: &mut Vec<Command>) {
+fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
     let mut send = |command| commands.push(Command::Tools(ToolCommand::Thing(command)));
-    let things = &state.tools.things;
+    let things = &tools.things;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         if eye(ui, things.shown, "Show background things").clicked() {

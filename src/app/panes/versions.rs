@@ -7,9 +7,8 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
-use crate::panes::compare::CompareMode;
+use crate::panes::comparing::{CompareMode, Comparing};
 use crate::shell::versions::Versions;
-use crate::state::UiState;
 use scene::SceneRev;
 use widgets::icons;
 use widgets::icons::Icon;
@@ -40,7 +39,7 @@ impl Pane for VersionsPane {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
-        versions_controls(ui, cx.state);
+        versions_controls(ui, &mut cx.state.compare);
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
@@ -135,8 +134,8 @@ pub fn versions_ui(
 }
 
 /// What the header of the list offers.
-pub fn versions_controls(ui: &mut Ui, state: &mut UiState) {
-    icons::choice(ui, &mut state.compare, &CompareMode::ALL, "Compare");
+pub fn versions_controls(ui: &mut Ui, how: &mut Comparing) {
+    icons::choice(ui, &mut how.mode, &CompareMode::ALL, "Compare");
 }
 
 fn draw_star(ui: &Ui, center: egui::Pos2, color: Color32, filled: bool) {

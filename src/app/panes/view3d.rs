@@ -6,9 +6,11 @@ use super::areas::{clipped, halves, in_rect, left_part, sides};
 use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
+use crate::camera_views::{LidarModel, LidarShown};
 use crate::command::{Command, FileCommand, ViewCommand};
-use crate::state::{LidarModel, UiState};
+use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
+use crate::views_shown::ViewsShown;
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 use widgets::icons::{self, Icon};
 use widgets::theme;
@@ -34,8 +36,6 @@ impl Pane for View3dPane {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        let (options, state) = (&mut cx.view3d.options, &mut *cx.state);
-
         if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
             commands.push(Command::File(FileCommand::QuickShot));
         }
@@ -43,7 +43,8 @@ impl Pane for View3dPane {
             egui::containers::menu::MenuConfig::new()
                 .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),
         );
-        show.ui(ui, |ui| show_menu(ui, options, state));
+        let (options, UiState { shown, lidar, .. }) = (&mut cx.view3d.options, &mut *cx.state);
+        show.ui(ui, |ui| show_menu(ui, options, shown, lidar));
         ui.menu_button("View", |ui| {
             for preset in ViewPreset::ALL {
                 if ui.button(theme::sentence(preset.name())).clicked() {
@@ -58,10 +59,10 @@ impl Pane for View3dPane {
         let area = ui.available_rect_before_wrap();
         let scene = cx.scene;
 
-        let mode = cx.compare.mode(cx.state);
+        let mode = cx.compare.mode(&cx.state.compare);
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
-        let shows_before = cx.compare.shows_before(cx.state, scene);
+        let shows_before = cx.compare.shows_before(&cx.state.compare, scene);
         let difference = match mode {
             CompareMode::Difference => cx.compare.difference(ui, scene).map(|(d, _)| d),
             _ => None,
@@ -112,24 +113,24 @@ impl Pane for View3dPane {
             clipped(ui, left, |ui| other.still(ui, left, seen_from, &input, cx.state));
             sides(ui, left, right);
         } else {
-            let part = left_part(area, cx.state.wipe_at);
+            let part = left_part(area, cx.state.compare.wipe_at);
             clipped(ui, part, |ui| other.still(ui, area, seen_from, &input, cx.state));
-            wipe_line(ui, area, &mut cx.state.wipe_at);
+            wipe_line(ui, area, &mut cx.state.compare.wipe_at);
         }
     }
 }
 
-fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
+fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, sweep: &mut LidarShown) {
     ui.set_min_width(200.0);
     ui.checkbox(&mut options.voxels, "Voxels");
     ui.checkbox(&mut options.voxel_edges, "Voxel edges");
     ui.checkbox(&mut options.shadows, "Shadows");
     ui.checkbox(&mut options.markings, "Road markings");
-    ui.checkbox(&mut state.show_boxes, "Boxes");
+    ui.checkbox(&mut shown.boxes, "Boxes");
     ui.checkbox(&mut options.lidar, "LiDAR points");
     ui.checkbox(&mut options.ego, "Ego vehicle");
     ui.checkbox(&mut options.frusta, "Camera frusta");
-    ui.checkbox(&mut state.show_grid, "Grid");
+    ui.checkbox(&mut shown.grid, "Grid");
     let mut plane = options.layout_plane == LayoutPlane::Always;
     if ui.checkbox(&mut plane, "Layout on the ground").changed() {
         options.layout_plane = if plane {
@@ -153,7 +154,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
     ui.label(egui::RichText::new("LiDAR").small().color(theme::text_weak()));
     icons::segments(
         ui,
-        &mut state.lidar_model,
+        &mut sweep.model,
         &[
             (LidarModel::Exact, "Exact", "every ray to the first voxel"),
             (
@@ -170,7 +171,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, state: &mut UiState) {
     );
     icons::segments(
         ui,
-        &mut state.lidar_colors,
+        &mut sweep.colors,
         &[
             (LidarColorMode::Range, "Range", "near warm, far cool"),
             (LidarColorMode::Class, "Class", "of the voxel hit"),

@@ -29,6 +29,7 @@ use super::views::Views;
 use crate::sensing::Sensing;
 use crate::state::UiState;
 use crate::view3d::View3d;
+use crate::windows::open::OpenWindows;
 use crate::windows::palette::Palette;
 use crate::windows::shortcuts::Shortcuts;
 use widgets::theme;
@@ -140,7 +141,10 @@ impl SceneloomApp {
             toasts.push(Level::Error, format!("Standard settings are used: {text}"), 0.0);
         }
         let state = UiState {
-            start_open: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
+            windows: OpenWindows {
+                start: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
+                ..OpenWindows::default()
+            },
             ..UiState::default()
         };
         // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn then.
@@ -223,7 +227,7 @@ impl SceneloomApp {
 
     /// The document's scene, or a preview of its generation.
     pub(crate) fn shown_scene(&self) -> Arc<Scene> {
-        if let (true, Some(before)) = (self.state.holding_before, &self.views.compare.before) {
+        if let (true, Some(before)) = (self.state.compare.holding_before, &self.views.compare.before) {
             return before.clone();
         }
         match &self.generation.preview {

@@ -30,8 +30,8 @@ impl SceneloomApp {
         if !changed.is_empty() && changed.len() <= MOST_CHOSEN {
             self.state.choose(&changed, Choose::Only);
         }
-        if other_light && self.state.camera_view != pictures::VIEW.id {
-            self.state.camera_view = pictures::VIEW.id;
+        if other_light && self.state.cameras.view != pictures::VIEW.id {
+            self.state.cameras.view = pictures::VIEW.id;
             let now_s = self.now_s();
             let text = "Time and weather changed: the cameras show pictures now".to_owned();
             self.toasts.push(Level::Info, text, now_s);

@@ -126,11 +126,11 @@ impl Drawer<'_> {
         };
         let area = ui.available_rect_before_wrap();
         pane.ui(ui, &mut self.cx, self.commands);
-        if self.cx.state.holding_before && pane.shows_before() {
+        if self.cx.state.compare.holding_before && pane.shows_before() {
             tag(ui, area.left_top() + vec2(8.0, 8.0), "before", false);
         }
         if ui.rect_contains_pointer(area) {
-            self.cx.state.hovered_pane = Some(id);
+            self.cx.state.pointed.pane = Some(id);
         }
     }
 

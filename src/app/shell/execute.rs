@@ -11,8 +11,7 @@ use super::app::SceneloomApp;
 use super::toasts::Level;
 use crate::command::Command;
 use crate::panes::objects::neighbour;
-use crate::state::UiState;
-use crate::tools::Choose;
+use crate::tools::{Choose, ToolState};
 
 impl SceneloomApp {
     /// Carries out one command.
@@ -50,8 +49,8 @@ impl SceneloomApp {
             }
             Command::Escape => self.escape(),
             Command::Tool(tool) => {
-                let UiState { toolbox, tools, .. } = &mut self.state;
-                toolbox.take(&mut tools.hand, tool);
+                let ToolState { toolbox, hand, .. } = &mut self.state.tools;
+                toolbox.take(hand, tool);
             }
             Command::BrushSize(step) => self.state.step_brush(step),
             Command::ConfirmInferred => {
@@ -113,8 +112,8 @@ impl SceneloomApp {
     fn escape(&mut self) {
         if self.document.is_dragging() {
             self.document.cancel_drag();
-        } else if self.state.inspected.is_some() {
-            self.state.inspected = None;
+        } else if self.state.cameras.enlarged.is_some() {
+            self.state.cameras.enlarged = None;
         } else if !self.state.tools.voxels.is_empty() {
             self.state.tools.voxels.clear();
         } else if self.state.tool != select::ID {

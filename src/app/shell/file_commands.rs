@@ -194,7 +194,7 @@ impl SceneloomApp {
 
     pub(crate) fn screenshot(&mut self, path: &Path) {
         let scene = self.document.scene().clone();
-        let shot = self.views.view3d.screenshot(&scene, &self.state, None);
+        let shot = self.views.view3d.screenshot(&scene, &self.state.shown, None);
         let saved = shot.and_then(|([width, height], rgba)| {
             image::save_buffer(path, &rgba, width, height, image::ColorType::Rgba8)?;
             Ok([width, height])

@@ -7,15 +7,15 @@ use crate::state::UiState;
 
 /// One line: buttons and held keys, as they count in the view under the pointer.
 pub fn hint(state: &UiState) -> String {
-    if state.holding_before {
+    if state.compare.holding_before {
         return "The state before; nothing can be changed while the key is held".into();
     }
-    let view = match state.hovered_pane {
+    let view = match state.pointed.pane {
         Some(PaneId::VIEW3D) => Some(ViewKind::Space),
         Some(PaneId::BEV) => Some(ViewKind::Bev),
         _ => None,
     };
-    let mut parts = state.toolbox.tool(state.tool).hint(state, view);
+    let mut parts = state.tools.toolbox.tool(state.tool).hint(state, view);
     parts.extend(hint_of(match view {
         Some(ViewKind::Space) => &["Middle orbits", "Right flies", "Wheel zooms"],
         Some(ViewKind::Bev) => &["Middle pans", "Wheel zooms"],
@@ -34,7 +34,7 @@ mod tests {
         let mut state = UiState::default();
         let mut seen = std::collections::BTreeSet::new();
         for pane in [PaneId::BEV, PaneId::VIEW3D] {
-            state.hovered_pane = Some(pane);
+            state.pointed.pane = Some(pane);
             for tool in all() {
                 state.tool = tool.id;
                 let text = hint(&state);

@@ -8,7 +8,7 @@ use super::keymap::{Chord, Keymap};
 use crate::command::Command;
 use crate::panes::id::PaneId;
 use crate::state::UiState;
-use crate::tools::ToolCommand;
+use crate::tools::{Hand, ToolCommand};
 
 /// Actions that do not wait for the end of a drag.
 const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
@@ -23,13 +23,7 @@ pub struct Hands {
 }
 
 /// Commands of the keys pressed in this frame.
-pub fn commands(
-    ctx: &Context,
-    keymap: &Keymap,
-    state: &mut UiState,
-    hands: Hands,
-    commands: &mut Vec<Command>,
-) {
+pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, commands: &mut Vec<Command>) {
     if ctx.text_edit_focused() {
         return;
     }
@@ -48,7 +42,7 @@ pub fn commands(
             commands.push(nudge);
             continue;
         }
-        let over_3d = state.hovered_pane == Some(PaneId::VIEW3D);
+        let over_3d = state.pointed.pane == Some(PaneId::VIEW3D);
         // With a brush in hand its own letters count.
         let brush = state.tool.def().is_brush;
         let chosen = state.any_chosen() && !state.tool.def().paints;
@@ -71,7 +65,7 @@ pub fn commands(
             drop_focus(ctx);
         }
         if !repeat || action.repeats {
-            commands.extend(action.run(state));
+            commands.push(action.command());
         }
     }
 }
@@ -142,8 +136,8 @@ fn is_flight(key: Key) -> bool {
 }
 
 /// Arrows move what is chosen by 0.1 m, with Shift by 1 m, with Ctrl by 0.01 m.
-fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
-    if !state.any_chosen() {
+fn nudge(chord: Chord, hand: &Hand) -> Option<Command> {
+    if !hand.any_chosen() {
         return None;
     }
     let step_m = match (chord.ctrl, chord.shift, chord.alt) {
@@ -159,11 +153,11 @@ fn nudge(chord: Chord, state: &UiState) -> Option<Command> {
 mod tests {
     use super::*;
     use crate::command::{FileCommand, GenerationCommand, ViewCommand};
-    use crate::tools::{Choose, ToolCommand};
+    use crate::tools::Choose;
     use glam::DVec3;
     use scene::BoxId;
 
-    fn of(key: Key, modifiers: Modifiers, state: &mut UiState, flying: bool) -> Vec<Command> {
+    fn of(key: Key, modifiers: Modifiers, state: &UiState, flying: bool) -> Vec<Command> {
         let hands = Hands {
             flying,
             ..Hands::default()
@@ -171,7 +165,7 @@ mod tests {
         with(key, modifiers, state, hands)
     }
 
-    fn with(key: Key, modifiers: Modifiers, state: &mut UiState, hands: Hands) -> Vec<Command> {
+    fn with(key: Key, modifiers: Modifiers, state: &UiState, hands: Hands) -> Vec<Command> {
         let ctx = Context::default();
         let event = egui::Event::Key {
             key,
@@ -193,21 +187,21 @@ mod tests {
     fn letters_belong_to_tools_and_to_flight() {
         let mut state = UiState::default();
         assert_eq!(
-            of(Key::A, Modifiers::NONE, &mut state, false),
+            of(Key::A, Modifiers::NONE, &state, false),
             [Command::Tools(ToolCommand::Shortcut("add_box_tool"))]
         );
-        assert!(of(Key::A, Modifiers::NONE, &mut state, true).is_empty());
+        assert!(of(Key::A, Modifiers::NONE, &state, true).is_empty());
         assert_eq!(
-            of(Key::B, Modifiers::NONE, &mut state, false),
+            of(Key::B, Modifiers::NONE, &state, false),
             [Command::Tools(ToolCommand::Shortcut("brush_tool"))]
         );
-        state.hovered_pane = Some(PaneId::VIEW3D);
+        state.pointed.pane = Some(PaneId::VIEW3D);
         assert_eq!(
-            of(Key::B, Modifiers::NONE, &mut state, false),
+            of(Key::B, Modifiers::NONE, &state, false),
             [Command::Tools(ToolCommand::Shortcut("voxel_brush"))]
         );
         assert_eq!(
-            of(Key::E, Modifiers::NONE, &mut state, false),
+            of(Key::E, Modifiers::NONE, &state, false),
             [Command::Tools(ToolCommand::Shortcut("toggle_erase"))]
         );
     }
@@ -220,25 +214,25 @@ mod tests {
             dragging: true,
             ..Hands::default()
         };
-        let pressed = |key, state: &mut UiState| with(key, Modifiers::NONE, state, hands);
+        let pressed = |key, state: &UiState| with(key, Modifiers::NONE, state, hands);
         for key in [Key::X, Key::Z, Key::ArrowUp, Key::Delete] {
-            assert_eq!(pressed(key, &mut state), [], "{key:?}");
+            assert_eq!(pressed(key, &state), [], "{key:?}");
         }
-        assert_eq!(pressed(Key::OpenBracket, &mut state), [Command::BrushSize(-1)]);
-        assert_eq!(pressed(Key::Escape, &mut state).len(), 1);
+        assert_eq!(pressed(Key::OpenBracket, &state), [Command::BrushSize(-1)]);
+        assert_eq!(pressed(Key::Escape, &state).len(), 1);
     }
 
     #[test]
     fn arrows_nudge_what_is_chosen() {
         let mut state = UiState::default();
-        assert!(of(Key::ArrowUp, Modifiers::NONE, &mut state, false).is_empty());
+        assert!(of(Key::ArrowUp, Modifiers::NONE, &state, false).is_empty());
         state.selected = Some(BoxId(3));
-        let up = of(Key::ArrowUp, Modifiers::NONE, &mut state, false);
+        let up = of(Key::ArrowUp, Modifiers::NONE, &state, false);
         assert_eq!(up, [Command::Tools(ToolCommand::Nudge(DVec3::X * 0.1))]);
-        let fine = of(Key::ArrowLeft, Modifiers::CTRL, &mut state, false);
+        let fine = of(Key::ArrowLeft, Modifiers::CTRL, &state, false);
         assert_eq!(fine, [Command::Tools(ToolCommand::Nudge(DVec3::Y * 0.01))]);
         assert_eq!(
-            of(Key::Z, Modifiers::SHIFT, &mut state, false),
+            of(Key::Z, Modifiers::SHIFT, &state, false),
             [Command::Tools(ToolCommand::Turn(15.0))]
         );
     }
@@ -247,7 +241,7 @@ mod tests {
     #[test]
     fn what_shift_makes_another_key_of_still_counts() {
         let ctx = Context::default();
-        let (mut out, keymap, mut state) = (Vec::new(), Keymap::default(), UiState::default());
+        let (mut out, keymap, state) = (Vec::new(), Keymap::default(), UiState::default());
         let input = egui::RawInput {
             events: vec![egui::Event::Key {
                 key: Key::Pipe,
@@ -259,14 +253,14 @@ mod tests {
             ..Default::default()
         };
         let _ = ctx.run_ui(input, |ui| {
-            commands(ui.ctx(), &keymap, &mut state, Hands::default(), &mut out)
+            commands(ui.ctx(), &keymap, &state, Hands::default(), &mut out)
         });
         assert_eq!(out, [Command::View(ViewCommand::CycleCompare)]);
     }
 
     #[test]
     fn chords_with_ctrl_are_global() {
-        let mut state = UiState::default();
+        let state = UiState::default();
         for (key, modifiers, command) in [
             (Key::Z, Modifiers::CTRL, Command::Undo),
             (Key::Z, Modifiers::CTRL | Modifiers::SHIFT, Command::Redo),
@@ -292,7 +286,7 @@ mod tests {
                 Command::View(ViewCommand::LookThrough(1)),
             ),
         ] {
-            assert_eq!(of(key, modifiers, &mut state, true), [command]);
+            assert_eq!(of(key, modifiers, &state, true), [command]);
         }
     }
 }

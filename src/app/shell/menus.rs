@@ -7,9 +7,8 @@ use super::toolbar::{ToolbarInput, beside, item, short};
 use crate::command::{Command, FileCommand, GenerationCommand, ViewCommand, Window};
 use crate::panes;
 use crate::panes::id::PaneId;
-use crate::state::UiState;
-use crate::tools::ToolCommand;
 use crate::tools::things::ThingCommand;
+use crate::tools::{Hand, ToolCommand};
 use viewport::ViewPreset;
 use widgets::theme;
 
@@ -17,20 +16,20 @@ use widgets::theme;
 type On<'a> = dyn FnMut(bool, Command) + 'a;
 
 /// Draws the menus.
-pub(super) fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
+pub(super) fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: &mut Vec<Command>) {
     let on = &mut |clicked: bool, command: Command| {
         if clicked {
             commands.push(command);
         }
     };
-    ui.menu_button("File", |ui| file_menu(ui, input, state, on));
-    ui.menu_button("Edit", |ui| edit_menu(ui, input, state, on));
-    ui.menu_button("View", |ui| view_menu(ui, input, state, on));
-    ui.menu_button("Generate", |ui| generate_menu(ui, input, state, on));
-    ui.menu_button("Help", |ui| help_menu(ui, input, state, on));
+    ui.menu_button("File", |ui| file_menu(ui, input, on));
+    ui.menu_button("Edit", |ui| edit_menu(ui, input, hand, on));
+    ui.menu_button("View", |ui| view_menu(ui, input, hand, on));
+    ui.menu_button("Generate", |ui| generate_menu(ui, input, on));
+    ui.menu_button("Help", |ui| help_menu(ui, on));
 }
 
-fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, _state: &mut UiState, on: &mut On<'_>) {
+fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     on(
         item(ui, "New scene", "Ctrl+N", true),
         Command::File(FileCommand::New),
@@ -71,15 +70,15 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, _state: &mut UiState, on: &m
     on(item(ui, "Quit", "Ctrl+Q", true), Command::File(FileCommand::Quit));
 }
 
-fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, on: &mut On<'_>) {
+fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>) {
     on(item(ui, "Undo", "Ctrl+Z", input.undo.is_some()), Command::Undo);
     on(
         item(ui, "Redo", "Ctrl+Shift+Z", input.redo.is_some()),
         Command::Redo,
     );
     ui.separator();
-    let some = state.any_chosen();
-    let what = match (state.selected.is_some(), state.tools.things.chosen.len()) {
+    let some = hand.any_chosen();
+    let what = match (hand.selected.is_some(), hand.things.chosen.len()) {
         (true, 0) | (false, 0) => "box",
         (false, 1) => "thing",
         (false, _) => "things",
@@ -94,7 +93,7 @@ fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, on: &mu
         Command::Tools(ToolCommand::Delete),
     );
     let thing = |command| Command::Tools(ToolCommand::Thing(command));
-    let things = !state.tools.things.chosen.is_empty();
+    let things = !hand.things.chosen.is_empty();
     on(
         item(ui, "Raise things", "]", things),
         thing(ThingCommand::Raise(1)),
@@ -122,13 +121,13 @@ fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, on: &mu
     );
 }
 
-fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, on: &mut On<'_>) {
+fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>) {
     on(
         item(ui, "Frame all", "Home", true),
         Command::View(ViewCommand::FrameAll),
     );
     on(
-        item(ui, "Frame selection", "F", state.any_chosen()),
+        item(ui, "Frame selection", "F", hand.any_chosen()),
         Command::View(ViewCommand::FrameSelection),
     );
     ui.separator();
@@ -199,7 +198,7 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, on: &mu
     );
 }
 
-fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, _state: &mut UiState, on: &mut On<'_>) {
+fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     on(
         item(ui, "Generate everything", "Ctrl+Enter", true),
         Command::Generation(GenerationCommand::Generate { full: true }),
@@ -250,7 +249,7 @@ fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, _state: &mut UiState, on
     );
 }
 
-fn help_menu(ui: &mut Ui, _input: &ToolbarInput<'_>, _state: &mut UiState, on: &mut On<'_>) {
+fn help_menu(ui: &mut Ui, on: &mut On<'_>) {
     on(
         item(ui, "Find a command…", "Ctrl+K", true),
         Command::Toggle(Window::Palette),

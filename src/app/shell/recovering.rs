@@ -66,7 +66,7 @@ impl SceneloomApp {
                 let (file, original) = (offer.file(), offer.original.clone());
                 let what = format!("{READING} {}", offer.name);
                 recovery.opening = Some(offer);
-                self.state.start_open = false;
+                self.state.windows.start = false;
                 let open = self.files.disk.open.clone();
                 self.load(what, original, false, ui.ctx(), move || open(&file));
             }

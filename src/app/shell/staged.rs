@@ -11,7 +11,7 @@ use crate::command::{Command, GenerationCommand, Taken, Verdict};
 use crate::panes::camera_strip::thousands;
 use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
-use crate::state::UiState;
+use crate::tools::{Hand, ToolState};
 use editor::Edit;
 use editor::part::{Part, changed_by_class};
 use job::inpaint::InpaintMask;
@@ -72,12 +72,12 @@ impl SceneloomApp {
             before: before.clone(),
             again,
             changed,
-            compare: self.state.compare,
+            compare: self.state.compare.mode,
         };
         if beside {
             self.views.compare.chosen = Some(before);
-            if self.state.compare == CompareMode::Off {
-                self.state.compare = CompareMode::Wipe;
+            if self.state.compare.mode == CompareMode::Off {
+                self.state.compare.mode = CompareMode::Wipe;
             }
         }
         self.generation.staged = Some(staged);
@@ -99,8 +99,8 @@ impl SceneloomApp {
     fn end_staging(&mut self) -> Option<Staged> {
         let staged = self.generation.staged.take()?;
         // If the user chose another way to compare meanwhile, that stays.
-        if staged.again.is_some() && self.state.compare == CompareMode::Wipe {
-            self.state.compare = staged.compare;
+        if staged.again.is_some() && self.state.compare.mode == CompareMode::Wipe {
+            self.state.compare.mode = staged.compare;
         }
         self.views.compare.chosen = None;
         Some(staged)
@@ -230,7 +230,7 @@ impl SceneloomApp {
         let part = match taken {
             Taken::Class(class) => Part::Class(class),
             Taken::Region => Part::Columns(self.state.tools.region.columns(after.frame().extent())),
-            Taken::Chosen => Part::Columns(columns_chosen(&self.state, &after)),
+            Taken::Chosen => Part::Columns(columns_chosen(&self.state.tools, &after)),
         };
         let Some(staged) = self.staged() else { return };
         let old = &staged.before.frame().occupancy;
@@ -263,12 +263,12 @@ impl SceneloomApp {
             .pivot(Align2::CENTER_BOTTOM)
             .fixed_pos(over.center_bottom() + egui::vec2(0.0, -12.0));
         area.show(ui.ctx(), |ui| {
-            theme::dialog_frame(ui.style()).show(ui, |ui| bar(ui, staged, &self.state, commands));
+            theme::dialog_frame(ui.style()).show(ui, |ui| bar(ui, staged, &self.state.tools, commands));
         });
     }
 }
 
-fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command>) {
+fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Command>) {
     let n: usize = staged.changed.iter().map(|(_, n)| n).sum();
     let seed = staged
         .again
@@ -300,7 +300,7 @@ fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command
                 let clicked = ui.add_enabled(enabled, egui::Button::new(text)).clicked();
                 decide(clicked, Verdict::Take(taken));
             };
-            let marked = !state.tools.region.is_empty();
+            let marked = !tools.region.is_empty();
             entry(ui, marked, "In the marked region", Taken::Region);
             mark = ui
                 .button("Mark a region…")
@@ -311,7 +311,7 @@ fn bar(ui: &mut Ui, staged: &Staged, state: &UiState, commands: &mut Vec<Command
             }
             entry(
                 ui,
-                state.any_chosen(),
+                tools.any_chosen(),
                 "Where chosen boxes and things stand",
                 Taken::Chosen,
             );
@@ -349,15 +349,15 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
 }
 
 /// Where chosen boxes and things stand, and a voxel around them.
-fn columns_chosen(state: &UiState, scene: &Scene) -> Vec<bool> {
+fn columns_chosen(hand: &Hand, scene: &Scene) -> Vec<bool> {
     let frame = scene.frame();
     let extent = frame.extent();
     let mut columns = vec![false; extent.columns()];
     let mut set = |x: usize, y: usize| columns[extent.index(x, y)] = true;
-    for b in state.chosen().iter().filter_map(|id| frame.boxes.get(id)) {
+    for b in hand.chosen().iter().filter_map(|id| frame.boxes.get(id)) {
         box_cells(extent, b, Extent::VOXEL_M, &mut set);
     }
-    let things = state.tools.things.chosen.iter();
+    let things = hand.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
     for thing in in_extent(extent, things, &frame.world_from_ego) {
         authoring::scenery_around::columns(extent, &thing.form, Extent::VOXEL_M, &mut set);

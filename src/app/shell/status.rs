@@ -6,9 +6,9 @@ use egui::{Color32, Rect, Sense, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, GenerationCommand, ViewCommand, Window};
 use crate::panes::id::PaneId;
+use crate::panes::pointed::Pointed;
 use crate::shell::guard::Pause;
 use crate::shell::live::{Purpose, Running};
-use crate::state::UiState;
 use job::{GenReport, Stage};
 use widgets::theme;
 
@@ -88,7 +88,7 @@ pub struct StatusInput<'a> {
 }
 
 /// Draws the bar.
-pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands: &mut Vec<Command>) {
+pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = theme::GAP;
         ui.spacing_mut().interact_size.y = 20.0;
@@ -115,7 +115,7 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, state: &UiState, commands
             }
             // What is under the pointer, then what the pointer does; the end of the latter gives way first.
             ui.add(
-                egui::Label::new(egui::RichText::new(&state.readout).color(theme::text_weak())).truncate(),
+                egui::Label::new(egui::RichText::new(&pointed.readout).color(theme::text_weak())).truncate(),
             );
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let text = egui::RichText::new(input.hint).color(theme::text_weak().gamma_multiply(0.85));

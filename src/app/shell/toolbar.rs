@@ -9,7 +9,7 @@ use super::menus::menus;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::id::PaneId;
 use crate::shell::workspace::Workspace;
-use crate::state::UiState;
+use crate::tools::Hand;
 use crate::tools::ToolId;
 use editor::tools::beside::building;
 use editor::tools::{Group, ToolDef, all};
@@ -51,20 +51,20 @@ pub struct ToolbarInput<'a> {
 }
 
 /// Draws the bar.
-pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, commands: &mut Vec<Command>) {
+pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.scope(|ui| {
             let widgets = &mut ui.visuals_mut().widgets;
             widgets.inactive.weak_bg_fill = egui::Color32::TRANSPARENT;
             ui.spacing_mut().item_spacing.x = 0.0;
-            menus(ui, input, state, commands);
+            menus(ui, input, hand, commands);
         });
         divider(ui);
         let narrow = ui.max_rect().width() < ROOM_FOR_ALL;
         for tool in all() {
             let folded = narrow && tool.group == Group::Beside;
-            let chosen = state.tool == tool.id;
+            let chosen = hand.tool == tool.id;
             if !folded
                 && icons::button(ui, Icon::named(tool.icon), tool.title, tool.key, chosen, true).clicked()
             {
@@ -72,7 +72,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, state: &mut UiState, co
             }
         }
         if narrow {
-            thing_tools(ui, state.tool, commands);
+            thing_tools(ui, hand.tool, commands);
         }
         divider(ui);
         let hint = |label: Option<&str>, keys: &str| {

@@ -4,8 +4,8 @@ use super::app::SceneloomApp;
 use super::dock::Dock;
 use super::workspace::Workspace;
 use crate::command::{ViewCommand, Window};
+use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
-use crate::state::CompareMode;
 use crate::tools::ToolId;
 use editor::tools::{brush, region, select, voxel};
 
@@ -22,13 +22,13 @@ impl SceneloomApp {
                     .of(rev)
                     .map(|i| &self.generation.versions.list()[i]);
                 self.views.compare.chosen = version.map(|v| v.scene.clone());
-                if self.state.compare == CompareMode::Off {
-                    self.state.compare = CompareMode::Wipe;
+                if self.state.compare.mode == CompareMode::Off {
+                    self.state.compare.mode = CompareMode::Wipe;
                 }
             }
-            ViewCommand::CycleCompare => self.state.compare = self.state.compare.next(),
+            ViewCommand::CycleCompare => self.state.compare.mode = self.state.compare.mode.next(),
             ViewCommand::FrameSelection => self.frame_selection(),
-            ViewCommand::FrameAll => match self.state.hovered_pane {
+            ViewCommand::FrameAll => match self.state.pointed.pane {
                 Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_map(self.extent()),
                 Some(PaneId::BEV) => self.views.canvas.frame_all_again(),
                 _ => self.views.frame_all(self.extent()),
@@ -36,14 +36,15 @@ impl SceneloomApp {
             ViewCommand::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
             ViewCommand::LookThrough(index) => self.look_through(index),
-            ViewCommand::Inspect(camera) => self.state.inspected = camera,
+            ViewCommand::Inspect(camera) => self.state.cameras.enlarged = camera,
             ViewCommand::SwapPanes => self.views.dock.swap(PaneId::BEV, PaneId::VIEW3D),
             ViewCommand::ShowPane(pane) => self.views.dock.open(pane),
             ViewCommand::TogglePane(pane) => self.views.dock.toggle(pane),
             ViewCommand::MaximizePane => {
                 if let Some(tile) = self
                     .state
-                    .hovered_pane
+                    .pointed
+                    .pane
                     .and_then(|pane| self.views.dock.find(pane))
                 {
                     self.views.dock.toggle_maximized(tile);
@@ -65,7 +66,7 @@ impl SceneloomApp {
                 self.views.dock.open(PaneId::PROMPT);
                 self.views.prompt.focus();
             }
-            ViewCommand::ToggleGrid => self.state.show_grid = !self.state.show_grid,
+            ViewCommand::ToggleGrid => self.state.shown.grid = !self.state.shown.grid,
         }
     }
 
@@ -73,10 +74,10 @@ impl SceneloomApp {
         let Some(b) = self.selected_box() else {
             return self.frame_things();
         };
-        if self.state.hovered_pane != Some(PaneId::VIEW3D) {
+        if self.state.pointed.pane != Some(PaneId::VIEW3D) {
             self.views.canvas.frame_box(&b);
         }
-        if self.state.hovered_pane != Some(PaneId::BEV) {
+        if self.state.pointed.pane != Some(PaneId::BEV) {
             self.views.view3d.frame_box(&b);
         }
     }
@@ -92,12 +93,12 @@ impl SceneloomApp {
         match window {
             Window::Export => self.toggle_export(),
             Window::Palette => self.overlays.palette.toggle(),
-            Window::Settings => self.state.settings_open = !self.state.settings_open,
-            Window::Start => self.state.start_open = !self.state.start_open,
-            Window::Sensors => self.state.sensors_open = !self.state.sensors_open,
+            Window::Settings => self.state.windows.settings = !self.state.windows.settings,
+            Window::Start => self.state.windows.start = !self.state.windows.start,
+            Window::Sensors => self.state.windows.sensors = !self.state.windows.sensors,
             Window::Performance => self.frames.perf.open = !self.frames.perf.open,
-            Window::Log => self.state.log_open = !self.state.log_open,
-            Window::Keys => self.state.keys_open = !self.state.keys_open,
+            Window::Log => self.state.windows.log = !self.state.windows.log,
+            Window::Keys => self.state.windows.keys = !self.state.windows.keys,
         }
     }
 }

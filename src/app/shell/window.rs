@@ -10,12 +10,13 @@ use crate::camera_views::Wanted;
 use crate::command::{Command, FileCommand};
 use crate::panes;
 use crate::panes::camera_strip::CamerasInput;
+use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
 use crate::shell::keys;
 use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
-use crate::state::CompareMode;
+use crate::state::UiState;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
@@ -46,16 +47,16 @@ impl SceneloomApp {
         let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
         // What is shown is not what a key would change.
-        if !dialog && !self.state.holding_before {
+        if !dialog && !self.state.compare.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
-                flying: secondary && self.state.hovered_pane == Some(PaneId::VIEW3D),
+                flying: secondary && self.state.pointed.pane == Some(PaneId::VIEW3D),
                 dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
             };
             keys::commands(
                 ui.ctx(),
                 &self.preferences.keymap,
-                &mut self.state,
+                &self.state,
                 hands,
                 &mut commands,
             );
@@ -77,8 +78,8 @@ impl SceneloomApp {
     pub(crate) fn has_dialog(&self) -> bool {
         self.files.unsaved.is_some()
             || self.files.dialogs.is_open()
-            || self.state.keys_open
-            || self.state.start_open
+            || self.state.windows.keys
+            || self.state.windows.start
             || self.overlays.palette.open
             || self.asks_to_recover()
             || self.state.tools.row_open
@@ -123,7 +124,7 @@ impl SceneloomApp {
             .exact_size(42.0)
             .frame(theme::bar_frame())
             .show_separator_line(false)
-            .show(ui, |ui| toolbar_ui(ui, &input, &mut self.state, commands));
+            .show(ui, |ui| toolbar_ui(ui, &input, &self.state.tools, commands));
         let now_s = self.now_s();
         let settled = self.document.settled_scene().clone();
         let touched = self.generation.live.touched_by(&settled, now_s);
@@ -153,18 +154,18 @@ impl SceneloomApp {
             .exact_size(28.0)
             .frame(theme::bar_frame())
             .show_separator_line(false)
-            .show(ui, |ui| status_ui(ui, &status, &self.state, commands));
+            .show(ui, |ui| status_ui(ui, &status, &self.state.pointed, commands));
         // The status bar has shown what the last frame found under the pointer.
-        self.state.readout.clear();
+        self.state.pointed.readout.clear();
     }
 
     pub(crate) fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
-        self.state.hovered_pane = None;
+        self.state.pointed.pane = None;
         self.views.center = ui.available_rect_before_wrap();
         self.dock_ui(ui, scene, commands);
         // What nobody lists is not pointed at.
         if !self.views.dock.is_shown(PaneId::CHECKS) {
-            self.state.finding_marks = None;
+            self.state.shown.finding_marks = None;
         }
         self.generation.live.named = self.state.named;
     }
@@ -175,23 +176,24 @@ impl SceneloomApp {
         let held = !ui.ctx().text_edit_focused()
             && ui.input(|i| {
                 let down = i.modifiers.is_none() && i.key_down(egui::Key::Backslash);
-                down && (self.state.holding_before || !i.pointer.any_down())
+                down && (self.state.compare.holding_before || !i.pointer.any_down())
             });
-        self.state.holding_before = held;
+        self.state.compare.holding_before = held;
         let rev = self.document.settled_scene().rev;
-        let active = held || self.state.compare != CompareMode::Off;
+        let active = held || self.state.compare.mode != CompareMode::Off;
         let chosen = self.views.compare.chosen.as_ref().filter(|s| s.rev != rev);
         let before = chosen
             .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)
             .cloned();
-        let senses = held || matches!(self.state.compare, CompareMode::Wipe | CompareMode::Side);
+        let senses = held || matches!(self.state.compare.mode, CompareMode::Wipe | CompareMode::Side);
         let ctx = ui.ctx().clone();
-        self.views
-            .compare
-            .prepare(before, Wanted::of(&self.state), senses, move || {
-                ctx.request_repaint()
-            });
+        self.views.compare.prepare(
+            before,
+            Wanted::of(&self.state.cameras, &self.state.lidar),
+            senses,
+            move || ctx.request_repaint(),
+        );
     }
 
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
@@ -201,23 +203,28 @@ impl SceneloomApp {
             .strip
             .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);
         self.toasts
-            .log_window(ui, self.views.center, &mut self.state.log_open);
-        if self.state.sensors_open {
-            sensors_ui(ui, &scene.rig, &mut self.state, commands);
+            .log_window(ui, self.views.center, &mut self.state.windows.log);
+        if self.state.windows.sensors {
+            let UiState { windows, cameras, .. } = &mut self.state;
+            sensors_ui(ui, &scene.rig, windows, cameras, commands);
         }
-        crate::windows::row::show(ui, scene.frame(), &mut self.state, commands);
+        crate::windows::row::show(ui, scene.frame(), &mut self.state.tools, commands);
         let recent = &self.preferences.settings.recent;
         self.overlays
             .palette
-            .show(ui, &self.preferences.keymap, recent, &mut self.state, commands);
+            .show(ui, &self.preferences.keymap, recent, commands);
         self.overlays
             .shortcuts
-            .show(ui, &mut self.preferences.keymap, &mut self.state.keys_open);
-        settings_ui(ui, &mut self.preferences.settings, &mut self.state.settings_open);
+            .show(ui, &mut self.preferences.keymap, &mut self.state.windows.keys);
+        settings_ui(
+            ui,
+            &mut self.preferences.settings,
+            &mut self.state.windows.settings,
+        );
         start_ui(
             ui,
             &mut self.preferences.settings,
-            &mut self.state.start_open,
+            &mut self.state.windows.start,
             commands,
         );
         // Over the 3D view, where it hides no list.

@@ -38,7 +38,7 @@ impl SceneloomApp {
         }
         // Small pictures while the scene still changes: large ones take as long as the generation itself.
         let for_a_moment = self.document.is_dragging() || self.generation.live.running.is_some();
-        let wanted = Wanted::of(&self.state);
+        let wanted = Wanted::of(&self.state.cameras, &self.state.lidar);
         self.threads
             .sensing
             .ask(self.document.scene(), wanted, for_a_moment);

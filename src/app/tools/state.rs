@@ -3,7 +3,7 @@
 use std::ops::{Deref, DerefMut};
 
 use editor::Shape;
-use editor::tools::{Area, DRAW_ORDER, Hand};
+use editor::tools::{Area, DRAW_ORDER, Hand, Toolbox};
 use glam::DVec2;
 use job::GenParams;
 use job::inpaint::InpaintMask;
@@ -13,9 +13,11 @@ use crate::scenery::Drawer;
 /// What is inpainted from fresh noise has no inverted noise that already holds most of it.
 const FEWEST_INPAINT_STEPS: u32 = 10;
 
-/// What the tools hold. It is a [`Hand`] with more.
+/// The tools and what they hold. It is a [`Hand`] with more.
 #[derive(Clone, Debug)]
 pub struct ToolState {
+    /// The tools themselves.
+    pub toolbox: Toolbox,
     /// The tool in hand, what is chosen, the options of the tools.
     pub hand: Hand,
     /// Cells to inpaint although nothing was edited there.
@@ -39,6 +41,7 @@ pub struct ToolState {
 impl Default for ToolState {
     fn default() -> Self {
         Self {
+            toolbox: Toolbox::default(),
             hand: Hand::default(),
             region: InpaintMask::default(),
             times_inpainted: 0,

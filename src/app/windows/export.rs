@@ -4,8 +4,8 @@ use std::path::Path;
 
 use egui::{DragValue, Ui};
 
+use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, Format};
-use crate::state::LidarModel;
 use formats::export::Product;
 use sensors::cameras::{self, ViewId};
 use widgets::theme;

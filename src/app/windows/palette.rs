@@ -8,7 +8,6 @@ use crate::command::{Command, FileCommand, ViewCommand};
 use crate::panes;
 use crate::shell::actions::ACTIONS;
 use crate::shell::keymap::Keymap;
-use crate::state::UiState;
 use crate::tools::ToolCommand;
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, ThingKind};
@@ -50,14 +49,7 @@ impl Palette {
     }
 
     /// Draws it while it is open.
-    pub fn show(
-        &mut self,
-        ui: &Ui,
-        keymap: &Keymap,
-        recent: &[PathBuf],
-        state: &mut UiState,
-        commands: &mut Vec<Command>,
-    ) {
+    pub fn show(&mut self, ui: &Ui, keymap: &Keymap, recent: &[PathBuf], commands: &mut Vec<Command>) {
         if !self.open {
             return;
         }
@@ -118,7 +110,7 @@ impl Palette {
         if let Some(i) = run.filter(|i| *i < lines) {
             self.open = false;
             match items.swap_remove(i).does {
-                Does::Action(i) => commands.extend(ACTIONS[i].run(state)),
+                Does::Action(i) => commands.push(ACTIONS[i].command()),
                 Does::Command(command) => commands.push(command),
             }
         } else if shown.should_close() {

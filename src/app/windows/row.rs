@@ -4,22 +4,21 @@ use egui::{DragValue, Ui};
 
 use crate::command::Command;
 use crate::fields::{caption, number};
-use crate::state::UiState;
 use editor::arrange::{self, MAX_COPIES, RowAlong};
 use scene::{Frame, SceneBox};
 use widgets::icons;
 use widgets::theme;
 
-use crate::tools::ToolCommand;
+use crate::tools::{Hand, ToolCommand};
 
 /// The copies that the row of the dialog would add.
-pub(crate) fn coming(frame: &Frame, state: &UiState) -> Vec<SceneBox> {
-    arrange::row_boxes(frame, &state.chosen(), &state.tools.row)
+pub(crate) fn coming(frame: &Frame, hand: &Hand) -> Vec<SceneBox> {
+    arrange::row_boxes(frame, &hand.chosen(), &hand.row)
 }
 
 /// Draws the windows of the tools that are open.
-pub fn show(ui: &Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
-    if !state.tools.row_open {
+pub fn show(ui: &Ui, frame: &Frame, hand: &mut Hand, commands: &mut Vec<Command>) {
+    if !hand.row_open {
         return;
     }
     let mut done = None;
@@ -34,7 +33,7 @@ pub fn show(ui: &Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Comm
             ui.set_width(330.0);
             ui.heading("Row of copies");
             ui.add_space(theme::GAP);
-            let row = &mut state.tools.row;
+            let row = &mut hand.row;
             ui.horizontal(|ui| {
                 caption(ui, "Copies");
                 let drag = DragValue::new(&mut row.copies).range(1..=MAX_COPIES);
@@ -61,10 +60,7 @@ pub fn show(ui: &Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Comm
                     ],
                 );
             });
-            let (asked, come) = (
-                state.tools.row.copies * state.chosen().len(),
-                coming(frame, state).len(),
-            );
+            let (asked, come) = (hand.row.copies * hand.chosen().len(), coming(frame, hand).len());
             let text = match asked - come.min(asked) {
                 0 => format!("{come} boxes come"),
                 out => format!("{come} boxes come; {out} would lie outside the map and are left out"),
@@ -86,9 +82,9 @@ pub fn show(ui: &Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Comm
         done = Some(false);
     }
     if let Some(add) = done {
-        state.tools.row_open = false;
+        hand.row_open = false;
         if add {
-            commands.push(Command::Tools(ToolCommand::Row(state.tools.row)));
+            commands.push(Command::Tools(ToolCommand::Row(hand.row)));
         }
     }
 }

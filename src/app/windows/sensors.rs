@@ -3,10 +3,11 @@
 use egui::Ui;
 use glam::DVec3;
 
+use super::open::{OpenWindows, SensorChoice};
+use crate::camera_views::CamerasShown;
 use crate::command::{Command, FileCommand};
 use crate::fields::{caption, field, number, numbers};
 use crate::panes::camera_strip::camera_label;
-use crate::state::{SensorChoice, UiState};
 use editor::Edit;
 use scene::rig::Aim;
 use scene::rig_presets::{LIDARS, RIGS};
@@ -19,8 +20,14 @@ const MAX_CAMERAS: usize = 12;
 const MAX_LIDARS: usize = 8;
 
 /// Draws the window.
-pub fn sensors_ui(ui: &Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<Command>) {
-    let mut open = state.sensors_open;
+pub fn sensors_ui(
+    ui: &Ui,
+    rig: &SensorRig,
+    windows: &mut OpenWindows,
+    cameras: &mut CamerasShown,
+    commands: &mut Vec<Command>,
+) {
+    let mut open = windows.sensors;
     egui::Window::new("Sensors")
         .id(egui::Id::unique("sensors"))
         .open(&mut open)
@@ -32,9 +39,9 @@ pub fn sensors_ui(ui: &Ui, rig: &SensorRig, state: &mut UiState, commands: &mut 
             ui.set_width(330.0);
             presets(ui, commands);
             ui.add_space(4.0);
-            lists(ui, rig, state, commands);
+            lists(ui, rig, (&mut windows.sensor, cameras), commands);
             ui.add_space(theme::GAP);
-            match state.sensor {
+            match windows.sensor {
                 SensorChoice::Camera(i) => {
                     if let Some(camera) = rig.cameras.get(i) {
                         camera_fields(ui, rig, i, camera, commands);
@@ -47,7 +54,7 @@ pub fn sensors_ui(ui: &Ui, rig: &SensorRig, state: &mut UiState, commands: &mut 
                 }
             }
         });
-    state.sensors_open = open;
+    windows.sensors = open;
 }
 
 /// The rig after a change, as an edit.
@@ -77,21 +84,26 @@ fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
     });
 }
 
-fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<Command>) {
+fn lists(
+    ui: &mut Ui,
+    rig: &SensorRig,
+    (choice, cameras): (&mut SensorChoice, &mut CamerasShown),
+    commands: &mut Vec<Command>,
+) {
     section(ui, "Cameras");
     for (i, camera) in rig.cameras.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
-            let shown = !state.camera_hidden(i);
+            let shown = !cameras.is_hidden(i);
             let (icon, hint) = match shown {
                 true => (Icon::Eye, "in the strip and in the 3D view"),
                 false => (Icon::EyeOff, "not rendered"),
             };
             if icons::button(ui, icon, &format!("Show {}", camera.name), hint, false, true).clicked() {
-                state.cameras_hidden ^= 1 << i;
+                cameras.hidden ^= 1 << i;
             }
             let right = format!("{:.0}°", camera.fov_deg());
-            let chosen = state.sensor == SensorChoice::Camera(i);
+            let chosen = *choice == SensorChoice::Camera(i);
             let label = format!("Camera {}", camera.name);
             if icons::row(
                 ui,
@@ -103,14 +115,14 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
             )
             .clicked()
             {
-                state.sensor = SensorChoice::Camera(i);
+                *choice = SensorChoice::Camera(i);
             }
         });
     }
     section(ui, "LiDARs");
     for (i, lidar) in rig.lidars.iter().enumerate() {
         let right = format!("{} x {}", lidar.elevations_deg.len(), lidar.columns);
-        let chosen = state.sensor == SensorChoice::Lidar(i);
+        let chosen = *choice == SensorChoice::Lidar(i);
         let name = if i == 0 {
             format!("{} (shown)", lidar.name)
         } else {
@@ -118,7 +130,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
         };
         let label = format!("LiDAR {}", lidar.name);
         if icons::row(ui, theme::text(), &name, &right, chosen, &label).clicked() {
-            state.sensor = SensorChoice::Lidar(i);
+            *choice = SensorChoice::Lidar(i);
         }
     }
     ui.horizontal(|ui| {
@@ -128,7 +140,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
         {
             let mut camera = Camera::new(&free_name("CAM", rig), 70.0);
             camera.translation_m = [1.5, 0.0, 1.5];
-            state.sensor = SensorChoice::Camera(rig.cameras.len());
+            *choice = SensorChoice::Camera(rig.cameras.len());
             commands.push(Command::Apply(
                 "Add camera",
                 vec![changed(rig, |r| r.cameras.push(camera))],
@@ -140,7 +152,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
                     if ui.button(preset.name).clicked() {
                         let mut lidar = (preset.build)();
                         lidar.name = free_name("LIDAR", rig);
-                        state.sensor = SensorChoice::Lidar(rig.lidars.len());
+                        *choice = SensorChoice::Lidar(rig.lidars.len());
                         commands.push(Command::Apply(
                             "Add LiDAR",
                             vec![changed(rig, |r| r.lidars.push(lidar))],
@@ -150,7 +162,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
                 }
             });
         });
-        let what = state.sensor;
+        let what = *choice;
         let exists = match what {
             SensorChoice::Camera(i) => i < rig.cameras.len(),
             SensorChoice::Lidar(i) => i < rig.lidars.len(),
@@ -174,7 +186,7 @@ fn lists(ui: &mut Ui, rig: &SensorRig, state: &mut UiState, commands: &mut Vec<C
                 SensorChoice::Lidar(i) => drop(r.lidars.remove(i)),
             });
             if let SensorChoice::Camera(i) = what {
-                state.forget_camera(i);
+                cameras.forget(i);
             }
             commands.push(Command::Apply("Remove sensor", vec![rest]));
         }

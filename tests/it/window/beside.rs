@@ -269,12 +269,22 @@ fn strokes_posts_corners_and_fields() {
     bench.key(Modifiers::SHIFT, Key::B);
     bench.click_ground(20.0, -20.0, Modifiers::NONE);
     bench.click_ground(30.0, -20.0, Modifiers::NONE);
-    assert_eq!(bench.app().state.toolbox.points_m(beside::building::ID).len(), 2);
+    assert_eq!(
+        bench
+            .app()
+            .state
+            .tools
+            .toolbox
+            .points_m(beside::building::ID)
+            .len(),
+        2
+    );
     bench.key(Modifiers::NONE, Key::Escape);
     assert!(
         bench
             .app()
             .state
+            .tools
             .toolbox
             .points_m(beside::building::ID)
             .is_empty()

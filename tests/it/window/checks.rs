@@ -53,7 +53,7 @@ fn findings_stand_beside_the_views_and_mark_what_they_mean() {
         let view = bench.pane(view);
         assert!(view.height() > 300.0 && !view.intersects(row), "{view:?} {row:?}");
     }
-    let marks = |b: &mut Bench| b.app().state.finding_marks.as_deref().cloned();
+    let marks = |b: &mut Bench| b.app().state.shown.finding_marks.as_deref().cloned();
     assert_eq!(marks(&mut bench), None);
     bench.harness.hover_at(row.center());
     bench.steps(3);

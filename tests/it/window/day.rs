@@ -97,8 +97,8 @@ fn a_day_of_work() {
     bench.steps(2);
     bench.click("Accept");
     bench.key(Modifiers::SHIFT, Key::Backslash);
-    assert_eq!(bench.app().state.compare, CompareMode::Wipe);
-    bench.app().state.compare = CompareMode::Off;
+    assert_eq!(bench.app().state.compare.mode, CompareMode::Wipe);
+    bench.app().state.compare.mode = CompareMode::Off;
     sweep(&mut bench);
     let last = bench.frame();
     // Undo fifty steps, and all the way forward.

@@ -1,7 +1,7 @@
 //! The camera strip, the sensors' window and the LiDAR's choices.
 
 use app::camera_views::CameraPicture;
-use app::state::LidarModel;
+use app::camera_views::LidarModel;
 use editor::Edit;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
@@ -31,7 +31,7 @@ fn the_strip_shows_what_is_asked_for() {
     for view in cameras::views().into_iter().rev() {
         let name = view.title;
         bench.click(name);
-        assert_eq!(bench.app().state.camera_view, view.id);
+        assert_eq!(bench.app().state.cameras.view, view.id);
         bench.sensed();
         let views = bench.app().sensing().cameras().expect("pictures").clone();
         assert_eq!(views.len(), 6);
@@ -49,13 +49,13 @@ fn the_strip_shows_what_is_asked_for() {
         .harness
         .hover_at(front.center_bottom() - egui::vec2(0.0, 4.0));
     bench.steps(3);
-    let readout = bench.app().state.readout.clone();
+    let readout = bench.app().state.pointed.readout.clone();
     assert!(
         readout.starts_with("Front  ·  driveable surface  ·  ") && readout.contains(" m away"),
         "{readout}"
     );
     // The learned sweep measures within voxels and knows how strong echoes are.
-    bench.app().state.lidar_model = LidarModel::Learned;
+    bench.app().state.lidar.model = LidarModel::Learned;
     bench.sensed();
     bench.wait_until("the learned sweep", |b| {
         let sweep = b.app().sensing().lidar().expect("a sweep").clone();

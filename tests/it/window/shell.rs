@@ -110,10 +110,10 @@ fn versions_are_compared_and_gone_back_to() {
     // Held, the key shows the version before; let go, the present one.
     bench.harness.key_down(Key::Backslash);
     bench.steps(3);
-    assert!(bench.app().state.holding_before);
+    assert!(bench.app().state.compare.holding_before);
     bench.harness.key_up(Key::Backslash);
     bench.steps(2);
-    assert!(!bench.app().state.holding_before);
+    assert!(!bench.app().state.compare.holding_before);
     for mode in [
         CompareMode::Wipe,
         CompareMode::Side,
@@ -121,7 +121,7 @@ fn versions_are_compared_and_gone_back_to() {
         CompareMode::Off,
     ] {
         bench.key(Modifiers::SHIFT, Key::Backslash);
-        assert_eq!(bench.app().state.compare, mode);
+        assert_eq!(bench.app().state.compare.mode, mode);
         bench.steps(4);
         // In the bird's-eye view and in the 3D view.
         let explained = bench
@@ -138,10 +138,10 @@ fn versions_are_compared_and_gone_back_to() {
     bench.key(Modifiers::CTRL, Key::Z);
     assert!(bench.frame().occupancy == opened);
     // A click compares, in the wipe.
-    bench.app().state.compare = CompareMode::Off;
+    bench.app().state.compare.mode = CompareMode::Off;
     bench.click("Versions");
     bench.click("As opened");
-    assert_eq!(bench.app().state.compare, CompareMode::Wipe);
+    assert_eq!(bench.app().state.compare.mode, CompareMode::Wipe);
 }
 
 #[test]
@@ -149,9 +149,12 @@ fn settings_are_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("settings.json");
     let mut bench = Bench::with_settings(&file);
-    assert!(bench.app().state.start_open, "a new user sees the start screen");
+    assert!(
+        bench.app().state.windows.start,
+        "a new user sees the start screen"
+    );
     bench.click("Go on with this scene");
-    assert!(!bench.app().state.start_open);
+    assert!(!bench.app().state.windows.start);
     bench.app().preferences.settings.theme = Theme::Light;
     bench.app().preferences.settings.start_screen = false;
     bench.click("Sensors");
@@ -160,11 +163,11 @@ fn settings_are_kept() {
     });
     drop(bench);
     let mut again = Bench::with_settings(&file);
-    assert!(!again.app().state.start_open);
+    assert!(!again.app().state.windows.start);
     assert!(again.harness.query_by_label("LiDAR sweep").is_some());
     again.app().preferences.settings.theme = Theme::Dark; // the colours of a theme are the process's
     again.steps(3);
-    assert_eq!(again.app().state.hovered_pane, None::<PaneId>);
+    assert_eq!(again.app().state.pointed.pane, None::<PaneId>);
 }
 
 #[test]

@@ -48,11 +48,11 @@ fn vegetation(bench: &Bench) -> usize {
 fn a_result_is_shown_beside_the_old_and_declined_or_accepted() {
     let (mut bench, before) = generated();
     assert_eq!(bench.history(), ["Open", "Generate"]);
-    assert_eq!(bench.app().state.compare, CompareMode::Wipe);
+    assert_eq!(bench.app().state.compare.mode, CompareMode::Wipe);
     bench.click("Decline");
     assert!(bench.frame().occupancy == before);
     assert!(bench.app().staged().is_none());
-    assert_eq!(bench.app().state.compare, CompareMode::Off);
+    assert_eq!(bench.app().state.compare.mode, CompareMode::Off);
     // What was declined can be had back.
     bench.key(Modifiers::COMMAND, egui::Key::Y);
     assert_eq!(vegetation(&bench), Window::COLUMNS);
@@ -60,7 +60,7 @@ fn a_result_is_shown_beside_the_old_and_declined_or_accepted() {
     bench.click("Accept");
     assert_eq!(vegetation(&bench), Window::COLUMNS);
     assert!(bench.app().staged().is_none());
-    assert_eq!(bench.app().state.compare, CompareMode::Off);
+    assert_eq!(bench.app().state.compare.mode, CompareMode::Off);
     assert!(bench.harness.query_by_label("Decline").is_none());
 }
 
@@ -71,7 +71,7 @@ fn going_on_without_a_verdict_accepts() {
     bench.key(Modifiers::NONE, egui::Key::Delete);
     assert_eq!(bench.history(), ["Open", "Generate", "Delete box"]);
     assert!(bench.app().staged().is_none());
-    assert_eq!(bench.app().state.compare, CompareMode::Off);
+    assert_eq!(bench.app().state.compare.mode, CompareMode::Off);
 }
 
 #[test]

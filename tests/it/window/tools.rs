@@ -241,14 +241,14 @@ fn the_brush_draws_rectangles_lines_outlines_streets_and_fills() {
         bench.steps(30);
     }
     bench.click_at(30.0, 30.0, Modifiers::NONE);
-    assert_eq!(bench.app().state.toolbox.points_m(brush::ID).len(), 4);
+    assert_eq!(bench.app().state.tools.toolbox.points_m(brush::ID).len(), 4);
     bench.key(Modifiers::NONE, Key::Backspace);
-    assert_eq!(bench.app().state.toolbox.points_m(brush::ID).len(), 3);
+    assert_eq!(bench.app().state.tools.toolbox.points_m(brush::ID).len(), 3);
     bench.key(Modifiers::NONE, Key::Enter);
     assert!(bench.has(BevLayer::CarparkArea, 12.0, 28.0) && !bench.has(BevLayer::CarparkArea, 18.0, 22.0));
     bench.click_at(0.0, 25.0, Modifiers::NONE);
     bench.key(Modifiers::NONE, Key::Escape);
-    assert!(bench.app().state.toolbox.points_m(brush::ID).is_empty());
+    assert!(bench.app().state.tools.toolbox.points_m(brush::ID).is_empty());
     assert_eq!(bench.app().state.tool, brush::ID);
 
     let lines = bench.frame().layout.polylines.len();
@@ -403,14 +403,14 @@ fn distances_are_measured_and_stay() {
     bench.click("Measure");
     bench.click_at(-20.0, 20.0, Modifiers::NONE);
     bench.click_at(-10.0, 20.0, Modifiers::NONE);
-    let points = bench.app().state.toolbox.points_m(measure::ID).to_vec();
+    let points = bench.app().state.tools.toolbox.points_m(measure::ID).to_vec();
     assert!((points[0].distance(points[1]) - 10.0).abs() < 0.1);
     // A corner of the car catches the third.
     let corner = bench.car(7).footprint()[0];
     bench.click_at(corner.x + 0.2, corner.y + 0.2, Modifiers::NONE);
-    assert_eq!(bench.app().state.toolbox.points_m(measure::ID)[2], corner);
+    assert_eq!(bench.app().state.tools.toolbox.points_m(measure::ID)[2], corner);
     bench.key(Modifiers::NONE, Key::Escape);
-    assert!(bench.app().state.toolbox.points_m(measure::ID).is_empty());
+    assert!(bench.app().state.tools.toolbox.points_m(measure::ID).is_empty());
     assert_eq!(bench.app().state.tool, measure::ID);
     assert_eq!(bench.history(), ["Open"]);
 }

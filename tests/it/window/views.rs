@@ -23,7 +23,7 @@ fn views_and_layers_answer_their_controls() {
     assert!(swapped.left() > bev.left() + 100.0, "{bev:?} {swapped:?}");
     bench.key(Modifiers::NONE, Key::Tab);
     bench.key(Modifiers::NONE, Key::G);
-    assert!(!bench.app().state.show_grid);
+    assert!(!bench.app().state.shown.grid);
     // The wheel keeps the point under the pointer where it is.
     let at = bench.bev(10.0, -5.0);
     bench.harness.hover_at(at);
@@ -56,7 +56,7 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     let pane = bench.pane("3D view");
     bench.harness.hover_at(pane.center());
     bench.steps(2);
-    assert_eq!(bench.app().state.hovered_pane, Some(PaneId::VIEW3D));
+    assert_eq!(bench.app().state.pointed.pane, Some(PaneId::VIEW3D));
     bench.key(Modifiers::NONE, Key::B);
     assert_eq!(
         (bench.app().state.tool, bench.app().state.verb),

@@ -21,7 +21,7 @@ fn a_sentence_names_its_step_and_the_next_one_replaces_it() {
     bench.key(Modifiers::NONE, Key::Enter);
     assert_eq!(bench.history(), ["Open", "“make it night”"]);
     assert_eq!(
-        bench.app().state.camera_view,
+        bench.app().state.cameras.view,
         pictures::VIEW.id,
         "night is seen in pictures"
     );

@@ -12,12 +12,12 @@ const fn raise(steps: i32) -> Command {
 
 /// What belongs to no one tool: tools, then the selection.
 pub(super) const ACTIONS: &[ActionDef] = &[
-    action(Tools, "brush_smaller", "Smaller brush", "[ {", |_| {
-        Some(Command::BrushSize(-1))
+    action(Tools, "brush_smaller", "Smaller brush", "[ {", || {
+        Command::BrushSize(-1)
     })
     .repeats(),
-    action(Tools, "brush_larger", "Larger brush", "] }", |_| {
-        Some(Command::BrushSize(1))
+    action(Tools, "brush_larger", "Larger brush", "] }", || {
+        Command::BrushSize(1)
     })
     .repeats(),
     action(
@@ -25,83 +25,83 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         "escape",
         "Cancel the drag, drop the selection",
         "Esc",
-        |_| Some(Command::Escape),
+        || Command::Escape,
     ),
-    action(Selection, "delete", "Delete", "Del Backspace", |_| {
-        Some(Command::Tools(ToolCommand::Delete))
+    action(Selection, "delete", "Delete", "Del Backspace", || {
+        Command::Tools(ToolCommand::Delete)
     }),
-    action(Selection, "duplicate", "Duplicate", "Ctrl+D", |_| {
-        Some(Command::Tools(ToolCommand::Duplicate))
+    action(Selection, "duplicate", "Duplicate", "Ctrl+D", || {
+        Command::Tools(ToolCommand::Duplicate)
     }),
-    action(Selection, "turn_left", "Turn left 1°", "Z", |_| {
-        Some(Command::Tools(ToolCommand::Turn(1.0)))
+    action(Selection, "turn_left", "Turn left 1°", "Z", || {
+        Command::Tools(ToolCommand::Turn(1.0))
     })
     .chosen()
     .repeats(),
-    action(Selection, "turn_right", "Turn right 1°", "X", |_| {
-        Some(Command::Tools(ToolCommand::Turn(-1.0)))
+    action(Selection, "turn_right", "Turn right 1°", "X", || {
+        Command::Tools(ToolCommand::Turn(-1.0))
     })
     .chosen()
     .repeats(),
-    action(Selection, "turn_left_far", "Turn left 15°", "Shift+Z", |_| {
-        Some(Command::Tools(ToolCommand::Turn(15.0)))
+    action(Selection, "turn_left_far", "Turn left 15°", "Shift+Z", || {
+        Command::Tools(ToolCommand::Turn(15.0))
     })
     .chosen()
     .repeats(),
-    action(Selection, "turn_right_far", "Turn right 15°", "Shift+X", |_| {
-        Some(Command::Tools(ToolCommand::Turn(-15.0)))
+    action(Selection, "turn_right_far", "Turn right 15°", "Shift+X", || {
+        Command::Tools(ToolCommand::Turn(-15.0))
     })
     .chosen()
     .repeats(),
-    action(Selection, "turn_90", "Turn 90°", "C", |_| {
-        Some(Command::Tools(ToolCommand::Turn(90.0)))
+    action(Selection, "turn_90", "Turn 90°", "C", || {
+        Command::Tools(ToolCommand::Turn(90.0))
     })
     .chosen(),
-    action(Selection, "turn_180", "Turn 180°", "Q", |_| {
-        Some(Command::Tools(ToolCommand::Turn(180.0)))
+    action(Selection, "turn_180", "Turn 180°", "Q", || {
+        Command::Tools(ToolCommand::Turn(180.0))
     })
     .chosen(),
-    action(Selection, "select_all", "Select all boxes", "Ctrl+A", |_| {
-        Some(Command::Tools(ToolCommand::ChooseAll))
+    action(Selection, "select_all", "Select all boxes", "Ctrl+A", || {
+        Command::Tools(ToolCommand::ChooseAll)
     }),
-    action(Selection, "select_none", "Select no box", "Ctrl+Shift+A", |_| {
-        Some(Command::Tools(ToolCommand::ChooseNone))
+    action(Selection, "select_none", "Select no box", "Ctrl+Shift+A", || {
+        Command::Tools(ToolCommand::ChooseNone)
     }),
     action(
         Selection,
         "select_others",
         "Invert the selection",
         "Ctrl+I",
-        |_| Some(Command::Tools(ToolCommand::ChooseOthers)),
+        || Command::Tools(ToolCommand::ChooseOthers),
     ),
-    action(Selection, "copy", "Copy", "Ctrl+C", |_| {
-        Some(Command::Tools(ToolCommand::Copy))
+    action(Selection, "copy", "Copy", "Ctrl+C", || {
+        Command::Tools(ToolCommand::Copy)
     }),
-    action(Selection, "cut", "Cut", "Ctrl+X", |_| {
-        Some(Command::Tools(ToolCommand::Cut))
+    action(Selection, "cut", "Cut", "Ctrl+X", || {
+        Command::Tools(ToolCommand::Cut)
     }),
-    action(Selection, "paste", "Paste at the pointer", "Ctrl+V", |_| {
-        Some(Command::Tools(ToolCommand::Paste))
+    action(Selection, "paste", "Paste at the pointer", "Ctrl+V", || {
+        Command::Tools(ToolCommand::Paste)
     }),
-    action(Selection, "row", "Row of copies", "Ctrl+Shift+D", |_| {
-        Some(Command::Tools(ToolCommand::AskRow))
+    action(Selection, "row", "Row of copies", "Ctrl+Shift+D", || {
+        Command::Tools(ToolCommand::AskRow)
     }),
-    action(Selection, "mirror", "Mirror about the ego axis", "Ctrl+M", |_| {
-        Some(Command::Tools(ToolCommand::Mirror(false)))
+    action(Selection, "mirror", "Mirror about the ego axis", "Ctrl+M", || {
+        Command::Tools(ToolCommand::Mirror(false))
     }),
-    action(Selection, "mirror_copies", "Mirrored copies", "", |_| {
-        Some(Command::Tools(ToolCommand::Mirror(true)))
+    action(Selection, "mirror_copies", "Mirrored copies", "", || {
+        Command::Tools(ToolCommand::Mirror(true))
     }),
     action(
         Selection,
         "to_lane",
         "Boxes to the lane and the ground, things to the kerb",
         "D",
-        |_| Some(Command::Tools(ToolCommand::ToLane)),
+        || Command::Tools(ToolCommand::ToLane),
     )
     .chosen(),
-    action(Selection, "to_ground", "To the ground", "Shift+D", |_| {
-        Some(Command::Tools(ToolCommand::DropToGround))
+    action(Selection, "to_ground", "To the ground", "Shift+D", || {
+        Command::Tools(ToolCommand::DropToGround)
     })
     .chosen(),
     action(
@@ -109,7 +109,7 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         "raise",
         "Raise things: a storey, or 0.5 m",
         "] }",
-        |_| Some(raise(1)),
+        || raise(1),
     )
     .things()
     .repeats(),
@@ -118,14 +118,12 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         "lower",
         "Lower things: a storey, or 0.5 m",
         "[ {",
-        |_| Some(raise(-1)),
+        || raise(-1),
     )
     .things()
     .repeats(),
-    action(Selection, "next_box", "Next box", "J", |_| {
-        Some(Command::SelectNext(1))
-    }),
-    action(Selection, "previous_box", "Previous box", "Shift+J", |_| {
-        Some(Command::SelectNext(-1))
+    action(Selection, "next_box", "Next box", "J", || Command::SelectNext(1)),
+    action(Selection, "previous_box", "Previous box", "Shift+J", || {
+        Command::SelectNext(-1)
     }),
 ];

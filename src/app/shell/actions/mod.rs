@@ -8,7 +8,6 @@ use std::sync::LazyLock;
 use glam::DVec3;
 
 use crate::command::Command;
-use crate::state::UiState;
 use crate::tools::ToolCommand;
 use editor::tools::{self, Shortcut};
 
@@ -79,8 +78,8 @@ pub struct ActionDef {
 /// What an action does.
 #[derive(Clone, Copy)]
 enum Does {
-    /// Asks for something; nothing if only the window's state changes.
-    Command(fn(&mut UiState) -> Option<Command>),
+    /// Asks for something.
+    Command(fn() -> Command),
     /// The shortcut of a tool of that name.
     Shortcut,
 }
@@ -90,7 +89,7 @@ const fn action(
     id: &'static str,
     title: &'static str,
     keys: &'static str,
-    command: fn(&mut UiState) -> Option<Command>,
+    command: fn() -> Command,
 ) -> ActionDef {
     ActionDef {
         id,
@@ -104,11 +103,11 @@ const fn action(
 }
 
 impl ActionDef {
-    /// What the action asks for now.
-    pub fn run(&self, state: &mut UiState) -> Option<Command> {
+    /// What the action asks for.
+    pub fn command(&self) -> Command {
         match self.does {
-            Does::Command(command) => command(state),
-            Does::Shortcut => Some(Command::Tools(ToolCommand::Shortcut(self.id))),
+            Does::Command(command) => command(),
+            Does::Shortcut => Command::Tools(ToolCommand::Shortcut(self.id)),
         }
     }
 

@@ -19,7 +19,7 @@ macro_rules! bookmarks {
                     concat!("bookmark_go_", $slot),
                     concat!("Go to kept view ", $slot),
                     concat!("F", $slot),
-                    |_| Some(Command::View(ViewCommand::GoToBookmark($slot))),
+                    || Command::View(ViewCommand::GoToBookmark($slot)),
                 ),)*
                 _ => panic!("there are nine"),
             }
@@ -33,7 +33,7 @@ macro_rules! bookmarks {
                     concat!("bookmark_keep_", $slot),
                     concat!("Keep this view as ", $slot),
                     concat!("Ctrl+F", $slot),
-                    |_| Some(Command::View(ViewCommand::KeepBookmark($slot))),
+                    || Command::View(ViewCommand::KeepBookmark($slot)),
                 ),)*
                 _ => panic!("there are nine"),
             }
@@ -45,59 +45,59 @@ bookmarks!(1, 2, 3, 4, 5, 6, 7, 8, 9);
 
 /// Views, generation, files.
 pub(super) const ACTIONS: &[ActionDef] = &[
-    action(Views, "frame_selection", "Frame the selection", "F", |_| {
-        Some(Command::View(ViewCommand::FrameSelection))
+    action(Views, "frame_selection", "Frame the selection", "F", || {
+        Command::View(ViewCommand::FrameSelection)
     }),
-    action(Views, "frame_all", "Frame everything", "Home", |_| {
-        Some(Command::View(ViewCommand::FrameAll))
+    action(Views, "frame_all", "Frame everything", "Home", || {
+        Command::View(ViewCommand::FrameAll)
     }),
-    action(Views, "view_top", "3D view from above", "7", |_| {
-        Some(Command::View(ViewCommand::Preset(ViewPreset::Top)))
+    action(Views, "view_top", "3D view from above", "7", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Top))
     })
     .over_3d(),
-    action(Views, "view_front", "3D view from the front", "1", |_| {
-        Some(Command::View(ViewCommand::Preset(ViewPreset::Front)))
+    action(Views, "view_front", "3D view from the front", "1", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Front))
     })
     .over_3d(),
-    action(Views, "view_side", "3D view from the side", "3", |_| {
-        Some(Command::View(ViewCommand::Preset(ViewPreset::Side)))
+    action(Views, "view_side", "3D view from the side", "3", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Side))
     })
     .over_3d(),
-    action(Views, "view_perspective", "3D view in perspective", "5", |_| {
-        Some(Command::View(ViewCommand::Preset(ViewPreset::Perspective)))
+    action(Views, "view_perspective", "3D view in perspective", "5", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Perspective))
     })
     .over_3d(),
-    action(Views, "view_ego", "3D view from the ego vehicle", "0", |_| {
-        Some(Command::View(ViewCommand::Preset(ViewPreset::Ego)))
+    action(Views, "view_ego", "3D view from the ego vehicle", "0", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Ego))
     })
     .over_3d(),
-    action(Views, "look_1", "Look through camera 1", "Ctrl+Alt+1", |_| {
-        Some(Command::View(ViewCommand::LookThrough(0)))
+    action(Views, "look_1", "Look through camera 1", "Ctrl+Alt+1", || {
+        Command::View(ViewCommand::LookThrough(0))
     }),
-    action(Views, "look_2", "Look through camera 2", "Ctrl+Alt+2", |_| {
-        Some(Command::View(ViewCommand::LookThrough(1)))
+    action(Views, "look_2", "Look through camera 2", "Ctrl+Alt+2", || {
+        Command::View(ViewCommand::LookThrough(1))
     }),
-    action(Views, "look_3", "Look through camera 3", "Ctrl+Alt+3", |_| {
-        Some(Command::View(ViewCommand::LookThrough(2)))
+    action(Views, "look_3", "Look through camera 3", "Ctrl+Alt+3", || {
+        Command::View(ViewCommand::LookThrough(2))
     }),
-    action(Views, "look_4", "Look through camera 4", "Ctrl+Alt+4", |_| {
-        Some(Command::View(ViewCommand::LookThrough(3)))
+    action(Views, "look_4", "Look through camera 4", "Ctrl+Alt+4", || {
+        Command::View(ViewCommand::LookThrough(3))
     }),
-    action(Views, "look_5", "Look through camera 5", "Ctrl+Alt+5", |_| {
-        Some(Command::View(ViewCommand::LookThrough(4)))
+    action(Views, "look_5", "Look through camera 5", "Ctrl+Alt+5", || {
+        Command::View(ViewCommand::LookThrough(4))
     }),
-    action(Views, "look_6", "Look through camera 6", "Ctrl+Alt+6", |_| {
-        Some(Command::View(ViewCommand::LookThrough(5)))
+    action(Views, "look_6", "Look through camera 6", "Ctrl+Alt+6", || {
+        Command::View(ViewCommand::LookThrough(5))
     }),
-    action(Views, "swap_views", "Swap bird's-eye and 3D view", "Tab", |_| {
-        Some(Command::View(ViewCommand::SwapPanes))
+    action(Views, "swap_views", "Swap bird's-eye and 3D view", "Tab", || {
+        Command::View(ViewCommand::SwapPanes)
     }),
     action(
         Views,
         "maximize",
         "Maximize the pane under the pointer",
         "Shift+Space",
-        |_| Some(Command::View(ViewCommand::MaximizePane)),
+        || Command::View(ViewCommand::MaximizePane),
     ),
     go(1),
     go(2),
@@ -117,106 +117,106 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     keep(7),
     keep(8),
     keep(9),
-    action(Views, "show_things", "Show or hide background things", "", |_| {
-        Some(Command::Tools(ToolCommand::Thing(ThingCommand::ToggleShown)))
+    action(Views, "show_things", "Show or hide background things", "", || {
+        Command::Tools(ToolCommand::Thing(ThingCommand::ToggleShown))
     }),
     action(
         Views,
         "lock_things",
         "Lock or unlock background things",
         "",
-        |_| Some(Command::Tools(ToolCommand::Thing(ThingCommand::ToggleLocked))),
+        || Command::Tools(ToolCommand::Thing(ThingCommand::ToggleLocked)),
     ),
-    action(Views, "grid", "Grid", "G", |_| {
-        Some(Command::View(ViewCommand::ToggleGrid))
+    action(Views, "grid", "Grid", "G", || {
+        Command::View(ViewCommand::ToggleGrid)
     }),
-    action(Views, "workspace_edit", "Workspace: Edit", "Alt+1", |_| {
-        Some(Command::View(ViewCommand::Workspace(Workspace::Edit)))
+    action(Views, "workspace_edit", "Workspace: Edit", "Alt+1", || {
+        Command::View(ViewCommand::Workspace(Workspace::Edit))
     }),
-    action(Views, "workspace_paint", "Workspace: Paint", "Alt+2", |_| {
-        Some(Command::View(ViewCommand::Workspace(Workspace::Paint)))
+    action(Views, "workspace_paint", "Workspace: Paint", "Alt+2", || {
+        Command::View(ViewCommand::Workspace(Workspace::Paint))
     }),
-    action(Views, "workspace_voxels", "Workspace: Voxels", "Alt+3", |_| {
-        Some(Command::View(ViewCommand::Workspace(Workspace::Voxels)))
+    action(Views, "workspace_voxels", "Workspace: Voxels", "Alt+3", || {
+        Command::View(ViewCommand::Workspace(Workspace::Voxels))
     }),
-    action(Views, "workspace_sensors", "Workspace: Sensors", "Alt+4", |_| {
-        Some(Command::View(ViewCommand::Workspace(Workspace::Sensors)))
+    action(Views, "workspace_sensors", "Workspace: Sensors", "Alt+4", || {
+        Command::View(ViewCommand::Workspace(Workspace::Sensors))
     }),
-    action(Views, "workspace_label", "Workspace: Label", "Alt+5", |_| {
-        Some(Command::View(ViewCommand::Workspace(Workspace::Label)))
+    action(Views, "workspace_label", "Workspace: Label", "Alt+5", || {
+        Command::View(ViewCommand::Workspace(Workspace::Label))
     }),
-    action(Views, "workspace_trade", "Workspace: Trade", "Alt+6", |_| {
-        Some(Command::View(ViewCommand::Workspace(Workspace::Trade)))
+    action(Views, "workspace_trade", "Workspace: Trade", "Alt+6", || {
+        Command::View(ViewCommand::Workspace(Workspace::Trade))
     }),
     action(
         Generation,
         "calibrate",
         "Calibrate the quality slider",
         "",
-        |_| Some(Command::Generation(GenerationCommand::Calibrate)),
+        || Command::Generation(GenerationCommand::Calibrate),
     ),
-    action(Generation, "refine", "Measure the last edit's error", "", |_| {
-        Some(Command::Generation(GenerationCommand::Refine))
+    action(Generation, "refine", "Measure the last edit's error", "", || {
+        Command::Generation(GenerationCommand::Refine)
     }),
-    action(Views, "sensors", "Sensors of the vehicle", "", |_| {
-        Some(Command::Toggle(Window::Sensors))
+    action(Views, "sensors", "Sensors of the vehicle", "", || {
+        Command::Toggle(Window::Sensors)
     }),
-    action(Views, "performance", "Performance overlay", "F10", |_| {
-        Some(Command::Toggle(Window::Performance))
+    action(Views, "performance", "Performance overlay", "F10", || {
+        Command::Toggle(Window::Performance)
     }),
-    action(Views, "log", "Log", "", |_| Some(Command::Toggle(Window::Log))),
+    action(Views, "log", "Log", "", || Command::Toggle(Window::Log)),
     action(
         Generation,
         "generate",
         "Generate everything",
         "Ctrl+Enter",
-        |_| Some(Command::Generation(GenerationCommand::Generate { full: true })),
+        || Command::Generation(GenerationCommand::Generate { full: true }),
     ),
     action(
         Generation,
         "generate_edited",
         "Generate what was edited",
         "Ctrl+Shift+Enter",
-        |_| Some(Command::Generation(GenerationCommand::Generate { full: false })),
+        || Command::Generation(GenerationCommand::Generate { full: false }),
     ),
-    action(Generation, "live", "Live on or off", "Ctrl+Space", |_| {
-        Some(Command::Generation(GenerationCommand::ToggleLive))
+    action(Generation, "live", "Live on or off", "Ctrl+Space", || {
+        Command::Generation(GenerationCommand::ToggleLive)
     }),
-    action(Generation, "cancel", "Cancel", "Ctrl+Backspace", |_| {
-        Some(Command::Generation(GenerationCommand::Cancel {
+    action(Generation, "cancel", "Cancel", "Ctrl+Backspace", || {
+        Command::Generation(GenerationCommand::Cancel {
             running: true,
             waiting: false,
-        }))
+        })
     }),
-    action(Generation, "scenery", "Regenerate scenery", "", |_| {
-        Some(Command::Generation(GenerationCommand::DrawScenery))
+    action(Generation, "scenery", "Regenerate scenery", "", || {
+        Command::Generation(GenerationCommand::DrawScenery)
     }),
-    action(Generation, "accept", "Accept the new result", "", |_| {
-        Some(Command::Generation(GenerationCommand::Decide(Verdict::Accept)))
+    action(Generation, "accept", "Accept the new result", "", || {
+        Command::Generation(GenerationCommand::Decide(Verdict::Accept))
     }),
-    action(Generation, "decline", "Decline the new result", "", |_| {
-        Some(Command::Generation(GenerationCommand::Decide(Verdict::Decline)))
+    action(Generation, "decline", "Decline the new result", "", || {
+        Command::Generation(GenerationCommand::Decide(Verdict::Decline))
     }),
-    action(Generation, "next_seed", "Another result: next seed", "", |_| {
-        Some(Command::Generation(GenerationCommand::Decide(Verdict::NextSeed)))
+    action(Generation, "next_seed", "Another result: next seed", "", || {
+        Command::Generation(GenerationCommand::Decide(Verdict::NextSeed))
     }),
     action(
         Generation,
         "stop_here",
         "Stop generating, keep what is shown",
         "",
-        |_| Some(Command::Generation(GenerationCommand::StopHere)),
+        || Command::Generation(GenerationCommand::StopHere),
     ),
     action(
         Generation,
         "cancel_waiting",
         "Drop the edit that waits",
         "",
-        |_| {
-            Some(Command::Generation(GenerationCommand::Cancel {
+        || {
+            Command::Generation(GenerationCommand::Cancel {
                 running: false,
                 waiting: true,
-            }))
+            })
         },
     ),
     action(
@@ -224,11 +224,11 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         "cancel_all",
         "Cancel what runs and what waits",
         "Ctrl+Shift+Backspace",
-        |_| {
-            Some(Command::Generation(GenerationCommand::Cancel {
+        || {
+            Command::Generation(GenerationCommand::Cancel {
                 running: true,
                 waiting: true,
-            }))
+            })
         },
     ),
     action(
@@ -236,79 +236,76 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         "compare",
         "Compare: off, wipe, side, difference",
         "Shift+Backslash",
-        |_| Some(Command::View(ViewCommand::CycleCompare)),
+        || Command::View(ViewCommand::CycleCompare),
     ),
     action(
         Generation,
         "previous_version",
         "Previous version",
         "Ctrl+[",
-        |_| Some(Command::Generation(GenerationCommand::StepVersion(-1))),
+        || Command::Generation(GenerationCommand::StepVersion(-1)),
     ),
-    action(Generation, "next_version", "Next version", "Ctrl+]", |_| {
-        Some(Command::Generation(GenerationCommand::StepVersion(1)))
+    action(Generation, "next_version", "Next version", "Ctrl+]", || {
+        Command::Generation(GenerationCommand::StepVersion(1))
     }),
     action(
         Generation,
         "confirm_inferred",
         "Confirm what was inferred",
         "",
-        |_| Some(Command::ConfirmInferred),
+        || Command::ConfirmInferred,
     ),
-    action(Generation, "clear_paint", "Unlock painted voxels", "", |_| {
-        Some(Command::ClearPaint)
+    action(Generation, "clear_paint", "Unlock painted voxels", "", || {
+        Command::ClearPaint
     }),
-    action(File, "undo", "Undo", "Ctrl+Z", |_| Some(Command::Undo)).repeats(),
-    action(File, "redo", "Redo", "Ctrl+Shift+Z Ctrl+Y", |_| {
-        Some(Command::Redo)
-    })
-    .repeats(),
-    action(File, "new", "New scene", "Ctrl+N", |_| {
-        Some(Command::File(FileCommand::New))
+    action(File, "undo", "Undo", "Ctrl+Z", || Command::Undo).repeats(),
+    action(File, "redo", "Redo", "Ctrl+Shift+Z Ctrl+Y", || Command::Redo).repeats(),
+    action(File, "new", "New scene", "Ctrl+N", || {
+        Command::File(FileCommand::New)
     }),
-    action(File, "open", "Open", "Ctrl+O", |_| {
-        Some(Command::File(FileCommand::Open))
+    action(File, "open", "Open", "Ctrl+O", || {
+        Command::File(FileCommand::Open)
     }),
-    action(File, "save", "Save", "Ctrl+S", |_| {
-        Some(Command::File(FileCommand::Save))
+    action(File, "save", "Save", "Ctrl+S", || {
+        Command::File(FileCommand::Save)
     }),
-    action(File, "save_as", "Save as", "Ctrl+Shift+S", |_| {
-        Some(Command::File(FileCommand::SaveAs))
+    action(File, "save_as", "Save as", "Ctrl+Shift+S", || {
+        Command::File(FileCommand::SaveAs)
     }),
-    action(File, "screenshot", "Screenshot of the 3D view", "F12", |_| {
-        Some(Command::File(FileCommand::QuickShot))
+    action(File, "screenshot", "Screenshot of the 3D view", "F12", || {
+        Command::File(FileCommand::QuickShot)
     }),
-    action(File, "export_screenshot", "Export a screenshot", "", |_| {
-        Some(Command::File(FileCommand::ExportScreenshot))
+    action(File, "export_screenshot", "Export a screenshot", "", || {
+        Command::File(FileCommand::ExportScreenshot)
     }),
-    action(File, "import_rig", "Import sensors", "", |_| {
-        Some(Command::File(FileCommand::ImportRig))
+    action(File, "import_rig", "Import sensors", "", || {
+        Command::File(FileCommand::ImportRig)
     }),
-    action(File, "export_rig", "Export sensors", "", |_| {
-        Some(Command::File(FileCommand::ExportRig))
+    action(File, "export_rig", "Export sensors", "", || {
+        Command::File(FileCommand::ExportRig)
     }),
-    action(File, "export", "Export", "Ctrl+E", |_| {
-        Some(Command::Toggle(Window::Export))
+    action(File, "export", "Export", "Ctrl+E", || {
+        Command::Toggle(Window::Export)
     }),
-    action(File, "checks", "Checks of the scene", "", |_| {
-        Some(Command::View(ViewCommand::TogglePane(PaneId::CHECKS)))
+    action(File, "checks", "Checks of the scene", "", || {
+        Command::View(ViewCommand::TogglePane(PaneId::CHECKS))
     }),
-    action(File, "prompt", "Prompt", "/", |_| {
-        Some(Command::View(ViewCommand::FocusPrompt))
+    action(File, "prompt", "Prompt", "/", || {
+        Command::View(ViewCommand::FocusPrompt)
     }),
-    action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", |_| {
-        Some(Command::Toggle(Window::Palette))
+    action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", || {
+        Command::Toggle(Window::Palette)
     }),
-    action(File, "keys", "Sheet of keys", "?", |_| {
-        Some(Command::Toggle(Window::Keys))
+    action(File, "keys", "Sheet of keys", "?", || {
+        Command::Toggle(Window::Keys)
     }),
-    action(File, "settings", "Settings", "Ctrl+,", |_| {
-        Some(Command::Toggle(Window::Settings))
+    action(File, "settings", "Settings", "Ctrl+,", || {
+        Command::Toggle(Window::Settings)
     }),
-    action(File, "start_screen", "Start screen", "", |_| {
-        Some(Command::Toggle(Window::Start))
+    action(File, "start_screen", "Start screen", "", || {
+        Command::Toggle(Window::Start)
     }),
-    action(File, "quit", "Quit", "Ctrl+Q", |_| {
-        Some(Command::File(FileCommand::Quit))
+    action(File, "quit", "Quit", "Ctrl+Q", || {
+        Command::File(FileCommand::Quit)
     }),
 ];

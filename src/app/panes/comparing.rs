@@ -1,0 +1,66 @@
+//! How two states are compared, as the user chose it.
+
+/// How two states are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CompareMode {
+    /// Only the present state is shown.
+    #[default]
+    Off,
+    /// Before on the left of a line, after on its right.
+    Wipe,
+    /// Before beside after.
+    Side,
+    /// Voxels that differ are marked.
+    Difference,
+}
+
+impl CompareMode {
+    /// Every mode with its name and what it does.
+    pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
+        (CompareMode::Off, "Off", "only the present state"),
+        (CompareMode::Wipe, "Wipe", "before on the left of a line"),
+        (CompareMode::Side, "Side", "before beside after"),
+        (CompareMode::Difference, "Diff", "voxels that differ"),
+    ];
+
+    /// The next one.
+    pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|(mode, ..)| *mode == self).unwrap_or(0);
+        Self::ALL[(at + 1) % Self::ALL.len()].0
+    }
+}
+
+/// The way to compare, and what the user holds and drags for it.
+#[derive(Clone, Debug)]
+pub struct Comparing {
+    /// How the present state is compared with the version before.
+    pub mode: CompareMode,
+    /// The key that shows the version before is held.
+    pub holding_before: bool,
+    /// Where the line of the wipe stands, 0 to 1.
+    pub wipe_at: f32,
+}
+
+impl Default for Comparing {
+    fn default() -> Self {
+        Self {
+            mode: CompareMode::Off,
+            holding_before: false,
+            wipe_at: 0.5,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn modes_go_round() {
+        let mut mode = CompareMode::Off;
+        for _ in CompareMode::ALL {
+            mode = mode.next();
+        }
+        assert_eq!(mode, CompareMode::Off);
+    }
+}

@@ -1,0 +1,50 @@
+//! What the two large views show of a scene, and what they mark in it.
+
+use std::sync::Arc;
+
+use super::finding_marks::FindingMarks;
+
+/// What lies under the layers of the bird's-eye view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Underlay {
+    /// Layers only.
+    #[default]
+    Layout,
+    /// The occupancy from above, layers off.
+    Occupancy,
+    /// Both, the layers translucent.
+    Both,
+}
+
+/// What is shown.
+#[derive(Clone, Debug)]
+pub struct ViewsShown {
+    /// What lies under the layers.
+    pub underlay: Underlay,
+    /// Boxes.
+    pub boxes: bool,
+    /// Lane centres and dividers as lines.
+    pub lines: bool,
+    /// The 10 m grid, in both views.
+    pub grid: bool,
+    /// The LiDAR returns in the bird's-eye view too.
+    pub lidar_from_above: bool,
+    /// A tint where no sensor of the data set observed anything, in the bird's-eye view.
+    pub unobserved: bool,
+    /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both views.
+    pub finding_marks: Option<Arc<FindingMarks>>,
+}
+
+impl Default for ViewsShown {
+    fn default() -> Self {
+        Self {
+            underlay: Underlay::Layout,
+            boxes: true,
+            lines: true,
+            grid: true,
+            lidar_from_above: false,
+            unobserved: false,
+            finding_marks: None,
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Which windows are open over the panes, and what is chosen in them.
+
+/// A sensor of the rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorChoice {
+    /// By index.
+    Camera(usize),
+    /// By index.
+    Lidar(usize),
+}
+
+impl Default for SensorChoice {
+    fn default() -> Self {
+        Self::Camera(0)
+    }
+}
+
+/// The windows that are open.
+#[derive(Clone, Debug, Default)]
+pub struct OpenWindows {
+    /// The log.
+    pub log: bool,
+    /// The sheet of keys.
+    pub keys: bool,
+    /// The settings.
+    pub settings: bool,
+    /// The start screen.
+    pub start: bool,
+    /// The sensors' window.
+    pub sensors: bool,
+    /// The sensor chosen in it.
+    pub sensor: SensorChoice,
+}
