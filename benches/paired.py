@@ -24,6 +24,8 @@ def commands(edits, out):
         "edit": (["edit", SCENE, "--edits", edits, "-o", out / "e.loom"], "e.loom"),
         "generate": (["generate", SCENE, "--bare", "--seed", "3", "-o", out / "g.loom"], "g.loom"),
         "views": (["render", SCENE, "--what", "semantic,depth", "--size", "400x225", "-o", out / "v"], "v"),
+        "large": (["render", SCENE, "--what", "semantic,depth", "--size", "800x450", "-o", out / "w"], "w"),
+        "shapes": (["render", SCENE, "--what", "semantic", "--source", "shapes", "--size", "800x450", "-o", out / "s"], "s"),
         "picture": (["render", SCENE, "--what", "appearance", "--preview", "--size", "240x135", "-o", out / "p"], "p"),
         "lidar": (["render", SCENE, "--what", "lidar", "--lidar", "learned", "-o", out / "l"], "l"),
     }

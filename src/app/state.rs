@@ -15,7 +15,7 @@ use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;
 
 /// State of the window.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct UiState {
     /// The tools and what they hold: the state is a [`Hand`] with more.
     pub tools: ToolState,
@@ -69,22 +69,6 @@ impl Deref for UiState {
 impl DerefMut for UiState {
     fn deref_mut(&mut self) -> &mut Hand {
         &mut self.tools.hand
-    }
-}
-
-impl Default for UiState {
-    fn default() -> Self {
-        Self {
-            tools: ToolState::default(),
-            shown: ViewsShown::default(),
-            correcting: false,
-            named: Named::default(),
-            cameras: CamerasShown::default(),
-            lidar: LidarShown::default(),
-            compare: Comparing::default(),
-            pointed: Pointed::default(),
-            windows: OpenWindows::default(),
-        }
     }
 }
 

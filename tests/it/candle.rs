@@ -276,7 +276,7 @@ fn layout_input(nodes: usize, map: bool) -> LayoutInput {
         from: (i * 7 % nodes) as u16,
         to: (i * 11 % nodes) as u16,
         relation: (i % 19) as u8,
-        distance_m: (i % 2 == 0).then_some(i as f32 / 3.0),
+        distance_m: i.is_multiple_of(2).then_some(i as f32 / 3.0),
     };
     let cells = MAP_SIDE * MAP_SIDE * MAP_CHANNELS;
     LayoutInput {

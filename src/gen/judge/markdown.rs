@@ -45,11 +45,22 @@ fn row(figure: &str, value: Option<&Value>) -> Row {
     let around = number("mean")
         .zip(number("ci95"))
         .map(|(mean, half)| [mean - half, mean + half]);
+    let n = value.and_then(|v| v.get("n")?.as_u64());
+    if n == Some(0) {
+        // The mean of nothing says nothing.
+        return Row {
+            figure: figure.to_owned(),
+            value: None,
+            interval: None,
+            n,
+            least: None,
+        };
+    }
     Row {
         figure: figure.to_owned(),
         value: plain.or_else(|| number("mean")).or_else(|| number("share")),
         interval: around.or_else(|| number("low").zip(number("high")).map(|(low, high)| [low, high])),
-        n: value.and_then(|v| v.get("n")?.as_u64()),
+        n,
         least: None,
     }
 }

@@ -13,6 +13,7 @@ static QUICK: [Suite; 2] = [
             ("a share", "/part/share"),
             ("a | number", "/number"),
             ("nothing", "/absent"),
+            ("the mean of nothing", "/none"),
         ],
         quick: |options| options.frames = 3,
         table: None,
@@ -22,6 +23,7 @@ static QUICK: [Suite; 2] = [
                 "mean": { "mean": 0.5, "ci95": 0.125, "n": 7 },
                 "part": { "share": { "share": 0.25, "low": 0.1, "high": 0.5, "n": 4 } },
                 "number": 12345.6,
+                "none": { "mean": -0.0, "ci95": 0.0, "n": 0 },
             });
             Ok((
                 report,
@@ -62,6 +64,7 @@ fn every_suite_has_its_section() {
         "| a share | 0.250 | 0.100 to 0.500 | 4 |  |",
         "| a \\| number | 12346 |  |  |  |",
         "| nothing | – |  |  |  |",
+        "| the mean of nothing | – |  | 0 |  |",
         "| kept | 1 |  |  | ≥ 1 |",
         "| short | 0.500 |  |  | ≥ 0.750, **missed** |",
         "| absent | – |  |  | ≥ 0, **missed** |",
