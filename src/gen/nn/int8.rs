@@ -5,7 +5,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::layers::View;
+use super::view::View;
 use crate::vectorised;
 
 /// Columns of a vector of 32-bit sums.

@@ -9,49 +9,13 @@ use rayon::prelude::*;
 use super::int8::Int8Matrix;
 use super::kernels;
 use super::map::Map;
+pub use super::view::View;
 use crate::Precision;
 use crate::packed_matrix::{LANES, PANEL, PackedMatrix, Start, product};
 use crate::weights::{WeightFile, WeightsError};
 
 /// Epsilon of every norm in these networks.
 pub const NORM_EPS: f64 = 1e-6;
-
-/// A matrix inside a slice: value (r, c) lies at `r * row_stride + c * column_stride`.
-#[derive(Clone, Copy)]
-pub struct View<'a> {
-    data: &'a [f32],
-    row_stride: usize,
-    column_stride: usize,
-}
-
-impl<'a> View<'a> {
-    /// Rows of `row_stride` values from the start of `data`; rows may overlap.
-    pub fn rows(data: &'a [f32], row_stride: usize) -> Self {
-        Self {
-            data,
-            row_stride,
-            column_stride: 1,
-        }
-    }
-
-    /// The transpose of [`rows`](Self::rows).
-    pub fn columns(data: &'a [f32], column_stride: usize) -> Self {
-        Self {
-            data,
-            row_stride: 1,
-            column_stride,
-        }
-    }
-
-    /// Value (row, column).
-    pub fn at(&self, row: usize, column: usize) -> f32 {
-        self.data[row * self.row_stride + column * self.column_stride]
-    }
-
-    fn holds(&self, rows: usize, columns: usize) -> bool {
-        (rows - 1) * self.row_stride + (columns - 1) * self.column_stride < self.data.len()
-    }
-}
 
 /// out[m x n, rows `out_stride` apart] = a[m x k] b[k x n], plus what `out` held if `add`.
 /// One thread; sums over k run in the same order for every m.

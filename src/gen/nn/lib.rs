@@ -15,6 +15,7 @@ mod precision;
 pub mod rules;
 pub mod sparse;
 pub mod transformer;
+mod view;
 pub mod weights;
 
 pub use cpu::Cpu;

@@ -1,7 +1,7 @@
 //! One order for what can be said in any order: readings that ask for the same are equal. Twin of
 //! `training/words/canonical.py`.
 
-use super::reader::Mode;
+use super::mode::Mode;
 use super::reading::{Act, Anchor, Destination, Place, Reading, Relation, Thing, Turn, What};
 use scene::graph::{LaneRole, ObjectState};
 

@@ -14,6 +14,7 @@ pub mod grammar;
 mod guess;
 pub mod hear;
 pub mod lexicon;
+mod mode;
 mod named;
 pub mod notation;
 pub mod nouns;

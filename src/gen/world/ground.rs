@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::draw::{Draw, Noise};
 use super::{BIN_M, BINS, Hit, scenery};
+use scene::draw::{Draw, Noise};
 use scene::{BevLayer, BevLayout, Class, Relief, Window};
 
 /// Height of a kerb above the road, m.

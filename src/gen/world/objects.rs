@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::draw::{Draw, hash};
+use scene::draw::{Draw, hash};
 use scene::solid::Solid;
 use scene::{Class, SceneBox};
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::draw::Draw;
+use scene::draw::Draw;
 use scene::raster::{draw_polyline, line_cells, polygon_cells};
 use scene::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, Window};
 

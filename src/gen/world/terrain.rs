@@ -3,8 +3,8 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
-use super::draw::{Draw, Noise};
 use super::scenery::distance_cells;
+use scene::draw::{Draw, Noise};
 use scene::{BevLayer, BevLayout, Extent, Relief, Window};
 
 /// A lie of the land.

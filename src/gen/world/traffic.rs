@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::draw::Draw;
 use super::template::offset_line;
+use scene::draw::Draw;
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, PolylineKind, SceneBox, Window};
 

@@ -12,7 +12,7 @@ mod plain;
 use bytemuck::{Pod, Zeroable};
 
 use super::int8::Int8Matrix;
-use super::layers::View;
+use super::view::View;
 
 /// Columns of a panel: three vectors of sixteen.
 pub(super) const PANEL: usize = 3 * LANES;

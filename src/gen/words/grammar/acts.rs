@@ -1,8 +1,8 @@
 //! Clauses: commands, statements about what is there, and what a new scene holds.
 
 use super::super::lexicon::{LONGEST_PHRASE, Lexicon};
+use super::super::mode::Mode;
 use super::super::nouns::Noun;
-use super::super::reader::Mode;
 use super::super::reading::{
     Amount, Destination, Feature, Place, Quantity, Relation, Thing, Traits, Turn, Way, What,
 };

@@ -10,7 +10,7 @@ mod things;
 
 use std::cell::Cell;
 
-use super::reader::Mode;
+use super::mode::Mode;
 use super::reading::{Act, Reading};
 use super::tokens::Token;
 use place::beside_road::Span;

@@ -9,6 +9,7 @@ mod tests;
 use std::sync::{Arc, OnceLock};
 
 use super::account::missing;
+pub use super::mode::Mode;
 use super::notation;
 use super::reading::Reading;
 use super::tokens::{Speller, Token, tokens};
@@ -19,15 +20,6 @@ use symbols::{Input, Symbols};
 
 /// File name of the weights.
 pub const FILE: &str = "reader.safetensors";
-
-/// Whether a text makes a scene or changes one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// A new scene.
-    Prompt,
-    /// A change of the scene that is there.
-    Edit,
-}
 
 /// Parts of a long text that are read; what lies beyond is named.
 pub const MOST_PARTS: usize = 6;

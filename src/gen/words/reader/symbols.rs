@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use super::super::lexicon::{Lexicon, Sense};
+use super::super::mode::Mode;
 use super::super::notation::{self, Prefix};
 use super::super::nouns::Noun;
 use super::super::tokens::Token;
-use super::Mode;
 use nets::text::hash;
 
 /// Buckets of letter triples.

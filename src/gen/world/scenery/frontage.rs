@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::setting::{Setting, Side};
 use super::site::Site;
 use super::walk;
-use crate::draw::Draw;
 use scene::Form;
 use scene::background::{Building, Facade, Roof, STOREY_M};
+use scene::draw::Draw;
 
 /// How a setting builds; ranges in m.
 struct Lots {

@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::setting::Setting;
 use super::site::Site;
 use super::walk;
-use crate::draw::Draw;
 use scene::Form;
 use scene::background::{Line, LineKind, Post, PostKind};
+use scene::draw::Draw;
 
 /// What runs along the road in a setting: weights of hedge, wall, fence, guard rail, nothing; and its distance, m.
 fn boundary(setting: Setting) -> ([f64; 5], [f64; 2]) {

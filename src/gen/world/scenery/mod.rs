@@ -10,7 +10,7 @@ mod walk;
 
 use std::collections::BTreeMap;
 
-use super::draw::Draw;
+use scene::draw::Draw;
 use scene::{Background, BevLayout, BoxId, SceneBox};
 
 pub use setting::{Setting, Side, Style};

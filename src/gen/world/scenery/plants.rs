@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::setting::{Setting, Side};
 use super::site::Site;
 use super::walk;
-use crate::draw::{Draw, noise};
 use scene::background::{Shrubs, Tree, TreeKind};
+use scene::draw::{Draw, noise};
 use scene::{Form, Window};
 
 /// Trees per 1,000 m² of open ground, how much they gather in groves (0 to 1), and weights of [`TreeKind::ALL`].

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::draw::Draw;
+use scene::draw::Draw;
 use scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A kind of place.

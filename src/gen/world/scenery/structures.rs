@@ -5,8 +5,8 @@ use glam::DVec2;
 use super::setting::Setting;
 use super::site::Site;
 use super::walk;
-use crate::draw::Draw;
 use scene::background::{Bridge, Line, LineKind};
+use scene::draw::Draw;
 use scene::{BevLayer, Form, Window};
 
 /// Distances from paved ground at which a step of the ground is looked for, m.

@@ -7,7 +7,7 @@ use super::drive::{Drive, poses};
 use super::observed::{Passed, seen_by_cameras};
 use super::{Vertical, finish_column};
 use crate::World;
-use crate::draw::Draw;
+use scene::draw::Draw;
 use scene::{Class, LidarPattern, Relief, SensorRig, VoxelGrid, Window};
 
 /// A lowest hit up to so many bins above the ground still belongs to something standing on it, before the smear.
