@@ -161,6 +161,7 @@ impl Canvas {
         let mut state = state.clone();
         state.tool = select::ID;
         let map = ScreenMap { rect, ..*map };
+        self.extent = scene.frame().extent();
         self.draw(ui, &response, &map, &input, &state);
     }
 

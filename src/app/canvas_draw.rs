@@ -229,14 +229,12 @@ pub(super) fn draw_window(ui: &Ui, map: &ScreenMap, extent: Extent) {
     let frame = egui::Shape::dashed_line(&[a, b, c, d, a], Stroke::new(1.0, color), 5.0, 4.0);
     ui.painter().extend(frame);
     let font = egui::FontId::proportional(12.0);
-    let at = a + egui::vec2(4.0, 2.0);
-    ui.painter().text(
-        at,
-        egui::Align2::LEFT_TOP,
-        "The networks generate this part",
-        font,
-        color,
-    );
+    let text = "The networks generate this part".to_owned();
+    let galley = ui.painter().layout_no_wrap(text, font, theme::ON_CANVAS);
+    let tag = Rect::from_min_size(a, galley.size() + vec2(10.0, 4.0));
+    ui.painter().rect_filled(tag, 0.0, Color32::from_black_alpha(170));
+    ui.painter()
+        .galley(tag.min + vec2(5.0, 2.0), galley, theme::ON_CANVAS);
 }
 
 /// A dashed frame around what is still to be generated, in columns of the networks' window.

@@ -20,9 +20,10 @@ pub enum Step {
     Release(PointerButton, Pos2),
 }
 
-/// The events of this frame. Presses count if the canvas is what lies under the pointer.
+/// The events of this frame. Presses count if the canvas is what lies under the pointer, and nothing that stands on it, as
+/// the line of a wipe does.
 pub fn steps(ui: &Ui, response: &Response) -> Vec<Step> {
-    let ours = response.contains_pointer()
+    let ours = response.hovered()
         || response.is_pointer_button_down_on()
         || response.dragged()
         || response.drag_stopped();

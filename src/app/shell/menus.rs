@@ -146,6 +146,11 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         );
     }
     ui.separator();
+    on(
+        item(ui, "Compare: off, wipe, side, difference", "Shift+\\", true),
+        Command::View(ViewCommand::CycleCompare),
+    );
+    ui.separator();
     ui.menu_button("Panes", |ui| {
         ui.set_min_width(190.0);
         for pane in panes::infos() {

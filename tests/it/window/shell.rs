@@ -144,6 +144,30 @@ fn versions_are_compared_and_gone_back_to() {
     assert_eq!(bench.app().state.compare.mode, CompareMode::Wipe);
 }
 
+/// The line of a wipe lies on the view: who drags it does not paint.
+#[test]
+fn the_line_of_a_wipe_is_dragged_whatever_tool_is_held() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.key(Modifiers::NONE, Key::B);
+    bench.drag(&[bench.bev(-20.0, 10.0), bench.bev(-20.0, 14.0)], Modifiers::NONE);
+    let (layout, steps) = (bench.frame().layout.clone(), bench.history());
+    assert_eq!(steps.len(), 2, "{steps:?}");
+    bench.app().state.compare.mode = CompareMode::Wipe;
+    bench.steps(3);
+    let area = bench.pane("Bird's-eye view");
+    let at = bench.app().state.compare.wipe_at;
+    let line = egui::pos2(area.left() + area.width() * at, area.top() + area.height() * 0.6);
+    bench.drag(
+        &[line, line + egui::vec2(30.0, 0.0), line + egui::vec2(70.0, 10.0)],
+        Modifiers::NONE,
+    );
+    let moved = bench.app().state.compare.wipe_at - at;
+    assert!((moved - 70.0 / area.width()).abs() < 0.03, "{moved}");
+    assert_eq!(bench.history(), steps);
+    assert!(bench.frame().layout == layout);
+}
+
 #[test]
 fn settings_are_kept() {
     let folder = tempfile::tempdir().expect("a folder");
