@@ -7,25 +7,9 @@ use crate::camera_views::CamerasShown;
 use crate::state::UiState;
 use scene::{Camera, Scene, SceneBox};
 use sensors::march::GroundHeight;
-use sensors::perspective::clip_near;
+use sensors::perspective::{EDGES, clip_near};
 use viewport::GROUND_TOP_M;
 use widgets::theme;
-
-/// Pairs of corners; bits of a corner are its signs along x, y and z.
-const EDGES: [[usize; 2]; 12] = [
-    [0, 1],
-    [2, 3],
-    [4, 5],
-    [6, 7],
-    [0, 2],
-    [1, 3],
-    [4, 6],
-    [5, 7],
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-];
 
 /// How far below the physical ground the picture shows what stands on it, m: pictures of voxels have the ground where
 /// labels have it.

@@ -37,7 +37,8 @@ const FACES: [[usize; 4]; 6] = [
     [0, 2, 6, 4],
     [1, 3, 7, 5],
 ];
-const EDGES: [[usize; 2]; 12] = [
+/// Pairs of corners of a box; bits of a corner are its signs along x, y and z.
+pub const EDGES: [[usize; 2]; 12] = [
     [0, 1],
     [2, 3],
     [4, 5],

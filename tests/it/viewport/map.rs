@@ -7,7 +7,7 @@ use viewport::{
     BrushCells, LayoutPlane, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport, headless_device,
 };
 
-use super::pixels::hue_apart;
+use super::pixels::{hue_apart, scene_of};
 
 const SIZE: [u32; 2] = [320, 240];
 
@@ -23,20 +23,6 @@ fn with_wall() -> VoxelGrid {
         grid.set(x + i % 3, y0 + i / 3 % 40, i / 120, Class::Car.id());
     }
     grid
-}
-
-fn scene_of<'a>(grid: &'a VoxelGrid, rig: &'a SensorRig, options: &'a ViewOptions) -> ViewScene<'a> {
-    ViewScene {
-        grid,
-        bev: &[],
-        boxes: &[],
-        selected: &[],
-        hovered: None,
-        brush: &[],
-        lidar: None,
-        rig,
-        options,
-    }
 }
 
 fn options() -> ViewOptions {

@@ -52,7 +52,7 @@ impl Bench {
 }
 
 /// A scene of voxels alone.
-fn scene_of<'a>(grid: &'a VoxelGrid, rig: &'a SensorRig, options: &'a ViewOptions) -> ViewScene<'a> {
+pub fn scene_of<'a>(grid: &'a VoxelGrid, rig: &'a SensorRig, options: &'a ViewOptions) -> ViewScene<'a> {
     ViewScene {
         grid,
         bev: &[],

@@ -9,7 +9,7 @@ use scene::{CameraMaps, MultiPlaneImage, PerspectiveMap};
 const DEPTH_M: (f32, f32) = (2.0, 60.0);
 
 /// A picture of one camera, as data.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum CameraPicture {
     /// Classes and depths.
     Maps(CameraMaps),
