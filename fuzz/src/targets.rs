@@ -102,7 +102,7 @@ pub fn project_file(bytes: &[u8]) {
         Err(error) => one_line(error),
         Ok(scene) => {
             assert_eq!(scene.rig.problem(), None);
-            for frame in &scene.frames {
+            for frame in [scene.canvas(), scene.frame()] {
                 for (id, b) in frame.boxes.iter().chain(&frame.source.boxes) {
                     assert_eq!((b.id, b.problem()), (*id, None));
                 }
@@ -181,7 +181,7 @@ pub fn rig_file(bytes: &[u8]) {
         let rays = pattern.rays();
         assert!(rays <= SensorRig::MOST_RAYS);
         if rays <= 100_000 {
-            let rays = Rays::new(pattern, rig.ego_speed_mps);
+            let rays = Rays::new(pattern, rig.velocity_mps());
             let unit = |d: &DVec3| (d.length() - 1.0).abs() < 1e-6;
             assert!(rays.directions.iter().all(unit), "{pattern:?}");
         }

@@ -309,7 +309,7 @@ impl Canvas {
             .and_then(|p| select::thing_under(scene, state, p, 8.0 / map.scale));
         let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
         thing_outlines::outlines(&inside, map, scene, &state.things, hovered);
-        draw_ego(ui, map, &scene.rig);
+        draw_ego(ui, map, &scene.rig, &scene.frame().world_from_ego);
         if state.shown.boxes {
             draw_boxes(ui, map, response, input.scene, &state.tools);
         }
@@ -435,7 +435,6 @@ fn texture<K: PartialEq>(
 
 /// The thing whose footprint holds a point of the ego frame, m.
 fn thing_under(scene: &Scene, p_m: DVec2) -> Option<&Thing> {
-    let p_m = pick_things::ground_in_world(&scene.frame().world_from_ego, p_m);
     let id = pick_things::thing_at(&scene.background, p_m, 0.0)?;
     scene.background.get(id)
 }

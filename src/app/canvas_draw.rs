@@ -1,11 +1,11 @@
 //! What the bird's-eye view draws over its pictures.
 
 use egui::{Align2, Color32, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui, pos2, vec2};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use editor::pick;
 use editor::tools::select;
-use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Scene, SceneBox, SensorRig};
+use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Pose, Scene, SceneBox, SensorRig};
 
 use super::camera_views::LidarShown;
 use super::screen_map::ScreenMap;
@@ -109,12 +109,15 @@ pub(super) fn draw_points(ui: &Ui, map: &ScreenMap, sweep: &LidarSweep, shown: &
     ui.painter().add(Shape::mesh(mesh));
 }
 
-pub(super) fn draw_ego(ui: &Ui, map: &ScreenMap, rig: &SensorRig) {
+pub(super) fn draw_ego(ui: &Ui, map: &ScreenMap, rig: &SensorRig, world_from_ego: &Pose) {
     let (c, half) = (
         rig.ego_center_m,
         [rig.ego_size_m[0] / 2.0, rig.ego_size_m[1] / 2.0],
     );
-    let at = |x: f64, y: f64| map.to_screen(DVec2::new(c[0] + x * half[0], c[1] + y * half[1]));
+    let at = |x: f64, y: f64| {
+        let p = DVec3::new(c[0] + x * half[0], c[1] + y * half[1], 0.0);
+        map.to_screen(world_from_ego.apply(p).truncate())
+    };
     let body = vec![
         at(1.0, 0.55),
         at(0.8, 1.0),

@@ -128,6 +128,7 @@ impl ExportProgress {
 pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
     let of_rig = || {
         scene
+            .with_rig_in_world()
             .rig
             .cameras
             .iter()
@@ -160,11 +161,13 @@ pub fn export_all(
     let fills_a_folder = formats.len() > 1;
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
+    // Files speak of the ego frame; sensors see the scene where it is.
+    let (ego, scene) = (scene.in_ego(), scene.with_rig_in_world());
     for format in formats {
         let files = (format.write)(
-            scene,
+            &ego,
             &mut Making {
-                scene,
+                scene: &scene,
                 options,
                 progress,
             },
@@ -219,7 +222,9 @@ impl Products for Making<'_> {
     }
 
     fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
-        sweep(self.scene, self.options.lidar).map_err(FormatError::new)
+        let mut sweep = sweep(self.scene, self.options.lidar).map_err(FormatError::new)?;
+        sweep.place(&self.scene.rig.vehicle.inverse());
+        Ok(sweep)
     }
 
     fn camera_maps(

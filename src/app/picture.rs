@@ -230,6 +230,7 @@ impl View3d {
     /// A picture of the scene. Errors if it is larger than [`bounds`] allow.
     pub fn shot(&mut self, scene: &Scene, options: &ShotOptions) -> anyhow::Result<Picture> {
         bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
+        let scene = &*scene.with_rig_in_world();
         let frame = scene.frame();
         let sweep = match options.lidar {
             true => lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default(),

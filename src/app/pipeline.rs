@@ -17,7 +17,8 @@ impl WarmPipeline {
 
 impl Pipeline for WarmPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
-        let frame = job.scene.frame();
+        let scene = job.scene.for_generation();
+        let frame = scene.frame();
         let nothing_edited =
             job.params.region == RegionMode::Auto && inpaint::region_of(frame, &job.params).is_empty();
         if !nothing_edited {
@@ -26,7 +27,6 @@ impl Pipeline for WarmPipeline {
         let network_calls = self.0.prepare(job, ctx)?;
         Ok(GenResult {
             key: job.key(),
-            frame: job.scene.current,
             occupancy: frame.occupancy.clone(),
             report: GenReport {
                 network_calls,

@@ -1,6 +1,7 @@
 //! The thread that keeps LiDAR sweep and camera maps up to date with the scene shown. Newest scene
 //! wins; what is on screen stays until something newer is there.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -78,7 +79,10 @@ impl Sensing {
             return;
         }
         self.asked = Some((scene.rev, wanted, preview));
-        let scene = scene.clone();
+        let scene = match scene.with_rig_in_world() {
+            Cow::Borrowed(_) => scene.clone(),
+            Cow::Owned(placed) => Arc::new(placed),
+        };
         self.worker.submit(Request {
             scene,
             wanted,
@@ -213,7 +217,7 @@ impl Kept {
             Some((of, caster)) if of == rig => caster.update(&frame.occupancy),
             lidar => {
                 let ego = Some(EgoBox::of_rig(rig));
-                let cast = |pattern| Caster::new(&frame.occupancy, pattern, rig.ego_speed_mps, ego);
+                let cast = |pattern| Caster::new(&frame.occupancy, pattern, rig.velocity_mps(), ego);
                 *lidar = rig.lidars.first().map(|pattern| (rig.clone(), cast(pattern)));
             }
         }

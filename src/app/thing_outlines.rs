@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Shape, Stroke, pos2};
 use glam::{DVec2, DVec3};
 
 use editor::tools::beside::ThingState;
-use scene::{Form, Pose, Scene, ThingId};
+use scene::{Form, Scene, ThingId};
 
 use super::screen_map::ScreenMap;
 
@@ -113,7 +113,6 @@ pub(crate) fn outlines(
     if !things.shown || scene.background.is_empty() {
         return;
     }
-    let to_ego = scene.frame().world_from_ego.inverse();
     let many = scene.background.len() > MANY;
     for thing in scene.background.iter() {
         let chosen = things.chosen.contains(&thing.id);
@@ -121,7 +120,7 @@ pub(crate) fn outlines(
         if many && small && !chosen {
             continue;
         }
-        let form = in_frame(&thing.form, &to_ego);
+        let form = &thing.form;
         let (min, max) = form.bounds_m();
         if !map.rect_of(min, max).intersects(map.rect) {
             continue;
@@ -131,14 +130,7 @@ pub(crate) fn outlines(
             () if hovered == Some(thing.id) => Style::Hovered,
             () => Style::Plain,
         };
-        draw_form(painter, map, &form, style);
-    }
-}
-
-fn in_frame<'a>(form: &'a Form, to_ego: &Pose) -> std::borrow::Cow<'a, Form> {
-    match *to_ego == Pose::IDENTITY {
-        true => std::borrow::Cow::Borrowed(form),
-        false => std::borrow::Cow::Owned(form.in_frame(to_ego)),
+        draw_form(painter, map, form, style);
     }
 }
 
@@ -150,18 +142,17 @@ pub(crate) fn in_3d(
     things: &ThingState,
 ) {
     let frame = scene.frame();
-    let to_ego = frame.world_from_ego.inverse();
     let relief = |p: DVec2| frame.layout.relief.height_m(p);
     for thing in things.chosen_in(&scene.background) {
-        let form = thing.form.in_frame(&to_ego);
+        let form = &thing.form;
         let stroke = Stroke::new(1.6, Color32::WHITE);
         let floor = |p: DVec2| project(p.extend(relief(p) + 0.1));
         let middle = form.middle_m();
         let top_z = relief(middle) + form.height_m();
         let top = |p: DVec2| project(p.extend(top_z));
         for part in [&floor as &dyn Fn(DVec2) -> Option<Pos2>, &top] {
-            let (points, closed) = trace(&form, part);
-            let whole = points.len() == trace(&form, &|_| Some(pos2(0.0, 0.0))).0.len();
+            let (points, closed) = trace(form, part);
+            let whole = points.len() == trace(form, &|_| Some(pos2(0.0, 0.0))).0.len();
             if points.len() >= 2 {
                 painter.add(match closed && whole {
                     true => Shape::closed_line(points, stroke),
@@ -169,7 +160,7 @@ pub(crate) fn in_3d(
                 });
             }
         }
-        let posts = match &form {
+        let posts = match form {
             Form::Building(b) => b.outline_m.clone(),
             Form::Line(l) => l.points_m.clone(),
             _ => Vec::new(),

@@ -405,7 +405,7 @@ impl View3d {
             hovered,
             brush: &brush,
             lidar,
-            rig: &input.scene.rig,
+            rig: &input.scene.with_rig_in_world().rig,
             options: &options,
         };
         let [w, h] = if coarse { size.map(|s| s.div_ceil(2)) } else { size };
@@ -461,7 +461,7 @@ impl View3d {
             hovered: None,
             brush: &[],
             lidar,
-            rig: &scene.rig,
+            rig: &scene.with_rig_in_world().rig,
             options: &options,
         };
         let wgpu = &gpu.render_state;

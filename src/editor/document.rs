@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use scene::{Background, Scene, SceneRev, VoxelGrid};
+use scene::{Background, Frame, Scene, SceneRev, VoxelGrid};
 
 use scene::{Edit, EditError};
 
@@ -23,8 +23,6 @@ struct Step {
     label: Label, // of the edit that led here
     scene: Arc<Scene>,
     bytes: usize, // not shared with the step before; 0 for the first
-    /// Revisions that this very content had while other frames of it were shown.
-    shown_before: Vec<SceneRev>,
 }
 
 /// What an undo step is called.
@@ -37,9 +35,6 @@ pub type Label = std::borrow::Cow<'static, str>;
 pub struct Stale;
 
 impl Document {
-    /// Changes of the shown frame after which a running job can no longer be told to belong to a step.
-    const SHOWN_BEFORE: usize = 256;
-
     /// States kept at most, the current one included, however small they are.
     pub const MAX_STEPS: usize = 4096;
     /// Memory that the history may take unless the user wants otherwise.
@@ -49,12 +44,11 @@ impl Document {
 
     /// A document that was just opened or made: nothing to undo, nothing unsaved.
     pub fn new(scene: Scene) -> Self {
-        let saved = scene.rev;
+        let saved = scene.content();
         let first = Step {
             label: "Open".into(),
             scene: Arc::new(scene),
             bytes: 0,
-            shown_before: Vec::new(),
         };
         Self {
             steps: vec![first],
@@ -123,7 +117,9 @@ impl Document {
         if self.drag.take().is_some() || self.at == 0 {
             return None;
         }
+        let time_s = self.scene().time_s();
         self.at -= 1;
+        self.show(time_s);
         Some(&self.steps[self.at + 1].label)
     }
 
@@ -133,7 +129,9 @@ impl Document {
         if self.drag.take().is_some() || self.at + 1 == self.steps.len() {
             return None;
         }
+        let time_s = self.scene().time_s();
         self.at += 1;
+        self.show(time_s);
         Some(&self.steps[self.at].label)
     }
 
@@ -189,19 +187,20 @@ impl Document {
         if index >= self.steps.len() {
             return false;
         }
-        self.drag = None;
+        let time_s = self.settled_scene().time_s();
         self.at = index;
+        self.show(time_s);
         true
     }
 
     /// True if the settled state is not the one last opened or saved.
     pub fn is_dirty(&self) -> bool {
-        self.settled_scene().rev != self.saved
+        self.settled_scene().content() != self.saved
     }
 
     /// Notes that the settled state has been written to a file.
     pub fn mark_saved(&mut self) {
-        self.saved = self.settled_scene().rev;
+        self.saved = self.settled_scene().content();
     }
 
     /// Notes that the settled state is in no file of the user's: it was recovered.
@@ -209,64 +208,63 @@ impl Document {
         self.saved = SceneRev::fresh();
     }
 
-    /// Puts a generated occupancy into a frame of the step that is shown, if that is the state `rev` which it was generated
-    /// for; another frame may be shown by now. It becomes the occupancy and the source of the frame; painted voxels stay. No
-    /// undo step is added. Returns the new revision of the step.
-    pub fn adopt(&mut self, rev: SceneRev, frame: usize, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
-        let scene = self.with_result(rev, frame, occupancy)?;
-        let rev = scene.rev;
-        let step = &mut self.steps[self.at];
-        step.shown_before.clear();
-        step.scene = Arc::new(scene);
+    /// Puts a generated occupancy into the step that is shown, if that is the state `content` (of [`Scene::content`]) which it
+    /// was generated for, whatever moment is shown. It is the occupancy of [`Scene::for_generation`]'s frame, and becomes the
+    /// source of what comes; painted voxels stay. No undo step is added. Returns the new state.
+    pub fn adopt(&mut self, content: SceneRev, occupancy: VoxelGrid) -> Result<SceneRev, Stale> {
+        let scene = self.with_result(content, occupancy, None)?;
+        let content = scene.content();
+        self.steps[self.at].scene = Arc::new(scene);
         self.weigh(self.at);
         self.weigh(self.at + 1);
         self.forget_oldest();
-        Ok(rev)
+        Ok(content)
     }
 
     /// Like [`Self::adopt`], but adds an undo step: for a region that the user asked to inpaint.
     pub fn adopt_as_step(
         &mut self,
         label: impl Into<Label>,
-        rev: SceneRev,
-        frame: usize,
+        content: SceneRev,
         occupancy: VoxelGrid,
     ) -> Result<SceneRev, Stale> {
-        let scene = self.with_result(rev, frame, occupancy)?;
+        let scene = self.with_result(content, occupancy, None)?;
         self.push(label.into(), scene);
-        Ok(self.settled_scene().rev)
+        Ok(self.settled_scene().content())
     }
 
-    /// The step that is shown, with a generated occupancy in one of its frames.
-    fn with_result(&self, rev: SceneRev, frame: usize, occupancy: VoxelGrid) -> Result<Scene, Stale> {
-        let step = &self.steps[self.at];
-        let is_current = step.scene.rev == rev || step.shown_before.contains(&rev);
-        if self.drag.is_some() || !is_current {
-            return Err(Stale);
-        }
-        let mut scene = Scene::clone(&step.scene);
-        let frame = scene.frames.get_mut(frame).ok_or(Stale)?;
-        super::apply::adopt(Arc::make_mut(frame), occupancy).map_err(|_| Stale)?;
-        scene.rev = SceneRev::fresh();
-        Ok(scene)
-    }
-
-    /// Like [`Self::adopt_as_step`] for the frame that is shown, and replaces the things beside the roads, whose voxels are in the occupancy.
+    /// Like [`Self::adopt_as_step`], and replaces the things beside the roads, whose voxels are in the occupancy.
     pub fn adopt_with_things(
         &mut self,
         label: impl Into<Label>,
-        rev: SceneRev,
+        content: SceneRev,
         occupancy: VoxelGrid,
         background: Background,
     ) -> Result<SceneRev, Stale> {
-        if self.drag.is_some() || self.settled_scene().rev != rev {
+        let scene = self.with_result(content, occupancy, Some(background))?;
+        self.push(label.into(), scene);
+        Ok(self.settled_scene().content())
+    }
+
+    /// The step that is shown, with a generated occupancy.
+    fn with_result(
+        &self,
+        content: SceneRev,
+        occupancy: VoxelGrid,
+        background: Option<Background>,
+    ) -> Result<Scene, Stale> {
+        let shown = self.settled_scene();
+        if self.drag.is_some() || shown.content() != content {
             return Err(Stale);
         }
-        let mut scene = Scene::clone(self.settled_scene());
-        scene.background = Arc::new(background);
-        super::apply::adopt(scene.frame_mut(), occupancy).map_err(|_| Stale)?;
-        self.push(label.into(), scene);
-        Ok(self.settled_scene().rev)
+        let mut frame = Frame::clone(shown.for_generation().frame());
+        super::apply::adopt(&mut frame, occupancy).map_err(|_| Stale)?;
+        let mut scene = Scene::clone(shown);
+        if let Some(background) = background {
+            scene.background = Arc::new(background);
+        }
+        scene.set_generated(frame);
+        Ok(scene)
     }
 
     /// Shows a state that was kept elsewhere (a version), as an undo step. Does nothing if that state is shown already.
@@ -275,27 +273,17 @@ impl Document {
         self.push(label.into(), scene.clone());
     }
 
-    /// Shows another frame of the clip; not an undo step. False if there is none. Cancels a drag.
-    pub fn select_frame(&mut self, index: usize) -> bool {
-        let step = &mut self.steps[self.at];
-        if index >= step.scene.frames.len() {
-            return false;
-        }
+    /// Shows another moment of the scene; not an undo step, and nothing to save. False if it is shown already. Cancels a
+    /// drag.
+    pub fn show(&mut self, time_s: f64) -> bool {
         self.drag = None;
-        if step.scene.current != index {
-            let was_saved = self.saved == step.scene.rev;
-            step.shown_before.push(step.scene.rev);
-            if step.shown_before.len() > Self::SHOWN_BEFORE {
-                step.shown_before.remove(0);
-            }
-            let scene = Arc::make_mut(&mut step.scene);
-            scene.current = index;
-            scene.rev = SceneRev::fresh();
-            if was_saved {
-                self.saved = scene.rev; // showing another frame needs no saving
-            }
+        let scene = &mut self.steps[self.at].scene;
+        let mut other = Scene::clone(scene);
+        let shown = other.show(time_s);
+        if shown {
+            *scene = Arc::new(other);
         }
-        true
+        shown
     }
 
     fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
@@ -305,7 +293,7 @@ impl Document {
     }
 
     fn push(&mut self, label: Label, scene: Scene) {
-        if scene.rev == self.settled_scene().rev {
+        if scene.content() == self.settled_scene().content() {
             return;
         }
         self.steps.truncate(self.at + 1);
@@ -314,7 +302,6 @@ impl Document {
             label,
             scene: Arc::new(scene),
             bytes,
-            shown_before: Vec::new(),
         });
         self.at = self.steps.len() - 1;
         self.forget_oldest();

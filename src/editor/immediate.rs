@@ -3,13 +3,12 @@
 
 use glam::{DVec2, DVec3};
 
+use scene::clip::MARGIN_M;
 use scene::draft::{box_columns, ground_bin, ground_class};
 use scene::grid::NOT_PAINTED;
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, Class, Extent, Frame, SceneBox, VoxelGrid};
 
-/// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
-const MARGIN_M: f64 = 0.6;
 /// Bins above the ground's own in which ground classes may lie in Occ3D labels: a kerb's second bin, a bumpy verge.
 const GROUND_BINS: usize = 2;
 /// How far around a column without layout ground is searched for, columns.

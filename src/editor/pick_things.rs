@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use scene::{Background, Class, Form, Frame, Pose, Thing, ThingId};
+use scene::{Background, Class, Form, Frame, Thing, ThingId};
 
 use super::choose::is_inside;
 
@@ -78,7 +78,7 @@ pub fn things_in(background: &Background, inside: impl Fn(DVec2) -> bool) -> Vec
 pub fn thing_of_voxel(frame: &Frame, background: &Background, [x, y, z]: [usize; 3]) -> Option<ThingId> {
     let class = Class::from_id(frame.occupancy.get(x, y, z)).filter(|c| *c != Class::Free)?;
     let center = frame.extent().center(x, y, z);
-    let p_m = ground_in_world(&frame.world_from_ego, center.truncate());
+    let p_m = center.truncate();
     let above_m = center.z - frame.layout.relief.height_m(center.truncate());
     let may = |t: &&Thing| {
         // The deck of a bridge is road or sidewalk; benches and bins have a class of their own.
@@ -139,15 +139,6 @@ pub fn with_corner(form: &Form, index: usize, at_m: DVec2) -> Form {
     out
 }
 
-/// A point of the ego frame's ground in the world frame, m.
-pub fn ground_in_world(world_from_ego: &Pose, p_m: DVec2) -> DVec2 {
-    world_from_ego.apply(p_m.extend(0.0)).truncate()
-}
-
-/// A way in the ego frame as one in the world frame, m.
-pub fn way_in_world(world_from_ego: &Pose, way_m: DVec2) -> DVec2 {
-    (world_from_ego.rotation * way_m.extend(0.0)).truncate()
-}
 
 #[cfg(test)]
 #[path = "pick_things_tests.rs"]

@@ -13,7 +13,7 @@ use scene::grid::NOT_PAINTED;
 use scene::raster::polygon_cells;
 use scene::shape::at_least;
 use scene::{
-    Background, BevLayout, Class, Extent, Form, Frame, Scene, SceneRev, Thing, ThingId, VoxelGrid, VoxelPaint,
+    Background, BevLayout, Class, Extent, Form, Frame, Scene, Thing, ThingId, VoxelGrid, VoxelPaint,
 };
 use scene::{Edit, EditError};
 
@@ -125,18 +125,13 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
     let before = std::mem::replace(&mut scene.background, Arc::new(after));
     let after = scene.background.clone();
     let (gone, come) = (only_in(&before, &after), only_in(&after, &before));
-    scene.rev = SceneRev::fresh();
-    for frame in &mut scene.frames {
-        let frame = Arc::make_mut(frame);
+    scene.change_canvas(|frame| {
         let extent = frame.extent();
-        let (gone, come) = (
-            in_extent(extent, &gone, &frame.world_from_ego),
-            in_extent(extent, &come, &frame.world_from_ego),
-        );
+        let (gone, come) = (in_extent(extent, &gone), in_extent(extent, &come));
         if gone.is_empty() && come.is_empty() {
-            continue;
+            return;
         }
-        let kept = after.in_extent(extent, &frame.world_from_ego);
+        let kept = after.in_extent(extent);
         let Frame {
             layout,
             occupancy,
@@ -157,15 +152,15 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             &kept,
             guessed,
         );
-    }
+    });
 }
 
 /// Takes voxels of scenery that belong to no thing out of columns (none: of all) of the current frame and of its source.
 pub(super) fn clear_scenery(scene: &mut Scene, cells: Option<&[[usize; 2]]>) {
-    let extent = scene.frame().extent();
+    let extent = scene.canvas().extent();
     let cells = cells.map_or_else(|| extent.all_columns().collect(), <[_]>::to_vec);
-    let kept = scene.background.in_extent(extent, &scene.frame().world_from_ego);
-    let mut frame = Frame::clone(scene.frame());
+    let kept = scene.background.in_extent(extent);
+    let mut frame = Frame::clone(scene.canvas());
     let source = Arc::make_mut(&mut frame.source);
     let grids = [
         (&mut frame.occupancy, &frame.layout),
@@ -176,7 +171,7 @@ pub(super) fn clear_scenery(scene: &mut Scene, cells: Option<&[[usize; 2]]>) {
         changed |= clear_columns(grid, layout, &frame.painted, &cells, &kept);
     }
     if changed {
-        *scene.frame_mut() = frame;
+        scene.change_canvas(|canvas| *canvas = frame);
     }
 }
 
@@ -228,7 +223,7 @@ pub fn columns_between(before: &Background, after: &Background, frame: &Frame) -
     let extent = frame.extent();
     let mut out = vec![false; extent.columns()];
     let changed = [only_in(before, after), only_in(after, before)].concat();
-    for thing in in_extent(extent, &changed, &frame.world_from_ego) {
+    for thing in in_extent(extent, &changed) {
         let own = thing.columns(&frame.layout);
         for [x, y] in with_margin(extent, &own)
             .into_iter()

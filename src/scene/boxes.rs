@@ -33,8 +33,10 @@ pub struct SceneBox {
 }
 
 impl SceneBox {
-    /// Largest coordinate or edge that a box may have, m.
-    pub const LIMIT_M: f64 = 1000.0;
+    /// Farthest from the origin that a box may stand, m.
+    pub const LIMIT_M: f64 = 10_000.0;
+    /// Largest edge that a box may have, m.
+    pub const MAX_SIZE_M: f64 = 1000.0;
 
     /// What it is called: its name and paint, or its class.
     pub fn called(&self) -> String {
@@ -70,10 +72,11 @@ impl SceneBox {
                 self.center_m
             ));
         }
-        if self.size_m.min_element() <= 0.0 || self.size_m.max_element() > limit {
+        if self.size_m.min_element() <= 0.0 || self.size_m.max_element() > Self::MAX_SIZE_M {
             return Some(format!(
-                "box {id}: size_m is {}, expected above 0 and at most {limit} m",
-                self.size_m
+                "box {id}: size_m is {}, expected above 0 and at most {} m",
+                self.size_m,
+                Self::MAX_SIZE_M
             ));
         }
         None

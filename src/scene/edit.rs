@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use crate::grid::Extent;
 use crate::shape::Shape;
 use crate::{
-    BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Polyline, SceneBox, SensorRig, ThingId,
-    VoxelGrid,
+    BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox, Scope, SensorRig,
+    ThingId, VoxelGrid,
 };
 
-/// One change of the current frame (or, for the prompt and the sensors, of the scene). As JSON:
+/// One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -143,20 +143,46 @@ pub enum Edit {
         /// A change of a box or of a map layer.
         edit: Box<Edit>,
     },
-    /// An edit of another moment of the clip than the current one, or of a whole track. Exactly one of `frame`, `time_s` and
-    /// `track` is given.
+    /// An edit at another moment than the one that is shown, and what it means for other moments. What stands still is changed
+    /// for all moments anyway. At most one of `frame`, `time_s` and `track` is given, and at least one of all keys.
     At {
-        /// Index of the frame.
+        /// Number of the frame.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         frame: Option<usize>,
-        /// Time in the clip, s; the nearest frame is meant.
+        /// Time in the clip, s.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         time_s: Option<f64>,
-        /// The track: every frame that holds this box.
+        /// A moving object that the edit is of: the moment is one at which it is there.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         track: Option<BoxId>,
+        /// For which moments a moving object changes its place; the whole track if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        scope: Option<Scope>,
         /// What is changed there.
         edit: Box<Edit>,
+    },
+    /// Lets an object or the ego vehicle move, or (without a motion) stand where it is at the moment that is shown.
+    SetMotion {
+        /// The box; the ego vehicle if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        id: Option<BoxId>,
+        /// How it moves from now on, world frame.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        motion: Option<Motion>,
+        /// When it appears, s; it is there from the beginning if left out. Not of the ego vehicle.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from_s: Option<f64>,
+        /// When it disappears, s; it is there to the end if left out. Not of the ego vehicle.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to_s: Option<f64>,
+    },
+    /// Sets how long the scene lasts. What happens later than that stays, and is not shown.
+    SetLength {
+        /// Length, s; 0 for a scene of one moment.
+        length_s: f64,
+        /// Frames per second of what is written; as before if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rate_hz: Option<f64>,
     },
     /// Confirms what was inferred when the frame was imported: it is marked as a guess no more.
     ConfirmInferred {},
@@ -310,6 +336,9 @@ pub enum EditError {
     /// A moment that the clip does not have, or none.
     #[error("{0}")]
     BadMoment(String),
+    /// A motion or a length that is not sound; see [`Clip::problem`](crate::Clip::problem).
+    #[error("{0}")]
+    BadMotion(String),
     /// A move that names no change.
     #[error("move_box needs at least one of center_m, yaw_deg and size_m")]
     NothingToMove,

@@ -4,7 +4,7 @@ use std::mem::size_of;
 use std::sync::Arc;
 
 use super::grid::{Brick, BrickGrid};
-use super::{BevLayout, BoxId, Frame, Polyline, Scene, SceneBox, SourceFrame};
+use super::{BevLayout, BoxId, Clip, Frame, Motion, Polyline, Scene, SceneBox, SourceFrame, Track};
 
 /// A map of boxes keeps about this much beside the boxes themselves, each.
 const NODE_BYTES: usize = 32;
@@ -13,17 +13,43 @@ impl Scene {
     /// Bytes that this state holds and `other` does not: copied bricks, layers, boxes and lines. An estimate from below,
     /// good to a few kilobytes a frame.
     pub fn bytes_beside(&self, other: &Scene) -> usize {
-        let mut bytes = size_of::<Scene>() + self.frames.len() * size_of::<Arc<Frame>>();
+        let mut bytes = size_of::<Scene>();
         if !Arc::ptr_eq(&self.prompt, &other.prompt) {
             bytes += self.prompt.len();
         }
-        for (i, frame) in self.frames.iter().enumerate() {
-            bytes += match other.frames.get(i) {
-                Some(of) if Arc::ptr_eq(frame, of) => 0,
-                of => frame_bytes(frame, of.map(|f| &**f)),
-            };
+        let (canvas, of) = (self.canvas(), other.canvas());
+        if !Arc::ptr_eq(canvas, of) {
+            bytes += frame_bytes(canvas, Some(of));
+        }
+        if !Arc::ptr_eq(self.clip(), other.clip()) {
+            bytes += clip_bytes(self.clip(), other.clip());
         }
         bytes
+    }
+}
+
+fn clip_bytes(clip: &Clip, other: &Clip) -> usize {
+    let track = |(id, track): (&BoxId, &Track)| {
+        let shared = other
+            .tracks
+            .get(id)
+            .is_some_and(|of| Arc::ptr_eq(&track.voxels, &of.voxels));
+        let voxels = if shared {
+            0
+        } else {
+            size_of_val(&track.voxels.columns[..])
+        };
+        size_of::<Track>() + NODE_BYTES + motion_bytes(&track.motion) + voxels
+    };
+    let ego = clip.ego.as_ref().map_or(0, motion_bytes);
+    size_of::<Clip>() + ego + clip.tracks.iter().map(track).sum::<usize>()
+}
+
+fn motion_bytes(motion: &Motion) -> usize {
+    match motion {
+        Motion::Keys(keys) => size_of_val(&keys[..]),
+        Motion::Path(path) => size_of_val(&path.points_m[..]) + size_of_val(&path.speeds[..]),
+        Motion::Attached { .. } => 0,
     }
 }
 
@@ -87,18 +113,18 @@ mod tests {
         let same = before.clone();
         assert!(same.bytes_beside(&before) < 1024, "nothing but the handles");
         let mut one = before.clone();
-        one.frame_mut().occupancy.set(3, 4, 5, Class::Car.id());
+        one.change_canvas(|f| f.occupancy.set(3, 4, 5, Class::Car.id()));
         let one_brick = one.bytes_beside(&before);
         assert!((4096..16_384).contains(&one_brick), "{one_brick}");
         let mut layers = before.clone();
-        layers.frame_mut().layout.set(BevLayer::DrivableArea, 1, 2, true);
+        layers.change_canvas(|f| f.layout.set(BevLayer::DrivableArea, 1, 2, true));
         let painted = layers.bytes_beside(&before);
         assert!((160_000..175_000).contains(&painted), "{painted}");
         // Every brick.
         let mut all = before.clone();
         for x in 0..200 {
             for y in 0..200 {
-                all.frame_mut().occupancy.set(x, y, 0, Class::Car.id());
+                all.change_canvas(|f| f.occupancy.set(x, y, 0, Class::Car.id()));
             }
         }
         let every = all.bytes_beside(&before);

@@ -5,12 +5,15 @@ pub mod background;
 pub mod box_label;
 pub mod boxes;
 pub mod classes;
+pub mod clip;
 pub mod conditions;
 pub mod density;
 pub mod distance;
 pub mod draft;
 pub mod edit;
+pub mod ego_frame;
 pub mod footprint;
+pub mod frame;
 pub mod graph;
 pub mod grid;
 pub mod infer;
@@ -32,8 +35,8 @@ pub mod support;
 pub mod variants;
 pub mod waiver;
 
+use clip::Seen;
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -41,9 +44,11 @@ pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
+pub use clip::{Clip, Key, Motion, Moving, Scope, Track};
 pub use conditions::{Conditions, Sun, TimeOfDay, Weather};
 pub use density::Density;
 pub use edit::{Edit, EditError};
+pub use frame::{Frame, SourceFrame};
 pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
@@ -68,113 +73,13 @@ impl SceneRev {
     }
 }
 
-/// The state in which a frame's occupancy was last generated, imported or accepted. The next generation inpaints what
-/// differs between it and the frame; all else stays bit-identical.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SourceFrame {
-    /// Map layers and polylines the occupancy belongs to.
-    pub layout: BevLayout,
-    /// Boxes the occupancy belongs to.
-    pub boxes: BTreeMap<BoxId, SceneBox>,
-    /// The occupancy itself.
-    pub occupancy: VoxelGrid,
-}
-
-/// One instant of a clip. All coordinates are in that instant's ego frame (x forward, y left, z up).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
-    /// Time since the start of the clip, s.
-    pub time_s: f64,
-    /// Ego pose in the world frame of the clip.
-    pub world_from_ego: Pose,
-    /// Objects; the same id in several frames is one track.
-    pub boxes: BTreeMap<BoxId, SceneBox>,
-    /// Map layers and the polylines they come from.
-    pub layout: BevLayout,
-    /// The voxels that are shown and that the sensors see: the source with the rough version of the user's edits, or the
-    /// last result.
-    pub occupancy: VoxelGrid,
-    /// Voxels the user painted (or removed, painted as free): locked, generation keeps them.
-    pub painted: VoxelPaint,
-    /// Which parts of layout and boxes are guesses of an import.
-    pub inferred: Inferred,
-    /// Findings of the checks that the user accepted.
-    pub waivers: Arc<Vec<Waiver>>,
-    /// See [`SourceFrame`].
-    pub source: Arc<SourceFrame>,
-}
-
-impl Frame {
-    /// Boxes that a frame holds at most.
-    pub const MAX_BOXES: usize = 20_000;
-    /// Waivers that a frame holds at most.
-    pub const MAX_WAIVERS: usize = 10_000;
-
-    /// A frame whose occupancy is its own source. Layout and occupancy have the same extent.
-    pub fn new(layout: BevLayout, boxes: BTreeMap<BoxId, SceneBox>, occupancy: VoxelGrid) -> Self {
-        let source = Arc::new(SourceFrame {
-            layout: layout.clone(),
-            boxes: boxes.clone(),
-            occupancy: occupancy.clone(),
-        });
-        Self {
-            time_s: 0.0,
-            world_from_ego: Pose::IDENTITY,
-            boxes,
-            painted: VoxelPaint::over(layout.extent()),
-            layout,
-            occupancy,
-            inferred: Inferred::default(),
-            waivers: Arc::default(),
-            source,
-        }
-    }
-
-    /// Which part of the ground its layout and its grids cover.
-    pub fn extent(&self) -> Extent {
-        self.layout.extent()
-    }
-
-    /// The part of it that lies in another extent. Boxes, lines and waivers stay, wherever they are. Costs pointers alone
-    /// if the extent is its own.
-    pub fn crop(&self, extent: Extent) -> Self {
-        if extent == self.extent() {
-            return self.clone();
-        }
-        let source = SourceFrame {
-            layout: self.source.layout.crop(extent),
-            boxes: self.source.boxes.clone(),
-            occupancy: self.source.occupancy.crop(extent),
-        };
-        Self {
-            layout: self.layout.crop(extent),
-            occupancy: self.occupancy.crop(extent),
-            painted: self.painted.crop(extent),
-            inferred: Inferred {
-                unobserved: self.inferred.unobserved.as_ref().map(|u| u.crop(extent)),
-                ..self.inferred.clone()
-            },
-            source: Arc::new(source),
-            ..self.clone()
-        }
-    }
-
-    /// All 18 BEV channels, one bit per [`BevLayer`] and cell, row-major `[x][y]`:
-    /// the layout's map layers and the footprints of the boxes.
-    pub fn bev_channels(&self) -> Vec<u32> {
-        raster::bev_channels(&self.layout, self.boxes.values())
-    }
-
-    /// The lowest id not in use.
-    pub fn next_box_id(&self) -> BoxId {
-        BoxId(self.boxes.keys().next_back().map_or(1, |id| id.0 + 1))
-    }
-}
-
-/// A driving scene: a clip of one or more frames, seen by one sensor rig.
+/// A driving scene: what stands still, what moves, and the sensors that see it.
+///
+/// What is shown of it is the frame of one moment. Two revisions name it: [`rev`](Self::rev) what is shown, `content` what it
+/// is at all times.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Which state this is.
+    /// Which state this is, with the moment that is shown.
     pub rev: SceneRev,
     /// Name shown to the user.
     pub name: Arc<str>,
@@ -184,23 +89,25 @@ pub struct Scene {
     pub conditions: Conditions,
     /// What was typed to make it and to change it, in order.
     pub words: Arc<Vec<String>>,
-    /// Cameras and LiDARs.
+    /// Cameras and LiDARs, in the ego frame.
     pub rig: Arc<SensorRig>,
-    /// What stands beside the roads, in the world frame of the clip; all frames see it.
+    /// What stands beside the roads, in the world frame.
     pub background: Arc<Background>,
-    /// At least one.
-    pub frames: Vec<Arc<Frame>>,
-    /// Index of the frame being edited.
-    pub current: usize,
     /// Seed of every random draw made for this scene.
     pub seed: u64,
+    content: SceneRev,
+    canvas: Arc<Frame>,
+    clip: Arc<Clip>,
+    view: Arc<Frame>, // the canvas at the moment that is shown
 }
 
 impl Scene {
-    /// A clip of a single frame on a clear day.
+    /// A scene that stands still, on a clear day.
     pub fn single(name: &str, frame: Frame, rig: Arc<SensorRig>, seed: u64) -> Self {
+        let (rev, canvas) = (SceneRev::fresh(), Arc::new(frame));
         Self {
-            rev: SceneRev::fresh(),
+            rev,
+            content: rev,
             name: name.into(),
             prompt: "".into(),
             conditions: Conditions {
@@ -210,30 +117,171 @@ impl Scene {
             words: Arc::default(),
             rig,
             background: Arc::default(),
-            frames: vec![Arc::new(frame)],
-            current: 0,
+            view: canvas.clone(),
+            canvas,
+            clip: Arc::default(),
             seed,
         }
     }
 
-    /// The frame being edited.
+    /// The moment that is shown: it is drawn, edited and seen by the sensors.
     pub fn frame(&self) -> &Arc<Frame> {
-        &self.frames[self.current]
+        &self.view
     }
 
-    /// The scene with the frame being edited cut to the networks' window; itself if the frame is one. The revision stays.
+    /// What stands still.
+    pub fn canvas(&self) -> &Arc<Frame> {
+        &self.canvas
+    }
+
+    /// What moves.
+    pub fn clip(&self) -> &Arc<Clip> {
+        &self.clip
+    }
+
+    /// Which state this is, whatever moment is shown.
+    pub fn content(&self) -> SceneRev {
+        self.content
+    }
+
+    /// The moment that is shown, s.
+    pub fn time_s(&self) -> f64 {
+        self.view.time_s
+    }
+
+    /// Gives it fresh revisions, after a change of its public fields.
+    pub fn touch(&mut self) {
+        self.rev = SceneRev::fresh();
+        self.content = self.rev;
+    }
+
+    /// Shows another moment, within the clip. False if it is shown already.
+    pub fn show(&mut self, time_s: f64) -> bool {
+        let time_s = match self.clip.length_s > 0.0 {
+            true => time_s.clamp(0.0, self.clip.length_s),
+            false => self.canvas.time_s,
+        };
+        if time_s == self.time_s() || time_s.is_nan() {
+            return false;
+        }
+        self.view = self.clip.view(&self.canvas, time_s);
+        self.rev = SceneRev::fresh();
+        true
+    }
+
+    /// The scene at another moment.
+    pub fn at(&self, time_s: f64) -> Scene {
+        let mut scene = self.clone();
+        scene.show(time_s);
+        scene
+    }
+
+    /// Changes the frame that is shown: what stands still changes for all moments, moving objects as `scope` says.
+    pub fn change<R>(&mut self, scope: Scope, change: impl FnOnce(&mut Frame) -> R) -> R {
+        let mut frame = Frame::clone(&self.view);
+        let out = change(&mut frame);
+        self.set_frame(frame, scope);
+        out
+    }
+
+    /// Puts a changed version of the frame that is shown in its place; see [`change`](Self::change).
+    pub fn set_frame(&mut self, after: Frame, scope: Scope) {
+        self.touch();
+        if self.clip.is_still() {
+            let after = Arc::new(after);
+            self.canvas = after.clone();
+            self.view = after;
+            return;
+        }
+        let time_s = self.time_s();
+        let boxes = self.clip.boxes_at(time_s, &self.canvas);
+        let seen = Seen {
+            frame: &self.view,
+            boxes: &boxes,
+            time_s,
+        };
+        let (canvas, clip) = clip::fold(&self.canvas, &self.clip, &seen, &after, scope);
+        self.set_parts(canvas, clip);
+    }
+
+    /// Changes what stands still and nothing else.
+    pub fn change_canvas<R>(&mut self, change: impl FnOnce(&mut Frame) -> R) -> R {
+        let time_s = self.time_s();
+        let out = change(Arc::make_mut(&mut self.canvas));
+        self.touch();
+        self.view = self.clip.view(&self.canvas, time_s);
+        out
+    }
+
+    /// Changes what moves. Whoever calls it sees to it that the clip is sound.
+    pub fn change_clip<R>(&mut self, change: impl FnOnce(&mut Clip) -> R) -> R {
+        let out = change(Arc::make_mut(&mut self.clip));
+        self.touch();
+        self.show_within();
+        out
+    }
+
+    /// Replaces what stands still and what moves.
+    pub fn set_parts(&mut self, canvas: Frame, clip: Clip) {
+        self.canvas = Arc::new(canvas);
+        self.clip = Arc::new(clip);
+        self.touch();
+        self.show_within();
+    }
+
+    fn show_within(&mut self) {
+        let time_s = match self.clip.length_s > 0.0 {
+            true => self.time_s().clamp(0.0, self.clip.length_s),
+            false => self.canvas.time_s,
+        };
+        self.view = self.clip.view(&self.canvas, time_s);
+    }
+
+    /// The scene that the networks are asked about: it stands still, and shows the canvas with those moving objects that they
+    /// have not drawn yet. Itself if nothing moves. The content's revision stays.
+    pub fn for_generation(&self) -> Cow<'_, Scene> {
+        if self.clip.is_still() {
+            return Cow::Borrowed(self);
+        }
+        let frame = self.clip.unsettled(&self.canvas);
+        Cow::Owned(Scene {
+            canvas: frame.clone(),
+            view: frame,
+            clip: Arc::default(),
+            rev: self.content,
+            ..self.clone()
+        })
+    }
+
+    /// Takes over what was made of [`for_generation`](Self::for_generation)'s frame.
+    pub fn set_generated(&mut self, after: Frame) {
+        if self.clip.is_still() {
+            self.set_frame(after, Scope::default());
+            return;
+        }
+        let before = self.clip.unsettled(&self.canvas);
+        let drafts = self.clip.tracks.values().filter(|t| !t.settled);
+        let boxes: Vec<SceneBox> = drafts.map(|t| t.made).collect();
+        let seen = Seen {
+            frame: &before,
+            boxes: &boxes,
+            time_s: self.canvas.time_s,
+        };
+        let (canvas, clip) = clip::fold(&self.canvas, &self.clip, &seen, &after, Scope::default());
+        self.set_parts(canvas, clip);
+    }
+
+    /// The scene with its frame cut to the networks' window; itself if the frame is one. The revisions stay.
     pub fn in_window(&self) -> Cow<'_, Scene> {
         if self.frame().extent() == Extent::WINDOW {
             return Cow::Borrowed(self);
         }
         let mut scene = self.clone();
-        scene.frames[scene.current] = Arc::new(self.frame().crop(Extent::WINDOW));
+        scene.view = Arc::new(self.frame().crop(Extent::WINDOW));
+        scene.canvas = match Arc::ptr_eq(&self.canvas, &self.view) {
+            true => scene.view.clone(),
+            false => Arc::new(self.canvas.crop(Extent::WINDOW)),
+        };
         Cow::Owned(scene)
-    }
-
-    /// The frame being edited, copied if it is shared, and a fresh revision.
-    pub fn frame_mut(&mut self) -> &mut Frame {
-        self.rev = SceneRev::fresh();
-        Arc::make_mut(&mut self.frames[self.current])
     }
 }

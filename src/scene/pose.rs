@@ -51,6 +51,12 @@ impl Pose {
     }
 }
 
+impl Default for Pose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
 impl std::ops::Mul for Pose {
     type Output = Pose;
     /// `a_from_c = a_from_b * b_from_c`.

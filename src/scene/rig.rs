@@ -237,9 +237,39 @@ pub struct SensorRig {
     /// Forward speed while a LiDAR spins, m/s; it matters only where `spin_hz` is set.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub ego_speed_mps: f64,
+    /// Where the vehicle is in the frame that the sensors' poses are given in: the ego frame itself, unless the rig was
+    /// placed somewhere. Not in files.
+    #[serde(skip)]
+    pub vehicle: Pose,
 }
 
 impl SensorRig {
+    /// The same sensors on a vehicle at a pose of another frame, their poses given in that frame.
+    pub fn placed(&self, outer_from_ego: &Pose) -> SensorRig {
+        let mut out = self.clone();
+        let place = |rotation_wxyz: &mut [f64; 4], translation_m: &mut [f64; 3]| {
+            let pose = *outer_from_ego * Pose::from_wxyz(*rotation_wxyz, *translation_m);
+            let q = pose.rotation;
+            (*rotation_wxyz, *translation_m) = ([q.w, q.x, q.y, q.z], pose.translation_m.to_array());
+        };
+        for camera in &mut out.cameras {
+            place(&mut camera.rotation_wxyz, &mut camera.translation_m);
+        }
+        for lidar in &mut out.lidars {
+            place(&mut lidar.rotation_wxyz, &mut lidar.translation_m);
+        }
+        out.vehicle = *outer_from_ego * self.vehicle;
+        out
+    }
+
+    /// Velocity of the vehicle while a LiDAR spins, in the frame of the sensors' poses, m/s.
+    pub fn velocity_mps(&self) -> glam::DVec3 {
+        match self.vehicle == Pose::IDENTITY {
+            true => glam::DVec3::X * self.ego_speed_mps,
+            false => self.vehicle.rotation * glam::DVec3::X * self.ego_speed_mps,
+        }
+    }
+
     /// Most cameras, and most LiDARs.
     pub const MOST_SENSORS: usize = 64;
     /// Most rays of a LiDAR: several times those of the densest there are.

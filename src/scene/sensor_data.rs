@@ -157,7 +157,7 @@ pub struct PerspectiveMap {
 /// One LiDAR return.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LidarPoint {
-    /// Position in the ego frame, m.
+    /// Position in the frame of the rig's poses, m: the ego frame, or the world frame where the rig was placed there.
     pub position_in_ego: [f32; 3],
     /// Distance from the sensor, m.
     pub range_m: f32,
@@ -182,4 +182,17 @@ pub struct LidarSweep {
     pub rays: usize,
     /// The ground is where it really lies, and not two bins lower as in the labels.
     pub physical: bool,
+}
+
+impl LidarSweep {
+    /// Gives the points in another frame.
+    pub fn place(&mut self, to_from_here: &super::Pose) {
+        if *to_from_here == super::Pose::IDENTITY {
+            return;
+        }
+        for point in &mut self.points {
+            let p = glam::DVec3::from_array(point.position_in_ego.map(f64::from));
+            point.position_in_ego = to_from_here.apply(p).as_vec3().to_array();
+        }
+    }
 }

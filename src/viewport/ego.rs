@@ -7,7 +7,7 @@ use super::change::Change;
 use super::drawable::{Drawable, Gpu, Layer, Pipelines, Shown, View};
 use super::options::drop_m;
 use super::shared::{PipelineSpec, VertexBuffer};
-use scene::SensorRig;
+use scene::{Pose, SensorRig};
 
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -156,10 +156,26 @@ fn car(rig: &SensorRig, drop_m: f64) -> Vec<EgoVertex> {
         b.lamp(0.5, side, HEADLIGHT);
         b.lamp(-0.5, side, TAIL_LIGHT);
     }
+    b.place(&rig.vehicle);
     b.vertices
 }
 
 impl Builder {
+    /// Puts what was built where the vehicle is.
+    fn place(&mut self, vehicle: &Pose) {
+        if *vehicle == Pose::IDENTITY {
+            return;
+        }
+        for v in &mut self.vertices {
+            let p = glam::Vec3::from_array(v.position_m).as_dvec3();
+            v.position_m = vehicle.apply(p).as_vec3().to_array();
+            let [x, y, z, w] = v.normal;
+            let n = vehicle.rotation * DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            let [x, y, z] = n.to_array().map(|v| v.round() as i8);
+            v.normal = [x, y, z, w];
+        }
+    }
+
     fn at(&self, x: f64, y: f64, z: f64) -> DVec3 {
         self.base + DVec3::new(x, y, z) * self.size
     }

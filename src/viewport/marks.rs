@@ -110,7 +110,10 @@ impl Marks {
     fn ego_shadow(&mut self, rig: &SensorRig, drop_m: f64) {
         let (size, center) = ego::measures(rig);
         let (l, w) = (size.x / 2.0 * SHADOW_SPREAD, size.y / 2.0 * SHADOW_SPREAD);
-        let at = |x: f64, y: f64| DVec3::new(center.x + x, center.y + y, 0.01 - drop_m);
+        let at = |x: f64, y: f64| {
+            let p = DVec3::new(center.x + x, center.y + y, 0.01);
+            rig.vehicle.apply(p) - DVec3::Z * drop_m
+        };
         self.faces.add(
             [at(l, w), at(-l, w), at(-l, -w), at(l, -w)],
             [8, 10, 14, 170],

@@ -71,7 +71,7 @@ fn generate(pipeline: &mut OccPipeline, document: &mut Document, region: RegionM
     };
     let result = pipeline.run(&job, &JobCtx::detached()).expect("a result");
     document
-        .adopt(result.rev(), result.frame, result.occupancy.clone())
+        .adopt(result.rev(), result.occupancy.clone())
         .expect("the current state");
     result
 }

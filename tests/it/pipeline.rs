@@ -40,7 +40,7 @@ fn run(pipeline: &mut OccPipeline, document: &mut Document) -> GenResult {
     };
     let result = pipeline.run(&job, &JobCtx::detached()).expect("a result");
     document
-        .adopt(result.rev(), result.frame, result.occupancy.clone())
+        .adopt(result.rev(), result.occupancy.clone())
         .expect("the current state");
     result
 }

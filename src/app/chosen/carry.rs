@@ -7,8 +7,6 @@ use crate::panes::id::PaneId;
 use crate::shell::app::SceneloomApp;
 use crate::tools::ToolCommand;
 use editor::arrange::{self, Clipboard};
-use editor::pick_things::{ground_in_world, way_in_world};
-use editor::tools::select::in_ego;
 use editor::{Edit, kerb};
 use scene::{BoxId, Form, Frame, Scene, ThingId};
 
@@ -37,7 +35,6 @@ impl SceneloomApp {
         }
         let ids: Vec<ThingId> = self.state.tools.things.chosen.iter().copied().collect();
         let (frame, boxes) = (scene.frame(), self.state.chosen());
-        let world_from_ego = frame.world_from_ego;
         let moved = |by_m: DVec2, turn_deg: f64| Edit::MoveThings {
             ids: ids.clone(),
             by_m,
@@ -56,7 +53,7 @@ impl SceneloomApp {
                 ("Raise", arrange::shift(frame, &boxes, *step_m), edit)
             }
             ToolCommand::Nudge(step_m) => {
-                let by_m = way_in_world(&world_from_ego, step_m.truncate());
+                let by_m = step_m.truncate();
                 ("Nudge", arrange::shift(frame, &boxes, *step_m), moved(by_m, 0.0))
             }
             ToolCommand::Turn(degrees) => {
@@ -65,12 +62,10 @@ impl SceneloomApp {
                 ("Turn", turned, moved(DVec2::ZERO, *degrees))
             }
             ToolCommand::ToLane => {
-                let here = in_ego(&forms, frame);
-                let Some(way_m) = kerb::way_to_kerb(&frame.layout, &here, DVec2::ZERO, KERB_REACH_M) else {
+                let Some(by_m) = kerb::way_to_kerb(&frame.layout, &forms, DVec2::ZERO, KERB_REACH_M) else {
                     self.note("No kerb is near");
                     return true;
                 };
-                let by_m = way_in_world(&world_from_ego, way_m);
                 (
                     "Set to the kerb:",
                     arrange::to_lane(frame, &boxes),
@@ -103,7 +98,7 @@ impl SceneloomApp {
 
     /// Copies beside the originals.
     fn duplicate(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form]) {
-        let by_m = way_in_world(&frame.world_from_ego, beside_m(&in_ego(forms, frame)));
+        let by_m = beside_m(forms);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
         let added = arrange::duplicate(frame, boxes);
         self.add_things("Duplicate", copies, added.edits);
@@ -130,14 +125,13 @@ impl SceneloomApp {
         let forms = self.state.tools.things.clipboard.clone();
         let middle = forms.iter().map(Form::middle_m).sum::<DVec2>() / forms.len() as f64;
         let by_m = match at_m {
-            Some(at_m) => ground_in_world(&frame.world_from_ego, at_m) - middle,
-            None => way_in_world(&frame.world_from_ego, beside_m(&in_ego(&forms, frame))),
+            Some(at_m) => at_m - middle,
+            None => beside_m(&forms),
         };
         // Boxes and things keep their places to each other.
-        let to_ego = frame.world_from_ego.inverse();
         let mut boxes = self.state.tools.clipboard.clone();
         for b in &mut boxes.boxes {
-            b.center_m += way_in_world(&to_ego, by_m).extend(0.0);
+            b.center_m += by_m.extend(0.0);
         }
         let box_at_m = arrange::middle_m(&boxes.boxes).map(|m| m.truncate());
         let added = arrange::paste(frame, &boxes, box_at_m);

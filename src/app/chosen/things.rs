@@ -60,9 +60,8 @@ impl SceneloomApp {
     /// Brings the chosen things into the middle of both large views.
     pub(crate) fn frame_things(&mut self) {
         let scene = self.document.scene();
-        let to_ego = scene.frame().world_from_ego.inverse();
         let chosen = self.state.tools.things.chosen_in(&scene.background);
-        let bounds = chosen.map(|t| t.form.in_frame(&to_ego).bounds_m());
+        let bounds = chosen.map(|t| t.form.bounds_m());
         if let Some((min, max)) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
             self.frame_at(((min + max) / 2.0).extend(1.0));
         }

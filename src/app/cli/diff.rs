@@ -75,7 +75,10 @@ impl Diff {
             "changed_outside_region".into(),
             (changed.len() - changed_inside).into(),
         );
-        let sweep = |s: &Scene| lidar::rig_sweep(&s.frame().occupancy, &s.rig).unwrap_or_default();
+        let sweep = |s: &Scene| {
+            let rig = &s.with_rig_in_world().rig;
+            lidar::rig_sweep(&s.frame().occupancy, rig).unwrap_or_default()
+        };
         let sweeps = (sweep(&a), sweep(&b));
         report.insert("lidar".into(), lidar_report(&a, &b, &sweeps.0, &sweeps.1));
         report.insert(
@@ -87,7 +90,7 @@ impl Diff {
             json!({ "changed": a.conditions != b.conditions, "a": a.conditions, "b": b.conditions }),
         );
         report.insert("rig_changed".into(), (a.rig != b.rig).into());
-        report.insert("frames".into(), json!([a.frames.len(), b.frames.len()]));
+        report.insert("frames".into(), json!([a.clip().frames(), b.clip().frames()]));
         if let Some(path) = &self.output {
             let sheet = Picture::sheet(
                 &[

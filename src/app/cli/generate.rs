@@ -49,12 +49,13 @@ pub fn run_and_adopt(
         params,
     };
     let result = progress.with_ctx(|ctx| pipeline.run(&job, ctx))?;
-    document.adopt(result.rev(), result.frame, result.occupancy.clone())?;
+    document.adopt(result.rev(), result.occupancy.clone())?;
     Ok(result)
 }
 
 /// Seconds that a LiDAR sweep and six camera maps of the scene take.
 pub fn sense(scene: &Scene) -> (f64, f64) {
+    let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
     let start = Instant::now();
     lidar::rig_sweep(&frame.occupancy, &scene.rig);

@@ -70,7 +70,7 @@ pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, frame: &Frame, hand: &mut Hand, c
             (response.clicked(), response.double_clicked(), ids)
         }
         ThingRow::Thing(thing) => {
-            let at_m = thing.form.in_frame(&frame.world_from_ego.inverse()).middle_m();
+            let at_m = thing.form.middle_m() - frame.world_from_ego.translation_m.truncate();
             let chosen = hand.things.chosen.contains(&thing.id);
             let name = format!("{} #{}", theme::sentence(thing.form.name()), thing.id.0);
             let right = format!("{:.1} m high   {:.0} m", thing.form.height_m(), at_m.length());

@@ -43,8 +43,8 @@ impl Pane for VersionsPane {
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        let shown = cx.document.settled_scene().rev;
-        let before = cx.compare.before.as_ref().map(|s| s.rev);
+        let shown = cx.document.settled_scene().content();
+        let before = cx.compare.before.as_ref().map(|s| s.content());
         theme::panel_frame().show(ui, |ui| versions_ui(ui, cx.versions, shown, before, commands));
     }
 }
@@ -76,10 +76,14 @@ pub fn versions_ui(
                 if !ui.is_rect_visible(rect) {
                     continue;
                 }
-                let is_shown = version.scene.rev == shown;
+                let is_shown = version.scene.content() == shown;
                 let label = version.label.clone();
                 response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, &label));
-                let fill = match (is_shown, before == Some(version.scene.rev), response.hovered()) {
+                let fill = match (
+                    is_shown,
+                    before == Some(version.scene.content()),
+                    response.hovered(),
+                ) {
                     (true, ..) => theme::accent_fill(),
                     (_, true, _) => theme::field_active(),
                     (_, _, true) => theme::field_hover(),
@@ -124,10 +128,10 @@ pub fn versions_ui(
                 icons::focus_ring(ui, &response, rect);
                 if response.double_clicked() {
                     commands.push(Command::Generation(GenerationCommand::RestoreVersion(
-                        version.scene.rev,
+                        version.scene.content(),
                     )));
                 } else if response.clicked() {
-                    commands.push(Command::View(ViewCommand::CompareWith(version.scene.rev)));
+                    commands.push(Command::View(ViewCommand::CompareWith(version.scene.content())));
                 }
             }
         });

@@ -10,7 +10,7 @@ use egui::Ui;
 use editor::Document;
 use job::worker::GenWorker;
 use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline};
-use scene::{Extent, Scene};
+use scene::{Extent, Scene, SceneRev};
 
 use super::checking::Checking;
 use super::dock::Dock;
@@ -231,9 +231,15 @@ impl SceneloomApp {
             return before.clone();
         }
         match &self.generation.preview {
-            Some((rev, scene)) if *rev == self.document.scene().rev => scene.clone(),
+            Some((content, scene)) if self.shows(*content, scene) => scene.clone(),
             _ => self.document.scene().clone(),
         }
+    }
+
+    /// True if a preview of that state is of the state and the moment that are shown.
+    fn shows(&self, content: SceneRev, preview: &Scene) -> bool {
+        let shown = self.document.scene();
+        shown.content() == content && shown.time_s() == preview.time_s()
     }
 
     /// Does everything but drawing: takes updates of the worker, the sensors and the file threads.

@@ -24,7 +24,8 @@ impl SceneloomApp {
         });
         self.apply(step_name(words), &edits);
         let after = self.document.settled_scene();
-        self.generation.words = (after.rev != before.rev).then(|| (after.rev, before.clone()));
+        self.generation.words =
+            (after.content() != before.content()).then(|| (after.content(), before.clone()));
         let changed = changed_boxes(before.frame(), after.frame());
         let other_light = before.conditions != after.conditions;
         if !changed.is_empty() && changed.len() <= MOST_CHOSEN {

@@ -24,6 +24,7 @@ const SMEAR_M: f64 = 0.8;
 /// What cameras and LiDAR return of every box of the current frame: exact rays to voxels and shapes, at the size of
 /// the camera strip's previews.
 pub fn seen(scene: &Scene) -> Seen {
+    let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
     // Numbers that are not finite are for another check, and for no ray.
     let mut sound = frame.boxes.clone();
@@ -33,7 +34,7 @@ pub fn seen(scene: &Scene) -> Seen {
     }
     let camera_pixels = (!scene.rig.cameras.is_empty()).then(|| {
         let mut tidy = scene.clone();
-        tidy.frame_mut().boxes = sound.clone();
+        tidy.change(scene::Scope::default(), |frame| frame.boxes = sound.clone());
         let marched = march(&tidy, true);
         let [width, height] = PREVIEW_SIZE;
         let mut pixels: BTreeMap<BoxId, u32> = BTreeMap::new();

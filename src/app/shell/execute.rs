@@ -16,7 +16,7 @@ use crate::tools::{Choose, ToolState};
 impl SceneloomApp {
     /// Carries out one command.
     pub fn execute(&mut self, command: Command, ctx: &Context) {
-        let before = self.document.settled_scene().rev;
+        let before = self.document.settled_scene().content();
         let travels = matches!(command, Command::Undo | Command::Redo | Command::JumpTo(_));
         self.state.remember_selection(before);
         match command {
@@ -72,7 +72,7 @@ impl SceneloomApp {
         self.state.correcting &= self.document.scene().frame().inferred.any();
         // What an edit or undo took away is not selected any more.
         self.state.tidy_selection(self.document.scene());
-        let after = self.document.settled_scene().rev;
+        let after = self.document.settled_scene().content();
         if travels && after != before {
             self.state.recall_selection(after, self.document.scene());
         }

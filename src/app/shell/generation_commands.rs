@@ -31,7 +31,7 @@ impl SceneloomApp {
                 }
             }
             GenerationCommand::StepVersion(step) => {
-                let rev = self.document.settled_scene().rev;
+                let rev = self.document.settled_scene().content();
                 if let Some(scene) = self.generation.versions.neighbour(rev, step).cloned() {
                     self.restore(&scene);
                 }
@@ -86,7 +86,7 @@ impl SceneloomApp {
         if full && self.draws_scenery_first() {
             return self.generate_on_scenery(params);
         }
-        let same = |r: &Running| r.key.rev == scene.rev && r.key.params == params;
+        let same = |r: &Running| r.key.rev == scene.content() && r.key.params == params;
         if !self.generation.live.running.as_ref().is_some_and(same) {
             self.generation.live.touched_by(&scene, now_s);
             self.submit(scene, params);

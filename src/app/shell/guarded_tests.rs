@@ -89,17 +89,17 @@ fn scenery() {
         by: Drawer::Network,
         ..SceneryWish::of_seed(5)
     };
-    let before = app.document.settled_scene().rev;
+    let before = app.document.settled_scene().content();
     panic_next("scenery");
     app.put_scenery(wish.clone(), false);
     wait_for(
         &mut app,
         "No scenery was drawn: scenery panicked: asked for by a test",
     );
-    assert_eq!(app.document.settled_scene().rev, before);
+    assert_eq!(app.document.settled_scene().content(), before);
     app.put_scenery(wish, false);
     let start = Instant::now();
-    while app.document.settled_scene().rev == before {
+    while app.document.settled_scene().content() == before {
         assert!(start.elapsed() < PATIENCE, "{:?}", app.toasts.last());
         app.update(&Context::default());
         std::thread::sleep(Duration::from_millis(2));
@@ -124,7 +124,7 @@ fn checks_and_sensors() {
     );
     let prompt = "another state".to_owned();
     app.apply("Prompt", &[Edit::SetPrompt { prompt }]);
-    let rev = app.document.settled_scene().rev;
+    let rev = app.document.settled_scene().content();
     app.threads.sensing.ask(app.document.scene(), wanted, true);
     let start = Instant::now();
     while app.threads.checking.is_stale(rev) || app.threads.sensing.lidar_stale(rev) {

@@ -170,7 +170,7 @@ impl Live {
         let touched = self.touched_by(scene, now_s);
         self.paused = None;
         if let Some(running) = &self.running
-            && running.key.rev != scene.rev
+            && running.key.rev != scene.content()
             && running.purpose != Purpose::WarmUp
             && (touched.is_empty || !self.on)
         {
@@ -185,7 +185,7 @@ impl Live {
                 Advice::WarmUp(params)
             };
         }
-        if !self.waits(scene.rev, &touched) {
+        if !self.waits(scene.content(), &touched) {
             return Advice::Rest;
         }
         self.paused = guard::pause(
@@ -217,8 +217,7 @@ impl Live {
     /// Drops the edit that waits: this state is not generated automatically any more; the next edit will be.
     pub fn drop_waiting(&mut self, scene: &Scene) {
         self.asked = Some(JobKey {
-            rev: scene.rev,
-            frame: scene.current,
+            rev: scene.content(),
             params: self.params_for(scene, false),
         });
         self.paused = None;
@@ -227,18 +226,18 @@ impl Live {
     /// What the edits of a scene touch; computed once per state.
     pub fn touched_by(&mut self, scene: &Scene, now_s: f64) -> Touched {
         if let Some((rev, touched)) = self.seen
-            && rev == scene.rev
+            && rev == scene.content()
         {
             return touched;
         }
-        let region = Region::of_edit(scene.frame(), self.params.halo_columns as usize);
+        let region = Region::of_edit(scene.for_generation().frame(), self.params.halo_columns as usize);
         let touched = Touched {
             is_empty: region.is_empty(),
             extent_m: region.extent_m(),
             share: region.share(),
         };
         self.parts = region.parts().into();
-        self.seen = Some((scene.rev, touched));
+        self.seen = Some((scene.content(), touched));
         self.last_edit_s = now_s;
         touched
     }
@@ -351,8 +350,7 @@ mod tests {
         live.submitted(
             JobId(id),
             JobKey {
-                rev: scene.rev,
-                frame: scene.current,
+                rev: scene.content(),
                 params,
             },
             now_s,
@@ -438,7 +436,7 @@ mod tests {
             "{:?}",
             live.paused
         );
-        assert!(!live.has_waiting(scene.rev));
+        assert!(!live.has_waiting(scene.content()));
         // Undone, nothing is said any more.
         live.advise(&before, false, 1.1);
         assert_eq!(live.paused, None);
@@ -453,9 +451,9 @@ mod tests {
         paint(&mut small, 40);
         live.touched_by(&small, 2.0);
         assert_eq!(live.advise(&small, true, 2.0), Advice::Rest);
-        assert!(live.has_waiting(small.rev));
+        assert!(live.has_waiting(small.content()));
         live.drop_waiting(&small);
-        assert!(!live.has_waiting(small.rev));
+        assert!(!live.has_waiting(small.content()));
         assert_eq!(live.advise(&small, false, 3.0), Advice::Rest);
         paint(&mut small, 41);
         assert!(matches!(live.advise(&small, false, 4.0), Advice::Submit(_)));

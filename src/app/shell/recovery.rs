@@ -163,14 +163,14 @@ impl Recovery {
             self.replaced.drain(..).for_each(Stale::discard);
             return (None, problem);
         }
-        if self.asked == Some(scene.rev) || self.writing {
+        if self.asked == Some(scene.content()) || self.writing {
             return (None, problem);
         }
         let due_s = self.last_s + self.every_s;
         if now_s < due_s {
             return (Some(due_s - now_s), problem);
         }
-        (self.asked, self.last_s, self.writing) = (Some(scene.rev), now_s, true);
+        (self.asked, self.last_s, self.writing) = (Some(scene.content()), now_s, true);
         self.send(Job::Write(scene.clone(), path.map(Path::to_path_buf)));
         (None, problem)
     }

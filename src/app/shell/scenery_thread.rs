@@ -71,7 +71,7 @@ impl SceneloomApp {
         else {
             return;
         };
-        if self.document.is_dragging() || self.document.settled_scene().rev != before.rev {
+        if self.document.is_dragging() || self.document.settled_scene().content() != before.content() {
             let now_s = self.now_s();
             let text = "The scene changed meanwhile: no scenery was drawn";
             return self.toasts.push(Level::Info, text, now_s);
@@ -92,7 +92,7 @@ impl SceneloomApp {
         };
         self.apply("Draw scenery", &edits);
         let after = self.document.settled_scene().clone();
-        if after.rev != before.rev {
+        if after.content() != before.content() {
             let note = format!("Seed {}", wish.seed);
             self.generation
                 .versions

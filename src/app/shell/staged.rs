@@ -68,7 +68,7 @@ impl SceneloomApp {
         }
         let beside = again.is_some();
         let staged = Staged {
-            rev: after.rev,
+            rev: after.content(),
             before: before.clone(),
             again,
             changed,
@@ -85,7 +85,7 @@ impl SceneloomApp {
 
     /// The result that waits, if the document still shows it.
     pub fn staged(&self) -> Option<&Staged> {
-        let rev = self.document.settled_scene().rev;
+        let rev = self.document.settled_scene().content();
         self.generation.staged.as_ref().filter(|s| s.rev == rev)
     }
 
@@ -158,7 +158,8 @@ impl SceneloomApp {
         };
         self.apply("Generate", &edits);
         let scene = self.document.settled_scene().clone();
-        self.generation.drawn_first = (scene.rev != before.rev).then(|| (scene.rev, before));
+        self.generation.drawn_first =
+            (scene.content() != before.content()).then(|| (scene.content(), before));
         let now_s = self.now_s();
         self.generation.live.touched_by(&scene, now_s);
         self.submit(scene, params);
@@ -167,7 +168,7 @@ impl SceneloomApp {
     /// Removes scenery that was drawn for a generation that did not finish.
     pub(crate) fn take_scenery_back(&mut self) {
         if let Some((rev, _)) = self.generation.drawn_first.take()
-            && rev == self.document.settled_scene().rev
+            && rev == self.document.settled_scene().content()
         {
             self.document.undo();
         }
@@ -244,7 +245,7 @@ impl SceneloomApp {
         if let Some(before) = self.step_back()
             && self
                 .document
-                .adopt_with_things("Accept a part", before.rev, mixed, things)
+                .adopt_with_things("Accept a part", before.content(), mixed, things)
                 .is_ok()
         {
             let scene = self.document.settled_scene().clone();
@@ -335,9 +336,8 @@ fn part_of_things(before: &Scene, after: &Scene, part: &Part) -> Background {
         Part::Class(class) => thing.form.class() == *class,
         Part::Columns(columns) => {
             let extent = after.frame().extent();
-            let to_ego = after.frame().world_from_ego.inverse();
             let mut inside = true;
-            authoring::scenery_around::columns(extent, &thing.form.in_frame(&to_ego), 0.0, |x, y| {
+            authoring::scenery_around::columns(extent, &thing.form, 0.0, |x, y| {
                 inside &= columns[extent.index(x, y)];
             });
             inside
@@ -359,7 +359,7 @@ fn columns_chosen(hand: &Hand, scene: &Scene) -> Vec<bool> {
     }
     let things = hand.things.chosen.iter();
     let things = things.filter_map(|id| scene.background.get(*id));
-    for thing in in_extent(extent, things, &frame.world_from_ego) {
+    for thing in in_extent(extent, things) {
         authoring::scenery_around::columns(extent, &thing.form, Extent::VOXEL_M, &mut set);
     }
     columns

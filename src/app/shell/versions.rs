@@ -32,7 +32,7 @@ impl Versions {
 
     /// Adds a version, unless the newest is the same; the oldest that is not starred may have to go.
     pub fn push(&mut self, label: String, note: String, scene: Arc<Scene>) {
-        if self.list.iter().any(|v| v.scene.rev == scene.rev) {
+        if self.list.iter().any(|v| v.scene.content() == scene.content()) {
             return;
         }
         self.list.push(Version {
@@ -66,7 +66,7 @@ impl Versions {
 
     /// The version of that state.
     pub fn of(&self, rev: SceneRev) -> Option<usize> {
-        self.list.iter().position(|v| v.scene.rev == rev)
+        self.list.iter().position(|v| v.scene.content() == rev)
     }
 
     /// The version to compare a state with when the user chose none: the one before it, or the newest for a state that
@@ -113,14 +113,14 @@ mod tests {
         }
         assert_eq!(versions.list().len(), Versions::MAX + 1);
         assert_eq!(versions.list()[0].label, "1", "a star stays");
-        let rev = |i: usize| scenes[scenes.len() - 1 - i].rev;
+        let rev = |i: usize| scenes[scenes.len() - 1 - i].content();
         let same = |found: Option<&Arc<Scene>>, i: usize| found.map(|s| s.rev) == Some(rev(i));
         assert!(same(versions.before(rev(0)), 1));
         assert!(
-            same(versions.before(scene().rev), 0),
+            same(versions.before(scene().content()), 0),
             "an edit is compared with the newest"
         );
         assert!(same(versions.neighbour(rev(1), 1), 0) && versions.neighbour(rev(0), 1).is_none());
-        assert!(versions.before(scenes[1].rev).is_none());
+        assert!(versions.before(scenes[1].content()).is_none());
     }
 }

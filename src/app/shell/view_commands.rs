@@ -83,7 +83,7 @@ impl SceneloomApp {
     }
 
     pub(crate) fn look_through(&mut self, index: usize) {
-        if let Some(camera) = self.document.scene().rig.cameras.get(index) {
+        if let Some(camera) = self.document.scene().with_rig_in_world().rig.cameras.get(index) {
             self.views.view3d.camera = viewport::ViewCamera::through(camera);
         }
     }

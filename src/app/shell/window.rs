@@ -107,7 +107,7 @@ impl SceneloomApp {
             waiting: self
                 .generation
                 .live
-                .has_waiting(self.document.settled_scene().rev),
+                .has_waiting(self.document.settled_scene().content()),
             bookmarks: self.preferences.settings.bookmarks.keys().copied().collect(),
             has_paint: scene.frame().painted.iter_set().next().is_some(),
             workspace: self.preferences.settings.workspace,
@@ -138,7 +138,7 @@ impl SceneloomApp {
         let status = StatusInput {
             findings,
             running: self.generation.live.running.as_ref(),
-            shows_what_comes: self.generation.shows_what_comes(settled.rev),
+            shows_what_comes: self.generation.shows_what_comes(settled.content()),
             now_s,
             receipt: self.generation.receipt.as_ref(),
             live: self.generation.live.on,
@@ -146,7 +146,7 @@ impl SceneloomApp {
             busy_with: self.files.opening.as_ref().map(|o| o.what.as_str()),
             unread: self.toasts.unread(),
             paused: self.generation.live.paused.as_ref(),
-            waiting: self.generation.live.has_waiting(settled.rev),
+            waiting: self.generation.live.has_waiting(settled.content()),
             dragging: self.document.is_dragging(),
             hint: &crate::shell::hints::hint(&self.state),
         };
@@ -179,9 +179,9 @@ impl SceneloomApp {
                 down && (self.state.compare.holding_before || !i.pointer.any_down())
             });
         self.state.compare.holding_before = held;
-        let rev = self.document.settled_scene().rev;
+        let rev = self.document.settled_scene().content();
         let active = held || self.state.compare.mode != CompareMode::Off;
-        let chosen = self.views.compare.chosen.as_ref().filter(|s| s.rev != rev);
+        let chosen = self.views.compare.chosen.as_ref().filter(|s| s.content() != rev);
         let before = chosen
             .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)

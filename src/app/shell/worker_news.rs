@@ -14,7 +14,7 @@ use crate::shell::toasts::Level;
 use editor::Document;
 use job::inpaint::InpaintMask;
 use job::{GenParams, GenResult, JobEvent, JobUpdate, Named};
-use scene::Scene;
+use scene::{Frame, Scene};
 
 impl SceneloomApp {
     pub(crate) fn schedule(&mut self, ctx: &egui::Context) {
@@ -62,10 +62,11 @@ impl SceneloomApp {
             }
             JobUpdate::Preview(result) => {
                 let mut scene = Scene::clone(self.document.scene());
-                if scene.rev == result.rev() {
-                    let rev = scene.rev;
-                    scene.frame_mut().occupancy = result.occupancy.clone();
-                    self.generation.preview = Some((rev, Arc::new(scene)));
+                if scene.content() == result.rev() {
+                    let mut frame = Frame::clone(scene.for_generation().frame());
+                    frame.occupancy = result.occupancy.clone();
+                    scene.set_generated(frame);
+                    self.generation.preview = Some((result.rev(), Arc::new(scene)));
                 }
             }
             JobUpdate::Finished(result) => {
@@ -91,13 +92,13 @@ impl SceneloomApp {
                             .live
                             .took(running.share, now_s - running.submitted_s);
                     }
-                    if !full && running.key.rev == self.document.settled_scene().rev {
+                    if !full && running.key.rev == self.document.settled_scene().content() {
                         let edited = self.document.settled_scene().clone();
                         self.generation
                             .tuning
                             .note(edited, result.clone(), now_s - running.edited_s);
                     }
-                    if running.key.rev == self.document.settled_scene().rev {
+                    if running.key.rev == self.document.settled_scene().content() {
                         self.generation.receipt =
                             Some(Receipt::new(&result.report, now_s - running.edited_s, full));
                     }
@@ -158,11 +159,11 @@ impl SceneloomApp {
         let adopted = match own_step_label {
             Some(label) => self
                 .document
-                .adopt_as_step(label, result.rev(), result.frame, result.occupancy.clone())
+                .adopt_as_step(label, result.rev(), result.occupancy.clone())
                 .is_ok(),
             None => self
                 .document
-                .adopt(result.rev(), result.frame, result.occupancy.clone())
+                .adopt(result.rev(), result.occupancy.clone())
                 .is_ok(),
         };
         if adopted {
@@ -203,11 +204,15 @@ impl SceneloomApp {
     /// Ends a whole generation with its last preview as the result.
     pub(crate) fn stop_here(&mut self) {
         let before = self.document.settled_scene().clone();
-        let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.rev;
+        let whole = |r: &&mut Running| r.purpose == Purpose::Full && r.key.rev == before.content();
         let Some(running) = self.generation.live.running.as_mut().filter(whole) else {
             return;
         };
-        let Some((_, shown)) = self.generation.preview.take_if(|(rev, _)| *rev == before.rev) else {
+        let Some((_, shown)) = self
+            .generation
+            .preview
+            .take_if(|(rev, _)| *rev == before.content())
+        else {
             return;
         };
         running.cancelled = true;
@@ -220,12 +225,10 @@ impl SceneloomApp {
             .generation
             .drawn_first
             .take()
-            .filter(|(rev, _)| *rev == before.rev);
+            .filter(|(rev, _)| *rev == before.content());
         let adopted = match drawn {
-            Some(_) => self.document.adopt(before.rev, before.current, occupancy),
-            None => self
-                .document
-                .adopt_as_step(label, before.rev, before.current, occupancy),
+            Some(_) => self.document.adopt(before.content(), occupancy),
+            None => self.document.adopt_as_step(label, before.content(), occupancy),
         };
         if adopted.is_ok() {
             let note = format!("After {step} of {steps} steps");

@@ -1,7 +1,7 @@
 //! A run of edits of boxes. It copies and compares the frame once for all of them, not once for each.
 
 use super::apply_to;
-use scene::{BoxId, Edit, EditError, Frame, Scene, SceneBox};
+use scene::{BoxId, Edit, EditError, Frame, Scene, SceneBox, Scope};
 
 /// Applies edits of boxes in order and stops at the first error. The edits before it stay applied.
 pub(super) fn apply(run: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
@@ -17,7 +17,7 @@ pub(super) fn apply(run: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
         changed |= before.is_none_or(|before| touched(edit, &frame) != Some(before));
     }
     if changed {
-        *scene.frame_mut() = frame;
+        scene.set_frame(frame, Scope::default());
     }
     Ok(())
 }

@@ -1,6 +1,5 @@
 //! Edits of boxes, and their voxels at once.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use scene::{BoxId, BoxName, Edit, EditError, Frame, SceneBox};
@@ -30,7 +29,7 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
                 Some(id) => id,
                 None => next_id(frame)?,
             };
-            if frame.boxes.contains_key(&id) {
+            if frame.is_taken(id) {
                 return Err(EditError::DuplicateBox { id });
             }
             let new = SceneBox {
@@ -81,12 +80,10 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
 }
 
 fn next_id(frame: &Frame) -> Result<BoxId, EditError> {
-    let taken: &BTreeMap<_, _> = &frame.boxes;
-    if taken.contains_key(&BoxId(u32::MAX)) {
+    if frame.is_taken(BoxId(u32::MAX)) {
         // No id above the highest is left: take the lowest free one.
-        let above_zero = taken.keys().filter(|id| id.0 > 0);
-        let free = (1..).zip(above_zero).find(|(free, id)| id.0 != *free);
-        return free.map(|(id, _)| BoxId(id)).ok_or(EditError::NoIdLeft);
+        let free = (1..=u32::MAX).map(BoxId).find(|id| !frame.is_taken(*id));
+        return free.ok_or(EditError::NoIdLeft);
     }
     Ok(frame.next_box_id())
 }

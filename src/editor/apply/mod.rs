@@ -5,11 +5,12 @@ mod box_run;
 mod boxes;
 mod correct;
 mod map;
+mod motion;
 mod voxels;
 
 use std::sync::Arc;
 
-use scene::{Edit, EditError, Frame, Scene, SensorRig};
+use scene::{Edit, EditError, Frame, Scene, Scope, SensorRig};
 
 use super::things;
 pub(crate) use voxels::adopt;
@@ -31,7 +32,7 @@ impl Apply for Edit {
         match self {
             Self::SetPrompt { prompt } => {
                 if scene.prompt.as_ref() != prompt {
-                    scene.rev = scene::SceneRev::fresh();
+                    scene.touch();
                     scene.prompt = prompt.as_str().into();
                 }
             }
@@ -40,12 +41,12 @@ impl Apply for Edit {
                     return Err(EditError::BadConditions(problem));
                 }
                 if scene.conditions != *conditions {
-                    scene.rev = scene::SceneRev::fresh();
+                    scene.touch();
                     scene.conditions = *conditions;
                 }
             }
             Self::KeepWords { words } => {
-                scene.rev = scene::SceneRev::fresh();
+                scene.touch();
                 let kept = Arc::make_mut(&mut scene.words);
                 kept.push(words.chars().take(LONGEST_WORDS).collect());
                 let over = kept.len().saturating_sub(MOST_WORDS);
@@ -56,12 +57,12 @@ impl Apply for Edit {
                     return Err(EditError::BadRig(problem));
                 }
                 if *scene.rig != **rig {
-                    scene.rev = scene::SceneRev::fresh();
+                    scene.touch();
                     scene.rig = Arc::new(SensorRig::clone(rig));
                 }
             }
             Self::ClearScenery { shape } => {
-                let extent = scene.frame().extent();
+                let extent = scene.canvas().extent();
                 let cells = shape.as_ref().map(|s| s.cells(extent)).transpose()?;
                 things::clear_scenery(scene, cells.as_deref());
             }
@@ -71,14 +72,8 @@ impl Apply for Edit {
                 }
             }
             Self::At { .. } => at::apply(self, scene)?,
-            edit => {
-                // A frame is a few hundred pointers; working on a copy makes "all or nothing" certain.
-                let mut frame = Frame::clone(scene.frame());
-                apply_to(edit, &mut frame)?;
-                if frame != **scene.frame() {
-                    *scene.frame_mut() = frame;
-                }
-            }
+            Self::SetMotion { .. } | Self::SetLength { .. } => motion::apply(self, scene)?,
+            edit => at::apply_scoped(edit, scene, Scope::default())?,
         }
         Ok(())
     }

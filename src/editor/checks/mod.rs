@@ -147,9 +147,7 @@ pub(crate) fn overlaps(scene: &Scene) -> Vec<Finding> {
 }
 
 fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> Vec<Finding> {
-    let Some(frame) = scene.frames.get(scene.current) else {
-        return Vec::new();
-    };
+    let frame = scene.frame();
     let highest = |boxes: &BTreeMap<BoxId, SceneBox>| boxes.keys().next_back().map_or(0, |id| id.0);
     let context = Context {
         scene,

@@ -5,8 +5,7 @@ use glam::DVec2;
 use scene::message::one_line;
 use scene::{Frame, Relief, Scene};
 
-use super::archive::within;
-use super::{MAX_FRAMES, ProjectError};
+use super::ProjectError;
 
 /// Largest coordinate of a polyline's point, m.
 const LARGEST_M: f64 = 1e5;
@@ -14,17 +13,6 @@ const LARGEST_M: f64 = 1e5;
 /// Errors on the first thing that is not sound; JSON could not even hold a NaN.
 pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
     let unsound = |text: String| Err(ProjectError::Unsound(one_line(&format!("scene.json: {text}"))));
-    within(
-        "the number of frames",
-        scene.frames.len() as u64,
-        MAX_FRAMES as u64,
-    )?;
-    if scene.current >= scene.frames.len() {
-        let (found, frames) = (scene.current, scene.frames.len());
-        return unsound(format!(
-            "current is {found}, expected below the number of frames, {frames}"
-        ));
-    }
     if let Some(problem) = scene.conditions.problem() {
         return unsound(format!("conditions: {problem}"));
     }
@@ -34,10 +22,19 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
     if let Some(problem) = scene.background.problem() {
         return unsound(problem);
     }
-    for (index, frame) in scene.frames.iter().enumerate() {
-        if let Some(problem) = frame_problem(frame) {
-            return unsound(format!("frame {index}: {problem}"));
-        }
+    if let Some(problem) = frame_problem(scene.canvas()) {
+        return unsound(format!("canvas: {problem}"));
+    }
+    if let Some(problem) = scene.clip().problem() {
+        return unsound(format!("clip: {problem}"));
+    }
+    let twice = scene
+        .clip()
+        .tracks
+        .keys()
+        .find(|id| scene.canvas().boxes.contains_key(id));
+    if let Some(id) = twice {
+        return unsound(format!("box {} stands and moves, expected one of both", id.0));
     }
     Ok(())
 }

@@ -1,11 +1,14 @@
-//! `scene.json`: all of a scene but its grids, as version 4 keeps it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as version 5 keeps it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use scene::{BoxId, Conditions, Extent, Frame, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Waiver};
+use scene::{
+    BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Track,
+    Waiver,
+};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -16,11 +19,65 @@ pub(super) struct SceneHeader {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) words: Vec<String>,
     pub(super) seed: u64,
-    pub(super) current: usize,
+    /// The moment that is shown, s.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(super) shown_s: f64,
     pub(super) rig: Arc<SensorRig>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) background: Vec<Thing>,
-    pub(super) frames: Vec<FrameHeader>,
+    pub(super) canvas: FrameHeader,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) clip: Option<ClipHeader>,
+}
+
+/// What moves, but for the voxels.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ClipHeader {
+    pub(super) length_s: f64,
+    pub(super) rate_hz: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) ego: Option<Motion>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) tracks: Vec<TrackHeader>,
+}
+
+/// An object that moves.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TrackHeader {
+    pub(super) made: SceneBox,
+    pub(super) motion: Motion,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) from_s: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) to_s: Option<f64>,
+    pub(super) settled: bool,
+    /// Column at the lower corner of its voxels, counted from the world frame's origin.
+    pub(super) voxels_from: [i32; 2],
+    /// Columns of them along x and y.
+    pub(super) voxels_size: [usize; 2],
+}
+
+impl ClipHeader {
+    /// Of a clip; none of one that is as a scene of one moment.
+    fn of(clip: &Clip) -> Option<Self> {
+        let track = |t: &Track| TrackHeader {
+            made: t.made,
+            motion: t.motion.clone(),
+            from_s: t.there_s[0],
+            to_s: t.there_s[1],
+            settled: t.settled,
+            voxels_from: t.voxels.from,
+            voxels_size: t.voxels.size,
+        };
+        (*clip != Clip::default()).then(|| Self {
+            length_s: clip.length_s,
+            rate_hz: clip.rate_hz,
+            ego: clip.ego.clone(),
+            tracks: clip.tracks.values().map(track).collect(),
+        })
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -49,7 +106,7 @@ pub(super) struct FrameHeader {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ExtentHeader {
-    /// The lower corner along x and y, counted from the ego frame's origin.
+    /// The lower corner along x and y, counted from the world frame's origin.
     from: [i32; 2],
     /// How many along x and y.
     columns: [usize; 2],
@@ -88,7 +145,7 @@ impl InferredHeader {
     }
 }
 
-/// What is left out, or false, is as in the frame.
+/// What is left out, or false, is as on the canvas.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SourceHeader {
@@ -109,6 +166,10 @@ fn is_false(flag: &bool) -> bool {
     !flag
 }
 
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
 impl SceneHeader {
     /// Of a scene.
     pub(super) fn of(scene: &Scene) -> Self {
@@ -118,17 +179,27 @@ impl SceneHeader {
             conditions: scene.conditions,
             words: scene.words.to_vec(),
             seed: scene.seed,
-            current: scene.current,
+            shown_s: if scene.clip().length_s > 0.0 {
+                scene.time_s()
+            } else {
+                0.0
+            },
             rig: scene.rig.clone(),
             background: scene.background.iter().cloned().collect(),
-            frames: scene.frames.iter().map(|f| frame_header(f)).collect(),
+            canvas: frame_header(scene.canvas()),
+            clip: ClipHeader::of(scene.clip()),
         }
     }
 }
 
-/// Name of a part of a frame within the zip.
-pub(super) fn entry_name(frame: usize, part: &str) -> String {
-    format!("frames/{frame:05}/{part}")
+/// Name of a part of the canvas within the zip.
+pub(super) fn entry_name(part: &str) -> String {
+    format!("canvas/{part}")
+}
+
+/// Name of a track's voxels within the zip.
+pub(super) fn track_entry(id: BoxId) -> String {
+    format!("tracks/{:010}.u8", id.0)
 }
 
 fn frame_header(frame: &Frame) -> FrameHeader {

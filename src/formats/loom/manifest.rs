@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use scene::Scene;
 use scene::message::quoted;
 
 use super::archive::parse;
@@ -10,21 +9,18 @@ use super::migrate::Migration;
 use super::{FORMAT, MANIFEST, ProjectError, VERSION};
 
 /// As it is written.
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Serialize)]
 pub(super) struct Manifest {
     format: String,
     version: u32,
-    pub(super) frames: usize,
 }
 
 impl Manifest {
-    /// Of a scene, of the version that is written.
-    pub(super) fn of(scene: &Scene) -> Self {
+    /// Of the version that is written.
+    pub(super) fn present() -> Self {
         Self {
             format: FORMAT.into(),
             version: VERSION,
-            frames: scene.frames.len(),
         }
     }
 }
@@ -34,6 +30,8 @@ impl Manifest {
 pub(super) struct AnyManifest {
     format: String,
     version: u64,
+    /// Of versions 1 to 4.
+    pub(super) frames: Option<u64>,
 }
 
 impl AnyManifest {

@@ -2,16 +2,17 @@
 //!
 //! | entry | holds |
 //! |---|---|
-//! | `manifest.json` | `format`, `version`, `frames` |
-//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background, and of each frame time, pose, boxes, polylines |
-//! | `frames/00000/layout.u32` | map layers as bits, `[x][y]`, a little-endian word per column |
-//! | `frames/00000/relief.f32` | height of the ground in each column, `[x][y]`, little-endian numbers in m; only if it is not flat |
-//! | `frames/00000/occupancy.u8` | class labels, `[x][y][z]`, a byte per voxel |
-//! | `frames/00000/painted.u8` | painted voxels, 255 where none; only if there are any |
-//! | `frames/00000/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
-//! | `frames/00000/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the frame |
+//! | `manifest.json` | `format`, `version` |
+//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background; of the canvas its boxes, polylines and the ego vehicle's pose; of the clip its length, and how objects and the ego vehicle move |
+//! | `canvas/layout.u32` | map layers as bits, `[x][y]`, a little-endian word per column |
+//! | `canvas/relief.f32` | height of the ground in each column, `[x][y]`, little-endian numbers in m; only if it is not flat |
+//! | `canvas/occupancy.u8` | class labels, `[x][y][z]`, a byte per voxel |
+//! | `canvas/painted.u8` | painted voxels, 255 where none; only if there are any |
+//! | `canvas/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
+//! | `canvas/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the canvas |
+//! | `tracks/0000000007.u8` | class labels of a moving object, where it was made, `[x][y][z]`, a byte per voxel |
 //!
-//! A frame has 200 x 200 columns around the ego vehicle, unless `scene.json` gives it another `extent`.
+//! The canvas has 200 x 200 columns around the origin of the world frame, unless `scene.json` gives it another `extent`.
 //!
 //! The manifest's version selects what is done first: a file of an older version goes through the steps of [`migrate`],
 //! one per version, until it is as a file of this version. A newer version is refused.
@@ -36,7 +37,7 @@ use scene::Scene;
 use super::{atomic, input};
 pub use error::ProjectError;
 use names::{FORMAT, MANIFEST, SCENE};
-pub use names::{LARGEST_FILE, MAX_FRAMES, VERSION};
+pub use names::{LARGEST_FILE, VERSION};
 pub use write::to_bytes;
 
 /// Writes the scene to `path`, whole or not at all; the number of bytes written.

@@ -1,9 +1,9 @@
 //! Names, version and limits of a project file.
 
 /// Version written.
-pub const VERSION: u32 = 4;
-/// Frames a project may hold.
-pub const MAX_FRAMES: usize = 10_000;
+pub const VERSION: u32 = 5;
+/// Frames that a project of version 1 to 4 may hold.
+pub(super) const MAX_FRAMES: usize = 10_000;
 /// Largest project file that is written and read, bytes.
 pub const LARGEST_FILE: u64 = 512 << 20;
 

@@ -4,43 +4,37 @@ use std::collections::BTreeMap;
 use std::io::{Read, Seek};
 use std::sync::Arc;
 
+use scene::clip::ObjectVoxels;
 use scene::grid::NOT_PAINTED;
 use scene::{
-    Background, BoxId, Extent, Frame, Inferred, Relief, Scene, SceneBox, SceneRev, SourceFrame, Unobserved,
-    VoxelGrid, VoxelPaint,
+    Background, BoxId, Clip, Extent, Frame, Inferred, Relief, Scene, SceneBox, SourceFrame, Track,
+    Unobserved, VoxelGrid, VoxelPaint,
 };
 
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
 use super::check::check;
-use super::header::{FrameHeader, SceneHeader, entry_name};
-use super::manifest::{AnyManifest, Manifest};
+use super::header::{ClipHeader, FrameHeader, SceneHeader, entry_name, track_entry};
+use super::manifest::AnyManifest;
 use super::migrate::{Migration, Old};
-use super::{MANIFEST, MAX_FRAMES, ProjectError, SCENE};
+use super::{MANIFEST, ProjectError, SCENE};
 
 /// The scene in a project file. `migrations` lead from older versions to this one, each by one.
 pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Result<Scene, ProjectError> {
     let mut file = Reader::new(reader)?;
     let text = file.bytes(MANIFEST, MAX_JSON)?;
-    let version = AnyManifest::parse(&text)?.version(migrations)?;
-    let mut old = Old::new(&mut file);
+    let manifest = AnyManifest::parse(&text)?;
+    let version = manifest.version(migrations)?;
+    let mut old = Old::new(&mut file, manifest.frames);
     for step in migrations.iter().filter(|step| step.from >= version) {
         old.migrate(step)?;
     }
-    let manifest: Manifest = parse(MANIFEST, &text)?;
-    within("the number of frames", manifest.frames as u64, MAX_FRAMES as u64)?;
     let text = old.finish()?;
     let header: SceneHeader = parse(SCENE, &text)?;
-    if header.frames.len() != manifest.frames {
-        return Err(ProjectError::Unsound(format!(
-            "scene.json: {} frames, expected {} as in manifest.json",
-            header.frames.len(),
-            manifest.frames
-        )));
-    }
-    let mut frames = Vec::with_capacity(header.frames.len());
-    for (index, frame) in header.frames.into_iter().enumerate() {
-        frames.push(Arc::new(read_frame(&mut file, index, frame)?));
-    }
+    let canvas = read_canvas(&mut file, header.canvas)?;
+    let clip = match header.clip {
+        Some(clip) => read_clip(&mut file, clip)?,
+        None => Clip::default(),
+    };
     file.expect_all_read()?;
     let things = header.background.len();
     let background: Background = header.background.into_iter().collect();
@@ -49,34 +43,72 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
             "scene.json: two things of the background have the same id".into(),
         ));
     }
-    let scene = Scene {
-        rev: SceneRev::fresh(),
-        name: header.name,
-        prompt: header.prompt,
-        conditions: header.conditions,
-        words: Arc::new(header.words),
-        rig: header.rig,
-        background: Arc::new(background),
-        frames,
-        current: header.current,
-        seed: header.seed,
-    };
+    let mut scene = Scene::single(&header.name, canvas, header.rig, header.seed);
+    scene.prompt = header.prompt;
+    scene.conditions = header.conditions;
+    scene.words = Arc::new(header.words);
+    scene.background = Arc::new(background);
+    scene.change_clip(|empty| *empty = clip);
     check(&scene)?;
+    scene.show(header.shown_s);
     Ok(scene)
 }
 
-fn read_frame<R: Read + Seek>(
-    file: &mut Reader<R>,
-    index: usize,
-    header: FrameHeader,
-) -> Result<Frame, ProjectError> {
-    let name = |part: &str| entry_name(index, part);
+fn read_clip<R: Read + Seek>(file: &mut Reader<R>, header: ClipHeader) -> Result<Clip, ProjectError> {
+    within(
+        "the number of tracks",
+        header.tracks.len() as u64,
+        Clip::MAX_TRACKS as u64,
+    )?;
+    let mut tracks = BTreeMap::new();
+    for track in header.tracks {
+        let id = track.made.id;
+        let [nx, ny] = track.voxels_size;
+        let count = nx.checked_mul(ny).filter(|n| *n <= ObjectVoxels::MAX_COLUMNS);
+        let Some(count) = count else {
+            return Err(ProjectError::Unsound(format!(
+                "scene.json: track {}: voxels of {nx} x {ny} columns, expected at most {}",
+                id.0,
+                ObjectVoxels::MAX_COLUMNS
+            )));
+        };
+        let bytes = file.exactly(&track_entry(id), count * Extent::NZ, 1, "voxels")?;
+        let (columns, _) = bytes.as_chunks::<{ Extent::NZ }>();
+        let voxels = ObjectVoxels {
+            from: track.voxels_from,
+            size: track.voxels_size,
+            columns: columns.to_vec(),
+        };
+        let track = Track {
+            made: track.made,
+            motion: track.motion,
+            there_s: [track.from_s, track.to_s],
+            voxels: Arc::new(voxels),
+            settled: track.settled,
+        };
+        if tracks.insert(id, track).is_some() {
+            return Err(ProjectError::Unsound(format!(
+                "scene.json: two tracks have the id {}",
+                id.0
+            )));
+        }
+    }
+    Ok(Clip {
+        length_s: header.length_s,
+        rate_hz: header.rate_hz,
+        ego: header.ego,
+        tracks,
+    })
+}
+
+fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Result<Frame, ProjectError> {
+    let name = entry_name;
     let source = header.source;
     let extent = match &header.extent {
         None => Extent::WINDOW,
         Some(extent) => extent
             .extent()
-            .map_err(|e| ProjectError::Unsound(format!("scene.json: frame {index}: {e}")))?,
+            .map_err(|e| ProjectError::Unsound(format!("scene.json: canvas: {e}")))?,
     };
     let mut layout = file.layout(&name("layout.u32"), extent, header.polylines)?;
     if header.relief {
@@ -100,10 +132,10 @@ fn read_frame<R: Read + Seek>(
         }
         false => None,
     };
-    let boxes = unique(index, header.boxes)?;
+    let boxes = unique(header.boxes)?;
     if let Some(id) = header.inferred.boxes.iter().find(|id| !boxes.contains_key(id)) {
         return Err(ProjectError::Unsound(format!(
-            "scene.json: frame {index}: box {} is marked as inferred, but there is none",
+            "scene.json: canvas: box {} is marked as inferred, but there is none",
             id.0
         )));
     }
@@ -123,7 +155,7 @@ fn read_frame<R: Read + Seek>(
     let source = SourceFrame {
         layout: source_layout,
         boxes: match source.boxes {
-            Some(list) => unique(index, list)?,
+            Some(list) => unique(list)?,
             None => boxes.clone(),
         },
         // Bricks in which the two agree stay one memory: "what changed" compares pointers.
@@ -147,16 +179,17 @@ fn read_frame<R: Read + Seek>(
         },
         waivers: Arc::new(header.waivers),
         source: Arc::new(source),
+        absent: Arc::default(),
     })
 }
 
-fn unique(frame: usize, list: Vec<SceneBox>) -> Result<BTreeMap<BoxId, SceneBox>, ProjectError> {
+fn unique(list: Vec<SceneBox>) -> Result<BTreeMap<BoxId, SceneBox>, ProjectError> {
     let mut boxes = BTreeMap::new();
     for b in list {
         if boxes.insert(b.id, b).is_some() {
             let id = b.id.0;
             return Err(ProjectError::Unsound(format!(
-                "scene.json: frame {frame}: two boxes have the id {id}"
+                "scene.json: canvas: two boxes have the id {id}"
             )));
         }
     }

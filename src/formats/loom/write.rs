@@ -4,7 +4,7 @@ use scene::{BevLayout, Scene};
 
 use super::archive::Writer;
 use super::check::check;
-use super::header::{SceneHeader, entry_name};
+use super::header::{SceneHeader, entry_name, track_entry};
 use super::manifest::Manifest;
 use super::{ProjectError, SCENE};
 
@@ -12,34 +12,38 @@ use super::{ProjectError, SCENE};
 pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
     check(scene)?;
     let mut out = Writer::new();
-    out.json(super::MANIFEST, &Manifest::of(scene))?;
+    out.json(super::MANIFEST, &Manifest::present())?;
     let header = SceneHeader::of(scene);
     out.json(SCENE, &header)?;
-    for ((index, frame), header) in scene.frames.iter().enumerate().zip(&header.frames) {
-        let name = |part: &str| entry_name(index, part);
-        out.put(&name("layout.u32"), &layout_bytes(&frame.layout))?;
-        if header.relief {
-            out.put(&name("relief.f32"), &relief_bytes(&frame.layout))?;
-        }
-        out.labels(&name("occupancy.u8"), &frame.occupancy)?;
-        if header.painted {
-            out.labels(&name("painted.u8"), &frame.painted)?;
-        }
-        if let Some(unobserved) = &frame.inferred.unobserved {
-            let words = unobserved.words().iter();
-            let bytes: Vec<u8> = words.flat_map(|w| w.to_le_bytes()).collect();
-            out.put(&name("unobserved.u16"), &bytes)?;
-        }
-        if header.source.layout {
-            out.put(&name("source_layout.u32"), &layout_bytes(&frame.source.layout))?;
-        }
-        if header.source.relief {
-            let bytes = relief_bytes(&frame.source.layout);
-            out.put(&name("source_relief.f32"), &bytes)?;
-        }
-        if header.source.occupancy {
-            out.labels(&name("source_occupancy.u8"), &frame.source.occupancy)?;
-        }
+    let (frame, header) = (scene.canvas(), &header.canvas);
+    out.put(&entry_name("layout.u32"), &layout_bytes(&frame.layout))?;
+    if header.relief {
+        out.put(&entry_name("relief.f32"), &relief_bytes(&frame.layout))?;
+    }
+    out.labels(&entry_name("occupancy.u8"), &frame.occupancy)?;
+    if header.painted {
+        out.labels(&entry_name("painted.u8"), &frame.painted)?;
+    }
+    if let Some(unobserved) = &frame.inferred.unobserved {
+        let words = unobserved.words().iter();
+        let bytes: Vec<u8> = words.flat_map(|w| w.to_le_bytes()).collect();
+        out.put(&entry_name("unobserved.u16"), &bytes)?;
+    }
+    if header.source.layout {
+        out.put(
+            &entry_name("source_layout.u32"),
+            &layout_bytes(&frame.source.layout),
+        )?;
+    }
+    if header.source.relief {
+        let bytes = relief_bytes(&frame.source.layout);
+        out.put(&entry_name("source_relief.f32"), &bytes)?;
+    }
+    if header.source.occupancy {
+        out.labels(&entry_name("source_occupancy.u8"), &frame.source.occupancy)?;
+    }
+    for (id, track) in &scene.clip().tracks {
+        out.put(&track_entry(*id), track.voxels.columns.as_flattened())?;
     }
     out.finish()
 }

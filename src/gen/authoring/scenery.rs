@@ -80,7 +80,6 @@ impl SceneryWish {
         }
         let scene = &*scene.in_window();
         let frame = scene.frame();
-        let to_ego = frame.world_from_ego.inverse();
         let columns = self.columns();
         let whole = |form: &Form| {
             let (mut inside, mut beyond) = (true, true);
@@ -94,10 +93,9 @@ impl SceneryWish {
         let stands_whole = |form: &Form| whole(form) == (true, false);
         let (mut ids, mut stays) = (Vec::<ThingId>::new(), Background::default());
         for thing in scene.background.iter() {
-            let form = thing.form.in_frame(&to_ego);
-            match stands_whole(&form) {
+            match stands_whole(&thing.form) {
                 true => ids.push(thing.id),
-                false => drop(stays.add(form)),
+                false => drop(stays.add(thing.form.clone())),
             }
         }
         let drawn = match self.by {
@@ -115,7 +113,7 @@ impl SceneryWish {
         let known = stays.len();
         let merged = scenery_around::merged(Extent::WINDOW, stays, &drawn);
         let come = merged.iter().skip(known);
-        let forms: Vec<Form> = come.map(|t| t.form.in_frame(&frame.world_from_ego)).collect();
+        let forms: Vec<Form> = come.map(|t| t.form.clone()).collect();
         let mut edits = Vec::new();
         if !ids.is_empty() {
             edits.push(Edit::RemoveThings { ids });

@@ -188,19 +188,28 @@ pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edite
     Ok(edited(heard, scene, seed))
 }
 
-/// Carries out a reading that is known.
+/// Carries out a reading that is known, as the ego vehicle sees the moment that is shown.
 pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
-    let frame = scene.frame();
-    let mut outcome = carry_out(&heard.reading, &open_scene(scene), seed);
+    let ego = scene.in_ego();
+    let frame = ego.frame();
+    let mut outcome = carry_out(&heard.reading, &open_scene(&ego), seed);
     put_on_ground(&mut outcome.edits, frame);
     let open = OpenBackground {
-        things: &scene.background,
-        world_from_ego: frame.world_from_ego,
+        things: &ego.background,
         layout: &frame.layout,
         boxes: &frame.boxes,
     };
+    let mut things = carry_out_beside(&heard.reading.background, &open, seed);
+    let pose = scene.frame().world_from_ego;
+    let (here, map) = (frame.extent(), scene.frame().extent());
+    for edits in [&mut outcome.edits, &mut things.edits] {
+        for edit in edits {
+            let in_ego = std::mem::replace(edit, Edit::ConfirmInferred {});
+            *edit = in_ego.into_world(&pose, here, map);
+        }
+    }
     Edited {
-        things: carry_out_beside(&heard.reading.background, &open, seed),
+        things,
         heard,
         outcome,
     }
@@ -323,14 +332,15 @@ mod tests {
         let prompted = read("a parked car 12 m ahead, a bus 25 m ahead").expect("a scene");
         let description = prompted.described.description;
         let mut scene = make("", &description, 3, &How::default()).scene;
-        let frame = Arc::make_mut(&mut scene.frames[0]);
-        frame.layout.relief = Relief::from_fn(Extent::WINDOW, |p| 0.06 * p.x);
+        scene.change_canvas(|frame| {
+            frame.layout.relief = Relief::from_fn(Extent::WINDOW, |p| 0.06 * p.x);
+            for b in frame.boxes.values_mut() {
+                b.center_m.z += 0.06 * b.center_m.x;
+            }
+        });
         let above_m = |frame: &Frame, b: &SceneBox| {
             b.center_m.z - b.size_m.z / 2.0 - frame.layout.relief.height_m(b.center_m.truncate())
         };
-        for b in frame.boxes.values_mut() {
-            b.center_m.z += 0.06 * b.center_m.x;
-        }
         let reading = read_edit(
             "add a truck 18 m ahead; move the bus 5 m back; replace the car with a van",
             &scene,

@@ -29,16 +29,10 @@ pub struct Job {
 }
 
 impl Job {
-    /// Index of the frame that is generated: the one that was current when the job was made, whatever is shown later.
-    pub fn frame(&self) -> usize {
-        self.scene.current
-    }
-
     /// What names this job's result.
     pub fn key(&self) -> JobKey {
         JobKey {
-            rev: self.scene.rev,
-            frame: self.frame(),
+            rev: self.scene.content(),
             params: self.params.clone(),
         }
     }
@@ -47,10 +41,8 @@ impl Job {
 /// Same key, same result: the key of a cache of results.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct JobKey {
-    /// State of the scene.
+    /// State of the scene, whatever moment is shown; see [`Scene::content`].
     pub rev: SceneRev,
-    /// Index of the frame in the clip.
-    pub frame: usize,
     /// Parameters.
     pub params: GenParams,
 }
@@ -179,9 +171,7 @@ impl GenReport {
 pub struct GenResult {
     /// The job that it answers.
     pub key: JobKey,
-    /// Index of the frame that was generated.
-    pub frame: usize,
-    /// The new occupancy, of the frame's extent: source outside the region, painted voxels kept.
+    /// The new occupancy of [`Scene::for_generation`]'s frame, of its extent: source outside the region, painted voxels kept.
     pub occupancy: VoxelGrid,
     /// What it cost.
     pub report: GenReport,

@@ -51,15 +51,15 @@ struct Changed {
 }
 
 impl Caster {
-    /// Casts every ray of a pattern on a vehicle that drives straight ahead at `ego_speed_mps`. Voxels whose centre
+    /// Casts every ray of a pattern on a vehicle that drives at `velocity_mps`. Voxels whose centre
     /// lies in `exclude` are looked through.
     pub fn new(
         grid: &VoxelGrid,
         pattern: &LidarPattern,
-        ego_speed_mps: f64,
+        velocity_mps: DVec3,
         exclude: Option<EgoBox>,
     ) -> Self {
-        let rays = Rays::new(pattern, ego_speed_mps);
+        let rays = Rays::new(pattern, velocity_mps);
         let extent = grid.extent();
         let mut caster = Self {
             around: Around::new(grid, extent, pattern, &rays, exclude, Height::AsLabelled),

@@ -45,20 +45,16 @@ pub fn seen(grid: &VoxelGrid, exclude: Option<EgoBox>) -> VoxelGrid {
     // Casts saturate: a box of any size covers at most the grid, NaN nothing.
     let range = |axis: usize, n: usize| {
         let at = |p: DVec3| SEEN.to_voxel_units(p)[axis].floor();
-        let (low, high) = (
-            at(ego.center_m - ego.size_m / 2.0),
-            at(ego.center_m + ego.size_m / 2.0),
-        );
+        let (low, high) = ego.bounds_m();
+        let (low, high) = (at(low), at(high));
         (low.max(0.0) as usize).min(n)..(high + 1.0).clamp(0.0, n as f64) as usize
     };
     for x in range(0, SEEN.nx()) {
         for y in range(1, SEEN.ny()) {
             for z in range(2, Extent::NZ) {
                 let class = seen.get(x, y, z);
-                let near = (SEEN.center(x, y, z) - ego.center_m)
-                    .abs()
-                    .cmple(ego.size_m / 2.0);
-                if class != Class::FREE && near.all() && !class_is_ground(class) {
+                let near = || ego.contains(SEEN.center(x, y, z));
+                if class != Class::FREE && near() && !class_is_ground(class) {
                     seen.set(x, y, z, Class::FREE);
                 }
             }
@@ -72,8 +68,8 @@ fn class_is_ground(label: impl Into<u8>) -> bool {
 }
 
 /// The rays of a pattern, beam-major; see [`Rays::new`].
-pub fn rays(pattern: &LidarPattern, ego_speed_mps: f64) -> Vec<Ray> {
-    rays_of(pattern, &Rays::new(pattern, ego_speed_mps))
+pub fn rays(pattern: &LidarPattern, velocity_mps: DVec3) -> Vec<Ray> {
+    rays_of(pattern, &Rays::new(pattern, velocity_mps))
 }
 
 /// The same for rays that are there already.
@@ -97,7 +93,7 @@ pub fn sweep(
     pattern: &LidarPattern,
     drops: Drops,
 ) -> Result<LidarSweep, ModelError> {
-    let rays = rays(pattern, 0.0);
+    let rays = rays(pattern, DVec3::ZERO);
     let answers = net.shoot(field, &rays, Sampling::Prior)?;
     let columns = pattern.columns_in_sector();
     Ok(points(&rays, &answers, columns, drops, None))
@@ -116,7 +112,7 @@ pub fn rig_sweep(
     };
     let ego = Some(EgoBox::of_rig(rig));
     let field = field(net, grid, ego)?;
-    let shape = Rays::new(pattern, rig.ego_speed_mps);
+    let shape = Rays::new(pattern, rig.velocity_mps());
     let around = Around::new(grid, SEEN, pattern, &shape, ego, Height::Physical);
     let rays = rays_of(pattern, &shape);
     let answers = net.shoot(&field, &rays, Sampling::Prior)?;

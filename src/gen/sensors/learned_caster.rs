@@ -49,17 +49,17 @@ pub struct Sampled {
 }
 
 impl LearnedCaster {
-    /// Shoots every ray of a pattern on a vehicle that drives straight ahead at `ego_speed_mps`, without the voxels of
+    /// Shoots every ray of a pattern on a vehicle that drives at `velocity_mps`, without the voxels of
     /// the vehicle itself. Errors if the network's numbers are not finite.
     pub fn new(
         net: Arc<LidarNet>,
         grid: &VoxelGrid,
         pattern: &LidarPattern,
-        ego_speed_mps: f64,
+        velocity_mps: DVec3,
         exclude: Option<EgoBox>,
     ) -> Result<Self, ModelError> {
         let field = learned::field(&net, grid, exclude)?;
-        let shape = Rays::new(pattern, ego_speed_mps);
+        let shape = Rays::new(pattern, velocity_mps);
         let rays = learned::rays_of(pattern, &shape);
         let answers = net.shoot(&field, &rays, Sampling::Prior)?;
         Ok(Self {
@@ -78,7 +78,7 @@ impl LearnedCaster {
     /// The first LiDAR of a rig on its moving vehicle; `None` if it has none.
     pub fn of_rig(net: Arc<LidarNet>, grid: &VoxelGrid, rig: &SensorRig) -> Result<Option<Self>, ModelError> {
         let ego = Some(EgoBox::of_rig(rig));
-        let new = |pattern| Self::new(net, grid, pattern, rig.ego_speed_mps, ego);
+        let new = |pattern| Self::new(net, grid, pattern, rig.velocity_mps(), ego);
         rig.lidars.first().map(new).transpose()
     }
 

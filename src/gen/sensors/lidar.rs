@@ -4,15 +4,17 @@ use glam::DVec3;
 
 use super::caster::Caster;
 use super::raycast::ColumnMasks;
-use scene::{Extent, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
+use scene::{Extent, LidarPattern, LidarSweep, Pose, SensorRig, VoxelGrid};
 
-/// The ego vehicle as an upright box along the ego frame's axes.
+/// The ego vehicle as a box along the ego frame's axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EgoBox {
     /// Middle in the ego frame, m.
     pub center_m: DVec3,
     /// Length, width, height, m.
     pub size_m: DVec3,
+    /// Where the ego frame is in the frame of the grid and the sensors.
+    pub vehicle: Pose,
 }
 
 impl EgoBox {
@@ -21,11 +23,28 @@ impl EgoBox {
         Self {
             center_m: rig.ego_center_m.into(),
             size_m: rig.ego_size_m.into(),
+            vehicle: rig.vehicle,
         }
     }
 
-    fn contains(&self, p_in_ego: DVec3) -> bool {
+    /// True if a point of the grid's frame lies in it.
+    pub fn contains(&self, p: DVec3) -> bool {
+        let p_in_ego = match self.vehicle == Pose::IDENTITY {
+            true => p,
+            false => self.vehicle.inverse().apply(p),
+        };
         (p_in_ego - self.center_m).abs().cmple(self.size_m / 2.0).all()
+    }
+
+    /// Corners of a box along the grid's axes around it, m.
+    pub fn bounds_m(&self) -> (DVec3, DVec3) {
+        let (center, half) = (self.vehicle.apply(self.center_m), self.size_m / 2.0);
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (self.vehicle.rotation * axis).abs());
+        let reach = match self.vehicle == Pose::IDENTITY {
+            true => half,
+            false => x * half.x + y * half.y + z * half.z,
+        };
+        (center - reach, center + reach)
     }
 }
 
@@ -46,15 +65,15 @@ pub struct Rays {
 }
 
 impl Rays {
-    /// Those of a pattern; the vehicle drives straight ahead at `ego_speed_mps` while the sensor spins.
-    pub fn new(pattern: &LidarPattern, ego_speed_mps: f64) -> Self {
+    /// Those of a pattern; the vehicle drives at `velocity_mps` while the sensor spins.
+    pub fn new(pattern: &LidarPattern, velocity_mps: DVec3) -> Self {
         let ego_from_sensor = pattern.ego_from_sensor();
         let columns = pattern.columns_in_sector();
         let short_s = |column: u32| match pattern.spin_hz > 0.0 {
             true => (1.0 - f64::from(column) / f64::from(pattern.columns.max(1))) / pattern.spin_hz,
             false => 0.0,
         };
-        let origin = |column| ego_from_sensor.translation_m - DVec3::X * (ego_speed_mps * short_s(column));
+        let origin = |column| ego_from_sensor.translation_m - velocity_mps * short_s(column);
         let azimuths: Vec<(f64, f64)> = (0..columns).map(|i| pattern.azimuth_rad(i).sin_cos()).collect();
         let mut directions = Vec::with_capacity(pattern.rays());
         for elevation_deg in &pattern.elevations_deg {
@@ -90,23 +109,21 @@ impl Rays {
 /// pattern's range limits. Voxels whose centre lies in `exclude` (the ego vehicle) are looked through.
 /// The result does not depend on the number of threads.
 pub fn sweep(grid: &VoxelGrid, pattern: &LidarPattern, exclude: Option<EgoBox>) -> LidarSweep {
-    Caster::new(grid, pattern, 0.0, exclude).sweep()
+    Caster::new(grid, pattern, DVec3::ZERO, exclude).sweep()
 }
 
 /// The first LiDAR of a rig, if it has any, on its moving vehicle.
 pub fn rig_sweep(grid: &VoxelGrid, rig: &SensorRig) -> Option<LidarSweep> {
     let pattern = rig.lidars.first()?;
-    Some(Caster::new(grid, pattern, rig.ego_speed_mps, Some(EgoBox::of_rig(rig))).sweep())
+    Some(Caster::new(grid, pattern, rig.velocity_mps(), Some(EgoBox::of_rig(rig))).sweep())
 }
 
 /// Takes the voxels whose centre lies in the box out of the masks.
 pub(super) fn look_through(masks: &mut ColumnMasks, ego: EgoBox) {
     let extent = masks.extent();
     let cell = |p: DVec3| extent.to_voxel_units(p).floor();
-    let (low, high) = (
-        cell(ego.center_m - ego.size_m / 2.0),
-        cell(ego.center_m + ego.size_m / 2.0),
-    );
+    let (low, high) = ego.bounds_m();
+    let (low, high) = (cell(low), cell(high));
     // Casts saturate, so a box of any size covers at most the grid; NaN covers nothing much.
     let range = |axis: usize, n: usize| {
         low[axis].max(0.0) as usize..(high[axis] + 1.0).max(0.0).min(n as f64) as usize

@@ -3,6 +3,8 @@
 
 use glam::{DVec2, DVec3};
 
+use scene::Pose;
+
 use super::lidar::EgoBox;
 
 /// Edge of the roof and what is mounted on it as seen from the mast: angle from straight ahead in degrees (left and
@@ -51,6 +53,7 @@ pub struct OwnBody {
     mast: DVec2,
     scale: DVec2,
     roof_m: f64,
+    vehicle: Pose,
 }
 
 impl OwnBody {
@@ -61,12 +64,20 @@ impl OwnBody {
             mast: ego.center_m.truncate() - DVec2::X * (MAST_BEHIND_M * scale.x),
             scale,
             roof_m: ego.center_m.z + ego.size_m.z / 2.0 - ROOF_BELOW_TOP_M,
+            vehicle: ego.vehicle,
         }
     }
 
-    /// Distance to the own roof along a ray of the ego frame, m; `None` if it passes, also from below the roof and for
+    /// Distance to the own roof along a ray, m; `None` if it passes, also from below the roof and for
     /// numbers that are not finite. `direction` is a unit vector.
     pub fn meets(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
+        let (origin, direction) = match self.vehicle == Pose::IDENTITY {
+            true => (origin, direction),
+            false => {
+                let to_ego = self.vehicle.inverse();
+                (to_ego.apply(origin), to_ego.rotation * direction)
+            }
+        };
         let above_m = origin.z - self.roof_m;
         if !(above_m > 0.0 && above_m <= HIGHEST_M && direction.z < 0.0) {
             return None;

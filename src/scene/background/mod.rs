@@ -255,9 +255,9 @@ impl Background {
         self.things.values().map(moved).collect()
     }
 
-    /// Its things in the ego frame of a pose, as far as they reach into a map.
-    pub fn in_extent(&self, extent: Extent, world_from_ego: &Pose) -> Vec<Thing> {
-        in_extent(extent, self.iter(), world_from_ego)
+    /// Its things that reach into a map.
+    pub fn in_extent(&self, extent: Extent) -> Vec<Thing> {
+        in_extent(extent, self.iter())
     }
 
     /// What is wrong with it, in one line; `None` if it is sound.
@@ -275,23 +275,14 @@ impl Background {
     }
 }
 
-/// Things in the ego frame of a pose, as far as they reach into a map.
-pub fn in_extent<'a>(
-    extent: Extent,
-    things: impl IntoIterator<Item = &'a Thing>,
-    world_from_ego: &Pose,
-) -> Vec<Thing> {
+/// Those of some things that reach into a map.
+pub fn in_extent<'a>(extent: Extent, things: impl IntoIterator<Item = &'a Thing>) -> Vec<Thing> {
     let (from, to) = (extent.min_m().truncate(), extent.max_m().truncate());
-    let to_ego = world_from_ego.inverse();
-    let moved = things.into_iter().map(|t| Thing {
-        form: t.form.in_frame(&to_ego),
-        ..t.clone()
-    });
-    let reaches_in = |t: &Thing| {
+    let reaches_in = |t: &&Thing| {
         let (lo, hi) = t.form.bounds_m();
         lo.cmplt(to).all() && hi.cmpgt(from).all()
     };
-    moved.filter(reaches_in).collect()
+    things.into_iter().filter(reaches_in).cloned().collect()
 }
 
 impl FromIterator<Thing> for Background {

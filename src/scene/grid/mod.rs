@@ -115,6 +115,15 @@ impl<const FILL: u8> BrickGrid<FILL> {
         self.extent
     }
 
+    /// The same bricks over another extent of the same size.
+    pub(crate) fn relabelled(&self, extent: Extent) -> Self {
+        assert_eq!(bricks_along(extent), bricks_along(self.extent), "another size");
+        Self {
+            extent,
+            bricks: self.bricks.clone(),
+        }
+    }
+
     /// The part of it that lies in another extent; `FILL` where this one has no columns. Costs pointers alone where both
     /// are the same.
     pub fn crop(&self, extent: Extent) -> Self {

@@ -61,6 +61,7 @@ pub struct Render {
 
 /// The six cameras' maps and the LiDAR sweep of a scene.
 pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
+    let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
     let sweep = lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default();
     let cloud = GaussianCloud::from_grid(&frame.occupancy, frame.layout.cells());
@@ -127,6 +128,7 @@ impl Render {
         if let Some(path) = &self.rig {
             scene.rig = open::rig(path)?.into();
         }
+        let scene = scene.with_rig_in_world().into_owned();
         // Whatever cannot be had is told before anything is written.
         let plan = Plan::new(&self, &scene)?;
         let mut writer = Writer::new(&self.output)?;

@@ -103,12 +103,11 @@ pub(super) struct Drawing<D> {
 
 /// Where trees stand and houses are, ego frame, m.
 fn standing(scene: &Scene) -> (Vec<DVec2>, Vec<Vec<DVec2>>) {
-    let to_ego = scene.frame().world_from_ego.inverse();
     let (mut trees_m, mut houses_m) = (Vec::new(), Vec::new());
     for thing in scene.background.iter() {
-        match thing.form.in_frame(&to_ego) {
+        match &thing.form {
             Form::Tree(tree) => trees_m.push(tree.position_m),
-            Form::Building(building) => houses_m.push(building.outline_m),
+            Form::Building(building) => houses_m.push(building.outline_m.clone()),
             _ => {}
         }
     }
@@ -188,7 +187,7 @@ impl<D: Draft> Drawing<D> {
             // What was let go of elsewhere is not for this tool.
             None => Outcome::Nothing,
         };
-        self.answer(cx.frame(), outcome)
+        self.answer(outcome)
     }
 
     fn finish(&mut self, cx: &Context<'_>) -> Response {
@@ -196,24 +195,19 @@ impl<D: Draft> Drawing<D> {
             Some(draft) => draft.finish(&cx.hand.things),
             None => Outcome::Nothing,
         };
-        let mut response = self.answer(cx.frame(), outcome);
+        let mut response = self.answer(outcome);
         response.taken = true;
         response
     }
 
     /// Shows or adds what was drawn.
-    fn answer(&mut self, frame: &Frame, outcome: Outcome) -> Response {
-        let in_world = |forms: Vec<Form>| -> Vec<Form> {
-            forms.iter().map(|f| f.in_frame(&frame.world_from_ego)).collect()
-        };
+    fn answer(&mut self, outcome: Outcome) -> Response {
         match outcome {
             Outcome::Nothing => Response::none(),
-            Outcome::Preview(forms) => Response::act(Act::Try(vec![Edit::AddThings {
-                forms: in_world(forms),
-            }])),
+            Outcome::Preview(forms) => Response::act(Act::Try(vec![Edit::AddThings { forms }])),
             Outcome::Add(forms) => {
                 self.draft = None;
-                Response::act(Act::AddThings(in_world(forms)))
+                Response::act(Act::AddThings(forms))
             }
             Outcome::Refused(text) => Response::act(Act::Cancel).and(Act::Note(text)),
         }

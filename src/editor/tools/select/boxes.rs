@@ -27,7 +27,7 @@ pub(super) fn transform(frame: &Frame, hand: &Hand, ids: &[BoxId], kind: Transfo
 /// Edits of the boxes as far as the pointer pulls them; chosen things go along.
 pub(super) fn edits(transform: &Transform, pull: &Pull, frame: &Frame, hand: &Hand, grid: bool) -> Vec<Edit> {
     let edits = transform.edits(frame, pull, &hand.snap(grid));
-    along_with(edits, &transform.start, frame, hand)
+    along_with(edits, &transform.start, hand)
 }
 
 /// The name of the undo step that a drag makes.

@@ -16,7 +16,7 @@ use super::{
     ViewKind, Wants, When, hint_of,
 };
 
-pub use things::{in_ego, thing_under};
+pub use things::thing_under;
 
 /// Its name.
 pub const ID: ToolId = ToolId::SELECT;

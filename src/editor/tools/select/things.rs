@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::arrange::boxes_of;
-use crate::pick_things::{self, way_in_world};
+use crate::pick_things;
 use crate::{Edit, kerb};
 use scene::{Form, Frame, Scene, SceneBox, ThingId};
 
@@ -58,7 +58,7 @@ impl ThingDrag {
                 let mut edits: Vec<Edit> = self.boxes.iter().map(|b| moved_box(b, way_m)).collect();
                 edits.push(Edit::MoveThings {
                     ids: ids(),
-                    by_m: way_in_world(&frame.world_from_ego, way_m),
+                    by_m: way_m,
                     turn_deg: 0.0,
                 });
                 edits
@@ -68,7 +68,7 @@ impl ThingDrag {
                 let Some(&corner_m) = form.points_m().get(index) else {
                     return Vec::new();
                 };
-                let at_m = corner_m + way_in_world(&frame.world_from_ego, way_m);
+                let at_m = corner_m + way_m;
                 let form = pick_things::with_corner(form, index, at_m);
                 // An outline that crosses itself is not shown: the one before stays.
                 let sound = form.problem().is_none();
@@ -96,8 +96,7 @@ impl ThingDrag {
     fn snapped(&self, frame: &Frame, hand: &Hand, way_m: DVec2, held: Modifiers) -> DVec2 {
         if hand.things.snap_kerb && !held.alt {
             let forms: Vec<Form> = self.start.iter().map(|(_, f)| f.clone()).collect();
-            let here = in_ego(&forms, frame);
-            if let Some(rest_m) = kerb::way_to_kerb(&frame.layout, &here, way_m, KERB_M) {
+            if let Some(rest_m) = kerb::way_to_kerb(&frame.layout, &forms, way_m, KERB_M) {
                 return way_m + rest_m;
             }
         }
@@ -133,7 +132,7 @@ fn moved_box(b: &SceneBox, way_m: DVec2) -> Edit {
 }
 
 /// Edits that let the chosen things go where the edits of a drag of boxes take the first of these.
-pub(super) fn along_with(mut edits: Vec<Edit>, boxes: &[SceneBox], frame: &Frame, hand: &Hand) -> Vec<Edit> {
+pub(super) fn along_with(mut edits: Vec<Edit>, boxes: &[SceneBox], hand: &Hand) -> Vec<Edit> {
     let ids: Vec<ThingId> = hand.things.chosen.iter().copied().collect();
     let first = edits.iter().find_map(|edit| match edit {
         Edit::MoveBox {
@@ -147,24 +146,17 @@ pub(super) fn along_with(mut edits: Vec<Edit>, boxes: &[SceneBox], frame: &Frame
     if let (Some(way_m), false) = (first, ids.is_empty()) {
         edits.push(Edit::MoveThings {
             ids,
-            by_m: way_in_world(&frame.world_from_ego, way_m.truncate()),
+            by_m: way_m.truncate(),
             turn_deg: 0.0,
         });
     }
     edits
 }
 
-/// Forms of the world as a frame sees them.
-pub fn in_ego(forms: &[Form], frame: &Frame) -> Vec<Form> {
-    let to_ego = frame.world_from_ego.inverse();
-    forms.iter().map(|f| f.in_frame(&to_ego)).collect()
-}
-
 /// The thing under a point of the ground (ego frame, m) that a click would choose.
 pub fn thing_under(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64) -> Option<ThingId> {
-    let p_m = pick_things::ground_in_world(&scene.frame().world_from_ego, at_m);
     let open = hand.things.is_open();
-    open.then(|| pick_things::thing_at(&scene.background, p_m, reach_m))
+    open.then(|| pick_things::thing_at(&scene.background, at_m, reach_m))
         .flatten()
 }
 
@@ -176,8 +168,7 @@ pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64, shift:
     }
     let mut chosen = things.chosen_in(&scene.background);
     if let (Some(one), None, None) = (chosen.next(), chosen.next(), hand.selected) {
-        let p_m = pick_things::ground_in_world(&scene.frame().world_from_ego, at_m);
-        if let Some(corner) = pick_things::corner_at(&one.form, p_m, reach_m) {
+        if let Some(corner) = pick_things::corner_at(&one.form, at_m, reach_m) {
             return ThingDrag::new(scene, hand, Pull::Corner(corner));
         }
     }
@@ -201,9 +192,7 @@ pub(super) fn choose(hand: &mut Hand, hit: Option<ThingId>, add: bool) {
 /// Chooses the things whose middle (ego frame, m) lies in an area, too.
 pub(super) fn choose_in(scene: &Scene, hand: &mut Hand, inside: impl Fn(DVec2) -> bool) {
     if hand.things.is_open() {
-        let to_ego = scene.frame().world_from_ego.inverse();
-        let here = |p: DVec2| inside(pick_things::ground_in_world(&to_ego, p));
-        let ids = pick_things::things_in(&scene.background, here);
+        let ids = pick_things::things_in(&scene.background, inside);
         if !ids.is_empty() {
             hand.choose_things(&ids, Choose::Add);
         }
@@ -215,7 +204,7 @@ pub(super) fn handles_m(scene: &Scene, hand: &Hand) -> Vec<DVec2> {
     let mut chosen = hand.things.chosen_in(&scene.background);
     match (chosen.next(), chosen.next()) {
         (Some(one), None) if hand.selected.is_none() => {
-            match one.form.in_frame(&scene.frame().world_from_ego.inverse()) {
+            match &one.form {
                 Form::Tree(_) | Form::Post(_) => Vec::new(),
                 form => form.points_m(),
             }
@@ -227,9 +216,8 @@ pub(super) fn handles_m(scene: &Scene, hand: &Hand) -> Vec<DVec2> {
 /// The knob that raises what is chosen in space: in the middle of its top, ego frame, m.
 pub(super) fn knob_m(scene: &Scene, hand: &Hand) -> Option<DVec3> {
     let frame = scene.frame();
-    let to_ego = frame.world_from_ego.inverse();
     let chosen = hand.things.chosen_in(&scene.background);
-    let tops: Vec<DVec3> = chosen.map(|t| top_m(&t.form.in_frame(&to_ego), frame)).collect();
+    let tops: Vec<DVec3> = chosen.map(|t| top_m(&t.form, frame)).collect();
     (!tops.is_empty()).then(|| {
         let middle = tops.iter().sum::<DVec3>() / tops.len() as f64;
         let highest = tops.iter().map(|t| t.z).fold(f64::MIN, f64::max);

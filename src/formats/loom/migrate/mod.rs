@@ -5,6 +5,7 @@ mod old_prompt;
 mod v1;
 mod v2;
 mod v3;
+mod v4;
 
 use std::io::{Read, Seek};
 
@@ -33,12 +34,14 @@ pub enum Change {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 3] = [v1::TO_V2, v2::TO_V3, v3::TO_V4];
+pub const ALL: [Migration; 4] = [v1::TO_V2, v2::TO_V3, v3::TO_V4, v4::TO_V5];
 
 /// What a step may change.
 pub trait Entries {
     /// `scene.json`.
     fn scene(&mut self) -> Result<&mut Value, ProjectError>;
+    /// How many frames the manifest counts; none from version 5 on.
+    fn frames(&self) -> Option<u64>;
     /// Takes an entry of at most `limit` bytes out of the file.
     fn take(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError>;
     /// Puts an entry into the file, in place of one of that name.
@@ -48,12 +51,17 @@ pub trait Entries {
 /// A file on its way to the present version. `scene.json` is kept as text until a step asks for it.
 pub(super) struct Old<'a, R> {
     file: &'a mut Reader<R>,
+    frames: Option<u64>,
     scene: Option<Value>,
 }
 
 impl<'a, R: Read + Seek> Old<'a, R> {
-    pub(super) fn new(file: &'a mut Reader<R>) -> Self {
-        Self { file, scene: None }
+    pub(super) fn new(file: &'a mut Reader<R>, frames: Option<u64>) -> Self {
+        Self {
+            file,
+            frames,
+            scene: None,
+        }
     }
 
     pub(super) fn migrate(&mut self, step: &Migration) -> Result<(), ProjectError> {
@@ -82,6 +90,10 @@ impl<R: Read + Seek> Entries for Old<'_, R> {
             None => parse(SCENE, &self.file.bytes(SCENE, MAX_JSON)?)?,
         };
         Ok(self.scene.insert(scene))
+    }
+
+    fn frames(&self) -> Option<u64> {
+        self.frames
     }
 
     fn take(&mut self, entry: &str, limit: u64) -> Result<Vec<u8>, ProjectError> {

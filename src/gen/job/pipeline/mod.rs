@@ -311,7 +311,6 @@ impl OccPipeline {
         let frame = job.scene.frame();
         ctx.preview(GenResult {
             key: job.key(),
-            frame: job.frame(),
             occupancy: composite(&frame.source.occupancy, &grid, &region, &frame.painted),
             report: report.clone(),
         });
@@ -410,7 +409,6 @@ impl OccPipeline {
                         let occupancy = composite(before, &grid, &region, &frame.painted);
                         ctx.preview(GenResult {
                             key: job.key(),
-                            frame: job.frame(),
                             occupancy,
                             report: report.clone(),
                         });
@@ -491,7 +489,6 @@ impl OccPipeline {
         report.seam_change_share = seam_change_share(source, &occupancy, region, 2);
         GenResult {
             key: job.key(),
-            frame: job.frame(),
             occupancy,
             report: std::mem::take(report),
         }

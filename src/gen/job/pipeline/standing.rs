@@ -3,13 +3,12 @@
 use std::sync::Arc;
 
 use scene::background::Columns;
-use scene::{Background, BevLayout, Class, Extent, Pose, Relief, Scene, VoxelGrid, Window};
+use scene::{Background, BevLayout, Class, Extent, Relief, Scene, VoxelGrid, Window};
 
 /// The voxels of a frame's background, kept from one job to the next: most edits leave it alone.
 #[derive(Clone)]
 pub struct Standing {
     background: Arc<Background>,
-    world_from_ego: Pose,
     relief: Relief,
     columns: Arc<Columns>,
 }
@@ -22,16 +21,13 @@ impl Standing {
         if scene.background.is_empty() || frame.inferred.background {
             return None;
         }
-        let same = |last: &&Self| {
-            Arc::ptr_eq(&last.background, &scene.background)
-                && last.world_from_ego == frame.world_from_ego
-                && last.relief == layout.relief
-        };
+        let same =
+            |last: &&Self| Arc::ptr_eq(&last.background, &scene.background) && last.relief == layout.relief;
         if let Some(last) = last.filter(same) {
             return Some(last.clone());
         }
         let mut columns = Columns::new();
-        for thing in scene.background.in_extent(Extent::WINDOW, &frame.world_from_ego) {
+        for thing in scene.background.in_extent(Extent::WINDOW) {
             for (at, labels) in thing.columns(layout) {
                 let all = columns.entry(at).or_insert([Class::FREE; Window::NZ]);
                 let taken = labels.iter().zip(all).filter(|(label, _)| **label != Class::FREE);
@@ -40,7 +36,6 @@ impl Standing {
         }
         Some(Self {
             background: scene.background.clone(),
-            world_from_ego: frame.world_from_ego,
             relief: layout.relief.clone(),
             columns: Arc::new(columns),
         })
@@ -117,7 +112,7 @@ mod tests {
             "kept from job to job"
         );
         let mut guessed = scene.clone();
-        Arc::make_mut(&mut guessed.frames[0]).inferred.background = true;
+        guessed.change_canvas(|f| f.inferred.background = true);
         assert!(Standing::of(&guessed, &layout, Some(&first)).is_none());
         let mut fewer = (*scene.background).clone();
         let id = fewer.iter().next().expect("a thing").id;

@@ -32,12 +32,23 @@ fn put_back(map: &VoxelGrid, result: &GenResult) -> GenResult {
     }
 }
 
-/// Runs a job in the window, previews and result put back into the map.
+/// Runs a job on what stands still (and what moves and is a draft), in the window, previews and result put back into the map.
 pub(super) fn in_window(
     job: &Job,
     ctx: &JobCtx<'_>,
     run: impl FnOnce(&Job, &JobCtx<'_>) -> Result<GenResult, GenError>,
 ) -> Result<GenResult, GenError> {
+    let standing;
+    let job = match job.scene.for_generation() {
+        Cow::Borrowed(_) => job,
+        Cow::Owned(scene) => {
+            standing = Job {
+                scene: Arc::new(scene),
+                params: job.params.clone(),
+            };
+            &standing
+        }
+    };
     let Some(cut) = cut(job) else {
         return run(job, ctx);
     };
@@ -87,7 +98,6 @@ mod tests {
             grid.set(100, 100, 1, Class::Car.id());
             let result = GenResult {
                 key: job.key(),
-                frame: job.frame(),
                 occupancy: grid,
                 report: GenReport::default(),
             };

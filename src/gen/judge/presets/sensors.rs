@@ -66,7 +66,7 @@ pub fn lidars(frames: usize, repeats: usize) -> anyhow::Result<Vec<Measured>> {
     let Some(pattern) = rig.lidars.first() else {
         return Ok(Vec::new());
     };
-    let rays = learned::rays(pattern, rig.ego_speed_mps);
+    let rays = learned::rays(pattern, rig.velocity_mps());
     let few: Vec<_> = rays.iter().copied().step_by(COMPARED).collect();
     let ways = [
         ("prior".to_owned(), Sampling::Prior),

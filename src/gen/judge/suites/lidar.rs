@@ -338,7 +338,7 @@ impl Options {
         };
         let flat = LidarNet::without_unet()?;
         let pattern = SensorRig::default().lidars[0].clone();
-        let rays = learned::rays(&pattern, 0.0);
+        let rays = learned::rays(&pattern, glam::DVec3::ZERO);
         let mut suites = [("complete", Suite::default()), ("labels", Suite::default())];
         let [mut returned, mut lost, mut nothing] = [0usize; 3];
         let rig = SensorRig::default();

@@ -1,6 +1,6 @@
 //! A frame prepared to be looked at: voxels as a field, ground, things, lamps; and the rays through it.
 
-use glam::{DVec3, Quat, Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use super::field::Field;
 use super::ground::Ground;
@@ -9,7 +9,7 @@ use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
 use scene::appearance::{BLOCK_M, FAR_M};
-use scene::{Conditions, Extent, Frame, SceneBox, SensorRig};
+use scene::{Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
 const STRAY_M: f64 = 0.7;
@@ -88,7 +88,7 @@ impl Appearance {
     /// rest is left out.
     pub fn new(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Self {
         let seed = (conditions.seed ^ conditions.seed >> 32) as u32;
-        let extent = in_sight(frame.extent());
+        let extent = in_sight(frame.extent(), &rig.vehicle);
         let (occupancy, layout) = (frame.occupancy.crop(extent), frame.layout.crop(extent));
         let (mut grid, mut columns) = ground::split(&occupancy, GroundHeight::Physical);
         let boxes: Vec<&SceneBox> = frame.boxes.values().collect();
@@ -102,19 +102,6 @@ impl Appearance {
             .filter_map(|b| Thing::of(b, seed))
             .take(60_000)
             .collect();
-        // Textures stay in the world; whole kilometres are taken off so that f32 is fine enough.
-        let pose = frame.world_from_ego;
-        let finite = pose.translation_m.is_finite() && pose.rotation.is_finite();
-        let shift: DVec3 = if finite {
-            pose.translation_m % 4096.0
-        } else {
-            DVec3::ZERO
-        };
-        let turn = if finite {
-            pose.rotation.as_quat()
-        } else {
-            Quat::IDENTITY
-        };
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);
         let mut lists = vec![Vec::new(); blocks_x * blocks_y];
         for (i, thing) in things.iter_mut().enumerate() {
@@ -145,8 +132,8 @@ impl Appearance {
             lamps,
             air,
             seed,
-            turn,
-            shift: shift.as_vec3(),
+            turn: Quat::IDENTITY,
+            shift: Vec3::ZERO,
         }
     }
 
@@ -337,9 +324,10 @@ fn within(from: f32, to: f32, n: usize) -> std::ops::Range<usize> {
 }
 
 /// The part of a map that can be seen from near the ego vehicle; a single column if none can.
-fn in_sight(map: Extent) -> Extent {
+fn in_sight(map: Extent, vehicle: &Pose) -> Extent {
     let columns = (f64::from(FAR_M) / Extent::VOXEL_M).ceil() as usize;
-    let far = Extent::new([-(columns as i32); 2], [2 * columns; 2]);
+    let middle = [vehicle.translation_m.x, vehicle.translation_m.y].map(|v| (v * 2.5).round() as i32);
+    let far = Extent::new(middle.map(|c| c.saturating_sub(columns as i32)), [2 * columns; 2]);
     let seen = far.ok().and_then(|far| far.overlap(&map).map(|part| (far, part)));
     let corner = |from: [i32; 2], at: [usize; 2]| [0, 1].map(|i| from[i] + at[i] as i32);
     let seen = match seen {
@@ -387,9 +375,11 @@ fn lamps(air: &Air, field: &Field, things: &[Thing], rig: &SensorRig) -> Vec<Lam
         beams(t.foot, &|p| t.turn_back(p), t.size, 42.0 * air.lamps);
     }
     let size = Vec3::from(rig.ego_size_m.map(|v| v as f32));
-    let mut foot = Vec3::from(rig.ego_center_m.map(|v| v as f32));
+    let mut foot = glam::DVec3::from(rig.ego_center_m);
     foot.z = 0.0;
-    beams(foot, &|p| p, size, 75.0 * air.lamps);
+    let foot = rig.vehicle.apply(foot).as_vec3();
+    let turn = rig.vehicle.rotation.as_quat();
+    beams(foot, &|p| turn * p, size, 75.0 * air.lamps);
     out.truncate(96);
     out.retain(|l| l.at.is_finite());
     out

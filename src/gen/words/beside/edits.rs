@@ -11,7 +11,7 @@ use super::wishes::forms;
 use super::{Amount, Said, Verb, What};
 use scene::Form;
 use scene::background::STOREY_M;
-use scene::{Background, BevLayout, BoxId, Class, Edit, Pose, SceneBox, ThingId};
+use scene::{Background, BevLayout, BoxId, Class, Edit, SceneBox, ThingId};
 use world::scenery::Setting;
 
 /// Change of a height if none is said: a building by storeys, other things by this share of theirs.
@@ -67,10 +67,8 @@ pub struct ThingOutcome {
 /// An open scene, as far as edits of its background need it.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenBackground<'a> {
-    /// Its things, world frame.
+    /// Its things, ego frame.
     pub things: &'a Background,
-    /// Where the ego vehicle stands.
-    pub world_from_ego: Pose,
     /// Map, ego frame.
     pub layout: &'a BevLayout,
     /// Boxes, ego frame.
@@ -88,8 +86,7 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
     if said.is_empty() {
         return out;
     }
-    let mut now = open.things.in_frame(&open.world_from_ego.inverse());
-    now = now.iter().filter(|t| in_grid(&t.form)).cloned().collect();
+    let mut now: Background = open.things.iter().filter(|t| in_grid(&t.form)).cloned().collect();
     for (i, s) in said.iter().enumerate() {
         let ground = Ground::new(open.layout, open.boxes, &now);
         match one(s, &now, ground, seed.wrapping_add(i as u64)) {
@@ -99,7 +96,7 @@ pub fn carry_out(said: &[Said], open: &OpenBackground<'_>, seed: u64) -> ThingOu
                 let counted = n > 1 && s.count.is_none_or(|c| c as usize != n);
                 let n = if counted { format!(" ({n})") } else { String::new() };
                 out.done.push(format!("{}{n}", as_command(s)));
-                out.edits.extend(in_world(edit, &open.world_from_ego));
+                out.edits.extend(edit);
             }
             Err(Stopped::Asked(candidates)) => out.questions.push(ThingQuestion {
                 text: format!(
@@ -258,22 +255,4 @@ fn change(now: &mut Background, ids: &[ThingId], mut change: impl FnMut(&mut For
             now.insert(thing);
         }
     }
-}
-
-fn in_world(edits: Vec<Edit>, world_from_ego: &Pose) -> Vec<Edit> {
-    let turned = |by: DVec2| {
-        (world_from_ego.apply(by.extend(0.0)) - world_from_ego.apply(glam::DVec3::ZERO)).truncate()
-    };
-    let one = |edit| match edit {
-        Edit::AddThings { forms } => Edit::AddThings {
-            forms: forms.iter().map(|f| f.in_frame(world_from_ego)).collect(),
-        },
-        Edit::MoveThings { ids, by_m, turn_deg } => Edit::MoveThings {
-            ids,
-            by_m: turned(by_m),
-            turn_deg,
-        },
-        same => same,
-    };
-    edits.into_iter().map(one).collect()
 }

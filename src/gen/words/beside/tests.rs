@@ -282,27 +282,21 @@ fn scene() -> (Background, BevLayout) {
     (things, layout)
 }
 
-fn edit_in(text: &str, world_from_ego: Pose) -> ThingOutcome {
+fn edit(text: &str) -> ThingOutcome {
     let Taken { said, rest } = take(text, true);
     assert!(!rest.contains(char::is_alphanumeric), "{rest:?} was left over");
-    carried_out(&said, world_from_ego)
+    carried_out(&said)
 }
 
-fn carried_out(said: &[Said], world_from_ego: Pose) -> ThingOutcome {
+fn carried_out(said: &[Said]) -> ThingOutcome {
     let (things, layout) = scene();
-    let things = things.in_frame(&world_from_ego);
     let boxes = BTreeMap::new();
     let open = OpenBackground {
         things: &things,
-        world_from_ego,
         layout: &layout,
         boxes: &boxes,
     };
     carry_out(said, &open, 3)
-}
-
-fn edit(text: &str) -> ThingOutcome {
-    edit_in(text, Pose::IDENTITY)
 }
 
 fn removed(text: &str) -> Vec<u32> {
@@ -358,7 +352,7 @@ fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
         let candidate = &question.candidates[which];
         assert_eq!(candidate.answer(), format!("the building #{id}"));
         let ids = vec![ThingId(id)];
-        let edits = carried_out(std::slice::from_ref(&candidate.said), Pose::IDENTITY).edits;
+        let edits = carried_out(std::slice::from_ref(&candidate.said)).edits;
         assert_eq!(edits, [Edit::RaiseThings { ids, by_m }]);
     }
     for text in [
@@ -377,17 +371,16 @@ fn what_is_unclear_is_asked_and_what_cannot_be_is_said() {
     }
 }
 
-/// New things stand on the side and at the distance that was said, off the road; also where the world frame is another.
+/// New things stand on the side and at the distance that was said, off the road.
 #[test]
 fn new_things_stand_where_they_were_wanted() {
-    let other = Pose::planar(300.0, -120.0, 1.2);
-    for pose in [Pose::IDENTITY, other] {
+    {
         let forms = |text: &str| -> Vec<Form> {
-            let all = edit_in(text, pose).edits.into_iter().flat_map(|e| match e {
+            let all = edit(text).edits.into_iter().flat_map(|e| match e {
                 Edit::AddThings { forms } => forms,
                 _ => Vec::new(),
             });
-            all.map(|f| f.in_frame(&pose.inverse())).collect()
+            all.collect()
         };
         let found = forms("plant a tree 20 m ahead on the left");
         let [Form::Tree(t)] = &found[..] else {

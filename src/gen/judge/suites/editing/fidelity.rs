@@ -66,7 +66,7 @@ impl Options {
                 untouched += result.report.untouched_voxels_changed;
                 untouched += outside(&frame.occupancy, &result.occupancy, &region);
                 changed += result.report.voxels_changed;
-                document.adopt(result.rev(), result.frame, result.occupancy.clone())?;
+                document.adopt(result.rev(), result.occupancy.clone())?;
                 done += 1;
             }
         }
@@ -200,7 +200,7 @@ fn after_both(
             params: params.clone(),
         };
         let result = pipeline.run(&job, &JobCtx::detached())?;
-        document.adopt(result.rev(), result.frame, result.occupancy.clone())?;
+        document.adopt(result.rev(), result.occupancy.clone())?;
     }
     Ok(document.scene().frame().occupancy.clone())
 }

@@ -116,13 +116,14 @@ fn inpainted_iou(pipeline: &mut OccPipeline, job: &Job) -> anyhow::Result<[[f64;
         let mut other = job.clone();
         other.params.region = RegionMode::Auto;
         other.params.seed = job.params.seed.wrapping_add(OTHER_SEED);
-        let frame = Arc::make_mut(&mut other.scene).frame_mut();
-        let source = Arc::make_mut(&mut frame.source);
-        for [x, y] in &square {
-            let drawn = blind.occupancy.column(*x, *y);
-            source.occupancy.column_mut(*x, *y).copy_from_slice(drawn);
-        }
-        frame.occupancy = source.occupancy.clone();
+        Arc::make_mut(&mut other.scene).change_canvas(|frame| {
+            let source = Arc::make_mut(&mut frame.source);
+            for [x, y] in &square {
+                let drawn = blind.occupancy.column(*x, *y);
+                source.occupancy.column_mut(*x, *y).copy_from_slice(drawn);
+            }
+            frame.occupancy = source.occupancy.clone();
+        });
         let seen = pipeline.inpaint_region(&other, region.clone(), &ctx)?;
         for (mean, result) in mean.iter_mut().zip([seen, blind]) {
             for (mean, share) in mean.iter_mut().zip(shares(&result.occupancy)) {

@@ -146,11 +146,10 @@ impl Options {
         };
         let drawn = on_scenery(Drawer::Rules(None))?;
         let learned = on_scenery(Drawer::Network)?;
+        let mut bare = Scene::clone(&job.scene);
+        bare.background = Arc::default();
         let job = Job {
-            scene: Arc::new(Scene {
-                background: Arc::default(),
-                ..(*job.scene).clone()
-            }),
+            scene: Arc::new(bare),
             params: params.clone(),
         };
         let mut run = |ablation, job: &Job| {

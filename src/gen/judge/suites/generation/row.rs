@@ -109,9 +109,10 @@ fn depths(scene: &Scene, grid: &VoxelGrid) -> Windows {
 
 fn findings(scene: &Scene, grid: &VoxelGrid) -> BTreeMap<&'static str, f64> {
     let mut scene = scene.clone();
-    let frame = scene.frame_mut();
-    frame.occupancy = grid.clone();
-    Arc::make_mut(&mut frame.source).occupancy = grid.clone();
+    scene.change_canvas(|frame| {
+        frame.occupancy = grid.clone();
+        Arc::make_mut(&mut frame.source).occupancy = grid.clone();
+    });
     let mut out = BTreeMap::from([("all", 0.0), ("errors", 0.0)]);
     out.extend(names().map(|name| (name, 0.0)));
     for finding in run_checks(&scene, None) {

@@ -1,0 +1,141 @@
+//! The voxels of something that moves: made once, at one pose, and stamped wherever it is. Nearest voxel, so nothing is
+//! blurred; at the pose where it was made, it is that very shape.
+
+use std::sync::Arc;
+
+use crate::grid::NOT_PAINTED;
+use crate::raster::box_cells;
+use crate::{Class, Extent, SceneBox, VoxelGrid, VoxelPaint};
+
+/// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
+pub const MARGIN_M: f64 = 0.6;
+
+/// Labels of an object's columns, where it stood when they were made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectVoxels {
+    /// Column at the lower corner, counted from the world frame's origin.
+    pub from: [i32; 2],
+    /// Columns along x and y.
+    pub size: [usize; 2],
+    /// `[x][y]`, 16 labels each, lowest first; free where the object is not.
+    pub columns: Vec<[u8; Extent::NZ]>,
+}
+
+impl ObjectVoxels {
+    /// Columns of a shape at most: a square of 102 m.
+    pub const MAX_COLUMNS: usize = 1 << 16;
+
+    /// Nothing.
+    pub fn empty() -> Arc<Self> {
+        Arc::new(Self {
+            from: [0; 2],
+            size: [0; 2],
+            columns: Vec::new(),
+        })
+    }
+
+    /// Number of voxels.
+    pub fn count(&self) -> usize {
+        let set = |column: &[u8; Extent::NZ]| column.iter().filter(|l| **l != Class::FREE).count();
+        self.columns.iter().map(set).sum()
+    }
+
+    /// What of a grid belongs to a box: labels within its footprint and margin for which `own` says so.
+    pub fn cut(grid: &VoxelGrid, b: &SceneBox, own: impl Fn([usize; 3], u8) -> bool) -> Arc<Self> {
+        let extent = grid.extent();
+        let mut found = Vec::new();
+        box_cells(extent, b, MARGIN_M, |x, y| {
+            let mut column = *grid.column(x, y);
+            for (z, label) in column.iter_mut().enumerate() {
+                if !own([x, y, z], *label) {
+                    *label = Class::FREE;
+                }
+            }
+            if column.iter().any(|label| *label != Class::FREE) {
+                found.push(([x, y], column));
+            }
+        });
+        let Some(low) = corner(&found, usize::min) else {
+            return Self::empty();
+        };
+        let high = corner(&found, usize::max).unwrap_or(low);
+        let size = [high[0] + 1 - low[0], high[1] + 1 - low[1]];
+        let mut columns = vec![[Class::FREE; Extent::NZ]; size[0] * size[1]];
+        for ([x, y], column) in found {
+            columns[(x - low[0]) * size[1] + y - low[1]] = column;
+        }
+        let from = extent.from();
+        Arc::new(Self {
+            from: [from[0] + low[0] as i32, from[1] + low[1] as i32],
+            size,
+            columns,
+        })
+    }
+
+    /// Visits the voxels that the shape has on a map with its box at `now`; it was made with its box at `made`.
+    pub fn visit(
+        &self,
+        extent: Extent,
+        made: &SceneBox,
+        now: &SceneBox,
+        mut visit: impl FnMut([usize; 3], u8),
+    ) {
+        // The heading alone turns: cos and sin once, not for every column.
+        let turn = glam::DVec2::from_angle(made.yaw_rad - now.yaw_rad);
+        let same_heading = made.yaw_rad == now.yaw_rad;
+        let up = ((now.center_m.z - made.center_m.z) * 2.5).round() as i64;
+        box_cells(extent, now, MARGIN_M, |x, y| {
+            let p = extent.center(x, y, 0).truncate();
+            let from_center = p - now.center_m.truncate();
+            let turned = match same_heading {
+                true => from_center,
+                false => turn.rotate(from_center),
+            };
+            let p_made = (made.center_m.truncate() + turned) * 2.5;
+            let (i, j) = (
+                p_made.x.floor() - f64::from(self.from[0]),
+                p_made.y.floor() - f64::from(self.from[1]),
+            );
+            // Written so that NaN fails too.
+            if !(i >= 0.0 && j >= 0.0 && i < self.size[0] as f64 && j < self.size[1] as f64) {
+                return;
+            }
+            let column = &self.columns[i as usize * self.size[1] + j as usize];
+            for (z, label) in column.iter().enumerate().filter(|(_, l)| **l != Class::FREE) {
+                let z = z as i64 + up;
+                if (0..Extent::NZ as i64).contains(&z) {
+                    visit([x, y, z as usize], *label);
+                }
+            }
+        });
+    }
+
+    /// Puts the shape into a grid; painted voxels stay.
+    pub fn stamp(&self, grid: &mut VoxelGrid, painted: &VoxelPaint, made: &SceneBox, now: &SceneBox) {
+        self.visit(grid.extent(), made, now, |[x, y, z], label| {
+            if painted.get(x, y, z) == NOT_PAINTED {
+                grid.set(x, y, z, label);
+            }
+        });
+    }
+
+    /// What is wrong with it, in one line.
+    pub fn problem(&self) -> Option<String> {
+        let [nx, ny] = self.size;
+        if nx.checked_mul(ny).is_none_or(|n| n > Self::MAX_COLUMNS) || self.columns.len() != nx * ny {
+            return Some(format!(
+                "a shape of {nx} x {ny} columns that holds {}, expected at most {}",
+                self.columns.len(),
+                Self::MAX_COLUMNS
+            ));
+        }
+        let labels = self.columns.iter().flatten();
+        let wrong = labels.copied().find(|l| Class::from_id(*l).is_none());
+        wrong.map(|label| format!("a shape holds label {label}, expected 0 to 17"))
+    }
+}
+
+fn corner(found: &[([usize; 2], [u8; Extent::NZ])], of: fn(usize, usize) -> usize) -> Option<[usize; 2]> {
+    let all = found.iter().map(|(at, _)| *at);
+    all.reduce(|a, b| [of(a[0], b[0]), of(a[1], b[1])])
+}

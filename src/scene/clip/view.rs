@@ -1,0 +1,72 @@
+//! The canvas as it is seen at a moment.
+
+use std::sync::Arc;
+
+use super::Clip;
+use crate::{BoxId, Frame, Pose, SceneBox};
+
+impl Clip {
+    /// The canvas at a time, with every moving object that is there then. Costs pointers, and the voxels of the objects.
+    pub fn view(&self, canvas: &Arc<Frame>, time_s: f64) -> Arc<Frame> {
+        let relief = &canvas.layout.relief;
+        let world_from_ego = self.ego_at(time_s, &canvas.world_from_ego, relief);
+        if self.tracks.is_empty() && world_from_ego == canvas.world_from_ego && time_s == canvas.time_s {
+            return canvas.clone();
+        }
+        let there = self.boxes_at(time_s, canvas);
+        let absent = self.tracks.keys().filter(|id| there.iter().all(|b| b.id != **id));
+        let mut frame = self.with(canvas, &there, time_s, world_from_ego);
+        frame.absent = Arc::new(absent.copied().collect());
+        Arc::new(frame)
+    }
+
+    /// The boxes of all tracks at a time, where they are there.
+    pub fn boxes_at(&self, time_s: f64, canvas: &Frame) -> Vec<SceneBox> {
+        let relief = &canvas.layout.relief;
+        let ids = self.tracks.keys();
+        ids.filter_map(|id| self.box_at(*id, time_s, relief)).collect()
+    }
+
+    /// What the networks are asked about: the canvas with those moving objects whose voxels are still drafts, each where it
+    /// was made. The same at every time.
+    pub fn unsettled(&self, canvas: &Arc<Frame>) -> Arc<Frame> {
+        let drafts = self.tracks.values().filter(|t| !t.settled);
+        let drafts: Vec<SceneBox> = drafts.map(|t| t.made).collect();
+        if self.tracks.is_empty() {
+            return canvas.clone();
+        }
+        let mut frame = self.with(canvas, &drafts, canvas.time_s, canvas.world_from_ego);
+        let is_draft = |id: &&BoxId| drafts.iter().any(|b| b.id == **id);
+        frame.absent = Arc::new(self.tracks.keys().filter(|id| !is_draft(id)).copied().collect());
+        Arc::new(frame)
+    }
+
+    /// The canvas with these boxes of tracks, and their voxels.
+    fn with(&self, canvas: &Frame, boxes: &[SceneBox], time_s: f64, world_from_ego: Pose) -> Frame {
+        let mut frame = Frame {
+            time_s,
+            world_from_ego,
+            ..canvas.clone()
+        };
+        if boxes.is_empty() {
+            return frame;
+        }
+        let source = Arc::make_mut(&mut frame.source);
+        for b in boxes {
+            let Some(track) = self.tracks.get(&b.id) else {
+                continue;
+            };
+            frame.boxes.insert(b.id, *b);
+            track
+                .voxels
+                .stamp(&mut frame.occupancy, &canvas.painted, &track.made, b);
+            if track.settled {
+                source.boxes.insert(b.id, *b);
+                track
+                    .voxels
+                    .stamp(&mut source.occupancy, &canvas.painted, &track.made, b);
+            }
+        }
+        frame
+    }
+}
