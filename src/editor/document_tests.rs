@@ -33,7 +33,19 @@ fn start() -> Scene {
     let occupancy = draft(&layout, boxes.values());
     let frame = Frame::new(layout, boxes, occupancy);
     let mut scene = Scene::single("start", frame, Arc::new(SensorRig::default()), 1);
-    scene.frames.push(scene.frames[0].clone());
+    // The last one drives along for a second.
+    let key = |time_s: f64, x: f64| scene::Key {
+        time_s,
+        at_m: DVec2::new(x, 0.0),
+        yaw_deg: 0.1_f64.to_degrees(),
+    };
+    let motion = Edit::SetMotion {
+        id: Some(BoxId(3)),
+        motion: Some(scene::Motion::Keys(vec![key(0.0, 8.0), key(1.0, 14.0)])),
+        from_s: None,
+        to_s: None,
+    };
+    crate::apply::Apply::apply(&motion, &mut scene).expect("sound");
     scene
 }
 
@@ -44,16 +56,18 @@ fn same(a: &Scene, b: &Scene) -> bool {
         &a.prompt,
         a.conditions,
         &a.rig,
-        &a.frames,
-        a.current,
+        a.canvas(),
+        a.clip(),
+        a.time_s(),
         a.seed,
     ) == (
         &b.name,
         &b.prompt,
         b.conditions,
         &b.rig,
-        &b.frames,
-        b.current,
+        b.canvas(),
+        b.clip(),
+        b.time_s(),
         b.seed,
     )
 }
@@ -216,12 +230,12 @@ proptest! {
                     at += usize::from(can);
                 }
                 Action::Adopt => {
-                    let mut result = before.frame().occupancy.clone();
+                    let mut result = before.for_generation().frame().occupancy.clone();
                     result.set(3, 3, 3, 16);
-                    let rev = document.adopt(before.rev, 0, result).expect("current");
-                    prop_assert_eq!(rev, document.scene().rev);
+                    let rev = document.adopt(before.content(), result).expect("current");
+                    prop_assert_eq!(rev, document.scene().content());
                     prop_assert_eq!(document.scene().frame().occupancy.get(3, 3, 3), 16);
-                    prop_assert!(document.adopt(before.rev, 0, VoxelGrid::new()).is_err());
+                    prop_assert!(document.adopt(before.content(), VoxelGrid::new()).is_err());
                     model[at] = Scene::clone(document.scene());
                 }
                 Action::Jump(index) => {
@@ -340,29 +354,29 @@ fn groups_are_all_or_nothing() {
 fn results_settle_their_state_and_late_ones_are_refused() {
     let mut document = Document::new(start());
     document.apply("Cone", &add(0.0, 2.0)).expect("sound");
-    let rev = document.scene().rev;
+    let rev = document.scene().content();
     let mut result = VoxelGrid::new();
     result.set(10, 10, 5, Class::Vegetation.id());
-    let settled = document.adopt(rev, 0, result.clone()).expect("current");
+    let settled = document.adopt(rev, result.clone()).expect("current");
     assert_ne!(settled, rev);
     assert_eq!(document.history().len(), 2, "no new step");
-    let frame = document.scene().frame().clone();
+    let frame = document.scene().canvas().clone();
     assert_eq!(frame.occupancy, result);
     assert_eq!(frame.source.occupancy, result);
     assert_eq!(frame.source.boxes, frame.boxes);
     // Late: another edit, a drag, the old revision.
-    assert_eq!(document.adopt(rev, 0, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.adopt(rev, VoxelGrid::new()), Err(Stale));
     document.preview(&slide(3.0)).expect("sound");
-    let dragged = document.scene().rev;
-    assert_eq!(document.adopt(dragged, 0, VoxelGrid::new()), Err(Stale));
-    assert_eq!(document.adopt(settled, 0, VoxelGrid::new()), Err(Stale));
+    let dragged = document.scene().content();
+    assert_eq!(document.adopt(dragged, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.adopt(settled, VoxelGrid::new()), Err(Stale));
     document.cancel_drag();
     // Undo leads to the state before, redo to the settled one.
     document.undo();
     assert_eq!(document.scene().frame().occupancy, start().frame().occupancy);
     document.redo();
-    assert_eq!(document.scene().rev, settled);
-    assert_eq!(document.scene().frame().occupancy, result);
+    assert_eq!(document.scene().content(), settled);
+    assert_eq!(document.scene().canvas().occupancy, result);
 }
 
 #[test]
@@ -379,54 +393,44 @@ fn saved_and_dirty() {
     document.undo();
     assert!(document.is_dirty());
     document.redo();
-    let rev = document.scene().rev;
-    document.adopt(rev, 0, VoxelGrid::new()).expect("current");
+    let rev = document.scene().content();
+    document.adopt(rev, VoxelGrid::new()).expect("current");
     assert!(document.is_dirty(), "the file lacks the result");
     document.mark_saved();
-    assert!(document.select_frame(1));
-    assert!(!document.is_dirty(), "looking at another frame is no change");
-    assert_eq!(document.scene().current, 1);
-    assert!(!document.select_frame(2));
+    assert!(document.show(0.5));
+    assert!(!document.is_dirty(), "looking at another moment is no change");
+    assert_eq!(document.scene().time_s(), 0.5);
+    assert!(!document.show(0.5));
 }
 
-/// A job runs while the user looks at another frame: its result goes where it belongs.
+/// A job runs while the user looks at another moment: its result is of the same content.
 #[test]
-fn a_result_is_adopted_into_the_frame_it_was_made_for() {
+fn a_result_is_adopted_whatever_moment_is_shown() {
     let mut document = Document::new(start());
-    let asked = document.scene().clone();
-    assert!(document.select_frame(1));
-    let mut result = VoxelGrid::new();
+    let asked = document.scene().content();
+    assert!(document.show(0.7));
+    let mut result = document.scene().for_generation().frame().occupancy.clone();
     result.set(7, 8, 9, Class::Vegetation.id());
-    assert_eq!(document.adopt(asked.rev, 2, result.clone()), Err(Stale));
-    let shown = document.scene().frames[1].clone();
-    document
-        .adopt(asked.rev, 0, result.clone())
-        .expect("the same content");
+    document.adopt(asked, result.clone()).expect("the same content");
     let scene = document.scene();
-    assert_eq!((scene.current, &scene.frames[0].occupancy), (1, &result));
-    assert!(
-        Arc::ptr_eq(&scene.frames[1], &shown),
-        "the frame that is shown stays"
-    );
+    assert_eq!(scene.time_s(), 0.7);
+    assert_eq!(scene.at(0.0).frame().occupancy.get(7, 8, 9), Class::Vegetation.id());
+    assert_eq!(scene.canvas().occupancy, result);
     // Adopted or edited since, it is too late.
-    assert_eq!(document.adopt(asked.rev, 0, result.clone()), Err(Stale));
-    let asked = document.scene().clone();
-    document.select_frame(0);
+    assert_eq!(document.adopt(asked, result.clone()), Err(Stale));
+    let asked = document.scene().content();
     document
         .apply("Remove", &Edit::RemoveBox { id: BoxId(1) })
         .expect("there");
-    assert_eq!(document.adopt(asked.rev, 1, result), Err(Stale));
+    assert_eq!(document.adopt(asked, result), Err(Stale));
+    // Undo keeps the moment.
+    document.undo();
+    assert_eq!(document.scene().time_s(), 0.7);
 }
 
 #[test]
-fn frames_are_edited_one_at_a_time_and_history_is_bounded() {
+fn history_is_bounded() {
     let mut document = Document::new(start());
-    document.select_frame(1);
-    document
-        .apply("Remove", &Edit::RemoveBox { id: BoxId(1) })
-        .expect("there");
-    assert_eq!(document.scene().frames[0].boxes.len(), 3);
-    assert_eq!(document.scene().frames[1].boxes.len(), 2);
     for i in 0..600 {
         document
             .apply(
@@ -506,10 +510,10 @@ fn the_history_is_bounded_by_bytes() {
         large.position()
     );
     // A result that is adopted counts with its step, and what comes after it too.
-    let mut grid = large.scene().frame().occupancy.clone();
+    let mut grid = large.scene().for_generation().frame().occupancy.clone();
     (0..Extent::WINDOW.nx()).for_each(|x| grid.set(x, 9, 9, Class::Vegetation.id()));
     let before = large.history_bytes();
-    large.adopt(large.scene().rev, 0, grid).expect("shown");
+    large.adopt(large.scene().content(), grid).expect("shown");
     assert_ne!(large.history_bytes(), before);
 }
 
@@ -517,21 +521,21 @@ fn the_history_is_bounded_by_bytes() {
 fn what_was_inpainted_can_be_undone() {
     let mut document = Document::new(start());
     let before = document.scene().clone();
-    let mut occupancy = before.frame().occupancy.clone();
+    let mut occupancy = before.for_generation().frame().occupancy.clone();
     occupancy.set(3, 4, 5, Class::Manmade.id());
     let rev = document
-        .adopt_as_step("Generate", before.rev, 0, occupancy.clone())
+        .adopt_as_step("Generate", before.content(), occupancy.clone())
         .expect("shown");
-    assert_eq!(document.scene().rev, rev);
-    assert_eq!(document.scene().frame().occupancy, occupancy);
-    assert_eq!(document.scene().frame().source.occupancy, occupancy);
+    assert_eq!(document.scene().content(), rev);
+    assert_eq!(document.scene().canvas().occupancy, occupancy);
+    assert_eq!(document.scene().canvas().source.occupancy, occupancy);
     assert_eq!(document.undo(), Some("Generate"));
-    assert_eq!(document.scene().rev, before.rev);
+    assert_eq!(document.scene().content(), before.content());
     assert_eq!(document.scene().frame().occupancy, before.frame().occupancy);
     assert_eq!(document.redo(), Some("Generate"));
     // Too late: another state is shown by now.
     assert_eq!(
-        document.adopt_as_step("Generate", before.rev, 0, occupancy),
+        document.adopt_as_step("Generate", before.content(), occupancy),
         Err(Stale)
     );
 }

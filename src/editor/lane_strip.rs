@@ -206,7 +206,7 @@ mod tests {
         let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
         let mut scene = Scene::single("street", frame, Arc::default(), 1);
         for y in 0..Extent::WINDOW.ny() {
-            scene.frame_mut().layout.set(BevLayer::Walkway, 100, y, true);
+            scene.change_canvas(|f| f.layout.set(BevLayer::Walkway, 100, y, true));
         }
         let ends = [DVec2::new(-20.0, 0.0), DVec2::new(20.0, 0.0)];
         for edit in &LaneStrip::default().edits(&ends, &scene.frame().layout.clone()) {

@@ -192,7 +192,7 @@ fn a_box_around_voxels_stands_where_they_are() {
     Edit::from(car(5, 100.0, 1.0))
         .apply(&mut scene)
         .expect("on the map");
-    scene.frame_mut().boxes.clear();
+    scene.change_canvas(|f| f.boxes.clear());
     let findings = run_checks(&scene, None);
     assert_eq!(findings[0].check, "occupancy_without_box", "{findings:?}");
     let fix = &findings[0].fixes[0].edits;
@@ -271,9 +271,9 @@ fn a_result_settles_what_was_authored_within_the_window() {
     assert_eq!(scene.rev, before.rev);
     assert_eq!(scene.frame().source, source);
     let mut document = Document::new(scene);
-    let rev = document.scene().rev;
-    assert_eq!(document.adopt(rev, 0, VoxelGrid::new()), Err(Stale));
-    assert_eq!(document.scene().rev, rev);
+    let rev = document.scene().content();
+    assert_eq!(document.adopt(rev, VoxelGrid::new()), Err(Stale));
+    assert_eq!(document.scene().content(), rev);
     assert_eq!(start.source.layout, start.layout);
 }
 
@@ -281,7 +281,7 @@ fn a_result_settles_what_was_authored_within_the_window() {
 fn relief_is_taken_over_within_the_window() {
     let extent = large();
     let mut scene = open_ground(extent);
-    scene.frame_mut().layout.relief = Relief::from_fn(extent, |p| 0.01 * p.x);
+    scene.change_canvas(|f| f.layout.relief = Relief::from_fn(extent, |p| 0.01 * p.x));
     let result = scene.frame().occupancy.clone();
     let edit = Edit::AdoptResult { occupancy: result };
     edit.apply(&mut scene).expect("of this map");
@@ -346,12 +346,12 @@ fn tools_reach_the_whole_map() {
     let other = VoxelGrid::new();
     assert_eq!(part::changed_by_class(&before, &other), []);
     assert_eq!(part::Part::Class(Class::Terrain).taken(&before, &other), before);
-    // A turned vehicle sees things where they stand in the world.
-    scene.frame_mut().world_from_ego = Pose::planar(7.0, 3.0, 0.0);
+    // Things stand where they stand, wherever the vehicle is.
+    scene.change_canvas(|f| f.world_from_ego = Pose::planar(7.0, 3.0, 0.0));
     let house = Building::rectangle(far, DVec2::new(4.0, 3.0), DVec2::X, 3.0);
     let forms = vec![Form::Building(house)];
     Edit::AddThings { forms }.apply(&mut scene).expect("sound");
-    let [x, y] = extent.column_at(far.x - 7.0, far.y - 3.0).expect("on the map");
+    let [x, y] = extent.column_at(far.x, far.y).expect("on the map");
     assert_eq!(scene.frame().occupancy.get(x, y, 4), Class::Manmade.id());
     let cleared = Edit::ClearScenery { shape: None };
     cleared.apply(&mut scene).expect("sound");

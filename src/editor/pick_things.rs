@@ -139,7 +139,6 @@ pub fn with_corner(form: &Form, index: usize, at_m: DVec2) -> Form {
     out
 }
 
-
 #[cfg(test)]
 #[path = "pick_things_tests.rs"]
 mod tests;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::*;
 use crate::Document;
 use scene::background::{Building, Facade, Line, LineKind, Roof, Tree, TreeKind};
-use scene::{BoxId, Pose, Relief, SceneBox, SensorRig};
+use scene::{BoxId, Relief, SceneBox, SensorRig};
 
 fn building(height_m: f64) -> Form {
     Form::Building(Building {
@@ -158,12 +158,19 @@ fn a_neighbour_of_what_goes_stays_whole() {
 }
 
 #[test]
-fn every_frame_of_a_clip_follows_in_its_own_coordinates() {
+fn every_moment_of_a_clip_sees_the_same_things() {
     let mut clip = scene(Relief::FLAT);
-    let mut second = Frame::clone(clip.frame());
-    second.world_from_ego = Pose::planar(8.0, 0.0, 0.0);
-    clip.frames.push(Arc::new(second));
+    let key = |time_s: f64, x: f64| scene::Key {
+        time_s,
+        at_m: DVec2::new(x, 0.0),
+        yaw_deg: 0.0,
+    };
+    clip.change_clip(|c| {
+        c.length_s = 2.0;
+        c.ego = Some(scene::Motion::Keys(vec![key(0.0, 0.0), key(2.0, 8.0)]));
+    });
     let mut doc = Document::new(clip);
+    doc.show(1.0);
     doc.apply(
         "Add",
         &Edit::AddThings {
@@ -171,15 +178,19 @@ fn every_frame_of_a_clip_follows_in_its_own_coordinates() {
         },
     )
     .expect("sound");
-    for (frame, x) in doc.scene().frames.iter().zip([0.0, -8.0]) {
-        let plants = frame
-            .occupancy
-            .iter_set()
-            .filter(|v| v.3 == Class::Vegetation.id());
-        let (n, sum) = plants.fold((0, 0.0), |(n, sum), v| {
-            (n + 1, sum + Extent::WINDOW.center(v.0, v.1, v.2).x)
-        });
-        assert!(n > 30 && (sum / f64::from(n) - x).abs() < 0.5, "{n} {sum}");
+    let first = doc.scene().at(0.0).frame().clone();
+    let plants = first
+        .occupancy
+        .iter_set()
+        .filter(|v| v.3 == Class::Vegetation.id());
+    let (n, sum) = plants.fold((0, 0.0), |(n, sum), v| {
+        (n + 1, sum + Extent::WINDOW.center(v.0, v.1, v.2).x)
+    });
+    assert!(n > 30 && (sum / f64::from(n)).abs() < 0.5, "{n} {sum}");
+    for time_s in [1.0, 2.0] {
+        let frame = doc.scene().at(time_s).frame().clone();
+        assert_eq!(frame.occupancy.changed_bricks(&first.occupancy), [0; 0]);
+        assert_eq!(frame.world_from_ego.translation_m.x, 4.0 * time_s);
     }
 }
 
@@ -317,10 +328,8 @@ fn shrubs_go_with_all_their_ground() {
         .collect();
     let mut scene = Scene::clone(doc.scene());
     for [x, y, z] in &cells {
-        scene
-            .frame_mut()
-            .occupancy
-            .set(*x, *y, *z, Class::Vegetation.id());
+        scene.change_canvas(|f| f.occupancy
+            .set(*x, *y, *z, Class::Vegetation.id()));
     }
     let mut doc = Document::new(scene);
     let ids = vec![ThingId(1)];

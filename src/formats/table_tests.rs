@@ -115,10 +115,10 @@ fn assert_holds(holds: Holds, a: &Scene, b: &Scene) {
     match holds {
         Holds::Scene => {
             assert_eq!(
-                (&a.name, &a.prompt, &a.rig, &a.background, a.seed, a.current),
-                (&b.name, &b.prompt, &b.rig, &b.background, b.seed, b.current)
+                (&a.name, &a.prompt, &a.rig, &a.background, a.seed, a.time_s()),
+                (&b.name, &b.prompt, &b.rig, &b.background, b.seed, b.time_s())
             );
-            assert!(a.frames == b.frames);
+            assert!(a.canvas() == b.canvas() && a.clip() == b.clip());
         }
         Holds::Occupancy => assert!(of_a.occupancy == of_b.occupancy),
         Holds::Boxes => assert_eq!(of_a.boxes, of_b.boxes),

@@ -206,10 +206,9 @@ impl Scene {
 
     /// Changes what stands still and nothing else.
     pub fn change_canvas<R>(&mut self, change: impl FnOnce(&mut Frame) -> R) -> R {
-        let time_s = self.time_s();
         let out = change(Arc::make_mut(&mut self.canvas));
         self.touch();
-        self.view = self.clip.view(&self.canvas, time_s);
+        self.show_within();
         out
     }
 

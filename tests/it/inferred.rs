@@ -23,7 +23,7 @@ fn an_imported_frame_is_marked_and_survives_saving() {
     let mut scene = imported();
     let mut words = vec![0u16; Window::COLUMNS];
     words[..700].fill(0xa001);
-    scene.frame_mut().inferred.unobserved = Unobserved::from_words(scene::Extent::WINDOW, words);
+    scene.change_canvas(|f| f.inferred.unobserved = Unobserved::from_words(scene::Extent::WINDOW, words));
     let frame = scene.frame();
     assert!(frame.inferred.layout && frame.inferred.any());
     assert_eq!(
@@ -38,7 +38,7 @@ fn an_imported_frame_is_marked_and_survives_saving() {
     assert_eq!(again.background, scene.background);
 
     // A guess about no box is refused.
-    scene.frame_mut().inferred.boxes.insert(BoxId(9_999));
+    scene.change_canvas(|f| f.inferred.boxes.insert(BoxId(9_999)));
     let bytes = loom::to_bytes(&scene).expect("written as it is");
     let error = loom::from_bytes(&bytes).expect_err("no such box").to_string();
     assert!(error.contains("box 9999 is marked as inferred"), "{error}");

@@ -97,7 +97,7 @@ fn clip() -> Scene {
     };
     erase.apply(&mut scene).expect("inside");
     // A source whose lines differ from the frame's.
-    scene.frame_mut().layout.polylines = Arc::default();
+    scene.change_canvas(|f| f.layout.polylines = Arc::default());
     scene
 }
 
@@ -444,14 +444,14 @@ fn errors_name_the_file_and_an_old_file_survives() {
     let good = std::fs::read(&path).expect("there");
     // A scene that cannot be stored is refused before the file is touched.
     let mut broken = clip();
-    broken.frame_mut().time_s = f64::NAN;
+    broken.change_canvas(|f| f.time_s = f64::NAN);
     let text = loom::save(&path, &broken).expect_err("NaN").to_string();
     assert!(
         text.contains("frame 2: time_s is NaN, expected a finite number"),
         "{text}"
     );
     let mut broken = clip();
-    broken.frame_mut().occupancy.set(1, 2, 3, 40);
+    broken.change_canvas(|f| f.occupancy.set(1, 2, 3, 40));
     let text = loom::save(&path, &broken).expect_err("no such label").to_string();
     assert!(text.contains("voxel [1, 2, 3] holds 40"), "{text}");
     let mut broken = clip();

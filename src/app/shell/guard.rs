@@ -97,7 +97,7 @@ mod tests {
             velocity_mps: glam::DVec2::ZERO,
             label: Default::default(),
         };
-        scene.frame_mut().boxes.insert(BoxId(1), bad);
+        scene.change_canvas(|f| f.boxes.insert(BoxId(1), bad));
         assert!(matches!(pause(&scene, 0.05, 0.3), Some(Pause::Unsound(_))));
         assert!(Pause::Large(0.524).text().contains("52 %"));
     }

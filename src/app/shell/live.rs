@@ -343,7 +343,7 @@ mod tests {
     }
 
     fn paint(scene: &mut Scene, x: usize) {
-        scene.frame_mut().layout.set(BevLayer::DrivableArea, x, 50, true);
+        scene.change_canvas(|f| f.layout.set(BevLayer::DrivableArea, x, 50, true));
     }
 
     fn submit(live: &mut Live, scene: &Scene, params: GenParams, now_s: f64, id: u64) {
@@ -428,7 +428,7 @@ mod tests {
         );
         let before = scene.clone();
         for x in 0..120 {
-            (0..200).for_each(|y| scene.frame_mut().layout.set(BevLayer::DrivableArea, x, y, true));
+            (0..200).for_each(|y| scene.change_canvas(|f| f.layout.set(BevLayer::DrivableArea, x, y, true)));
         }
         assert_eq!(live.advise(&scene, false, 1.0), Advice::Rest);
         assert!(

@@ -51,9 +51,11 @@ pub(super) fn apply_scoped(edit: &Edit, scene: &mut Scene, scope: Scope) -> Resu
     }
     let new = match (edit, scope) {
         // What appears from here on is a track that stands still.
-        (Edit::AddBox { .. }, Scope::FromHereOn) => {
-            frame.boxes.values().find(|b| !scene.frame().boxes.contains_key(&b.id)).copied()
-        }
+        (Edit::AddBox { .. }, Scope::FromHereOn) => frame
+            .boxes
+            .values()
+            .find(|b| !scene.frame().boxes.contains_key(&b.id))
+            .copied(),
         _ => None,
     };
     let mut next = scene.clone();
@@ -65,7 +67,12 @@ pub(super) fn apply_scoped(edit: &Edit, scene: &mut Scene, scope: Scope) -> Resu
             yaw_deg: b.yaw_rad.to_degrees(),
         };
         let from_s = Some(scene.time_s());
-        motion::set(&mut next, Some(b.id), Some(&Motion::Keys(vec![key])), [from_s, None])?;
+        motion::set(
+            &mut next,
+            Some(b.id),
+            Some(&Motion::Keys(vec![key])),
+            [from_s, None],
+        )?;
     }
     *scene = next;
     Ok(())

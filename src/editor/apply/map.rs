@@ -53,7 +53,7 @@ fn check_lines(lines: &[Polyline]) -> Result<(), EditError> {
             return Err(EditError::Number {
                 field: "points_m",
                 found: format!("[{}, {}]", p.x, p.y),
-                expected: "finite numbers within 1000 m",
+                expected: "finite numbers within 10000 m",
             });
         }
     }

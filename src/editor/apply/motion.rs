@@ -145,10 +145,14 @@ fn lift(canvas: &mut Frame, id: BoxId) -> Result<Track, EditError> {
 /// Puts a track's object onto the canvas, and into the source if it was settled.
 fn set_down(canvas: &mut Frame, track: &Track, now: SceneBox) {
     canvas.boxes.insert(now.id, now);
-    track.voxels.stamp(&mut canvas.occupancy, &canvas.painted, &track.made, &now);
+    track
+        .voxels
+        .stamp(&mut canvas.occupancy, &canvas.painted, &track.made, &now);
     if track.settled {
         let source = Arc::make_mut(&mut canvas.source);
         source.boxes.insert(now.id, now);
-        track.voxels.stamp(&mut source.occupancy, &canvas.painted, &track.made, &now);
+        track
+            .voxels
+            .stamp(&mut source.occupancy, &canvas.painted, &track.made, &now);
     }
 }

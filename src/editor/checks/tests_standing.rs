@@ -61,7 +61,7 @@ fn what_hangs_over_the_road_or_stands_beside_it_is_fine() {
     paint(&mut scene, Class::Manmade, vec![[140, 100, 1]]);
     for x in 150..160 {
         for y in 85..95 {
-            scene.frame_mut().layout.set(BevLayer::RoadBlock, x, y, true);
+            scene.change_canvas(|f| f.layout.set(BevLayer::RoadBlock, x, y, true));
         }
     }
     paint(&mut scene, Class::Manmade, (1..5).map(|z| [155, 90, z]).collect());
@@ -71,14 +71,13 @@ fn what_hangs_over_the_road_or_stands_beside_it_is_fine() {
 #[test]
 fn on_raised_road_heights_count_from_the_road() {
     let mut scene = street(&[]);
-    let frame = scene.frame_mut();
-    for x in 0..Extent::WINDOW.nx() {
-        for y in 0..Extent::WINDOW.ny() {
+    scene.change_canvas(|frame| {
+        for [x, y] in Extent::WINDOW.all_columns() {
             let column = frame.occupancy.column_mut(x, y);
             column[4] = column[0];
             column[0] = Class::FREE;
         }
-    }
+    });
     paint(
         &mut scene,
         Class::Vegetation,

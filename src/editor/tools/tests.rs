@@ -24,7 +24,7 @@ fn with_car(table: &mut Table) {
         .hand
         .new_box(table.scene.frame(), Class::Car, DVec2::ZERO, 0.0)
         .expect("a car");
-    table.scene.frame_mut().boxes.insert(b.id, b);
+    table.scene.change_canvas(|f| f.boxes.insert(b.id, b));
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn picking_takes_the_layer_and_filling_what_is_alike() {
     let (mut table, mut toolbox) = (Table::new(), Toolbox::default());
     for x in 90..110 {
         for y in 90..110 {
-            table.scene.frame_mut().layout.set(BevLayer::Walkway, x, y, true);
+            table.scene.change_canvas(|f| f.layout.set(BevLayer::Walkway, x, y, true));
         }
     }
     let tool = of(&mut toolbox, &mut table, brush::ID);

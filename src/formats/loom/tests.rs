@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use scene::background::{Background, Form, Tree, TreeKind};
+use scene::clip::ObjectVoxels;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Conditions, Extent, Frame, Relief, Scene, SceneBox, SensorRig,
-    TimeOfDay, VoxelGrid, Weather,
+    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Key, Motion, Relief, Scene, SceneBox,
+    SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
@@ -65,7 +66,64 @@ fn sample(version: u32) -> Scene {
         }));
         scene.background = Arc::new(background);
     }
+    if version >= 5 {
+        scene.change_clip(|clip| *clip = sample_clip());
+        scene.show(0.8);
+    }
     scene
+}
+
+/// A bus that drives a path from the first half second on, a trailer behind it, and an ego vehicle that follows keyframes.
+fn sample_clip() -> Clip {
+    let object = |id: u32, class, x: f64| SceneBox {
+        id: BoxId(id),
+        class,
+        center_m: DVec3::new(x, 4.0, 1.4),
+        size_m: DVec3::new(6.0, 2.4, 2.8),
+        yaw_rad: 0.0,
+        velocity_mps: DVec2::ZERO,
+        label: Default::default(),
+    };
+    let voxels = |label: u8| {
+        Arc::new(ObjectVoxels {
+            from: [-9, 7],
+            size: [3, 2],
+            columns: (0..6).map(|i| std::array::from_fn(|z| if z < 7 && i != 1 { label } else { Class::FREE })).collect(),
+        })
+    };
+    let track = |made: SceneBox, motion, settled| Track {
+        made,
+        motion,
+        there_s: [Some(0.5), None],
+        voxels: voxels(made.class.id()),
+        settled,
+    };
+    let path = Motion::Path(scene::clip::Path {
+        points_m: vec![DVec2::new(-5.0, 4.0), DVec2::new(1.0 / 3.0, 4.0), DVec2::new(30.0, 9.0)],
+        start_m: 0.1,
+        speeds: vec![scene::clip::Speed { time_s: 0.0, mps: 3.0 }, scene::clip::Speed { time_s: 2.0, mps: 7.5 }],
+        rear_first: false,
+    });
+    let behind = Motion::Attached {
+        to: BoxId(9),
+        at_m: DVec2::new(-7.0, 0.0),
+        yaw_deg: 2.0,
+    };
+    let key = |time_s: f64, x: f64| Key {
+        time_s,
+        at_m: DVec2::new(x, 0.0),
+        yaw_deg: x,
+    };
+    let tracks = [
+        track(object(9, Class::Bus, -5.0), path, true),
+        track(object(10, Class::Trailer, -12.0), behind, false),
+    ];
+    Clip {
+        length_s: 2.5,
+        rate_hz: 12.0,
+        ego: Some(Motion::Keys(vec![key(0.0, 0.0), key(2.0, 1.0 / 3.0)])),
+        tracks: tracks.into_iter().map(|t| (t.made.id, t)).collect(),
+    }
 }
 
 fn bundled(version: u32) -> PathBuf {
@@ -82,7 +140,7 @@ fn assert_same(a: &Scene, b: &Scene) {
             &a.words,
             &a.rig,
             &a.background,
-            a.current,
+            a.time_s(),
             a.seed
         ),
         (
@@ -92,11 +150,12 @@ fn assert_same(a: &Scene, b: &Scene) {
             &b.words,
             &b.rig,
             &b.background,
-            b.current,
+            b.time_s(),
             b.seed
         )
     );
-    assert!(a.frames == b.frames, "a frame differs");
+    assert!(a.canvas() == b.canvas(), "the canvas differs");
+    assert!(a.clip() == b.clip(), "the clip differs");
 }
 
 #[test]
@@ -109,7 +168,7 @@ fn a_file_of_every_version_opens_as_what_it_holds() {
         let entries = unpack(&std::fs::read(bundled(version)).expect("there"));
         let manifest = String::from_utf8(entries[0].1.clone()).expect("JSON");
         assert!(
-            manifest.contains(&format!("\"version\":{version},")),
+            manifest.contains(&format!("\"version\":{version}")),
             "{manifest}"
         );
     }
@@ -159,7 +218,7 @@ fn pack(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
 
 /// A version that never was: the prompt was called `style`, and a voxel that is free held 255.
 fn of_version_0() -> Vec<u8> {
-    let mut entries = unpack(&to_bytes(&sample(1)).expect("sound"));
+    let mut entries = unpack(&std::fs::read(bundled(1)).expect("there"));
     for (name, content) in &mut entries {
         let text = |content: &[u8], from, to| {
             let text = String::from_utf8(content.to_vec()).expect("JSON");
@@ -167,7 +226,7 @@ fn of_version_0() -> Vec<u8> {
             text.replace(from, to).into_bytes()
         };
         match name.as_str() {
-            "manifest.json" => *content = text(content, "\"version\":4", "\"version\":0"),
+            "manifest.json" => *content = text(content, "\"version\":1", "\"version\":0"),
             "scene.json" => *content = text(content, "\"prompt\":", "\"style\":"),
             "frames/00000/occupancy.u8" => {
                 "frames/00000/grid.u8".clone_into(name);
@@ -201,8 +260,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3];
+    let [v1, v2, v3, v4] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.
@@ -226,6 +285,60 @@ fn an_older_version_goes_through_every_step() {
     assert_eq!(line, "scene.json: style is missing");
 }
 
+/// Frames of versions 1 to 4 that show an object elsewhere are a track, and a vehicle that is elsewhere a motion.
+#[test]
+fn frames_of_an_older_version_become_a_clip() {
+    let mut entries = unpack(&std::fs::read(bundled(4)).expect("there"));
+    entries[0].1 = br#"{"format":"sceneloom","version":4,"frames":2}"#.to_vec();
+    let mut scene: serde_json::Value = serde_json::from_slice(&entries[1].1).expect("JSON");
+    let first = scene["frames"][0].clone();
+    let mut second = first.clone();
+    second["time_s"] = (first["time_s"].as_f64().expect("a time") + 0.5).into();
+    second["world_from_ego"]["translation_m"] = serde_json::json!([2.0, 0.0, 0.0]);
+    second["boxes"][0]["center_m"][0] = 8.0.into(); // 10 m ahead of where the vehicle was
+    scene["frames"] = serde_json::json!([first, second]);
+    scene["current"] = 1.into();
+    entries[1].1 = serde_json::to_vec(&scene).expect("JSON");
+    let copies: Vec<_> = entries[2..]
+        .iter()
+        .map(|(name, bytes)| (name.replace("00000", "00001"), bytes.clone()))
+        .collect();
+    entries.extend(copies);
+    let found = from_bytes(&pack(&entries)).expect("opens");
+    let clip = found.clip();
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(near(clip.length_s, 0.5) && near(clip.rate_hz, 2.0) && near(found.time_s(), 0.5));
+    assert!(found.canvas().boxes.is_empty());
+    let b = found.frame().boxes[&BoxId(4)];
+    assert!((b.center_m.x - 10.0).abs() < 1e-9, "{b:?}");
+    assert!((found.at(0.0).frame().boxes[&BoxId(4)].center_m.x - 10.0 / 3.0).abs() < 1e-9);
+    assert_eq!(found.frame().world_from_ego.translation_m.x, 2.0);
+    let cars = |s: &Scene| s.frame().occupancy.class_counts()[Class::Car as usize];
+    assert!(cars(&found) > 100, "{} voxels", cars(&found));
+    // It is a scene like any other.
+    let again = from_bytes(&to_bytes(&found).expect("sound")).expect("opens");
+    assert_same(&found, &again);
+}
+
+#[test]
+fn a_clip_that_is_not_sound_is_refused_in_one_line() {
+    let bytes = to_bytes(&sample(VERSION)).expect("sound");
+    for (from, to, line) in [
+        ("\"length_s\":2.5", "\"length_s\":1e6", "scene.json: clip: a clip of 1000000 s, expected 0 to 600"),
+        ("\"time_s\":2.0,\"mps\":7.5", "\"time_s\":0.0,\"mps\":7.5", "scene.json: clip: track 9: speed 1 at 0 s is at the same time"),
+        ("\"to\":9", "\"to\":10", "scene.json: clip: track 10: attached in a circle"),
+        ("\"voxels_size\":[3,2]", "\"voxels_size\":[3,3]", "entry \"tracks/0000000009.u8\" has the wrong size: expected 144 voxels"),
+        ("\"voxels_size\":[3,2]", "\"voxels_size\":[3,999999999]", "scene.json: track 9: voxels of 3 x 999999999 columns"),
+    ] {
+        let mut entries = unpack(&bytes);
+        let text = String::from_utf8(entries[1].1.clone()).expect("JSON");
+        assert!(text.contains(from), "{text}");
+        entries[1].1 = text.replace(from, to).into_bytes();
+        let found = from_bytes(&pack(&entries)).expect_err("no clip").to_string();
+        assert!(found.starts_with(line) && found.lines().count() == 1, "{found}");
+    }
+}
+
 #[test]
 fn a_map_that_is_none_is_refused_in_one_line() {
     let bytes = to_bytes(&sample(VERSION)).expect("sound");
@@ -233,22 +346,22 @@ fn a_map_that_is_none_is_refused_in_one_line() {
         (
             "\"columns\":[230,203]",
             "\"columns\":[230,0]",
-            "scene.json: frame 0: a map of 230 x 0 columns, expected sides of 1 to 8192",
+            "scene.json: canvas: a map of 230 x 0 columns, expected sides of 1 to 8192",
         ),
         (
             "\"columns\":[230,203]",
             "\"columns\":[8192,8192]",
-            "scene.json: frame 0: a map of 8192 x 8192 columns",
+            "scene.json: canvas: a map of 8192 x 8192 columns",
         ),
         (
             "\"columns\":[230,203]",
             "\"columns\":[203,203]",
-            "entry \"frames/00000/layout.u32\" has the wrong size: expected 41209 cells",
+            "entry \"canvas/layout.u32\" has the wrong size: expected 41209 cells",
         ),
         (
             "\"from\":[-120,-100]",
             "\"from\":[2147483647,-100]",
-            "scene.json: frame 0: a map from column [2147483647, -100]",
+            "scene.json: canvas: a map from column [2147483647, -100]",
         ),
     ] {
         let mut entries = unpack(&bytes);
@@ -267,7 +380,7 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 4; open it with the sceneloom that wrote it"
+        "manifest.json: version is 0, expected 5; open it with the sceneloom that wrote it"
     );
     for version in ["5", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");

@@ -113,7 +113,6 @@ mod tests {
     fn result_of(job: &Job) -> GenResult {
         GenResult {
             key: job.key(),
-            frame: job.frame(),
             occupancy: VoxelGrid::new(),
             report: GenReport::default(),
         }
@@ -239,13 +238,17 @@ mod tests {
             panic!("{event:?}");
         };
         assert_eq!(
-            (event.id, result.key.clone(), result.rev(), result.frame),
-            (id, asked.key(), asked.scene.rev, asked.frame())
+            (event.id, result.key.clone(), result.rev()),
+            (id, asked.key(), asked.scene.content())
         );
-        // Another frame of the same state is another result.
+        // Another moment of the same content is the same job.
         let mut other = asked.clone();
-        Arc::make_mut(&mut other.scene).current = 1;
-        assert!(other.key() != asked.key() && other.key().rev == asked.key().rev);
+        let scene = Arc::make_mut(&mut other.scene);
+        let content = scene.content();
+        scene.change_clip(|clip| clip.length_s = 2.0);
+        let asked = other.key();
+        Arc::make_mut(&mut other.scene).show(1.0);
+        assert!(other.key() == asked && asked.rev != content);
         drop(b.worker); // joins, so that the wake-up after the last update is counted
         assert_eq!(b.wakes.load(Ordering::SeqCst), 3);
     }

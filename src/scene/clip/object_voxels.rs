@@ -91,7 +91,8 @@ impl ObjectVoxels {
                 true => from_center,
                 false => turn.rotate(from_center),
             };
-            let p_made = (made.center_m.truncate() + turned) * 2.5;
+            // A hair to one side: half a voxel between both poses must round the same way in every column.
+            let p_made = (made.center_m.truncate() + turned) * 2.5 + 1e-6;
             let (i, j) = (
                 p_made.x.floor() - f64::from(self.from[0]),
                 p_made.y.floor() - f64::from(self.from[1]),

@@ -99,7 +99,7 @@ fn errors_are_one_line_and_change_nothing() {
         (add(Class::Car, good, -good, 0.0, None), "expected above 0"),
         (moved(None), "at least one of"),
         (moved(Some(nan)), "center_m is [NaN"),
-        (moved(Some(good * 1e6)), "expected within 1000 m"),
+        (moved(Some(good * 1e6)), "expected within 10000 m"),
         (
             cells(vec![], Class::Car),
             "cells holds 0 entries, expected at least 1",
@@ -138,7 +138,7 @@ fn errors_are_one_line_and_change_nothing() {
             "{edit:?}: {text}"
         );
         assert_eq!(scene.rev, before.rev);
-        assert_eq!(scene.frames, before.frames);
+        assert_eq!(scene.canvas(), before.canvas());
     }
 }
 

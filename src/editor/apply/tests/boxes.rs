@@ -34,8 +34,8 @@ fn removing_a_car_leaves_road_and_the_neighbour() {
 #[test]
 fn a_hole_without_layout_continues_the_ground_around() {
     let mut scene = street();
-    let frame = scene.frame_mut();
-    frame.layout = BevLayout::default(); // nothing says what the ground is; the voxels still do
+    // Nothing says what the ground is; the voxels still do.
+    scene.change_canvas(|frame| frame.layout = BevLayout::default());
     Edit::RemoveBox { id: BoxId(1) }
         .apply(&mut scene)
         .expect("is there");
@@ -129,12 +129,13 @@ fn adding_stamps_and_moving_is_removing_and_adding() {
 #[test]
 fn a_box_put_into_a_hedge_and_taken_out_leaves_the_hedge() {
     let mut scene = street();
-    let frame = scene.frame_mut();
-    for x in 100..110 {
-        frame.occupancy.column_mut(x, 130)[..4].fill(Class::Vegetation.id());
-    }
-    *frame = Frame::new(frame.layout.clone(), frame.boxes.clone(), frame.occupancy.clone());
-    let before = frame.occupancy.clone();
+    scene.change_canvas(|frame| {
+        for x in 100..110 {
+            frame.occupancy.column_mut(x, 130)[..4].fill(Class::Vegetation.id());
+        }
+        *frame = Frame::new(frame.layout.clone(), frame.boxes.clone(), frame.occupancy.clone());
+    });
+    let before = scene.frame().occupancy.clone();
     let mut put = car(9, 0.0, 0.0);
     put.center_m.x = 2.0;
     put.center_m.y = Extent::WINDOW.center(100, 130, 0).y;

@@ -12,7 +12,7 @@ fn painting_a_layer_lays_its_ground_and_lines_do_not() {
     };
     // A sidewalk with a kerb in bin 1 becomes road.
     let [x, y] = cell(0.1, 5.1);
-    scene.frame_mut().occupancy.set(x, y, 1, Class::Sidewalk.id());
+    scene.change_canvas(|f| f.occupancy.set(x, y, 1, Class::Sidewalk.id()));
     paint(BevLayer::DrivableArea, 0.1, 5.1, true)
         .apply(&mut scene)
         .expect("inside");
@@ -91,7 +91,7 @@ fn lines_bring_the_cells_of_their_layer_and_bad_ones_are_named() {
     );
     for bad in [f64::NAN, f64::INFINITY, 1e9] {
         let text = refused(vec![line(vec![DVec2::ZERO, DVec2::new(bad, 0.0)])], &mut scene);
-        assert!(text.ends_with("expected finite numbers within 1000 m"), "{text}");
+        assert!(text.ends_with("expected finite numbers within 10000 m"), "{text}");
     }
     assert_eq!(scene.frame().layout.polylines.len(), 2);
     // As a correction the source has them too, and no voxel changes.
