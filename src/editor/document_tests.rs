@@ -414,7 +414,10 @@ fn a_result_is_adopted_whatever_moment_is_shown() {
     document.adopt(asked, result.clone()).expect("the same content");
     let scene = document.scene();
     assert_eq!(scene.time_s(), 0.7);
-    assert_eq!(scene.at(0.0).frame().occupancy.get(7, 8, 9), Class::Vegetation.id());
+    assert_eq!(
+        scene.at(0.0).frame().occupancy.get(7, 8, 9),
+        Class::Vegetation.id()
+    );
     assert_eq!(scene.canvas().occupancy, result);
     // Adopted or edited since, it is too late.
     assert_eq!(document.adopt(asked, result.clone()), Err(Stale));

@@ -328,8 +328,7 @@ fn shrubs_go_with_all_their_ground() {
         .collect();
     let mut scene = Scene::clone(doc.scene());
     for [x, y, z] in &cells {
-        scene.change_canvas(|f| f.occupancy
-            .set(*x, *y, *z, Class::Vegetation.id()));
+        scene.change_canvas(|f| f.occupancy.set(*x, *y, *z, Class::Vegetation.id()));
     }
     let mut doc = Document::new(scene);
     let ids = vec![ThingId(1)];

@@ -186,7 +186,7 @@ fn the_window_is_one_part_of_a_larger_map() {
     let path = folder.path("map.loom");
     loom::save(path.as_ref(), &scene).expect("saved");
     let again = loom::load(path.as_ref()).expect("opens");
-    assert!(again.frames == scene.frames);
+    assert!(again.canvas() == scene.canvas());
     while document.undo().is_some() {}
     let frame = document.scene().frame();
     let [within, beyond] = differing(&road().frame().occupancy, &frame.occupancy);

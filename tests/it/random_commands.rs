@@ -10,7 +10,7 @@ use editor::{Document, Edit, Shape};
 use glam::{DVec2, DVec3};
 use numeric::splitmix::SplitMix64;
 use scene::grid::NOT_PAINTED;
-use scene::{BevLayer, BoxId, Class, Frame, Scene, SceneBox, SceneRev, Window};
+use scene::{BevLayer, BoxId, Class, Frame, Key, Motion, Scene, SceneBox, SceneRev, Scope, Window};
 
 const COMMANDS: u64 = 10_000;
 /// States are compared voxel by voxel at every so many commands; by everything else at each.
@@ -103,7 +103,29 @@ fn edit(random: &mut Random, scene: &Scene) -> Edit {
             random.number(0.2, 4.0),
         )
     };
-    match random.below(13) {
+    match random.below(16) {
+        13 | 14 => {
+            let times = [0.0, random.number(0.1, 3.0), random.number(0.1, 3.0)];
+            let key = |time_s: &f64| Key {
+                time_s: *time_s,
+                at_m: random.point(),
+                yaw_deg: random.number(-400.0, 400.0),
+            };
+            let keys: Vec<Key> = times.iter().map(key).collect();
+            Edit::SetMotion {
+                id: (!random.one_in(4)).then(|| some_box(random, scene)),
+                motion: (!random.one_in(4)).then_some(Motion::Keys(keys)),
+                from_s: random.one_in(5).then(|| random.number(0.0, 3.0)),
+                to_s: random.one_in(5).then(|| random.number(0.0, 3.0)),
+            }
+        }
+        15 => Edit::At {
+            frame: None,
+            time_s: random.one_in(2).then(|| random.number(0.0, 3.2)),
+            track: None,
+            scope: Some(random.of(&Scope::ALL)),
+            edit: Box::new(edit(random, scene)),
+        },
         0 | 1 => Edit::AddBox {
             class: match random.one_in(10) {
                 true => random.of(&Class::ALL),
@@ -160,9 +182,10 @@ fn edit(random: &mut Random, scene: &Scene) -> Edit {
 
 /// What must hold for every scene that a document shows.
 fn sweep(scene: &Scene) {
-    assert!(scene.current < scene.frames.len());
+    assert_eq!(scene.clip().problem(), None);
+    assert!((0.0..=scene.clip().length_s).contains(&scene.time_s()));
     assert_eq!(scene.rig.problem(), None);
-    for frame in &scene.frames {
+    for frame in [scene.canvas(), scene.frame()] {
         frame_is_sound(frame);
     }
 }
@@ -210,11 +233,10 @@ fn same(a: &Scene, b: &Scene, deep: bool) -> bool {
     };
     let boxes = |f: &Frame| -> BTreeMap<BoxId, SceneBox> { f.boxes.clone() };
     a.prompt == b.prompt
-        && a.current == b.current
-        && a.frames
-            .iter()
-            .zip(&b.frames)
-            .all(|(a, b)| boxes(a) == boxes(b) && grids(a, b))
+        && a.clip() == b.clip()
+        && boxes(a.canvas()) == boxes(b.canvas())
+        && grids(a.canvas(), b.canvas())
+        && boxes(a.frame()) == boxes(b.at(a.time_s()).frame())
 }
 
 /// What the document should hold: the states by step, kept apart from it.
@@ -226,7 +248,7 @@ struct Model {
 impl Model {
     fn note(&mut self, document: &Document) {
         let now = document.settled_scene();
-        if now.rev == self.states[self.at].rev {
+        if now.content() == self.states[self.at].content() {
             return; // refused, or it changed nothing
         }
         self.states.truncate(self.at + 1);
@@ -287,14 +309,16 @@ fn check(document: &Document, model: &Model, i: u64) {
     assert_eq!(document.position(), model.at, "command {i}");
     let deep = i.is_multiple_of(DEEP_EVERY);
     let (shown, expected) = (document.scene(), &model.states[model.at]);
-    assert_eq!(shown.rev, expected.rev, "command {i}");
+    assert_eq!(shown.content(), expected.content(), "command {i}");
     assert!(
         same(shown, expected, deep),
         "command {i}: not the state that was there"
     );
     sweep(shown);
     if deep {
-        shown.frames.iter().for_each(|f| grids_are_sound(f));
+        [shown.canvas(), shown.frame()]
+            .iter()
+            .for_each(|f| grids_are_sound(f));
     }
 }
 
@@ -306,7 +330,7 @@ fn random_commands_break_nothing() {
     );
     let mut random = Random(SplitMix64::new(seed));
     let mut start = open::bundled().expect("bundled");
-    start.frames.push(start.frames[0].clone());
+    start.change_clip(|clip| clip.length_s = 3.0);
     let mut document = Document::new(start);
     let mut model = Model {
         states: vec![document.scene().clone()],
@@ -359,18 +383,15 @@ fn random_commands_break_nothing() {
             }
             18 => {
                 // A result comes: for this state, or too late for another.
-                let mut occupancy = before.frame().occupancy.clone();
+                let mut occupancy = before.for_generation().frame().occupancy.clone();
                 for [x, y, z] in cells(&mut random) {
                     if x < Window::NX && y < Window::NY && z < Window::NZ {
                         occupancy.set(x, y, z, Class::Vegetation.id());
                     }
                 }
                 let late = random.one_in(3);
-                let rev = if late { SceneRev::fresh() } else { before.rev };
-                assert_eq!(
-                    document.adopt(rev, document.scene().current, occupancy).is_err(),
-                    late
-                );
+                let content = if late { SceneRev::fresh() } else { before.content() };
+                assert_eq!(document.adopt(content, occupancy).is_err(), late);
                 model.states[model.at] = document.settled_scene().clone();
             }
             _ => match random.below(3) {
@@ -382,8 +403,7 @@ fn random_commands_break_nothing() {
                     }
                 }
                 1 => {
-                    let frame = random.below(3);
-                    assert_eq!(document.select_frame(frame), frame < 2);
+                    document.show(random.below(40) as f64 * 0.1);
                     model.states[model.at] = document.settled_scene().clone();
                 }
                 _ => {

@@ -74,7 +74,7 @@ fn last(lines: &[String], word: &str) -> u64 {
 }
 
 fn same(a: &Scene, b: &Scene) -> bool {
-    (&a.name, &a.prompt, &a.frames) == (&b.name, &b.prompt, &b.frames)
+    (&a.name, &a.prompt, a.canvas(), a.clip()) == (&b.name, &b.prompt, b.canvas(), b.clip())
 }
 
 fn number(scene: &Scene) -> u64 {

@@ -363,11 +363,7 @@ fn heights_and_places_are_checked() {
         ),
     ] {
         let mut scene = street(&traffic());
-        scene.change_canvas(|f| f.boxes
-            .get_mut(&BoxId(1))
-            .expect("there")
-            .center_m
-            .z = z);
+        scene.change_canvas(|f| f.boxes.get_mut(&BoxId(1)).expect("there").center_m.z = z);
         let findings = run_checks(&scene, None);
         let found = findings
             .iter()

@@ -89,7 +89,9 @@ fn picking_takes_the_layer_and_filling_what_is_alike() {
     let (mut table, mut toolbox) = (Table::new(), Toolbox::default());
     for x in 90..110 {
         for y in 90..110 {
-            table.scene.change_canvas(|f| f.layout.set(BevLayer::Walkway, x, y, true));
+            table
+                .scene
+                .change_canvas(|f| f.layout.set(BevLayer::Walkway, x, y, true));
         }
     }
     let tool = of(&mut toolbox, &mut table, brush::ID);

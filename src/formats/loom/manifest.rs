@@ -9,10 +9,14 @@ use super::migrate::Migration;
 use super::{FORMAT, MANIFEST, ProjectError, VERSION};
 
 /// As it is written.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Manifest {
     format: String,
     version: u32,
+    /// How many frames; of versions 1 to 4 only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) frames: Option<u64>,
 }
 
 impl Manifest {
@@ -21,6 +25,7 @@ impl Manifest {
         Self {
             format: FORMAT.into(),
             version: VERSION,
+            frames: None,
         }
     }
 }
@@ -30,8 +35,6 @@ impl Manifest {
 pub(super) struct AnyManifest {
     format: String,
     version: u64,
-    /// Of versions 1 to 4.
-    pub(super) frames: Option<u64>,
 }
 
 impl AnyManifest {

@@ -14,7 +14,7 @@ use scene::{
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
 use super::check::check;
 use super::header::{ClipHeader, FrameHeader, SceneHeader, entry_name, track_entry};
-use super::manifest::AnyManifest;
+use super::manifest::{AnyManifest, Manifest};
 use super::migrate::{Migration, Old};
 use super::{MANIFEST, ProjectError, SCENE};
 
@@ -22,8 +22,8 @@ use super::{MANIFEST, ProjectError, SCENE};
 pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Result<Scene, ProjectError> {
     let mut file = Reader::new(reader)?;
     let text = file.bytes(MANIFEST, MAX_JSON)?;
-    let manifest = AnyManifest::parse(&text)?;
-    let version = manifest.version(migrations)?;
+    let version = AnyManifest::parse(&text)?.version(migrations)?;
+    let manifest: Manifest = parse(MANIFEST, &text)?;
     let mut old = Old::new(&mut file, manifest.frames);
     for step in migrations.iter().filter(|step| step.from >= version) {
         old.migrate(step)?;

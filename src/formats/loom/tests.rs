@@ -88,7 +88,9 @@ fn sample_clip() -> Clip {
         Arc::new(ObjectVoxels {
             from: [-9, 7],
             size: [3, 2],
-            columns: (0..6).map(|i| std::array::from_fn(|z| if z < 7 && i != 1 { label } else { Class::FREE })).collect(),
+            columns: (0..6)
+                .map(|i| std::array::from_fn(|z| if z < 7 && i != 1 { label } else { Class::FREE }))
+                .collect(),
         })
     };
     let track = |made: SceneBox, motion, settled| Track {
@@ -99,9 +101,22 @@ fn sample_clip() -> Clip {
         settled,
     };
     let path = Motion::Path(scene::clip::Path {
-        points_m: vec![DVec2::new(-5.0, 4.0), DVec2::new(1.0 / 3.0, 4.0), DVec2::new(30.0, 9.0)],
+        points_m: vec![
+            DVec2::new(-5.0, 4.0),
+            DVec2::new(1.0 / 3.0, 4.0),
+            DVec2::new(30.0, 9.0),
+        ],
         start_m: 0.1,
-        speeds: vec![scene::clip::Speed { time_s: 0.0, mps: 3.0 }, scene::clip::Speed { time_s: 2.0, mps: 7.5 }],
+        speeds: vec![
+            scene::clip::Speed {
+                time_s: 0.0,
+                mps: 3.0,
+            },
+            scene::clip::Speed {
+                time_s: 2.0,
+                mps: 7.5,
+            },
+        ],
         rear_first: false,
     });
     let behind = Motion::Attached {
@@ -167,10 +182,7 @@ fn a_file_of_every_version_opens_as_what_it_holds() {
         // And it is itself of that version, not rewritten by accident.
         let entries = unpack(&std::fs::read(bundled(version)).expect("there"));
         let manifest = String::from_utf8(entries[0].1.clone()).expect("JSON");
-        assert!(
-            manifest.contains(&format!("\"version\":{version}")),
-            "{manifest}"
-        );
+        assert!(manifest.contains(&format!("\"version\":{version}")), "{manifest}");
     }
 }
 
@@ -324,11 +336,31 @@ fn frames_of_an_older_version_become_a_clip() {
 fn a_clip_that_is_not_sound_is_refused_in_one_line() {
     let bytes = to_bytes(&sample(VERSION)).expect("sound");
     for (from, to, line) in [
-        ("\"length_s\":2.5", "\"length_s\":1e6", "scene.json: clip: a clip of 1000000 s, expected 0 to 600"),
-        ("\"time_s\":2.0,\"mps\":7.5", "\"time_s\":0.0,\"mps\":7.5", "scene.json: clip: track 9: speed 1 at 0 s is at the same time"),
-        ("\"to\":9", "\"to\":10", "scene.json: clip: track 10: attached in a circle"),
-        ("\"voxels_size\":[3,2]", "\"voxels_size\":[3,3]", "entry \"tracks/0000000009.u8\" has the wrong size: expected 144 voxels"),
-        ("\"voxels_size\":[3,2]", "\"voxels_size\":[3,999999999]", "scene.json: track 9: voxels of 3 x 999999999 columns"),
+        (
+            "\"length_s\":2.5",
+            "\"length_s\":1e6",
+            "scene.json: clip: a clip of 1000000 s, expected 0 to 600",
+        ),
+        (
+            "\"time_s\":2.0,\"mps\":7.5",
+            "\"time_s\":0.0,\"mps\":7.5",
+            "scene.json: clip: track 9: speed 1 at 0 s is at the same time",
+        ),
+        (
+            "\"to\":9",
+            "\"to\":10",
+            "scene.json: clip: track 10: attached in a circle",
+        ),
+        (
+            "\"voxels_size\":[3,2]",
+            "\"voxels_size\":[3,3]",
+            "entry \"tracks/0000000009.u8\" has the wrong size: expected 144 voxels",
+        ),
+        (
+            "\"voxels_size\":[3,2]",
+            "\"voxels_size\":[3,999999999]",
+            "scene.json: track 9: voxels of 3 x 999999999 columns",
+        ),
     ] {
         let mut entries = unpack(&bytes);
         let text = String::from_utf8(entries[1].1.clone()).expect("JSON");
@@ -382,12 +414,12 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         line,
         "manifest.json: version is 0, expected 5; open it with the sceneloom that wrote it"
     );
-    for version in ["5", "4294967298", "18446744073709551615"] {
+    for version in ["6", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
         let bytes = pack(&[("manifest.json".to_owned(), manifest.into_bytes())]);
         let line = from_bytes(&bytes).expect_err("newer").to_string();
         assert!(
-            line.starts_with(&format!("manifest.json: version is {version}, expected 4;")),
+            line.starts_with(&format!("manifest.json: version is {version}, expected 5;")),
             "{line}"
         );
     }

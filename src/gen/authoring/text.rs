@@ -319,8 +319,6 @@ pub fn shortfalls(made: &Laid) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
     use editor::Document;
     use scene::Extent;

@@ -337,7 +337,7 @@ mod tests {
         (moving.spin_hz, moving.clockwise, moving.sector_deg) = (10.0, true, 200.0);
         for (pattern, speed) in [(&rig.lidars[0], 0.0), (&moving, 14.0)] {
             let mut grid = world();
-            let mut caster = Caster::new(&grid, pattern, speed, ego);
+            let mut caster = Caster::new(&grid, pattern, DVec3::X * speed, ego);
             let mut least = caster.cast_last();
             assert_eq!(least, pattern.rays());
             let mut draw = Draw::new(5, "edits");
@@ -360,7 +360,7 @@ mod tests {
                 }
                 caster.update(&grid);
                 least = least.min(caster.cast_last());
-                let fresh = Caster::new(&grid, pattern, speed, ego);
+                let fresh = Caster::new(&grid, pattern, DVec3::X * speed, ego);
                 assert_eq!(caster.sweep(), fresh.sweep(), "edit {edit}");
             }
             assert!(least < pattern.rays() / 20, "{least} rays at least");
@@ -381,13 +381,16 @@ mod tests {
         pattern.rotation_wxyz = [1.0, 0.0, 0.0, 0.0];
         pattern.translation_m = [0.0, 0.0, 2.0];
         (pattern.elevations_deg, pattern.columns, pattern.spin_hz) = (vec![0.0], 8, 10.0);
-        let sweep = Caster::new(&grid, &pattern, 20.0, None).sweep();
+        let sweep = Caster::new(&grid, &pattern, DVec3::X * 20.0, None).sweep();
         // Column 0 looks ahead, a whole turn before the end: the vehicle was 2 m back.
         let first = sweep.points[0];
         assert_eq!(first.azimuth, 0);
         assert!((first.range_m - 22.0).abs() < 1e-5 && (first.position_in_ego[0] - 20.0).abs() < 1e-5);
         pattern.spin_hz = 0.0;
-        assert!((Caster::new(&grid, &pattern, 20.0, None).sweep().points[0].range_m - 20.0).abs() < 1e-5);
+        assert!(
+            (Caster::new(&grid, &pattern, DVec3::X * 20.0, None).sweep().points[0].range_m - 20.0).abs()
+                < 1e-5
+        );
         pattern.sector_deg = 90.0;
         assert_eq!(pattern.rays(), 2);
         (pattern.columns, pattern.sector_deg) = (1080, 120.0);

@@ -235,6 +235,7 @@ mod tests {
         let ego = EgoBox {
             center_m: DVec3::ZERO,
             size_m: DVec3::splat(1e6),
+            vehicle: scene::Pose::IDENTITY,
         };
         let mut pattern = SensorRig::default().lidars[0].clone();
         pattern.columns = 8;

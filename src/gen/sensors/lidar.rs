@@ -236,6 +236,7 @@ mod tests {
         let ego = EgoBox {
             center_m: DVec3::new(2.0, 0.0, 1.0),
             size_m: DVec3::splat(1.5),
+            vehicle: Pose::IDENTITY,
         };
         assert_eq!(first(&p, Some(ego)), Some((Class::Truck, 20.0)));
         p.max_range_m = 19.9;
@@ -243,11 +244,13 @@ mod tests {
         let bad = EgoBox {
             center_m: DVec3::NAN,
             size_m: DVec3::INFINITY,
+            vehicle: Pose::IDENTITY,
         };
         assert_eq!(first(&p, Some(bad)), None);
         let everything = EgoBox {
             center_m: DVec3::ZERO,
             size_m: DVec3::splat(1e9),
+            vehicle: Pose::IDENTITY,
         };
         p.max_range_m = 100.0;
         assert_eq!(sweep(&grid, &p, Some(everything)).points, vec![]);

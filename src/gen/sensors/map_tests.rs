@@ -198,7 +198,7 @@ fn a_window_in_a_map_is_swept_as_it_is_alone() {
         assert!((a.range_m - b.range_m).abs() <= a.range_m * 2e-7, "{a:?} {b:?}");
     }
     let (alone, part) = (ColumnMasks::from_grid(&window), ColumnMasks::from_grid(&grid));
-    let rays = lidar::Rays::new(&pattern, 0.0);
+    let rays = lidar::Rays::new(&pattern, DVec3::ZERO);
     for i in 0..rays.directions.len() {
         let (origin, direction) = rays.get(i);
         let range_m = |masks: &ColumnMasks| masks.cast(origin, direction, 100.0).map(|h| h.range_m);
@@ -256,16 +256,22 @@ fn a_kept_sweep_takes_another_extent() {
     let mut grid = walled();
     grid.paste(&window);
     let pattern = &SensorRig::default().lidars[0];
-    let mut caster = Caster::new(&window, pattern, 0.0, None);
+    let mut caster = Caster::new(&window, pattern, DVec3::ZERO, None);
     for grid in [&grid, &window, &grid] {
         caster.update(grid);
-        assert_eq!(caster.sweep(), Caster::new(grid, pattern, 0.0, None).sweep());
+        assert_eq!(
+            caster.sweep(),
+            Caster::new(grid, pattern, DVec3::ZERO, None).sweep()
+        );
     }
     grid.set(470, 200, 3, Class::Car.id());
     grid.set(151, 118, 3, Class::Car.id());
     caster.update(&grid);
     assert!(caster.cast_last() < pattern.rays());
-    assert_eq!(caster.sweep(), Caster::new(&grid, pattern, 0.0, None).sweep());
+    assert_eq!(
+        caster.sweep(),
+        Caster::new(&grid, pattern, DVec3::ZERO, None).sweep()
+    );
 }
 
 /// The network sees the window; the rest of the map is met by the exact cast, at its physical height.

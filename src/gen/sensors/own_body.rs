@@ -122,7 +122,7 @@ mod tests {
     fn shares_by_ring_and_azimuth_are_those_of_real_sweeps() {
         let rig = SensorRig::default();
         let (pattern, body) = (&rig.lidars[0], OwnBody::new(EgoBox::of_rig(&rig)));
-        let (rays, columns) = (Rays::new(pattern, 0.0), pattern.columns as usize);
+        let (rays, columns) = (Rays::new(pattern, DVec3::ZERO), pattern.columns as usize);
         let (mut ring, mut azimuth, mut slots) = ([0.0; 32], [0.0; 6], [0.0; 6]);
         for i in 0..rays.directions.len() {
             let (origin, direction) = rays.get(i);
@@ -176,6 +176,7 @@ mod tests {
         let nothing = OwnBody::new(EgoBox {
             center_m: DVec3::ZERO,
             size_m: DVec3::ZERO,
+            vehicle: Pose::IDENTITY,
         });
         assert_eq!(nothing.meets(DVec3::Z, -DVec3::Z), None);
     }

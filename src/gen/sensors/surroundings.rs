@@ -269,7 +269,7 @@ mod tests {
         let (ego, mut pattern) = (Some(EgoBox::of_rig(&rig)), rig.lidars[0].clone());
         let grid = complete(&World::random(6), Vertical::Occ3d);
         let is_beyond = |p: &LidarPoint| super::is_beyond(grid.extent(), p);
-        let sweep = |p: &LidarPattern| Caster::new(&grid, p, 0.0, ego).sweep();
+        let sweep = |p: &LidarPattern| Caster::new(&grid, p, DVec3::ZERO, ego).sweep();
         let with = sweep(&pattern);
         (pattern.own_body, pattern.beyond_grid) = (false, false);
         let bare = sweep(&pattern);

@@ -104,7 +104,7 @@ fn row_52_rays() {
                 spin_hz: 20.0,
                 ..nuscenes.clone()
             };
-            let rays = Rays::new(&pattern, 30.0);
+            let rays = Rays::new(&pattern, DVec3::X * 30.0);
             assert_eq!(rays.directions.len(), pattern.rays());
             let unique: HashSet<[u64; 3]> = rays
                 .directions

@@ -52,7 +52,6 @@ impl Pipeline for Scripted {
                 }
                 Ok(Do::Show) => ctx.preview(GenResult {
                     key: job.key(),
-                    frame: job.scene.current,
                     occupancy: VoxelGrid::new(),
                     report: GenReport::default(),
                 }),
@@ -75,7 +74,6 @@ impl Pipeline for Scripted {
         };
         Ok(GenResult {
             key: job.key(),
-            frame: job.scene.current,
             occupancy,
             report,
         })

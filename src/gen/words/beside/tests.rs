@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::edits::{OpenBackground, ThingOutcome, carry_out};
 use super::*;
 use scene::background::{Building, Line, LineKind, PostKind, Tree, TreeKind};
-use scene::{Background, BevLayer, BevLayout, Edit, Form, Polyline, PolylineKind, Pose, ThingId, Window};
+use scene::{Background, BevLayer, BevLayout, Edit, Form, Polyline, PolylineKind, ThingId, Window};
 use world::scenery::Setting;
 
 fn one(text: &str, edits: bool) -> Said {
