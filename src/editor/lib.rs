@@ -21,6 +21,7 @@ pub mod pick;
 pub mod pick_things;
 mod things;
 pub mod tools;
+pub mod traffic;
 pub mod transform;
 pub mod voxel_ops;
 

@@ -1,0 +1,8 @@
+//! Motions by template: an object or the ego vehicle drives along its lane, stops, cuts in, crosses, pulls out, parks or
+//! follows the one ahead.
+
+pub mod follow;
+pub mod lane_path;
+pub mod template;
+
+pub use template::{Side, Template, Wish, motion_of};
