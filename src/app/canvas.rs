@@ -28,6 +28,7 @@ pub use super::screen_map::ScreenMap;
 use super::state::UiState;
 use super::thing_outlines;
 use super::tools::ToolState;
+use super::track_marks;
 use super::views_shown::Underlay;
 use crate::shell::live::Bounds;
 use crate::windows::row;
@@ -279,7 +280,7 @@ impl Canvas {
         }
         if let (true, Some(mask)) = (state.shown.unobserved, &scene.frame().inferred.unobserved) {
             let make = || bev_image::unobserved(mask);
-            let veil = texture(ui, &mut self.unobserved, scene.rev, "unobserved", make);
+            let veil = texture(ui, &mut self.unobserved, scene.content(), "unobserved", make);
             painter.image(veil, grid, whole, Color32::WHITE);
         }
         if state.shown.grid {
@@ -309,6 +310,7 @@ impl Canvas {
             .and_then(|p| select::thing_under(scene, state, p, 8.0 / map.scale));
         let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
         thing_outlines::outlines(&inside, map, scene, &state.things, hovered);
+        track_marks::from_above(&inside, map, scene, state);
         draw_ego(ui, map, &scene.rig, &scene.frame().world_from_ego);
         if state.shown.boxes {
             draw_boxes(ui, map, response, input.scene, &state.tools);
@@ -341,7 +343,7 @@ impl Canvas {
             opacity: tools.layer_opacity.map(byte),
             veil: byte(veil),
         };
-        let key = (scene.rev, style, behind);
+        let key = (scene.content(), style, behind);
         let make = || bev_image::layers(&scene.frame().layout, &style, behind);
         texture(ui, &mut self.layers, key, "layers", make)
     }

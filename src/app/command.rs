@@ -137,6 +137,29 @@ pub enum GenerationCommand {
     StopMeasuring,
 }
 
+/// What moment is shown, and how things move.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimeCommand {
+    /// Shows a moment, s.
+    Show(f64),
+    /// Plays, or pauses.
+    Play,
+    /// So many frames forward, or back.
+    Step(i32),
+    /// The first moment that is played.
+    ToStart,
+    /// The last one.
+    ToEnd,
+    /// The next (1) or previous (-1) keyframe of what is chosen.
+    Key(i32),
+    /// What is played begins here.
+    In,
+    /// What is played ends here.
+    Out,
+    /// Lets a box, or (`None`) the ego vehicle, move by a template.
+    Motion(Option<BoxId>, editor::traffic::Wish),
+}
+
 /// One command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
@@ -182,6 +205,8 @@ pub enum Command {
     View(ViewCommand),
     /// What the worker does, and what becomes of its results.
     Generation(GenerationCommand),
+    /// What moment is shown, and how things move.
+    Time(TimeCommand),
     /// Shows or hides a window.
     Toggle(Window),
 }

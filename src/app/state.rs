@@ -10,6 +10,7 @@ use job::Named;
 use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
 use super::panes::pointed::Pointed;
+use super::playback::Playback;
 use super::tools::{Hand, ToolState};
 use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;
@@ -31,6 +32,8 @@ pub struct UiState {
     pub lidar: LidarShown,
     /// How the present state is compared with the version before.
     pub compare: Comparing,
+    /// How a clip is played.
+    pub playback: Playback,
     /// What the pointer is over.
     pub pointed: Pointed,
     /// Which windows are open.

@@ -24,6 +24,7 @@ use super::screen_map::{point, pos};
 use super::state::{UiState, position_text};
 use super::thing_outlines;
 use super::tools::ToolState;
+use super::track_marks;
 use super::views_shown::ViewsShown;
 use widgets::software_ui;
 use widgets::theme;
@@ -184,6 +185,7 @@ impl View3d {
         let painter = ui.painter().with_clip_rect(rect);
         let project = |p_m: DVec3| View3d::project(self, p_m);
         thing_outlines::in_3d(&painter, &project, input.scene, &state.things);
+        track_marks::in_3d(&painter, &project, input.scene, state);
         let board = Board {
             painter: &painter,
             view: self,

@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use scene::{Camera, Extent};
+use scene::{Camera, Extent, Pose};
 
 /// A viewpoint that orbits a target; perspective or orthographic.
 ///
@@ -164,6 +164,14 @@ impl ViewCamera {
             fov_y_rad: or(self.fov_y_rad, start.fov_y_rad).clamp(*FOV_RAD.start(), *FOV_RAD.end()),
             ortho: self.ortho,
         }
+    }
+
+    /// Goes along with something that moves: where it was, and where it is.
+    pub fn go_along(&mut self, before: &Pose, after: &Pose) {
+        let turned = |pose: &Pose| (pose.rotation * DVec3::X).truncate().to_angle();
+        self.target_m = after.apply(before.inverse().apply(self.target_m));
+        self.yaw_rad += turned(after) - turned(before);
+        *self = self.sane();
     }
 
     /// Unit vectors right, up and forward of the view, ego frame.

@@ -39,6 +39,8 @@ impl PaneId {
     pub const HISTORY: Self = Self::named("history");
     /// The quality slider, its measurements, the receipt of the last edit.
     pub const TRADE: Self = Self::named("trade");
+    /// Time: play, keyframes, speeds.
+    pub const TIMELINE: Self = Self::named("timeline");
     /// What the quality checks found.
     pub const CHECKS: Self = Self::named("checks");
 

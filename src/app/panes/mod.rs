@@ -25,6 +25,7 @@ pub mod prompt;
 mod statistics;
 mod thing_list;
 mod things;
+mod timeline;
 pub mod tools;
 pub mod trade;
 pub mod versions;
@@ -53,6 +54,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
         Box::new(trade::Trade),
         Box::new(checks::Checks),
         Box::new(statistics::Statistics::default()),
+        Box::new(timeline::Timeline::default()),
     ];
     table.extend((0..CAMERAS).map(|i| Box::new(camera::Camera(i)) as Box<dyn Pane>));
     table

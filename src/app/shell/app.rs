@@ -262,6 +262,7 @@ impl SceneloomApp {
             self.adopt(&result, own_step);
         }
         self.take_opened(ctx);
+        self.play(ctx);
         self.update_drawing(ctx);
         if let Some((purpose, path)) = self.files.dialogs.poll() {
             self.file_chosen(purpose, path, ctx);

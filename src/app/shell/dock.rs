@@ -81,6 +81,12 @@ impl Dock {
                 let cameras = join(&mut t, Vertical, &[(rows[0], 1.0), (rows[1], 1.0), (sweep, 0.8)]);
                 join(&mut t, Horizontal, &[(cameras, 2.0), (views, 1.0)])
             }
+            Workspace::Clip => {
+                let views = row(&mut t, Horizontal, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
+                let (time, strip) = (t.insert_pane(PaneId::TIMELINE), t.insert_pane(PaneId::CAMERAS));
+                let center = join(&mut t, Vertical, &[(views, 500.0), (time, 220.0), (strip, 140.0)]);
+                framed(&mut t, center)
+            }
             Workspace::Trade => {
                 let views = row(&mut t, Horizontal, &[(PaneId::BEV, 1.0), (PaneId::VIEW3D, 1.0)]);
                 let strip = t.insert_pane(PaneId::CAMERAS);

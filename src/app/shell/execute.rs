@@ -23,7 +23,7 @@ impl SceneloomApp {
             Command::Apply(label, edits) => self.apply(label, &edits),
             Command::ApplyWords(words, edits) => self.apply_words(&words, &edits),
             Command::Preview(edits) => {
-                let edits = self.state.as_meant(edits);
+                let edits = self.meant(edits);
                 if let Err(error) = self.document.preview_all(&edits) {
                     self.fail(error.to_string());
                 }
@@ -66,6 +66,7 @@ impl SceneloomApp {
             Command::File(command) => self.file_command(command, ctx),
             Command::View(command) => self.view_command(command),
             Command::Generation(command) => self.generation_command(command, ctx),
+            Command::Time(command) => self.time_command(command),
             Command::Toggle(window) => self.toggle(window),
         }
         // Without a guess there is nothing to correct, and no switch to see it by.
@@ -90,7 +91,7 @@ impl SceneloomApp {
         if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
             return self.fail("Background things are locked".to_owned());
         }
-        let edits = self.state.as_meant(edits.to_vec());
+        let edits = self.meant(edits.to_vec());
         if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());
         }

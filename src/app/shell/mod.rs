@@ -36,6 +36,7 @@ mod scenery_thread;
 pub mod settings;
 pub mod staged;
 pub mod status;
+mod time_commands;
 pub mod toasts;
 mod toolbar;
 pub mod trace;

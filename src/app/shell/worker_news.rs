@@ -37,7 +37,9 @@ impl SceneloomApp {
             Advice::Submit(params) | Advice::WarmUp(params) => self.submit(scene, params),
         }
         // Small pictures while the scene still changes: large ones take as long as the generation itself.
-        let for_a_moment = self.document.is_dragging() || self.generation.live.running.is_some();
+        let for_a_moment = self.document.is_dragging()
+            || self.state.playback.playing
+            || self.generation.live.running.is_some();
         let wanted = Wanted::of(&self.state.cameras, &self.state.lidar);
         self.threads
             .sensing

@@ -17,18 +17,21 @@ pub enum Workspace {
     Sensors,
     /// The chosen box from three sides, beside bird's-eye and 3D view.
     Label,
+    /// The timeline below the views, and the cameras.
+    Clip,
     /// The quality slider and its measurements beside the views.
     Trade,
 }
 
 impl Workspace {
     /// Every workspace with its name.
-    pub const ALL: [(Workspace, &'static str); 6] = [
+    pub const ALL: [(Workspace, &'static str); 7] = [
         (Workspace::Edit, "Edit"),
         (Workspace::Paint, "Paint"),
         (Workspace::Voxels, "Voxels"),
         (Workspace::Sensors, "Sensors"),
         (Workspace::Label, "Label"),
+        (Workspace::Clip, "Clip"),
         (Workspace::Trade, "Trade"),
     ];
 }

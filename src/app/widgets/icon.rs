@@ -21,6 +21,22 @@ pub enum Icon {
     Redo,
     /// Triangle: run.
     Play,
+    /// Two bars: pause.
+    Pause,
+    /// Triangle to the left with a bar.
+    StepBack,
+    /// Triangle to the right with a bar.
+    StepForward,
+    /// To the first moment.
+    ToStart,
+    /// To the last moment.
+    ToEnd,
+    /// Arrow to the keyframe before.
+    KeyBack,
+    /// Arrow to the next keyframe.
+    KeyForward,
+    /// Clock.
+    Clock,
     /// Square: stop.
     Stop,
     /// Flash: live.
@@ -103,6 +119,14 @@ impl Icon {
             Icon::Undo => shapes::UNDO,
             Icon::Redo => shapes::REDO,
             Icon::Play => shapes::PLAY,
+            Icon::Pause => shapes::PAUSE,
+            Icon::StepBack => shapes::STEP_BACK,
+            Icon::StepForward => shapes::STEP_FORWARD,
+            Icon::ToStart => shapes::TO_START,
+            Icon::ToEnd => shapes::TO_END,
+            Icon::KeyBack => shapes::KEY_BACK,
+            Icon::KeyForward => shapes::KEY_FORWARD,
+            Icon::Clock => shapes::CLOCK,
             Icon::Stop => shapes::STOP,
             Icon::Live => shapes::LIVE,
             Icon::Eye => shapes::EYE,

@@ -71,6 +71,40 @@ pub(crate) const REDO: &[Part] = &[
 ];
 pub(crate) const PLAY: &[Part] = &[Part::Solid(&[(4.5, 2.5), (13.5, 8.0), (4.5, 13.5)])];
 pub(crate) const STOP: &[Part] = &[Part::Solid(&[(3.5, 3.5), (12.5, 3.5), (12.5, 12.5), (3.5, 12.5)])];
+pub(crate) const PAUSE: &[Part] = &[
+    Part::Solid(&[(4.0, 3.0), (6.8, 3.0), (6.8, 13.0), (4.0, 13.0)]),
+    Part::Solid(&[(9.2, 3.0), (12.0, 3.0), (12.0, 13.0), (9.2, 13.0)]),
+];
+pub(crate) const STEP_BACK: &[Part] = &[
+    Part::Solid(&[(9.5, 3.5), (9.5, 12.5), (3.0, 8.0)]),
+    Part::Line(&[(12.5, 3.5), (12.5, 12.5)]),
+];
+pub(crate) const STEP_FORWARD: &[Part] = &[
+    Part::Solid(&[(6.5, 3.5), (13.0, 8.0), (6.5, 12.5)]),
+    Part::Line(&[(3.5, 3.5), (3.5, 12.5)]),
+];
+pub(crate) const TO_START: &[Part] = &[
+    Part::Line(&[(3.0, 3.0), (3.0, 13.0)]),
+    Part::Solid(&[(8.5, 3.5), (8.5, 12.5), (3.8, 8.0)]),
+    Part::Solid(&[(13.5, 3.5), (13.5, 12.5), (8.8, 8.0)]),
+];
+pub(crate) const TO_END: &[Part] = &[
+    Part::Line(&[(13.0, 3.0), (13.0, 13.0)]),
+    Part::Solid(&[(7.5, 3.5), (12.2, 8.0), (7.5, 12.5)]),
+    Part::Solid(&[(2.5, 3.5), (7.2, 8.0), (2.5, 12.5)]),
+];
+pub(crate) const KEY_BACK: &[Part] = &[
+    Part::Closed(&[(11.0, 4.8), (14.2, 8.0), (11.0, 11.2), (7.8, 8.0)]),
+    Part::Line(&[(5.5, 4.5), (2.0, 8.0), (5.5, 11.5)]),
+];
+pub(crate) const KEY_FORWARD: &[Part] = &[
+    Part::Closed(&[(5.0, 4.8), (8.2, 8.0), (5.0, 11.2), (1.8, 8.0)]),
+    Part::Line(&[(10.5, 4.5), (14.0, 8.0), (10.5, 11.5)]),
+];
+pub(crate) const CLOCK: &[Part] = &[
+    Part::Circle((8.0, 8.0), 5.8),
+    Part::Line(&[(8.0, 4.4), (8.0, 8.0), (10.6, 9.6)]),
+];
 pub(crate) const LIVE: &[Part] = &[Part::Closed(&[
     (9.2, 1.8),
     (3.6, 9.0),

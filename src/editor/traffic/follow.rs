@@ -104,7 +104,9 @@ mod tests {
 
     fn place_m(speeds: &[Speed], time_s: f64) -> f64 {
         let pairs = speeds.windows(2).take_while(|w| w[1].time_s <= time_s + 1e-9);
-        pairs.map(|w| (w[0].mps + w[1].mps) / 2.0 * (w[1].time_s - w[0].time_s)).sum()
+        pairs
+            .map(|w| (w[0].mps + w[1].mps) / 2.0 * (w[1].time_s - w[0].time_s))
+            .sum()
     }
 
     #[test]
@@ -156,7 +158,10 @@ mod tests {
             for gap in [-5.0, 0.0, 1e-9, 1e9] {
                 for mps in [0.0, 1e-12, 100.0] {
                     let a = Driver::at(desired).acceleration(mps, Some((gap, 0.0)));
-                    assert!(a.is_finite() && (-9.0..=1.5).contains(&a), "{desired} {gap} {mps}: {a}");
+                    assert!(
+                        a.is_finite() && (-9.0..=1.5).contains(&a),
+                        "{desired} {gap} {mps}: {a}"
+                    );
                 }
             }
         }

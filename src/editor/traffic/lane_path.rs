@@ -21,7 +21,11 @@ pub fn lane_path(layout: &BevLayout, from: &Moving, length_m: f64) -> Vec<DVec2>
         let point = |i: usize| from.at_m + heading * (i as f64 * STEP_M);
         return (0..=steps).map(point).collect();
     };
-    let sign = if DVec2::from_angle(lane.yaw_rad).dot(heading) < 0.0 { -1.0 } else { 1.0 };
+    let sign = if DVec2::from_angle(lane.yaw_rad).dot(heading) < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
     // How far beside the lane it is now, to the left of the lane's direction.
     let aside_m = DVec2::from_angle(lane.yaw_rad).perp_dot(from.at_m - lane.at_m);
     let point = |i: usize| {
@@ -56,7 +60,10 @@ pub fn smooth(u: f64) -> f64 {
 pub fn aside(points_m: &[DVec2], left_m: impl Fn(f64) -> f64) -> Vec<DVec2> {
     let mut along_m = 0.0;
     let way = |i: usize| {
-        let (a, b) = (points_m[i.saturating_sub(1)], points_m[(i + 1).min(points_m.len() - 1)]);
+        let (a, b) = (
+            points_m[i.saturating_sub(1)],
+            points_m[(i + 1).min(points_m.len() - 1)],
+        );
         (b - a).normalize_or_zero()
     };
     let mut out = Vec::with_capacity(points_m.len());

@@ -78,7 +78,9 @@ impl Template {
             Self::Drive => "Along its lane at a steady speed",
             Self::Follow => "Along its lane; keeps its distance to whoever is ahead, and stops behind them",
             Self::Stop => "Along its lane; brakes gently to a stop from the chosen time on",
-            Self::CutIn => "Along its lane; from the chosen time on it changes into ours, or into the next lane",
+            Self::CutIn => {
+                "Along its lane; from the chosen time on it changes into ours, or into the next lane"
+            }
             Self::Cross => "Waits until the chosen time, then goes straight across the road",
             Self::PullOut => "Stands until the chosen time, then drives off into the lane",
             Self::Park => "Along its lane; from the chosen time on it slows down and stops at the side",
@@ -130,7 +132,11 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
         ));
     }
     let clip = scene.clip();
-    let length_s = if clip.length_s > 0.0 { clip.length_s } else { USUAL_LENGTH_S };
+    let length_s = if clip.length_s > 0.0 {
+        clip.length_s
+    } else {
+        USUAL_LENGTH_S
+    };
     let (from, half_length_m) = place(scene, id).ok_or_else(|| match id {
         Some(id) => format!("box {} does not exist in this frame", id.0),
         None => "there is no ego vehicle".to_owned(),
@@ -199,7 +205,10 @@ fn path_of(
             let speeds = follow::speeds(&driver, &points_m, start, half_length_m, length_s, others);
             path(points_m, speeds)
         }
-        Template::Stop => path(lane(), easing(&[(0.0, mps), (at_s, mps), (at_s + mps / EASY, 0.0)])),
+        Template::Stop => path(
+            lane(),
+            easing(&[(0.0, mps), (at_s, mps), (at_s + mps / EASY, 0.0)]),
+        ),
         Template::CutIn => {
             let points_m = lane();
             let shift_m = into_our_lane(scene, id, from);
@@ -247,10 +256,14 @@ fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
         half_length_m: b.size_m.x / 2.0,
     };
     let canvas = scene.canvas();
-    let standing = canvas.boxes.values().filter(|b| Some(b.id) != own).map(|b| Other {
-        velocity_mps: DVec2::ZERO,
-        ..of(b)
-    });
+    let standing = canvas
+        .boxes
+        .values()
+        .filter(|b| Some(b.id) != own)
+        .map(|b| Other {
+            velocity_mps: DVec2::ZERO,
+            ..of(b)
+        });
     let moving = scene.clip().boxes_at(time_s, canvas);
     let mut out: Vec<Other> = standing.collect();
     out.extend(moving.iter().filter(|b| Some(b.id) != own).map(of));
@@ -325,7 +338,13 @@ fn across(scene: &Scene, from: &Moving) -> Vec<DVec2> {
 
 /// When the ego vehicle and an object come as near as asked, s: along the line between them, from the front of the one to the
 /// rear of the other or the other way round. `None` if they never do.
-pub fn time_near(clip: &Clip, canvas: &scene::Frame, id: BoxId, gap_m: f64, own_length_m: f64) -> Option<f64> {
+pub fn time_near(
+    clip: &Clip,
+    canvas: &scene::Frame,
+    id: BoxId,
+    gap_m: f64,
+    own_length_m: f64,
+) -> Option<f64> {
     let relief = &canvas.layout.relief;
     let gap_at = |time_s: f64| {
         let standing = canvas.boxes.get(&id).copied();
@@ -335,7 +354,9 @@ pub fn time_near(clip: &Clip, canvas: &scene::Frame, id: BoxId, gap_m: f64, own_
         Some(between - b.size_m.x / 2.0 - own_length_m / 2.0)
     };
     let times = (0..=(clip.length_s / 0.05) as usize).map(|i| i as f64 * 0.05);
-    times.into_iter().find(|t| gap_at(*t).is_some_and(|gap| gap <= gap_m))
+    times
+        .into_iter()
+        .find(|t| gap_at(*t).is_some_and(|gap| gap <= gap_m))
 }
 
 #[cfg(test)]
@@ -382,7 +403,10 @@ mod tests {
 
     fn with(scene: &Scene, id: Option<u32>, template: Template, mps: f64) -> Scene {
         let mut scene = scene.clone();
-        let wish = Wish { mps, ..Wish::usual(template, None) };
+        let wish = Wish {
+            mps,
+            ..Wish::usual(template, None)
+        };
         for edit in motion_of(&scene, id.map(BoxId), &wish).expect("a motion") {
             edit.apply(&mut scene).expect("sound");
         }
@@ -404,7 +428,9 @@ mod tests {
         assert!((at(&stops, 1, 8.0).center_m.x - 35.0).abs() < 1e-6);
         assert_eq!(at(&stops, 1, 7.9).velocity_mps, DVec2::ZERO);
         let cuts = with(&start, Some(1), Template::CutIn, 12.0);
-        assert!((at(&cuts, 1, 2.0).center_m.y - 3.6).abs() < 1e-6 && at(&cuts, 1, 5.2).center_m.y.abs() < 1e-6);
+        assert!(
+            (at(&cuts, 1, 2.0).center_m.y - 3.6).abs() < 1e-6 && at(&cuts, 1, 5.2).center_m.y.abs() < 1e-6
+        );
         assert!(at(&cuts, 1, 3.5).yaw_rad < -0.05, "it steers to the right");
         let crosses = with(&start, Some(3), Template::Cross, 1.5);
         assert!((at(&crosses, 3, 2.0).center_m.y + 6.0).abs() < 1e-6);
@@ -415,7 +441,10 @@ mod tests {
         assert!(at(&pulls, 4, 8.0).center_m.y.abs() < 0.4 && at(&pulls, 4, 8.0).center_m.x > 40.0);
         let parks = with(&start, Some(2), Template::Park, 5.0);
         let parked = at(&parks, 2, 8.0);
-        assert!((-3.5..=-2.0).contains(&parked.center_m.y) && parked.velocity_mps == DVec2::ZERO, "{parked:?}");
+        assert!(
+            (-3.5..=-2.0).contains(&parked.center_m.y) && parked.velocity_mps == DVec2::ZERO,
+            "{parked:?}"
+        );
         let ego = with(&start, None, Template::Follow, 14.0);
         let x = |t: f64| ego.at(t).frame().world_from_ego.translation_m.x;
         // Car 2 stands 40 m ahead: the vehicle comes to a stop behind it.
@@ -439,7 +468,10 @@ mod tests {
         // Half a bus and half of ourselves are 7.54 m: the middle of the bus is 17.54 m ahead at .25 s.
         let found = time_near(drives.clip(), drives.canvas(), BoxId(4), 10.0, 4.084);
         assert!((found.expect("they meet") - 0.25).abs() < 0.2, "{found:?}");
-        assert_eq!(time_near(drives.clip(), drives.canvas(), BoxId(99), 10.0, 4.0), None);
+        assert_eq!(
+            time_near(drives.clip(), drives.canvas(), BoxId(99), 10.0, 4.0),
+            None
+        );
     }
 
     #[test]
@@ -453,7 +485,10 @@ mod tests {
         for bad in [f64::NAN, -1.0, 1e9] {
             let wish = Wish { mps: bad, ..wish };
             let error = motion_of(&scene, None, &wish).expect_err("no speed");
-            assert!(error.contains("at most 100 m/s") && !error.contains('\n'), "{error}");
+            assert!(
+                error.contains("at most 100 m/s") && !error.contains('\n'),
+                "{error}"
+            );
         }
     }
 }

@@ -40,6 +40,8 @@ pub enum Group {
     Selection,
     /// Views and panes.
     Views,
+    /// Time.
+    Time,
     /// Generation and versions.
     Generation,
     /// Files and history.
@@ -48,10 +50,11 @@ pub enum Group {
 
 impl Group {
     /// Every group with its title.
-    pub const ALL: [(Group, &'static str); 5] = [
+    pub const ALL: [(Group, &'static str); 6] = [
         (Group::Tools, "Tools"),
         (Group::Selection, "Selection"),
         (Group::Views, "Views"),
+        (Group::Time, "Time"),
         (Group::Generation, "Generation"),
         (Group::File, "File and edit"),
     ];

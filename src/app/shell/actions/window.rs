@@ -1,8 +1,8 @@
 //! Actions of views, generation, versions and files.
 
-use super::Group::{File, Generation, Views};
+use super::Group::{File, Generation, Time, Views};
 use super::{ActionDef, action};
-use crate::command::{Command, FileCommand, GenerationCommand, Verdict, ViewCommand, Window};
+use crate::command::{Command, FileCommand, GenerationCommand, TimeCommand, Verdict, ViewCommand, Window};
 use crate::panes::id::PaneId;
 use crate::shell::workspace::Workspace;
 use crate::tools::ToolCommand;
@@ -88,6 +88,42 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     }),
     action(Views, "look_6", "Look through camera 6", "Ctrl+Alt+6", || {
         Command::View(ViewCommand::LookThrough(5))
+    }),
+    action(Time, "play", "Play or pause", "Ctrl+Alt+Space", || {
+        Command::Time(TimeCommand::Play)
+    }),
+    action(Time, "frame_back", "A frame back", "Comma", || {
+        Command::Time(TimeCommand::Step(-1))
+    })
+    .repeats(),
+    action(Time, "frame_forward", "A frame forward", "Period", || {
+        Command::Time(TimeCommand::Step(1))
+    })
+    .repeats(),
+    action(Time, "key_back", "To the keyframe before", "Shift+Comma", || {
+        Command::Time(TimeCommand::Key(-1))
+    }),
+    action(
+        Time,
+        "key_forward",
+        "To the next keyframe",
+        "Shift+Period",
+        || Command::Time(TimeCommand::Key(1)),
+    ),
+    action(Time, "time_start", "To the start", "", || {
+        Command::Time(TimeCommand::ToStart)
+    }),
+    action(Time, "time_end", "To the end", "", || {
+        Command::Time(TimeCommand::ToEnd)
+    }),
+    action(Time, "time_in", "Play from here on", "", || {
+        Command::Time(TimeCommand::In)
+    }),
+    action(Time, "time_out", "Play up to here", "", || {
+        Command::Time(TimeCommand::Out)
+    }),
+    action(Time, "timeline", "Timeline", "", || {
+        Command::View(ViewCommand::TogglePane(PaneId::TIMELINE))
     }),
     action(Views, "swap_views", "Swap bird's-eye and 3D view", "Tab", || {
         Command::View(ViewCommand::SwapPanes)

@@ -1,0 +1,83 @@
+//! Time: play, scrub, step; what moves, its keyframes and speeds.
+
+mod graph;
+mod motion_menu;
+mod rows;
+mod transport;
+
+use egui::Ui;
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext, Place};
+use crate::command::Command;
+use editor::Edit;
+use widgets::icons::Icon;
+use widgets::theme;
+
+/// The timeline.
+#[derive(Default)]
+pub struct Timeline {
+    rows: rows::Rows,
+}
+
+/// Length of a clip that the button makes, s.
+const USUAL_LENGTH_S: f64 = 8.0;
+
+impl Pane for Timeline {
+    fn id(&self) -> PaneId {
+        PaneId::TIMELINE
+    }
+
+    fn title(&self) -> String {
+        "Timeline".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Clock
+    }
+
+    fn place(&self) -> Place {
+        Place::BelowViews
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        if cx.document.scene().clip().length_s > 0.0 {
+            transport::scope(ui, cx.state, commands);
+        }
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        theme::panel_frame().show(ui, |ui| {
+            let scene = cx.document.scene().clone();
+            ui.spacing_mut().item_spacing.y = 4.0;
+            if scene.clip().length_s == 0.0 {
+                return still(ui, &scene, cx, commands);
+            }
+            transport::bar(ui, &scene, cx.state, commands);
+            let graph_points = if ui.available_height() > 150.0 { 58.0 } else { 0.0 };
+            let rows_points = (ui.available_height() - graph_points).max(40.0);
+            let track = self.rows.show(ui, &scene, cx.state, rows_points, commands);
+            if graph_points > 0.0 {
+                graph::show(ui, &scene, cx.state.selected, track);
+            }
+        });
+    }
+}
+
+/// A scene of one moment: what makes it a clip.
+fn still(ui: &mut Ui, scene: &scene::Scene, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+    ui.label("This scene is one moment: nothing in it moves.");
+    let hint =
+        "Let something move: choose an object, then a motion. Or make the scene longer and set keyframes.";
+    ui.label(egui::RichText::new(hint).color(theme::text_weak()));
+    ui.horizontal(|ui| {
+        motion_menu::menu(ui, scene, cx.state, commands);
+        if ui.button(format!("Make it {USUAL_LENGTH_S:.0} s long")).clicked() {
+            let edit = Edit::SetLength {
+                length_s: USUAL_LENGTH_S,
+                rate_hz: None,
+            };
+            commands.push(Command::Apply("Set length", vec![edit]));
+        }
+    });
+}

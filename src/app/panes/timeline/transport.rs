@@ -1,0 +1,206 @@
+//! Buttons that play and step, the time in numbers, and what edits mean for other moments.
+
+use egui::{DragValue, RichText, Ui};
+
+use scene::{Clip, Scene, Scope};
+
+use super::motion_menu;
+use crate::command::{Command, TimeCommand};
+use crate::playback::Playback;
+use crate::state::UiState;
+use editor::Edit;
+use widgets::icons::{self, Icon};
+use widgets::theme;
+
+/// What a scope is called.
+pub(super) fn scope_name(scope: Scope) -> &'static str {
+    match scope {
+        Scope::Moment => "This moment",
+        Scope::FromHereOn => "From here on",
+        Scope::WholeTrack => "Whole track",
+    }
+}
+
+/// Which moments an edit of a moving object is for.
+pub(super) fn scope(ui: &mut Ui, state: &mut UiState, _commands: &mut Vec<Command>) {
+    let choices = [
+        (
+            Scope::WholeTrack,
+            scope_name(Scope::WholeTrack),
+            "it moves as before, elsewhere",
+        ),
+        (
+            Scope::FromHereOn,
+            scope_name(Scope::FromHereOn),
+            "what was before this moment stays",
+        ),
+        (
+            Scope::Moment,
+            scope_name(Scope::Moment),
+            "a keyframe at this moment; its other keyframes stay",
+        ),
+    ];
+    icons::choice(
+        ui,
+        &mut state.playback.scope,
+        &choices,
+        "Moved objects change for",
+    );
+    ui.label(RichText::new("Moving objects:").color(theme::text_weak()));
+}
+
+/// The row of buttons and numbers.
+pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mut Vec<Command>) {
+    let clip = scene.clip();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let playing = state.playback.playing;
+        let buttons = [
+            (
+                Icon::ToStart,
+                "To the start",
+                "To the start",
+                TimeCommand::ToStart,
+            ),
+            (
+                Icon::KeyBack,
+                "Keyframe before",
+                "To the keyframe before, of what is chosen  (<)",
+                TimeCommand::Key(-1),
+            ),
+            (
+                Icon::StepBack,
+                "Frame back",
+                "A frame back  (,)",
+                TimeCommand::Step(-1),
+            ),
+            (
+                if playing { Icon::Pause } else { Icon::Play },
+                "Play",
+                "Play or pause  (Space)",
+                TimeCommand::Play,
+            ),
+            (
+                Icon::StepForward,
+                "Frame forward",
+                "A frame forward  (.)",
+                TimeCommand::Step(1),
+            ),
+            (
+                Icon::KeyForward,
+                "Next keyframe",
+                "To the next keyframe, of what is chosen  (>)",
+                TimeCommand::Key(1),
+            ),
+            (Icon::ToEnd, "To the end", "To the end", TimeCommand::ToEnd),
+        ];
+        for (icon, name, hint, command) in buttons {
+            let selected = playing && command == TimeCommand::Play;
+            if icons::button(ui, icon, name, hint, selected, true).clicked() {
+                commands.push(Command::Time(command));
+            }
+        }
+        ui.separator();
+        let frame = clip.frame_at(scene.time_s());
+        let time = format!("{:5.2} s", scene.time_s());
+        ui.label(RichText::new(time).monospace().color(theme::text_strong()))
+            .on_hover_text(format!("Frame {frame} of {}", clip.frames() - 1));
+        ui.label(
+            RichText::new(format!("frame {frame}"))
+                .small()
+                .color(theme::text_weak()),
+        );
+        ui.separator();
+        length(ui, clip, commands);
+        speed(ui, &mut state.playback);
+        ui.toggle_value(&mut state.playback.looping, "Loop");
+        span(ui, clip, &mut state.playback, commands);
+        ui.toggle_value(&mut state.playback.paths, "Paths")
+            .on_hover_text("Where moving objects go, in both large views");
+        ui.toggle_value(&mut state.playback.onion, "Onion skin")
+            .on_hover_text("Where the chosen object is a second earlier and later");
+        ui.toggle_value(&mut state.playback.follow, "Follow us")
+            .on_hover_text("The 3D view goes along with the ego vehicle");
+        ui.separator();
+        motion_menu::menu(ui, scene, state, commands);
+    });
+}
+
+fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
+    let mut length_s = clip.length_s;
+    let value = DragValue::new(&mut length_s)
+        .range(0.0..=Clip::MAX_LENGTH_S)
+        .speed(0.1)
+        .fixed_decimals(1)
+        .prefix("of ")
+        .suffix(" s");
+    let response = ui.add(value).on_hover_text("How long the scene lasts");
+    let edit = || Edit::SetLength {
+        length_s,
+        rate_hz: None,
+    };
+    if response.changed() && length_s != clip.length_s {
+        commands.push(Command::Preview(vec![edit()]));
+    }
+    if response.drag_stopped() || response.lost_focus() {
+        commands.push(Command::Commit("Set length"));
+    }
+    let mut rate_hz = clip.rate_hz;
+    let value = DragValue::new(&mut rate_hz)
+        .range(1.0..=60.0)
+        .speed(0.1)
+        .suffix(" Hz");
+    let response = ui
+        .add(value)
+        .on_hover_text("Frames per second of single steps and of what is written");
+    if response.changed() && rate_hz != clip.rate_hz {
+        let edit = Edit::SetLength {
+            length_s: clip.length_s,
+            rate_hz: Some(rate_hz),
+        };
+        commands.push(Command::Preview(vec![edit]));
+    }
+    if response.drag_stopped() || response.lost_focus() {
+        commands.push(Command::Commit("Set frame rate"));
+    }
+}
+
+fn speed(ui: &mut Ui, playback: &mut Playback) {
+    let name = |speed: f64| format!("{speed} x");
+    egui::ComboBox::from_id_salt("speed")
+        .selected_text(name(playback.speed))
+        .width(52.0)
+        .show_ui(ui, |ui| {
+            for speed in Playback::SPEEDS {
+                ui.selectable_value(&mut playback.speed, speed, name(speed));
+            }
+        })
+        .response
+        .on_hover_text("How fast it plays");
+}
+
+fn span(ui: &mut Ui, clip: &Clip, playback: &mut Playback, commands: &mut Vec<Command>) {
+    if ui
+        .button("In")
+        .on_hover_text("What is played begins here")
+        .clicked()
+    {
+        commands.push(Command::Time(TimeCommand::In));
+    }
+    if ui
+        .button("Out")
+        .on_hover_text("What is played ends here")
+        .clicked()
+    {
+        commands.push(Command::Time(TimeCommand::Out));
+    }
+    let [from, to] = playback.span(clip.length_s);
+    if playback.span_s.is_some()
+        && ui
+            .button(format!("{from:.1} – {to:.1} s ×"))
+            .on_hover_text("Plays all of it again")
+            .clicked()
+    {
+        playback.span_s = None;
+    }
+}

@@ -1,0 +1,134 @@
+//! Playing a clip: which moment is shown when, and what edits mean for other moments. It knows no clock: it is told the time.
+
+use scene::Scope;
+
+/// How a clip is played.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Playback {
+    /// It plays.
+    pub playing: bool,
+    /// Times as fast as real time.
+    pub speed: f64,
+    /// It starts over at its end.
+    pub looping: bool,
+    /// The part that is played, s; all of it if none.
+    pub span_s: Option<[f64; 2]>,
+    /// For which moments a moved object is elsewhere.
+    pub scope: Scope,
+    /// Paths of moving objects are shown in both views.
+    pub paths: bool,
+    /// Where the chosen object is a second earlier and later is shown too.
+    pub onion: bool,
+    /// The 3D view goes along with the ego vehicle.
+    pub follow: bool,
+    /// The scene was a clip already when it was looked at last.
+    pub known: bool,
+    last_s: Option<f64>,
+}
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self {
+            playing: false,
+            speed: 1.0,
+            looping: true,
+            span_s: None,
+            scope: Scope::WholeTrack,
+            paths: true,
+            onion: true,
+            follow: false,
+            known: false,
+            last_s: None,
+        }
+    }
+}
+
+/// A pause between two ticks that is longer than this was no playing: the window was hidden, say. s.
+const LONGEST_TICK_S: f64 = 0.5;
+
+impl Playback {
+    /// Speeds to choose from.
+    pub const SPEEDS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
+
+    /// First and last moment that are played of a clip of this length, s.
+    pub fn span(&self, length_s: f64) -> [f64; 2] {
+        match self.span_s {
+            Some([from, to]) if from < to && from < length_s => [from.max(0.0), to.min(length_s)],
+            _ => [0.0, length_s],
+        }
+    }
+
+    /// The moment to show now, if it is another one than `shown_s`.
+    pub fn tick(&mut self, shown_s: f64, length_s: f64, now_s: f64) -> Option<f64> {
+        let last_s = self.last_s.replace(now_s);
+        if !self.playing {
+            self.last_s = None;
+            return None;
+        }
+        let [from, to] = self.span(length_s);
+        let passed_s = (now_s - last_s.unwrap_or(now_s)).clamp(0.0, LONGEST_TICK_S);
+        let mut next_s = shown_s.max(from) + passed_s * self.speed;
+        if next_s >= to {
+            match self.looping && to > from {
+                true => next_s = from + (next_s - to).rem_euclid(to - from),
+                false => {
+                    next_s = to;
+                    self.playing = false;
+                }
+            }
+        }
+        (next_s != shown_s).then_some(next_s)
+    }
+
+    /// Starts or pauses; from its end it starts over.
+    pub fn toggle(&mut self, shown_s: f64, length_s: f64) -> Option<f64> {
+        self.playing = !self.playing && length_s > 0.0;
+        self.last_s = None;
+        let [from, to] = self.span(length_s);
+        (self.playing && (shown_s >= to || shown_s < from)).then_some(from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_plays_in_real_time_and_starts_over() {
+        let mut p = Playback::default();
+        assert_eq!(p.tick(0.0, 8.0, 10.0), None);
+        assert_eq!(p.toggle(0.0, 8.0), None);
+        assert_eq!(p.tick(0.0, 8.0, 10.0), None, "the first tick is the start");
+        assert_eq!(p.tick(0.0, 8.0, 10.1), Some(10.1 - 10.0));
+        p.speed = 2.0;
+        assert!((p.tick(1.0, 8.0, 10.3).expect("plays") - 1.4).abs() < 1e-9);
+        assert!((p.tick(7.9, 8.0, 10.4).expect("plays") - 0.1).abs() < 1e-9);
+        // A window that was hidden for a minute does not race through it.
+        assert!((p.tick(1.0, 8.0, 70.0).expect("plays") - 2.0).abs() < 1e-9);
+        assert_eq!(p.tick(1.0, 8.0, 60.0), None, "a clock that goes back");
+        assert!(p.tick(1.0, 8.0, f64::NAN).is_none_or(f64::is_finite));
+    }
+
+    #[test]
+    fn without_a_loop_it_ends_at_its_out_point() {
+        let mut p = Playback {
+            looping: false,
+            span_s: Some([1.0, 3.0]),
+            ..Playback::default()
+        };
+        assert_eq!(p.toggle(5.0, 8.0), Some(1.0));
+        p.tick(1.0, 8.0, 0.0);
+        assert_eq!(p.tick(2.9, 8.0, 0.3), Some(3.0));
+        assert!(!p.playing);
+        assert_eq!(p.toggle(3.0, 8.0), Some(1.0), "from the end it starts over");
+        p.span_s = Some([9.0, 10.0]);
+        assert_eq!(p.span(8.0), [0.0, 8.0], "a span beyond the clip is none");
+    }
+
+    #[test]
+    fn a_scene_of_one_moment_does_not_play() {
+        let mut p = Playback::default();
+        assert_eq!(p.toggle(0.0, 0.0), None);
+        assert!(!p.playing);
+    }
+}

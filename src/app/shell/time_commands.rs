@@ -1,0 +1,155 @@
+//! Carries out commands about time, and plays.
+
+use egui::Context;
+
+use super::app::SceneloomApp;
+use crate::command::TimeCommand;
+use crate::panes::id::PaneId;
+use editor::Edit;
+use editor::traffic::motion_of;
+use scene::Scope;
+
+/// A key that comes up sooner than this was tapped, s.
+const TAP_S: f64 = 0.3;
+
+impl SceneloomApp {
+    /// Carries out one of them.
+    pub(crate) fn time_command(&mut self, command: TimeCommand) {
+        let scene = self.document.scene().clone();
+        let (clip, shown_s) = (scene.clip(), scene.time_s());
+        let playback = &mut self.state.playback;
+        let to_s = match command {
+            TimeCommand::Show(time_s) => Some(time_s),
+            TimeCommand::Play => playback.toggle(shown_s, clip.length_s),
+            TimeCommand::Step(frames) => {
+                playback.playing = false;
+                let at = clip.frame_at(shown_s) as i64 + i64::from(frames);
+                Some(clip.time_of(at.clamp(0, clip.frames() as i64 - 1) as usize))
+            }
+            TimeCommand::ToStart => Some(playback.span(clip.length_s)[0]),
+            TimeCommand::ToEnd => Some(playback.span(clip.length_s)[1]),
+            TimeCommand::Key(step) => {
+                let id = self.state.selected;
+                let times = clip.motion(id).map(scene::Motion::times_s).unwrap_or_default();
+                let mut times: Vec<f64> = times
+                    .into_iter()
+                    .filter(|t| (0.0..=clip.length_s).contains(t))
+                    .collect();
+                times.sort_by(f64::total_cmp);
+                match step > 0 {
+                    true => times.into_iter().find(|t| *t > shown_s + 1e-6),
+                    false => times.into_iter().rev().find(|t| *t < shown_s - 1e-6),
+                }
+            }
+            TimeCommand::In | TimeCommand::Out => {
+                let [from, to] = playback.span(clip.length_s);
+                let span = match command {
+                    TimeCommand::In => [shown_s, to],
+                    _ => [from, shown_s],
+                };
+                let whole = span == [0.0, clip.length_s] || span[0] >= span[1];
+                playback.span_s = (!whole).then_some(span);
+                None
+            }
+            TimeCommand::Motion(id, wish) => {
+                match motion_of(&scene, id, &wish) {
+                    Ok(edits) => self.apply(wish.template.title(), &edits),
+                    Err(problem) => self.fail(problem),
+                }
+                None
+            }
+        };
+        if let Some(time_s) = to_s {
+            self.show_time(time_s);
+        }
+    }
+
+    fn show_time(&mut self, time_s: f64) {
+        let before = self.document.scene().frame().world_from_ego;
+        if self.document.show(time_s) && self.state.playback.follow {
+            let after = self.document.scene().frame().world_from_ego;
+            self.views.view3d.camera.go_along(&before, &after);
+        }
+    }
+
+    /// Shows the next moment of a clip that plays.
+    pub(crate) fn play(&mut self, ctx: &Context) {
+        self.tap_of_space(ctx);
+        // A scene that has become a clip shows its timeline.
+        let lasts = self.document.scene().clip().length_s > 0.0;
+        if lasts && !self.state.playback.known {
+            self.views.dock.open(PaneId::TIMELINE);
+        }
+        self.state.playback.known = lasts;
+        let scene = self.document.scene();
+        let (shown_s, length_s) = (scene.time_s(), scene.clip().length_s);
+        let now_s = self.now_s();
+        if self.document.is_dragging() {
+            return;
+        }
+        if let Some(time_s) = self.state.playback.tick(shown_s, length_s, now_s) {
+            self.show_time(time_s);
+        }
+        if self.state.playback.playing {
+            ctx.request_repaint();
+        }
+    }
+
+    /// The blank plays if it is tapped: held, it lets the pointer move the views.
+    fn tap_of_space(&mut self, ctx: &Context) {
+        let typing = ctx.text_edit_focused();
+        let id = egui::Id::unique("space pressed");
+        let (pressed, released, moved, now_s) = ctx.input(|i| {
+            let is = |e: &egui::Event, down: bool| {
+                matches!(e, egui::Event::Key { key: egui::Key::Space, pressed, repeat: false, modifiers, .. }
+                    if *pressed == down && !modifiers.any())
+            };
+            (
+                i.events.iter().any(|e| is(e, true)),
+                i.events.iter().any(|e| is(e, false)),
+                i.pointer.any_down(),
+                i.time,
+            )
+        });
+        let since: Option<f64> = ctx.data(|d| d.get_temp(id));
+        if released && !typing && since.is_some_and(|since| now_s - since < TAP_S) {
+            self.time_command(TimeCommand::Play);
+        }
+        // A button that goes down meanwhile means that it was held for the views.
+        let since = match (pressed, moved || released) {
+            (_, true) => None,
+            (true, false) => Some(now_s),
+            (false, false) => since,
+        };
+        ctx.data_mut(|d| match since {
+            Some(since) => drop(d.insert_temp(id, since)),
+            None => d.remove::<f64>(id),
+        });
+    }
+
+    /// The edits as they are meant: of one moment, or from here on, where the timeline says so.
+    pub(crate) fn meant(&self, edits: Vec<Edit>) -> Vec<Edit> {
+        let scope = self.state.playback.scope;
+        let edits = self.state.as_meant(edits);
+        if scope == Scope::WholeTrack || self.document.scene().clip().length_s == 0.0 {
+            return edits;
+        }
+        let of_a_moment = |edit: &Edit| {
+            matches!(
+                edit,
+                Edit::AddBox { .. } | Edit::RemoveBox { .. } | Edit::MoveBox { .. }
+            )
+        };
+        let meant = |edit: Edit| match of_a_moment(&edit) {
+            true => Edit::At {
+                frame: None,
+                time_s: None,
+                track: None,
+                scope: Some(scope),
+                edit: Box::new(edit),
+            },
+            false => edit,
+        };
+        edits.into_iter().map(meant).collect()
+    }
+}
