@@ -38,6 +38,7 @@ fn report_of(scene: &Scene, finding: &Finding) -> Value {
         "check": finding.check,
         "severity": finding.severity.name(),
         "where_m": finding.where_m.to_array().map(tidy),
+        "time_s": finding.time_s,
         "box": finding.box_id,
         "text": finding.text,
         "waived": waive::of(scene.frame(), finding).map(|w| w.reason.to_string()),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
-use crate::command::{Command, ViewCommand};
+use crate::command::{Command, TimeCommand, ViewCommand};
 use crate::finding_marks::FindingMarks;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
@@ -231,6 +231,9 @@ fn row(
                     if finding.box_id.is_some() {
                         commands.push(Command::Select(finding.box_id));
                     }
+                    if let Some(time_s) = finding.time_s {
+                        commands.push(Command::Time(TimeCommand::Show(time_s)));
+                    }
                     commands.push(Command::View(ViewCommand::FrameAt(finding.where_m)));
                     pointed.clicked = Some(key(finding));
                 }
@@ -389,6 +392,7 @@ mod tests {
             severity,
             where_m: glam::DVec3::ZERO,
             box_id: None,
+            time_s: None,
             cells: Vec::new(),
             text: "x".into(),
             fixes: Vec::new(),

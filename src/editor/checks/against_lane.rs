@@ -53,6 +53,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Warning,
             where_m: b.center_m,
             box_id: Some(b.id),
+            time_s: None,
             cells: Vec::new(),
             text: format!("{} {how}, {angle:.0} degrees from it", name_of(b)),
             fixes: vec![Fix {

@@ -26,6 +26,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Error,
             where_m: b.center_m,
             box_id: Some(b.id),
+            time_s: None,
             cells: Vec::new(),
             text: format!("{} has no voxel of its class", name_of(b)),
             fixes: vec![

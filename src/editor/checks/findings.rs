@@ -45,6 +45,7 @@ impl Findings {
                 severity,
                 where_m,
                 box_id: None,
+                time_s: None,
                 cells: Vec::new(),
                 text: format!("and {n} more of {check}"),
                 fixes: Vec::new(),

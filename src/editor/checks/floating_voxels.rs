@@ -45,6 +45,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Warning,
             where_m: middle(extent, &group),
             box_id: None,
+            time_s: None,
             cells: group.clone(),
             text,
             // A crown misses its stem; anything else is more likely to be too much.
@@ -66,6 +67,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Warning,
             where_m,
             box_id: None,
+            time_s: None,
             cells: cells.clone(),
             text: format!("{count} smaller groups float, {} voxels", cells.len()),
             fixes: vec![remove(cells)],

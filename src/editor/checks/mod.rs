@@ -11,6 +11,7 @@ mod occupancy_without_box;
 mod off_road;
 mod on_the_road;
 mod out_of_range;
+mod over_time;
 mod overlapping_boxes;
 mod unseen;
 mod unsound;
@@ -62,8 +63,10 @@ pub struct Finding {
     pub check: &'static str,
     /// How bad it is.
     pub severity: Severity,
-    /// Where, in the ego frame, m; always finite.
+    /// Where, in the world frame, m; always finite.
     pub where_m: DVec3,
+    /// When in the clip, s; none if it is about the moment that is shown.
+    pub time_s: Option<f64>,
     /// The box it is about, if it is about one.
     pub box_id: Option<BoxId>,
     /// The voxels it is about, if it is about voxels.
@@ -90,6 +93,8 @@ struct Context<'a> {
     /// Boxes whose numbers can be relied on, by id.
     boxes: Vec<SceneBox>,
     seen: Option<&'a Seen>,
+    /// What moves in the course of the clip, made when the first check asks for it.
+    over_time: std::cell::OnceCell<over_time::OverTime>,
     /// The frame's occupancy as bits, made when the first check asks for it.
     bits: std::cell::OnceCell<Bits>,
     /// Next id that is neither in the frame nor in its source.
@@ -111,7 +116,7 @@ struct Bits {
 type Check = fn(&Context<'_>, &mut Findings);
 
 /// Every check, in the order of reports.
-const CHECKS: [(&str, Check); 12] = [
+const CHECKS: [(&str, Check); 18] = [
     (unsound::NAME, unsound::check),
     (out_of_range::NAME, out_of_range::check),
     (overlapping_boxes::NAME, overlapping_boxes::check),
@@ -122,6 +127,12 @@ const CHECKS: [(&str, Check); 12] = [
     (on_the_road::NAME, on_the_road::check),
     (floating_voxels::NAME, floating_voxels::check),
     (unsupported_parts::NAME, unsupported_parts::check),
+    (over_time::COLLISION, over_time::collision),
+    (over_time::THROUGH_WALL, over_time::through_wall),
+    (over_time::TOO_FAST, over_time::too_fast),
+    (over_time::TOO_SUDDEN, over_time::too_sudden),
+    (over_time::BACKWARDS, over_time::backwards),
+    (over_time::LEAVES_MAP, over_time::leaves_map),
     (unseen::NO_CAMERA, unseen::by_cameras),
     (unseen::NO_LIDAR, unseen::by_lidar),
 ];
@@ -159,6 +170,7 @@ fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> 
             .map(|(_, b)| *b)
             .collect(),
         seen,
+        over_time: std::cell::OnceCell::new(),
         bits: std::cell::OnceCell::new(),
         next_id: highest(&frame.boxes)
             .max(highest(&frame.source.boxes))
@@ -174,6 +186,10 @@ fn run(scene: &Scene, seen: Option<&Seen>, checks: &[(&'static str, Check)]) -> 
 }
 
 impl Context<'_> {
+    fn over_time(&self) -> &over_time::OverTime {
+        self.over_time.get_or_init(|| over_time::OverTime::of(self))
+    }
+
     fn bits(&self) -> &Bits {
         self.bits.get_or_init(|| {
             let extent = self.frame.extent();

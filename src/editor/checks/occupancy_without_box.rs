@@ -50,6 +50,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Warning,
             where_m: middle(extent, &group),
             box_id: None,
+            time_s: None,
             cells: group.clone(),
             text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
             fixes: match boxes_for(context, class, &group) {

@@ -48,6 +48,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Warning,
             where_m: b.center_m,
             box_id: Some(b.id),
+            time_s: None,
             cells: Vec::new(),
             text,
             fixes: fix.into_iter().collect(),

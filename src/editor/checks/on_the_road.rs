@@ -70,6 +70,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                 label: "Clear the road",
                 edits: removal(frame, &cells),
             }],
+            time_s: None,
             cells,
         });
     };

@@ -29,6 +29,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity,
             where_m: b.center_m,
             box_id: Some(b.id),
+            time_s: None,
             cells: Vec::new(),
             text: format!("{} {problem}", name_of(b)),
             fixes: fixes.into_iter().collect(),

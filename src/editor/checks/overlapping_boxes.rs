@@ -65,6 +65,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                 severity,
                 where_m,
                 box_id: Some(b.id),
+                time_s: None,
                 cells: Vec::new(),
                 text: format!(
                     "{} and {} overlap by {:.0} % of the smaller one",

@@ -96,6 +96,7 @@ fn what_is_not_listed_is_counted() {
         severity,
         where_m: DVec3::new(x, 0.0, 0.0),
         box_id: None,
+        time_s: None,
         cells: Vec::new(),
         text: "off".into(),
         fixes: Vec::new(),

@@ -41,6 +41,7 @@ fn unseen(
                 severity: Severity::Warning,
                 where_m: b.center_m,
                 box_id: Some(b.id),
+                time_s: None,
                 cells: Vec::new(),
                 text: format!("{} {problem}", name_of(b)),
                 fixes: Vec::new(),

@@ -64,6 +64,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                 class.label(),
                 lowest_m(extent, &part)
             ),
+            time_s: None,
             cells: part,
             fixes,
         });

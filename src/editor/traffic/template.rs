@@ -14,6 +14,8 @@ use crate::lanes::nearest_lane;
 const USUAL_LENGTH_S: f64 = 8.0;
 /// Braking and starting that nobody minds, m/s².
 const EASY: f64 = 2.0;
+/// How fast somebody on foot starts, m/s².
+const STRIDE: f64 = 3.0;
 /// Width of a lane where none is known, m.
 const LANE_M: f64 = 3.5;
 /// Farthest that somebody walks across a road, m.
@@ -216,7 +218,10 @@ fn path_of(
             let left = |along_m: f64| shift_m * smooth((along_m - start_m) / (end_m - start_m).max(1.0));
             path(aside(&points_m, left), steady)
         }
-        Template::Cross => path(across(scene, from), easing(&[(at_s, mps)])),
+        Template::Cross => path(
+            across(scene, from),
+            easing(&[(at_s, 0.0), (at_s + mps / STRIDE, mps)]),
+        ),
         Template::PullOut => {
             let starts = [(0.0, 0.0), (at_s, 0.0), (at_s + mps / EASY, mps)];
             path(lane(), easing(&starts))
@@ -434,7 +439,7 @@ mod tests {
         assert!(at(&cuts, 1, 3.5).yaw_rad < -0.05, "it steers to the right");
         let crosses = with(&start, Some(3), Template::Cross, 1.5);
         assert!((at(&crosses, 3, 2.0).center_m.y + 6.0).abs() < 1e-6);
-        assert!((at(&crosses, 3, 4.0).center_m.y + 3.0).abs() < 1e-6);
+        assert!((at(&crosses, 3, 4.0).center_m.y + 3.375).abs() < 1e-6);
         assert!((at(&crosses, 3, 4.0).yaw_rad - std::f64::consts::FRAC_PI_2).abs() < 1e-6);
         let pulls = with(&start, Some(4), Template::PullOut, 8.0);
         assert!((at(&pulls, 4, 2.0).center_m.truncate() - DVec2::new(20.0, -2.6)).length() < 1e-6);
