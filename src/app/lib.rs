@@ -6,6 +6,7 @@ pub mod canvas;
 mod canvas_draw;
 mod canvas_tools;
 mod chosen;
+pub mod clip_export;
 pub mod command;
 pub mod export;
 pub(crate) mod fields;

@@ -15,6 +15,7 @@ pub mod opendrive;
 pub mod png;
 #[cfg(test)]
 mod table_tests;
+pub mod video;
 
 pub use error::FormatError;
 

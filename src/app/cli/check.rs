@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
-use super::{Common, Outcome, Stop, output};
+use super::{Common, Moment, Outcome, Stop, output};
 use app::open;
 use app::panes;
 use app::shell::checking;
@@ -28,6 +28,8 @@ pub struct Check {
     /// Scene to write with --fix.
     #[arg(short, long, value_name = "S.loom")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    moment: Moment,
     #[command(flatten)]
     common: Common,
 }
@@ -58,7 +60,7 @@ impl Check {
         if self.output.is_some() && !self.fix {
             return Err(anyhow!("-o is given without --fix: check alone writes no scene").into());
         }
-        let mut scene = open::scene(&self.scene)?;
+        let mut scene = self.moment.of(open::scene(&self.scene)?)?;
         let start = Instant::now();
         let mut findings = self.findings(&scene);
         let (mut fixed, mut files) = (0, Vec::new());

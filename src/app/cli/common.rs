@@ -147,3 +147,26 @@ impl<E: Into<anyhow::Error>> From<E> for Stop {
 }
 
 pub(super) type Outcome = Result<(), Stop>;
+
+/// Which moment of a clip a command looks at.
+#[derive(clap::Args)]
+pub struct Moment {
+    /// Moment of a scene that lasts, s; the one that the file shows if left out.
+    #[arg(long = "at", value_name = "S")]
+    at_s: Option<f64>,
+}
+
+impl Moment {
+    /// The scene at that moment. Errors in one line if it has no such moment.
+    pub fn of(&self, scene: scene::Scene) -> anyhow::Result<scene::Scene> {
+        let Some(at_s) = self.at_s else {
+            return Ok(scene);
+        };
+        let length_s = scene.clip().length_s;
+        // Written so that NaN fails too.
+        if !(0.0..=length_s).contains(&at_s) {
+            anyhow::bail!("--at is {at_s}, expected a moment of 0 to {length_s} s");
+        }
+        Ok(scene.at(at_s))
+    }
+}

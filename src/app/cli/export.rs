@@ -7,7 +7,7 @@ use anyhow::{Context, anyhow};
 use serde_json::json;
 
 use super::render::{size, source};
-use super::{Common, Outcome, output};
+use super::{Common, Moment, Outcome, output};
 use app::camera_views::LidarModel;
 use app::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
 use app::open;
@@ -46,6 +46,8 @@ pub struct Export {
     #[arg(long)]
     transparent: bool,
     #[command(flatten)]
+    moment: Moment,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -82,7 +84,7 @@ impl Export {
         let path = self
             .output
             .context("-o PATH is missing: where should the files go?")?;
-        let scene = open::scene(&self.scene.context("the scene to read is missing")?)?;
+        let scene = self.moment.of(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
         let options = ExportOptions {
             camera_size: self.size,
             source: self.source,

@@ -2,6 +2,7 @@
 
 mod argument_errors;
 mod check;
+mod clip;
 mod common;
 mod dataset;
 mod dataset_occ3d;
@@ -30,7 +31,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 pub(crate) use common::Common;
-use common::{Gen, Outcome, Stop};
+use common::{Gen, Moment, Outcome, Stop};
 
 use app::open;
 
@@ -67,6 +68,8 @@ enum Command {
     Render(render::Render),
     /// The 3D viewport alone, off screen.
     Shot(shot::Shot),
+    /// A scene that lasts, as GIF, APNG or MP4: the 3D view, the map or the cameras.
+    Clip(clip::ClipCommand),
     /// The quality checks; exit 1 if one of severity error fires.
     Check(check::Check),
     /// What differs between two scenes.
@@ -125,6 +128,7 @@ pub fn main() -> ExitCode {
         Some(Command::Edit(c)) => c.run(),
         Some(Command::Render(c)) => c.run(),
         Some(Command::Shot(c)) => c.run(),
+        Some(Command::Clip(c)) => c.run(),
         Some(Command::Check(c)) => c.run(),
         Some(Command::Diff(c)) => c.run(),
         Some(Command::Export(c)) => c.run(),

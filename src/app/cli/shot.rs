@@ -7,7 +7,7 @@ use anyhow::Context;
 use serde_json::json;
 
 use super::render::size;
-use super::{Common, Outcome, output};
+use super::{Common, Moment, Outcome, output};
 use app::export::view_camera;
 use app::{open, picture};
 use sensors::cameras::bounds;
@@ -36,12 +36,14 @@ pub struct Shot {
     #[arg(short, long, value_name = "F.png")]
     output: PathBuf,
     #[command(flatten)]
+    moment: Moment,
+    #[command(flatten)]
     common: Common,
 }
 
 impl Shot {
     pub(super) fn run(self) -> Outcome {
-        let scene = open::scene(&self.scene)?;
+        let scene = self.moment.of(open::scene(&self.scene)?)?;
         let camera = view_camera(&scene, &self.view)?;
         bounds::check(self.size, picture::SHOT_BYTES_PER_PIXEL, 0).context("--size")?;
         let options = picture::ShotOptions {

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use super::{Common, Outcome, output};
+use super::{Common, Moment, Outcome, output};
 use app::camera_views::camera_input;
 use app::graphics::Graphics;
 use app::{open, picture};
@@ -55,6 +55,8 @@ pub struct Render {
     /// Folder to write into.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    #[command(flatten)]
+    moment: Moment,
     #[command(flatten)]
     common: Common,
 }
@@ -124,7 +126,7 @@ impl Render {
 
     pub(super) fn run(self) -> Outcome {
         arguments::check_what(&self.what)?;
-        let mut scene = open::scene(&self.scene)?;
+        let mut scene = self.moment.of(open::scene(&self.scene)?)?;
         if let Some(path) = &self.rig {
             scene.rig = open::rig(path)?.into();
         }

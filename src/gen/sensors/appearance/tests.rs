@@ -150,15 +150,14 @@ fn places_look_the_same_from_everywhere() {
         }
     }
     let frame = Frame::new(scene::BevLayout::default(), Default::default(), grid);
-    let mut ahead = frame.clone();
-    ahead.world_from_ego = Pose::planar(4.0, 0.0, 0.0);
     let rig = SensorRig::default();
+    let ahead = rig.placed(&Pose::planar(4.0, 0.0, 0.0));
     let conditions = of(TimeOfDay::Day, Weather::Clear);
     let (now, then) = (
         Appearance::new(&frame, &rig, &conditions),
-        Appearance::new(&ahead, &rig, &conditions),
+        Appearance::new(&frame, &ahead, &conditions),
     );
-    // The light of a place of the world seen from an eye of the ego frame.
+    // The light of a place seen from an eye.
     let light = |appearance: &Appearance, place: DVec3, eye: DVec3| {
         let d = place - eye;
         let sample = appearance.light_along(eye.as_vec3(), d.normalize().as_vec3(), 0.0015);
@@ -174,7 +173,7 @@ fn places_look_the_same_from_everywhere() {
         let place = DVec3::new(9.0 + 0.1 * f64::from(i), 0.37 - 0.05 * f64::from(i), 0.0);
         let a = light(&now, place, DVec3::new(1.7, 0.0, 1.5));
         let b = light(&now, place, DVec3::new(1.5, -0.5, 1.5));
-        let c = light(&then, place - DVec3::X * 4.0, DVec3::new(-2.3, 0.0, 1.5));
+        let c = light(&then, place, DVec3::new(1.7, 0.0, 1.5));
         // Haze, footprint and the sun's sheen differ a little with the eye.
         assert!((a - b).abs().max_element() < 0.03 * a.max_element(), "{a} {b}");
         assert!((a - c).abs().max_element() < 0.004 * a.max_element(), "{a} {c}");
@@ -276,13 +275,13 @@ fn bears_anything() {
     rig.cameras[2].translation_m = [3.0, 1.0, -0.9];
     rig.cameras[3].translation_m = [1e7, -1e7, 1e3];
     for grid in [VoxelGrid::new(), full] {
-        let mut frame = Frame::new(world.layout.clone(), boxes.clone(), grid);
+        let frame = Frame::new(world.layout.clone(), boxes.clone(), grid);
         for pose in [
             Pose::IDENTITY,
             Pose::planar(1e9, -1e9, 7.0),
             Pose::planar(f64::NAN, 0.0, 0.0),
         ] {
-            frame.world_from_ego = pose;
+            let rig = rig.placed(&pose);
             for (i, weather) in Weather::ALL.into_iter().enumerate() {
                 let time = TimeOfDay::ALL[i % 4];
                 for image in pictures(&frame, &rig, [23, 17], of(time, weather)) {

@@ -1,0 +1,131 @@
+//! `sceneloom clip`: a scene that lasts, as moving pictures.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::bail;
+use serde_json::json;
+
+use super::progress::Progress;
+use super::render::size;
+use super::{Common, Outcome, output};
+use app::clip_export::{ClipOptions, ClipView, clip};
+use app::export::view_camera;
+use app::open;
+use formats::video::VideoKind;
+use scene::Scene;
+use sensors::cameras;
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct ClipCommand {
+    /// Scene to read.
+    scene: PathBuf,
+    /// What is shown: view (the 3D view), bev, or what cameras see (semantic, depth, picture, normals).
+    #[arg(long, value_name = "WHAT", default_value = "view")]
+    what: String,
+    /// Viewpoint of the 3D view: perspective, top, front, side, ego, or a camera of the rig (CAM_FRONT).
+    #[arg(long, value_name = "NAME", default_value = "perspective")]
+    view: String,
+    /// The 3D view stays where it is and does not go along with the ego vehicle.
+    #[arg(long)]
+    fixed: bool,
+    /// One camera of the rig; all of them if left out.
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+    /// Size in pixels: of the 3D view, or of each camera.
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "640x360")]
+    size: [u32; 2],
+    /// First moment, s.
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    from: f64,
+    /// Last moment, s; the end if left out.
+    #[arg(long, value_name = "S")]
+    to: Option<f64>,
+    /// Frames per second; those of the scene if left out.
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+    /// File to write: .gif, .png (an APNG) or .mp4.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl ClipCommand {
+    pub(super) fn run(self) -> Outcome {
+        let kind = VideoKind::of_path(&self.output).map_err(anyhow::Error::new)?;
+        let scene = open::scene(&self.scene)?;
+        let options = self.options(&scene)?;
+        let start = Instant::now();
+        let progress = Progress::new(&self.common);
+        let bytes = clip(&scene, &options, kind, &|done, all| {
+            progress.at("clip", done, all);
+            true
+        })?;
+        progress.done();
+        output::write_file(&self.output, &bytes)?;
+        let wall_s = start.elapsed().as_secs_f64();
+        let frames = ((options.span_s[1] - options.span_s[0]) * options.rate_hz + 1e-6) as usize + 1;
+        let report = json!({
+            "file": self.output, "bytes": bytes.len(), "frames": frames, "wall_s": wall_s,
+            "frames_per_s": frames as f64 / wall_s,
+        });
+        output::report(&self.common, &report, || {
+            format!(
+                "{}: {frames} frames, {} kB, {wall_s:.1} s",
+                self.output.display(),
+                bytes.len() / 1000
+            )
+        });
+        Ok(())
+    }
+
+    fn options(&self, scene: &Scene) -> anyhow::Result<ClipOptions> {
+        let length_s = scene.clip().length_s;
+        if length_s == 0.0 {
+            bail!(
+                "{}: the scene is one moment; set_length and set_motion make it longer",
+                self.scene.display()
+            );
+        }
+        Ok(ClipOptions {
+            view: self.shown(scene)?,
+            size: self.size,
+            span_s: [self.from, self.to.unwrap_or(length_s)],
+            rate_hz: self.rate.unwrap_or(scene.clip().rate_hz),
+        })
+    }
+
+    fn shown(&self, scene: &Scene) -> anyhow::Result<ClipView> {
+        match self.what.as_str() {
+            "view" => Ok(ClipView::View3d {
+                camera: Box::new(view_camera(&scene.at(self.from), &self.view)?),
+                follow: !self.fixed,
+            }),
+            "bev" => Ok(ClipView::Bev),
+            what => {
+                let views = cameras::views();
+                let Some(view) = views.iter().find(|v| v.id.name() == what) else {
+                    let names: Vec<&str> = views.iter().map(|v| v.id.name()).collect();
+                    bail!("--what is {what:?}, expected view, bev, {}", names.join(", "));
+                };
+                let camera = match &self.camera {
+                    None => None,
+                    Some(name) => match scene.rig.cameras.iter().position(|c| c.name == *name) {
+                        Some(index) => Some(index),
+                        None => {
+                            let names: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
+                            bail!("--camera is {name:?}, expected one of {}", names.join(", "));
+                        }
+                    },
+                };
+                Ok(ClipView::Cameras {
+                    view: view.id,
+                    source: cameras::shapes::ID,
+                    camera,
+                })
+            }
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! A clip as moving pictures: the 3D view, the bird's-eye view or the cameras, frame by frame.
+
+use anyhow::{Context, bail};
+
+use formats::video::{VideoKind, VideoWriter};
+use scene::Scene;
+use sensors::cameras::{
+    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds,
+};
+use sensors::appearance::Quality;
+use viewport::ViewCamera;
+
+use crate::camera_views::camera_input;
+use crate::picture::{self, Picture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
+
+/// What is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ClipView {
+    /// The 3D view from a viewpoint at the first moment.
+    View3d {
+        /// The viewpoint.
+        camera: Box<ViewCamera>,
+        /// It goes along with the ego vehicle.
+        follow: bool,
+    },
+    /// The layout from above, with boxes.
+    Bev,
+    /// One camera of the rig by index, or all of them in two rows.
+    Cameras {
+        /// What the pictures show.
+        view: ViewId,
+        /// By which source.
+        source: SourceId,
+        /// The one; all if none.
+        camera: Option<usize>,
+    },
+}
+
+/// How a clip is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClipOptions {
+    /// What is shown.
+    pub view: ClipView,
+    /// Width and height of the 3D view, or of each camera, pixels.
+    pub size: [u32; 2],
+    /// First and last moment, s.
+    pub span_s: [f64; 2],
+    /// Frames per second.
+    pub rate_hz: f64,
+}
+
+impl ClipOptions {
+    /// The moments that are shown, s.
+    fn times_s(&self) -> Vec<f64> {
+        let [from, to] = self.span_s;
+        let frames = ((to - from) * self.rate_hz + 1e-6).max(0.0) as usize + 1;
+        (0..frames).map(|i| from + i as f64 / self.rate_hz).collect()
+    }
+}
+
+/// The file of a clip. `go_on` is told how many of how many frames are done, and says whether to go on. Errors in one line,
+/// also where it was told not to.
+pub fn clip(
+    scene: &Scene,
+    options: &ClipOptions,
+    kind: VideoKind,
+    go_on: &dyn Fn(usize, usize) -> bool,
+) -> anyhow::Result<Vec<u8>> {
+    let [from, to] = options.span_s;
+    let length_s = scene.clip().length_s;
+    // Written so that NaN fails too.
+    if !(from >= 0.0 && to >= from && to <= length_s + 1e-9) {
+        bail!("a clip from {from} to {to} s, expected moments of 0 to {length_s} s");
+    }
+    let times_s = options.times_s();
+    let frames = u32::try_from(times_s.len()).unwrap_or(u32::MAX);
+    if frames > VideoWriter::MAX_FRAMES {
+        bail!("a clip of {frames} frames, expected at most {}", VideoWriter::MAX_FRAMES);
+    }
+    let mut drawer = Drawer::new(scene, options)?;
+    let mut writer = None;
+    for (i, time_s) in times_s.iter().enumerate() {
+        if !go_on(i, times_s.len()) {
+            bail!("cancelled");
+        }
+        let picture = drawer.draw(&scene.at(*time_s))?;
+        let picture = even(picture);
+        let size = [picture.width as u32, picture.height as u32];
+        let writer = match &mut writer {
+            Some(writer) => writer,
+            none => none.insert(VideoWriter::new(kind, size, frames, options.rate_hz)?),
+        };
+        writer.frame(&picture.rgba)?;
+    }
+    let writer = writer.context("a clip has at least one frame")?;
+    Ok(writer.finish()?)
+}
+
+/// With even sides, which MP4 wants: a row or column is added where one is missing.
+fn even(picture: Picture) -> Picture {
+    let (width, height) = (picture.width.next_multiple_of(2), picture.height.next_multiple_of(2));
+    if (width, height) == (picture.width, picture.height) {
+        return picture;
+    }
+    let mut out = Picture::filled(width, height, picture::SHEET_COLOR);
+    out.put(&picture, 0, 0);
+    out
+}
+
+/// Draws one frame after the other.
+enum Drawer {
+    View3d {
+        view: Box<View3d>,
+        camera: ViewCamera,
+        follow: bool,
+        last: scene::Pose,
+        size: [u32; 2],
+    },
+    Bev,
+    Cameras(ClipOptions),
+}
+
+/// Pixels of a cell from above: the whole map about so high.
+const BEV_PIXELS: usize = 720;
+
+impl Drawer {
+    fn new(scene: &Scene, options: &ClipOptions) -> anyhow::Result<Self> {
+        Ok(match &options.view {
+            ClipView::View3d { camera, follow } => {
+                bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
+                Self::View3d {
+                    view: Box::new(View3d::new()?),
+                    camera: **camera,
+                    follow: *follow,
+                    last: scene.at(options.span_s[0]).frame().world_from_ego,
+                    size: options.size,
+                }
+            }
+            ClipView::Bev => Self::Bev,
+            ClipView::Cameras { view, source, camera } => {
+                let found = scene.rig.cameras.len();
+                if camera.map_or(0, |i| i + 1).max(1) > found {
+                    bail!("the rig {:?} has {found} cameras", scene.rig.name);
+                }
+                bounds::check(
+                    options.size,
+                    cameras::source_of(*view, *source).bytes_per_pixel(),
+                    0,
+                )?;
+                Self::Cameras(options.clone())
+            }
+        })
+    }
+
+    fn draw(&mut self, scene: &Scene) -> anyhow::Result<Picture> {
+        match self {
+            Self::View3d {
+                view,
+                camera,
+                follow,
+                last,
+                size,
+            } => {
+                let now = scene.frame().world_from_ego;
+                if *follow {
+                    camera.go_along(last, &now);
+                }
+                *last = now;
+                view.shot(
+                    scene,
+                    &ShotOptions {
+                        camera: *camera,
+                        size: *size,
+                        supersample: 1,
+                        transparent: false,
+                        lidar: false,
+                        boxes: true,
+                    },
+                )
+            }
+            Self::Bev => {
+                let extent = scene.frame().extent();
+                let scale = (BEV_PIXELS / extent.nx().max(extent.ny())).clamp(1, 8);
+                Ok(picture::layout_top(scene.frame(), scale))
+            }
+            Self::Cameras(options) => pictures(scene, options),
+        }
+    }
+}
+
+fn pictures(scene: &Scene, options: &ClipOptions) -> anyhow::Result<Picture> {
+    let ClipView::Cameras { view, source, camera } = &options.view else {
+        bail!("no view of cameras");
+    };
+    let scene = scene.with_rig_in_world();
+    let source = cameras::source_of(*view, *source);
+    let ready = Ready::new(source, &camera_input(&scene, Detail::Full));
+    let render = RenderOptions {
+        size: options.size,
+        quality: Quality::Full,
+    };
+    let shown: Vec<&scene::Camera> = match camera {
+        Some(index) => scene.rig.cameras.iter().skip(*index).take(1).collect(),
+        None => scene.rig.cameras.iter().collect(),
+    };
+    let mut row = Vec::new();
+    for camera in shown {
+        let picture: CameraPicture = ready.render(camera, &render, RenderContext::processor())?;
+        let ([width, height], rgba) = picture.rgba(*view, 0.0);
+        row.push(Picture { width, height, rgba });
+    }
+    match row.len() {
+        1 => row.pop().context("a picture"),
+        n => {
+            let rows: Vec<Vec<Picture>> = row.chunks(n.div_ceil(2)).map(<[Picture]>::to_vec).collect();
+            Ok(Picture::sheet(&rows, 4))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+    use scene::{Key, Motion};
+
+    use super::*;
+    use crate::open;
+
+    #[test]
+    fn a_clip_of_the_map_and_of_a_camera_has_as_many_frames_as_it_lasts() {
+        let mut scene = open::from_template("straight", 3).expect("a template");
+        let key = |time_s: f64, x: f64| Key {
+            time_s,
+            at_m: DVec2::new(x, 0.0),
+            yaw_deg: 0.0,
+        };
+        scene.change_clip(|clip| {
+            clip.length_s = 0.5;
+            clip.ego = Some(Motion::Keys(vec![key(0.0, 0.0), key(0.5, 4.0)]));
+        });
+        let options = |view| ClipOptions {
+            view,
+            size: [96, 54],
+            span_s: [0.0, 0.5],
+            rate_hz: 10.0,
+        };
+        let camera = ClipView::Cameras {
+            view: ViewId::SEMANTIC,
+            source: cameras::shapes::ID,
+            camera: Some(1),
+        };
+        for view in [ClipView::Bev, camera] {
+            let seen = std::cell::RefCell::new(Vec::new());
+            let go_on = |done, all| {
+                seen.borrow_mut().push((done, all));
+                true
+            };
+            let bytes = clip(&scene, &options(view), VideoKind::Gif, &go_on).expect("small");
+            assert!(bytes.starts_with(b"GIF89a"));
+            assert_eq!(seen.into_inner().last(), Some(&(5, 6)));
+        }
+        let error = clip(&scene, &options(ClipView::Bev), VideoKind::Gif, &|_, _| false).expect_err("stopped");
+        assert_eq!(error.to_string(), "cancelled");
+        let beyond = ClipOptions {
+            span_s: [0.0, 3.0],
+            ..options(ClipView::Bev)
+        };
+        let error = clip(&scene, &beyond, VideoKind::Gif, &|_, _| true).expect_err("too long").to_string();
+        assert!(error.contains("expected moments of 0 to 0.5 s"), "{error}");
+    }
+}
