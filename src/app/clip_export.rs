@@ -4,10 +4,10 @@ use anyhow::{Context, bail};
 
 use formats::video::{VideoKind, VideoWriter};
 use scene::Scene;
+use sensors::appearance::Quality;
 use sensors::cameras::{
     self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds,
 };
-use sensors::appearance::Quality;
 use viewport::ViewCamera;
 
 use crate::camera_views::camera_input;
@@ -75,7 +75,10 @@ pub fn clip(
     let times_s = options.times_s();
     let frames = u32::try_from(times_s.len()).unwrap_or(u32::MAX);
     if frames > VideoWriter::MAX_FRAMES {
-        bail!("a clip of {frames} frames, expected at most {}", VideoWriter::MAX_FRAMES);
+        bail!(
+            "a clip of {frames} frames, expected at most {}",
+            VideoWriter::MAX_FRAMES
+        );
     }
     let mut drawer = Drawer::new(scene, options)?;
     let mut writer = None;
@@ -98,7 +101,10 @@ pub fn clip(
 
 /// With even sides, which MP4 wants: a row or column is added where one is missing.
 fn even(picture: Picture) -> Picture {
-    let (width, height) = (picture.width.next_multiple_of(2), picture.height.next_multiple_of(2));
+    let (width, height) = (
+        picture.width.next_multiple_of(2),
+        picture.height.next_multiple_of(2),
+    );
     if (width, height) == (picture.width, picture.height) {
         return picture;
     }
@@ -259,13 +265,16 @@ mod tests {
             assert!(bytes.starts_with(b"GIF89a"));
             assert_eq!(seen.into_inner().last(), Some(&(5, 6)));
         }
-        let error = clip(&scene, &options(ClipView::Bev), VideoKind::Gif, &|_, _| false).expect_err("stopped");
+        let error =
+            clip(&scene, &options(ClipView::Bev), VideoKind::Gif, &|_, _| false).expect_err("stopped");
         assert_eq!(error.to_string(), "cancelled");
         let beyond = ClipOptions {
             span_s: [0.0, 3.0],
             ..options(ClipView::Bev)
         };
-        let error = clip(&scene, &beyond, VideoKind::Gif, &|_, _| true).expect_err("too long").to_string();
+        let error = clip(&scene, &beyond, VideoKind::Gif, &|_, _| true)
+            .expect_err("too long")
+            .to_string();
         assert!(error.contains("expected moments of 0 to 0.5 s"), "{error}");
     }
 }

@@ -53,6 +53,8 @@ pub enum FileCommand {
     ExportScreenshot,
     /// Saves the 3D view beside the scene.
     QuickShot,
+    /// Asks for a file and writes the clip there as moving pictures.
+    SaveClip,
     /// Asks for a file of sensors and takes them.
     ImportRig,
     /// Asks for a file and saves the sensors there.

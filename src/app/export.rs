@@ -69,6 +69,12 @@ impl ExportProgress {
         self.of.store(pictures, Ordering::Relaxed);
     }
 
+    /// Says how many pictures are ready, of how many.
+    pub fn count(&self, done: usize, of: usize) {
+        self.done.store(done, Ordering::Relaxed);
+        self.of.store(of, Ordering::Relaxed);
+    }
+
     /// Asks the export to stop; it does before its next picture, and writes nothing.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);

@@ -108,6 +108,16 @@ impl BevLayout {
         }
     }
 
+    /// The same cells and heights over another extent of the same size; polylines stay where they are.
+    pub(crate) fn relabelled(&self, extent: Extent) -> Self {
+        assert_eq!(extent.columns(), self.extent.columns(), "another size");
+        Self {
+            extent,
+            relief: self.relief.relabelled(extent),
+            ..self.clone()
+        }
+    }
+
     /// Takes over cells and heights of another layout wherever both have columns, and its polylines.
     pub fn paste(&mut self, other: &Self) {
         if other.extent == self.extent {

@@ -20,6 +20,7 @@ pub mod infer;
 pub mod inferred;
 pub mod layout;
 pub mod message;
+pub mod moved;
 pub mod pose;
 pub mod raster;
 pub mod relations;

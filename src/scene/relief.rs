@@ -89,6 +89,16 @@ impl Relief {
         }
     }
 
+    /// The same heights over another extent of the same size.
+    pub(crate) fn relabelled(&self, extent: Extent) -> Self {
+        Self {
+            heights: self.heights.as_ref().map(|h| Heights {
+                extent,
+                m: h.m.clone(),
+            }),
+        }
+    }
+
     /// Takes over the heights of another relief wherever both have columns. The extents are those of the layouts: a flat
     /// relief has none of its own.
     pub fn paste(&mut self, extent: Extent, other: &Self, of: Extent) {

@@ -115,7 +115,8 @@ impl ClipCommand {
                     Some(name) => match scene.rig.cameras.iter().position(|c| c.name == *name) {
                         Some(index) => Some(index),
                         None => {
-                            let names: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
+                            let names: Vec<&str> =
+                                scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();
                             bail!("--camera is {name:?}, expected one of {}", names.join(", "));
                         }
                     },

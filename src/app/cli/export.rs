@@ -84,7 +84,9 @@ impl Export {
         let path = self
             .output
             .context("-o PATH is missing: where should the files go?")?;
-        let scene = self.moment.of(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
+        let scene = self
+            .moment
+            .of(open::scene(&self.scene.context("the scene to read is missing")?)?)?;
         let options = ExportOptions {
             camera_size: self.size,
             source: self.source,

@@ -24,6 +24,9 @@ pub struct Import {
     /// Ego heading in the file's frame, degrees counter-clockwise; without it along the lane.
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     heading: Option<f64>,
+    /// Length (along the heading) and width of the map, m; without it 80x80. A long one lies mostly ahead.
+    #[arg(long, value_name = "LxW", value_parser = map_size)]
+    size: Option<[f64; 2]>,
     /// Fixes the traffic.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -49,6 +52,22 @@ fn point(text: &str) -> Result<DVec2, String> {
     }
 }
 
+/// `LxW` in metres.
+fn map_size(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Option<Vec<f64>> = text.split('x').map(|v| v.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[length_m, width_m]) => {
+            let size_m = Some([length_m, width_m]);
+            let placement = Placement {
+                size_m,
+                ..Placement::default()
+            };
+            placement.problem().map_or(Ok([length_m, width_m]), Err)
+        }
+        _ => Err("expected two lengths in metres, such as 300x100".into()),
+    }
+}
+
 impl Import {
     pub(super) fn run(self) -> Outcome {
         if let Some(heading) = self.heading
@@ -63,6 +82,7 @@ impl Import {
                 let placement = Placement {
                     at_m: self.at,
                     heading_rad: self.heading.map(f64::to_radians),
+                    size_m: self.size,
                     seed: self.seed,
                     empty: self.empty,
                     bare: self.bare,
@@ -79,7 +99,7 @@ impl Import {
         let (at, heading) = imported.pose;
         if frame.layout.count(BevLayer::DrivableArea) == 0 {
             let file = self.file.display();
-            return Err(anyhow!("{file}: no road within 40 m of --at {:.1},{:.1}", at.x, at.y).into());
+            return Err(anyhow!("{file}: no road on the map around --at {:.1},{:.1}", at.x, at.y).into());
         }
         loom::save(&self.output, &imported.scene).context("write the scene")?;
         let heights_m = frame.layout.relief.heights_m().unwrap_or_default();

@@ -8,9 +8,14 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
 use super::toasts::Level;
+use crate::clip_export::{ClipOptions, ClipView, clip};
 use crate::export::{ExportOptions, ExportProgress, Format, export_all};
 use crate::windows::export::{Asked, ExportDialog, ExportInput, export_window};
 use editor::checks::{Severity, waive};
+use formats::video::VideoKind;
+
+/// Width and height of a clip, pixels.
+const CLIP_SIZE: [u32; 2] = [1280, 720];
 
 type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 
@@ -81,15 +86,66 @@ impl SceneloomApp {
         path: PathBuf,
         ctx: &egui::Context,
     ) {
-        let (send, written) = bounded(1);
         let name = match formats.as_slice() {
             [format] => format.id,
             _ => "everything",
         };
-        let (scene, wake) = (Arc::clone(self.document.settled_scene()), ctx.clone());
+        let scene = Arc::clone(self.document.settled_scene());
+        self.run_export(name, ctx, move |told| {
+            export_all(&scene, &formats, &options, &path, told)
+        });
+    }
+
+    /// Writes the clip as the 3D view shows it.
+    pub(super) fn save_clip(&mut self, path: PathBuf, ctx: &egui::Context) {
+        let kind = match VideoKind::of_path(&path) {
+            Ok(kind) => kind,
+            Err(error) => return self.fail(format!("Not saved: {error}")),
+        };
+        let scene = Arc::clone(self.document.settled_scene());
+        let playback = &self.state.playback;
+        let span_s = playback.span(scene.clip().length_s);
+        let mut camera = self.views.view3d.camera;
+        if playback.follow {
+            // The viewpoint goes along: where it would be at the first moment.
+            let now = scene.frame().world_from_ego;
+            camera.go_along(&now, &scene.at(span_s[0]).frame().world_from_ego);
+        }
+        let options = ClipOptions {
+            view: ClipView::View3d {
+                camera: Box::new(camera),
+                follow: playback.follow,
+            },
+            size: CLIP_SIZE,
+            span_s,
+            rate_hz: scene.clip().rate_hz,
+        };
+        self.run_export("the clip", ctx, move |told| {
+            let go_on = |done, all| {
+                told.count(done, all);
+                !told.is_cancelled()
+            };
+            let bytes = clip(&scene, &options, kind, &go_on)?;
+            formats::atomic::write(&path, &bytes)?;
+            Ok(vec![(path, bytes.len() as u64)])
+        });
+    }
+
+    /// Runs an export on a thread of its own.
+    fn run_export(
+        &mut self,
+        name: &'static str,
+        ctx: &egui::Context,
+        write: impl FnOnce(&ExportProgress) -> Written + Send + 'static,
+    ) {
+        if self.files.exporting.running.is_some() {
+            return self.fail("An export is on its way; one at a time".to_owned());
+        }
+        let (send, written) = bounded(1);
+        let wake = ctx.clone();
         let progress = Arc::<ExportProgress>::default();
         let told = progress.clone();
-        let write = move || export_all(&scene, &formats, &options, &path, &told);
+        let write = move || write(&told);
         let thread = job::guard::spawn("export", write, move |written| {
             // Nobody listens if the window has closed.
             let _ = send.send(written.unwrap_or_else(|panic| Err(panic.into())));

@@ -31,6 +31,10 @@ impl SceneloomApp {
                 .files
                 .dialogs
                 .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
+            FileCommand::SaveClip => {
+                let path = self.suggested("mp4");
+                self.files.dialogs.ask(Purpose::Clip, &path, ctx);
+            }
             FileCommand::ExportScreenshot => {
                 self.files
                     .dialogs
@@ -136,6 +140,7 @@ impl SceneloomApp {
             Purpose::Open => self.go_on(Next::Open(path), ctx),
             Purpose::SaveAs => self.save_to(path, ctx),
             Purpose::Screenshot => self.screenshot(&path),
+            Purpose::Clip => self.save_clip(path, ctx),
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
             Purpose::ExportFile | Purpose::ExportFolder => {

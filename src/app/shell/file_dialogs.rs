@@ -18,6 +18,8 @@ pub enum Purpose {
     SaveAs,
     /// Where to save a picture.
     Screenshot,
+    /// Where to save moving pictures.
+    Clip,
     /// Sensors to take.
     ImportRig,
     /// Where to save the sensors.
@@ -34,6 +36,7 @@ impl Purpose {
             Purpose::Open => "Open scene or road",
             Purpose::SaveAs => "Save scene as",
             Purpose::Screenshot => "Export screenshot",
+            Purpose::Clip => "Save clip: .gif, .png or .mp4",
             Purpose::ImportRig => "Import sensors",
             Purpose::ExportRig => "Export sensors",
             Purpose::ExportFile => "Export to file",
@@ -46,6 +49,7 @@ impl Purpose {
             Purpose::Open => "Open file",
             Purpose::SaveAs => "Save file",
             Purpose::Screenshot => "Export picture",
+            Purpose::Clip => "Save clip",
             Purpose::ImportRig => "Import file",
             Purpose::ExportRig => "Export file",
             Purpose::ExportFile | Purpose::ExportFolder => "Use path",
@@ -118,6 +122,7 @@ impl FileDialogs {
                 .add_filter("All files", &["*"]),
             Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
             Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),
+            Purpose::Clip => dialog.add_filter("Moving pictures", &["mp4", "gif", "png"]),
             Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter("Sensor rig", &["json"]),
             Purpose::ExportFile | Purpose::ExportFolder => dialog,
         };
@@ -275,6 +280,7 @@ fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
         Purpose::ExportRig => "json",
         Purpose::SaveAs => "loom",
         Purpose::Screenshot => "png",
+        Purpose::Clip => "mp4",
     };
     if path.extension().is_some() {
         path

@@ -66,6 +66,10 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
         item(ui, "Export screenshot…", "", true),
         Command::File(FileCommand::ExportScreenshot),
     );
+    on(
+        item(ui, "Save clip…", "", true),
+        Command::File(FileCommand::SaveClip),
+    );
     ui.separator();
     on(item(ui, "Quit", "Ctrl+Q", true), Command::File(FileCommand::Quit));
 }

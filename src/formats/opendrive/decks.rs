@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::RoadNetwork;
 use super::elevation::edge_heights_m;
 use super::lanes::Ground;
-use super::layout::MapSquare;
+use super::layout::MapCut;
 use super::levels::{Levels, Off, Stretch, body_edges};
 use super::sampling::Row;
 use super::xml::{Skipped, count};
@@ -31,7 +31,7 @@ struct Section {
 /// The bridges of a window over this relief; `file_from_ego_m` is the height of the ego's ground in the file.
 pub(super) fn bridges(
     network: &RoadNetwork,
-    window: &MapSquare,
+    window: &MapCut,
     levels: &Levels,
     relief: &Relief,
     file_from_ego_m: f64,
@@ -69,7 +69,7 @@ fn for_vehicles(network: &RoadNetwork, stretch: &Stretch) -> bool {
 }
 
 /// The stretch inside the window, cut where it would not be level.
-fn pieces(network: &RoadNetwork, window: &MapSquare, stretch: &Stretch) -> Vec<Vec<Section>> {
+fn pieces(network: &RoadNetwork, window: &MapCut, stretch: &Stretch) -> Vec<Vec<Section>> {
     let road = &network.roads[stretch.road];
     let from = stretch.from_s_m.max(0.0);
     let to = stretch.to_s_m.min(road.length_m()).min(from + LONGEST_M);
@@ -87,7 +87,7 @@ fn pieces(network: &RoadNetwork, window: &MapSquare, stretch: &Stretch) -> Vec<V
                 top_m: 0.5 * (heights[first][0] + heights[last - 1][1]),
             })
         });
-        let inside = |s: &Section| s.middle_m.abs().max_element() < MapSquare::HALF_M;
+        let inside = |s: &Section| window.holds(s.middle_m, 0.0);
         match (cross.filter(inside), runs.last_mut()) {
             (Some(cross), Some(run)) => run.push(cross),
             (None, Some(run)) if run.is_empty() => {}

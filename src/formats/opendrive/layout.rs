@@ -17,19 +17,50 @@ use super::{Road, RoadNetwork, tidy};
 use scene::raster::{draw_polyline, polygon_cells};
 use scene::{Background, BevLayer, BevLayout, Extent, Form, Polyline, PolylineKind, Window};
 
-/// The square of the grid around the ego, and where it lies in the file.
+/// The map that is cut out, and where it lies in the file.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MapSquare {
+pub(super) struct MapCut {
+    /// The ego vehicle's place in the file.
     pub at_m: DVec2,
     /// Unit vector; rotating by it turns file axes to ego axes.
     pub ego_from_file: DVec2,
+    /// In the ego frame.
+    pub extent: Extent,
 }
 
-impl MapSquare {
-    /// Half the edge, m.
-    pub const HALF_M: f64 = Window::MAX_M[0];
-    /// From the middle to a corner, m.
-    pub const RADIUS_M: f64 = Self::HALF_M * std::f64::consts::SQRT_2;
+impl MapCut {
+    /// From the ego vehicle to the farthest corner, m.
+    pub fn radius_m(&self) -> f64 {
+        let (low, high) = self.bounds_m();
+        low.abs().max(high.abs()).length()
+    }
+
+    /// Lower and upper corner, ego frame, m.
+    pub fn bounds_m(&self) -> (DVec2, DVec2) {
+        (self.extent.min_m().truncate(), self.extent.max_m().truncate())
+    }
+
+    /// True if a point of the ego frame lies on it or within `reach_m` of it; false for NaN.
+    pub fn holds(&self, p: DVec2, reach_m: f64) -> bool {
+        self.meets(p - reach_m, p + reach_m)
+    }
+
+    /// True if a rectangle of the ego frame lies partly on it.
+    pub fn meets(&self, min: DVec2, max: DVec2) -> bool {
+        let (low, high) = self.bounds_m();
+        max.cmpgt(low).all() && min.cmplt(high).all()
+    }
+
+    /// The parts of a line of the ego frame that lie on it or within `reach_m` of it.
+    pub fn clipped(&self, points: &[DVec2], reach_m: f64) -> Vec<Vec<DVec2>> {
+        let (low, high) = self.bounds_m();
+        clipped(points, (low - reach_m, high + reach_m))
+    }
+
+    /// How much may be drawn on it.
+    fn budget(&self) -> usize {
+        BUDGET * self.extent.columns().div_ceil(Window::COLUMNS)
+    }
 
     pub fn to_ego(self, p: DVec2) -> DVec2 {
         self.ego_from_file.rotate(p - self.at_m)
@@ -66,7 +97,7 @@ pub struct LayoutImport {
 
 /// The grid while it is drawn.
 struct Canvas {
-    window: MapSquare,
+    window: MapCut,
     levels: Option<Levels>, // none if every road is flat
     layout: BevLayout,
     named: Vec<bool>,                  // cells on which some lane lies, drivable or not
@@ -84,10 +115,17 @@ impl RoadNetwork {
     /// Layers in the sense of the nuScenes map: drivable area is everything paved that is connected
     /// to a traffic lane; stop lines, crossings and dividers are also kept as polylines.
     pub fn to_layout(&self, at_m: DVec2, heading_rad: f64) -> LayoutImport {
-        let window = MapSquare {
+        self.to_layout_over(Extent::WINDOW, at_m, heading_rad)
+    }
+
+    /// The same over a map of another extent.
+    pub fn to_layout_over(&self, extent: Extent, at_m: DVec2, heading_rad: f64) -> LayoutImport {
+        let window = MapCut {
             at_m,
             ego_from_file: DVec2::from_angle(-heading_rad),
+            extent,
         };
+        let columns = extent.columns();
         let is_somewhere = at_m.is_finite() && heading_rad.is_finite();
         let levels = match is_somewhere {
             true => Levels::survey(self, &window),
@@ -96,13 +134,13 @@ impl RoadNetwork {
         let mut canvas = Canvas {
             window,
             levels,
-            layout: BevLayout::default(),
-            named: vec![false; Window::COLUMNS],
-            in_junction: vec![false; Window::COLUMNS],
-            traffic: vec![false; Window::COLUMNS],
-            beside: vec![None; Window::COLUMNS],
+            layout: BevLayout::over(extent),
+            named: vec![false; columns],
+            in_junction: vec![false; columns],
+            traffic: vec![false; columns],
+            beside: vec![None; columns],
             lines: Vec::new(),
-            budget: BUDGET,
+            budget: window.budget(),
         };
         let mut skipped = self.skipped.clone();
         let mut road_count = 0;
@@ -125,7 +163,7 @@ impl RoadNetwork {
         }
         let mut bridge_count = 0;
         if let Some(levels) = &canvas.levels {
-            let (relief, file_from_ego_m) = relief::over(&levels.known_m);
+            let (relief, file_from_ego_m) = relief::over(extent, &levels.known_m);
             let bridges = decks::bridges(self, &window, levels, &relief, file_from_ego_m, &mut skipped);
             bridge_count = bridges.len();
             forms.extend(bridges);
@@ -151,7 +189,7 @@ impl RoadNetwork {
             lane_count,
             crossing_count,
             drivable_beside_traffic,
-            drivable_share: layout.count(BevLayer::DrivableArea) as f64 / Window::COLUMNS as f64,
+            drivable_share: layout.count(BevLayer::DrivableArea) as f64 / columns as f64,
             background,
             bridge_count,
             skipped,
@@ -171,11 +209,12 @@ impl Canvas {
 
     fn fill(&mut self, area_in_ego: &[DVec2], layers: &[BevLayer], in_junction: bool) -> bool {
         let mut cells = Vec::new();
-        polygon_cells(Extent::WINDOW, area_in_ego, |x, y| cells.push((x, y)));
+        let extent = self.window.extent;
+        polygon_cells(extent, area_in_ego, |x, y| cells.push((x, y)));
         self.budget = self.budget.saturating_sub(cells.len() / 8);
         for (x, y) in &cells {
-            self.named[x * Window::NY + y] = true;
-            self.in_junction[x * Window::NY + y] |= in_junction;
+            self.named[extent.index(*x, *y)] = true;
+            self.in_junction[extent.index(*x, *y)] |= in_junction;
             for layer in layers {
                 self.layout.set(*layer, *x, *y, true);
             }
@@ -185,8 +224,9 @@ impl Canvas {
 
     fn note_kind(&mut self, area_in_ego: &[DVec2], kind: LaneKind) {
         let (traffic, beside) = (&mut self.traffic, &mut self.beside);
-        polygon_cells(Extent::WINDOW, area_in_ego, |x, y| {
-            let c = x * Window::NY + y;
+        let extent = self.window.extent;
+        polygon_cells(extent, area_in_ego, |x, y| {
+            let c = extent.index(x, y);
             traffic[c] |= kind.carries_traffic();
             beside[c] = beside[c].or(kind.beside_traffic());
         });
@@ -196,9 +236,8 @@ impl Canvas {
     fn beside_traffic(&self) -> BTreeMap<String, usize> {
         let mut out = BTreeMap::new();
         for (c, kind) in self.beside.iter().enumerate() {
-            let drivable = self
-                .layout
-                .has(BevLayer::DrivableArea, c / Window::NY, c % Window::NY);
+            let [x, y] = self.window.extent.column(c);
+            let drivable = self.layout.has(BevLayer::DrivableArea, x, y);
             if let Some(kind) = kind.filter(|_| drivable && !self.traffic[c]) {
                 *out.entry(kind.to_owned()).or_default() += 1;
             }
@@ -213,7 +252,7 @@ impl Canvas {
         for section in &road.sections {
             let mut grounds = None;
             let mut budget = self.budget;
-            let (at_m, radius_m) = (self.window.at_m, MapSquare::RADIUS_M);
+            let (at_m, radius_m) = (self.window.at_m, self.window.radius_m());
             walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
                 if !self.is_on_ground(index, 0.5 * (from.s_m + to.s_m)) {
                     return None;
@@ -235,11 +274,9 @@ impl Canvas {
         }
         for (kind, points) in follower.finish() {
             let points: Vec<DVec2> = points.iter().map(|p| self.to_ego(*p)).collect();
-            self.lines.extend(
-                clipped(&points, MapSquare::HALF_M)
-                    .into_iter()
-                    .map(|points_m| Polyline { kind, points_m }),
-            );
+            let parts = self.window.clipped(&points, 0.0).into_iter();
+            self.lines
+                .extend(parts.map(|points_m| Polyline { kind, points_m }));
         }
         seen
     }
@@ -288,12 +325,15 @@ impl Canvas {
                     Some(line) => {
                         let points: Vec<DVec2> = line.iter().map(|p| self.to_ego(*p)).collect();
                         self.lines
-                            .extend(clipped(&points, MapSquare::HALF_M).into_iter().map(|points_m| {
-                                Polyline {
-                                    kind: PolylineKind::StopLine,
-                                    points_m,
-                                }
-                            }));
+                            .extend(
+                                self.window
+                                    .clipped(&points, 0.0)
+                                    .into_iter()
+                                    .map(|points_m| Polyline {
+                                        kind: PolylineKind::StopLine,
+                                        points_m,
+                                    }),
+                            );
                     }
                     None => count(skipped, "stop line without a lane"),
                 }
@@ -305,7 +345,7 @@ impl Canvas {
                 let area: Vec<DVec2> = area.iter().map(|p| self.to_ego(*p)).collect();
                 let min = area.iter().copied().fold(DVec2::INFINITY, DVec2::min);
                 let max = area.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-                if max.min_element() > -MapSquare::HALF_M && min.max_element() < MapSquare::HALF_M {
+                if self.window.meets(min, max) {
                     areas.push(area);
                 }
             });
@@ -344,21 +384,20 @@ impl Canvas {
     fn pave_gaps(&mut self) {
         let bit = BevLayer::DrivableArea.bit();
         let mut drivable: Vec<bool> = self.layout.cells().iter().map(|c| c & bit != 0).collect();
-        tidy::close_gaps(&mut drivable, &self.named);
-        tidy::fill_junction_holes(&mut drivable, &self.named, &self.in_junction);
+        let extent = self.window.extent;
+        tidy::close_gaps(extent, &mut drivable, &self.named);
+        tidy::fill_junction_holes(extent, &mut drivable, &self.named, &self.in_junction);
         for (i, _) in drivable.iter().enumerate().filter(|(_, d)| **d) {
-            self.layout
-                .set(BevLayer::DrivableArea, i / Window::NY, i % Window::NY, true);
+            let [x, y] = extent.column(i);
+            self.layout.set(BevLayer::DrivableArea, x, y, true);
         }
     }
 
     /// In a junction the walkway of one connecting road lies under the lanes of another.
     fn roads_cover_walkways(&mut self) {
-        for x in 0..Window::NX {
-            for y in 0..Window::NY {
-                if self.layout.has(BevLayer::DrivableArea, x, y) {
-                    self.layout.set(BevLayer::Walkway, x, y, false);
-                }
+        for [x, y] in self.window.extent.all_columns() {
+            if self.layout.has(BevLayer::DrivableArea, x, y) {
+                self.layout.set(BevLayer::Walkway, x, y, false);
             }
         }
     }

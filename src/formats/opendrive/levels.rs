@@ -7,11 +7,11 @@ use glam::DVec2;
 
 use super::elevation::edge_heights_m;
 use super::lanes::{Ground, LaneSection};
-use super::layout::MapSquare;
+use super::layout::MapCut;
 use super::sampling::{BUDGET, Row, walk};
 use super::{Road, RoadEnd, RoadNetwork};
+use scene::Window;
 use scene::raster::polygon_cells;
-use scene::{Extent, Window};
 
 /// Surfaces further apart than this are a bridge and what is below it, m.
 const CLEARANCE_M: f64 = 3.0;
@@ -70,7 +70,7 @@ impl Cover {
 
 impl Levels {
     /// Of the roads around the ego; `None` if every road of the file is flat.
-    pub fn survey(network: &RoadNetwork, window: &MapSquare) -> Option<Self> {
+    pub fn survey(network: &RoadNetwork, window: &MapCut) -> Option<Self> {
         if network.roads.iter().all(is_flat) {
             return None;
         }
@@ -121,13 +121,14 @@ pub(super) fn body_edges(grounds: &[Ground]) -> Option<[usize; 2]> {
 }
 
 /// The roads in every column.
-fn covers(network: &RoadNetwork, window: &MapSquare) -> Vec<Vec<Cover>> {
-    let mut covers: Vec<Vec<Cover>> = (0..Window::COLUMNS).map(|_| Vec::new()).collect();
-    let mut budget = BUDGET;
+fn covers(network: &RoadNetwork, window: &MapCut) -> Vec<Vec<Cover>> {
+    let mut covers: Vec<Vec<Cover>> = (0..window.extent.columns()).map(|_| Vec::new()).collect();
+    let extent = window.extent;
+    let mut budget = BUDGET * extent.columns().div_ceil(Window::COLUMNS);
     for (index, road) in network.roads.iter().enumerate() {
         for section in &road.sections {
             let mut body = None;
-            let (at_m, radius_m) = (window.at_m, MapSquare::RADIUS_M);
+            let (at_m, radius_m) = (window.at_m, window.radius_m());
             walk(road, section, at_m, radius_m, &mut budget, |from, to, budget| {
                 let [first, last] = (*body.get_or_insert_with(|| body_edges(&section.grounds())))?;
                 let held_m = 0.5 * (from.s_m + to.s_m);
@@ -135,11 +136,11 @@ fn covers(network: &RoadNetwork, window: &MapSquare) -> Vec<Vec<Cover>> {
                 let lanes = near.iter().zip(&far).enumerate();
                 for (lane, (near, far)) in lanes.take(last).skip(first) {
                     let patch = Patch::new(window, [from, to], lane, [*near, *far]);
-                    polygon_cells(Extent::WINDOW, &patch.corners_m(), |x, y| {
+                    polygon_cells(extent, &patch.corners_m(), |x, y| {
                         *budget = budget.saturating_sub(1);
-                        let height_m = patch.height_m(Window::center(x, y, 0).truncate());
+                        let height_m = patch.height_m(extent.center(x, y, 0).truncate());
                         add(
-                            &mut covers[x * Window::NY + y],
+                            &mut covers[extent.index(x, y)],
                             index,
                             [from.s_m, to.s_m],
                             height_m,
@@ -186,7 +187,7 @@ struct Patch {
 }
 
 impl Patch {
-    fn new(window: &MapSquare, rows: [&Row; 2], lane: usize, heights_m: [[f64; 2]; 2]) -> Self {
+    fn new(window: &MapCut, rows: [&Row; 2], lane: usize, heights_m: [[f64; 2]; 2]) -> Self {
         let ends = |row: &Row| [lane, lane + 1].map(|i| window.to_ego(row.between(i, i)));
         Self {
             near_m: ends(rows[0]),
@@ -219,7 +220,7 @@ impl Patch {
 }
 
 /// Where roads cross at different heights: what is not on the ground.
-fn stretches(network: &RoadNetwork, window: &MapSquare, covers: &[Vec<Cover>]) -> Vec<Stretch> {
+fn stretches(network: &RoadNetwork, window: &MapCut, covers: &[Vec<Cover>]) -> Vec<Stretch> {
     let ego = EgoRoad::find(network, window, covers);
     let mut out = Vec::new();
     for column in covers.iter().filter(|c| c.len() > 1) {
@@ -263,10 +264,12 @@ struct EgoRoad {
 }
 
 impl EgoRoad {
-    fn find(network: &RoadNetwork, window: &MapSquare, covers: &[Vec<Cover>]) -> Option<Self> {
-        let [x, y] = Window::column_at(0.0, 0.0)?;
+    fn find(network: &RoadNetwork, window: &MapCut, covers: &[Vec<Cover>]) -> Option<Self> {
+        let extent = window.extent;
+        let [x, y] = extent.column_at(0.0, 0.0)?;
         // A joint may leave the very column empty.
-        let around = (x - 1..=x + 1).flat_map(|x| (y - 1..=y + 1).map(move |y| x * Window::NY + y));
+        let near = |n: usize, most: usize| n.saturating_sub(1)..=(n + 1).min(most - 1);
+        let around = near(x, extent.nx()).flat_map(|x| near(y, extent.ny()).map(move |y| extent.index(x, y)));
         let mut here: Vec<&Cover> = around.flat_map(|c| &covers[c]).collect();
         // The one that runs most as the ego looks; the lower one of two that run alike.
         let alike = |c: &Cover| {

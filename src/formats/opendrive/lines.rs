@@ -170,11 +170,11 @@ impl Follower {
 }
 
 /// The parts of a line inside the square of half width `half_m` around the origin, each thinned.
-pub(super) fn clipped(points: &[DVec2], half_m: f64) -> Vec<Vec<DVec2>> {
+pub(super) fn clipped(points: &[DVec2], corners_m: (DVec2, DVec2)) -> Vec<Vec<DVec2>> {
     let mut parts: Vec<Vec<DVec2>> = Vec::new();
     let mut open = false;
     for ends in points.windows(2) {
-        let Some((a, b)) = clip_segment(ends[0], ends[1], half_m) else {
+        let Some((a, b)) = clip_segment(ends[0], ends[1], corners_m) else {
             open = false;
             continue;
         };
@@ -188,12 +188,12 @@ pub(super) fn clipped(points: &[DVec2], half_m: f64) -> Vec<Vec<DVec2>> {
     parts.iter().map(|part| thinned(part)).collect()
 }
 
-/// Liang and Barsky 1984: the part of a segment inside the square, `None` if there is none.
-fn clip_segment(a: DVec2, b: DVec2, half_m: f64) -> Option<(DVec2, DVec2)> {
+/// Liang and Barsky 1984: the part of a segment inside the rectangle, `None` if there is none.
+fn clip_segment(a: DVec2, b: DVec2, (low, high): (DVec2, DVec2)) -> Option<(DVec2, DVec2)> {
     let d = b - a;
     let (mut from, mut to) = (0.0f64, 1.0f64);
     for axis in 0..2 {
-        for (rate, room) in [(-d[axis], a[axis] + half_m), (d[axis], half_m - a[axis])] {
+        for (rate, room) in [(-d[axis], a[axis] - low[axis]), (d[axis], high[axis] - a[axis])] {
             if rate == 0.0 && room < 0.0 || !room.is_finite() {
                 return None;
             }
@@ -254,18 +254,24 @@ mod tests {
     fn lines_are_cut_to_the_window_and_thinned() {
         let through: Vec<DVec2> = (-60..=60).map(|x| DVec2::new(f64::from(x), 1.0)).collect();
         assert_eq!(
-            clipped(&through, 40.0),
+            clipped(&through, (DVec2::splat(-40.0), DVec2::splat(40.0))),
             [[DVec2::new(-40.0, 1.0), DVec2::new(40.0, 1.0)]]
         );
         let out_and_in = [[0.0, 0.0], [50.0, 0.0], [50.0, 10.0], [0.0, 10.0]].map(DVec2::from_array);
-        let parts = clipped(&out_and_in, 40.0);
+        let parts = clipped(&out_and_in, (DVec2::splat(-40.0), DVec2::splat(40.0)));
         assert_eq!(parts.len(), 2);
         assert_eq!(parts[1], [DVec2::new(40.0, 10.0), DVec2::new(0.0, 10.0)]);
         let circle: Vec<DVec2> = (0..=200)
             .map(|i| DVec2::from_angle(f64::from(i) / 50.0) * 10.0)
             .collect();
-        let thin = &clipped(&circle, 40.0)[0];
+        let thin = &clipped(&circle, (DVec2::splat(-40.0), DVec2::splat(40.0)))[0];
         assert!(thin.len() < 60 && thin.len() > 10, "{}", thin.len());
-        assert!(clipped(&[DVec2::NAN, DVec2::ZERO, DVec2::INFINITY], 40.0).is_empty());
+        assert!(
+            clipped(
+                &[DVec2::NAN, DVec2::ZERO, DVec2::INFINITY],
+                (DVec2::splat(-40.0), DVec2::splat(40.0))
+            )
+            .is_empty()
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! The ground between and beyond roads: a membrane stretched over the road surfaces, level at the edges of the window.
 
-use scene::{Extent, Relief, Window};
+use scene::{Extent, Relief};
 
 /// Heights below this are rounding, m.
 const TINY_M: f64 = 1e-4;
@@ -12,7 +12,7 @@ const OVER: f64 = 1.6;
 /// Relief over known heights per column (`None` where nothing is known), relative to the ground under the ego vehicle.
 /// Flat if nothing is known or all known heights are the same.
 /// Also the height of that ground in the frame of the known heights, m.
-pub(super) fn over(known_m: &[Option<f64>]) -> (Relief, f64) {
+pub(super) fn over(extent: Extent, known_m: &[Option<f64>]) -> (Relief, f64) {
     let (low, high) = known_m
         .iter()
         .flatten()
@@ -22,17 +22,21 @@ pub(super) fn over(known_m: &[Option<f64>]) -> (Relief, f64) {
     if known_m.iter().all(Option::is_none) || high - low <= TINY_M {
         return (Relief::FLAT, if low.is_finite() { low } else { 0.0 });
     }
-    let heights = membrane(Window::NX, Window::NY, known_m);
-    let at = |x: usize, y: usize| heights[x * Window::NY + y];
-    let (x, y) = (Window::NX / 2, Window::NY / 2);
-    let ego = 0.25 * (at(x - 1, y - 1) + at(x, y - 1) + at(x - 1, y) + at(x, y));
+    let heights = membrane(extent.nx(), extent.ny(), known_m);
+    // The ego vehicle stands on the corner of four columns; at the rim of a map beside it, on the nearest.
+    let at = |x: i64, y: i64| {
+        let place = |n: i64, from: i32, most: usize| (n - i64::from(from)).clamp(0, most as i64 - 1) as usize;
+        let [from_x, from_y] = extent.from();
+        heights[extent.index(place(x, from_x, extent.nx()), place(y, from_y, extent.ny()))]
+    };
+    let ego = 0.25 * (at(-1, -1) + at(0, -1) + at(-1, 0) + at(0, 0));
     let cut = |m: &f64| {
         let m = m - ego;
         let m = if m.abs() < TINY_M { 0.0 } else { m };
         m.clamp(f64::from(-Relief::LIMIT_M), f64::from(Relief::LIMIT_M)) as f32
     };
     // All finite and cut: nothing that is refused.
-    let relief = Relief::from_heights(Extent::WINDOW, heights.iter().map(cut).collect()).unwrap_or_default();
+    let relief = Relief::from_heights(extent, heights.iter().map(cut).collect()).unwrap_or_default();
     (relief, ego)
 }
 
@@ -78,6 +82,7 @@ fn membrane(nx: usize, ny: usize, known: &[Option<f64>]) -> Vec<f64> {
 mod tests {
     use super::*;
     use glam::DVec2;
+    use scene::Window;
 
     fn known(height: impl Fn(DVec2) -> Option<f64>) -> Vec<Option<f64>> {
         let at = |c: usize| height(Window::center(c / Window::NY, c % Window::NY, 0).truncate());
@@ -86,18 +91,25 @@ mod tests {
 
     #[test]
     fn level_ground_stays_flat() {
-        assert!(over(&vec![None; Window::COLUMNS]).0.is_flat());
-        assert!(over(&known(|p| (p.y.abs() < 4.0).then_some(17.25))).0.is_flat());
+        assert!(over(Extent::WINDOW, &vec![None; Window::COLUMNS]).0.is_flat());
+        assert!(
+            over(Extent::WINDOW, &known(|p| (p.y.abs() < 4.0).then_some(17.25)))
+                .0
+                .is_flat()
+        );
     }
 
     #[test]
     fn banks_join_two_roads_and_level_off_beyond() {
         // One road at the ego, another 20 m to the left and 3 m higher.
-        let (relief, _) = over(&known(|p| match p.y {
-            y if y.abs() < 4.0 => Some(8.0),
-            y if (20.0..28.0).contains(&y) => Some(11.0),
-            _ => None,
-        }));
+        let (relief, _) = over(
+            Extent::WINDOW,
+            &known(|p| match p.y {
+                y if y.abs() < 4.0 => Some(8.0),
+                y if (20.0..28.0).contains(&y) => Some(11.0),
+                _ => None,
+            }),
+        );
         let at = |y: f64| relief.height_m(DVec2::new(5.0, y));
         assert!(at(0.0).abs() < 1e-5 && (at(24.0) - 3.0).abs() < 1e-5);
         assert!((at(12.0) - 1.5).abs() < 0.1, "half way up: {}", at(12.0));
@@ -117,7 +129,10 @@ mod tests {
 
     #[test]
     fn a_grade_runs_through() {
-        let (relief, _) = over(&known(|p| (p.y.abs() < 4.0).then_some(100.0 + 0.06 * p.x)));
+        let (relief, _) = over(
+            Extent::WINDOW,
+            &known(|p| (p.y.abs() < 4.0).then_some(100.0 + 0.06 * p.x)),
+        );
         for x in [-30.0, 0.0, 33.0] {
             assert!((relief.height_m(DVec2::new(x, 1.0)) - 0.06 * x).abs() < 1e-4);
             let beside = relief.height_m(DVec2::new(x, 12.0));
@@ -127,9 +142,10 @@ mod tests {
 
     #[test]
     fn heights_beyond_the_limit_are_cut() {
-        let (relief, _) = over(&known(|p| {
-            (p.y.abs() < 4.0).then_some(if p.x > 10.0 { 1e4 } else { 0.0 })
-        }));
+        let (relief, _) = over(
+            Extent::WINDOW,
+            &known(|p| (p.y.abs() < 4.0).then_some(if p.x > 10.0 { 1e4 } else { 0.0 })),
+        );
         assert_eq!(relief.height_m(DVec2::new(30.0, 0.0)), f64::from(Relief::LIMIT_M));
     }
 }

@@ -3,13 +3,12 @@
 use glam::DVec2;
 
 use super::Road;
-use super::layout::MapSquare;
-use super::lines::clipped;
+use super::layout::MapCut;
 use super::objects::{Copy, ObjectKind, Repeat, RoadObject, shoelace_m2};
 use super::standing::Standing;
 use super::xml::{Skipped, count};
 use scene::background::{Building, Facade, Line, LineKind, Post, PostKind, Roof, Shrubs, Tree};
-use scene::{BevLayer, BevLayout, Form, Window};
+use scene::{BevLayer, BevLayout, Form};
 
 /// Things of one window, at most.
 const MOST_THINGS: usize = 4000;
@@ -26,7 +25,7 @@ const SHRUBS_PER_M2: f64 = 0.6;
 
 /// Things while they are collected.
 pub(super) struct Things<'a> {
-    pub window: MapSquare,
+    pub window: MapCut,
     pub layout: &'a BevLayout,
     pub forms: Vec<Form>,
     pub budget: usize,
@@ -60,7 +59,7 @@ impl Things<'_> {
             let reach_m = copy.size_m[0].hypot(copy.size_m[1]).clamp(5.0, 200.0);
             let outlined = !object.outlines.is_empty();
             // Written so that NaN is left out too. Outlines may reach far from their object's place.
-            if !(outlined || at_m.abs().max_element() < MapSquare::HALF_M + reach_m) {
+            if !(outlined || self.window.holds(at_m, reach_m)) {
                 return;
             }
             let forms = forms(road, object, standing, copy, self.window);
@@ -69,7 +68,7 @@ impl Things<'_> {
                 return count(skipped, format!("{} without a usable size", standing.name()));
             }
             for form in forms {
-                if !MapSquare::holds(&form) {
+                if !reaches_in(&self.window, &form) {
                     continue;
                 }
                 if matches!(standing, Standing::Signal(_)) && copy.lift_m > OVERHEAD_M && self.over_road(at_m)
@@ -94,7 +93,10 @@ impl Things<'_> {
     }
 
     fn over_road(&self, at_m: DVec2) -> bool {
-        Window::column_at(at_m.x, at_m.y).is_some_and(|[x, y]| self.layout.has(BevLayer::DrivableArea, x, y))
+        self.window
+            .extent
+            .column_at(at_m.x, at_m.y)
+            .is_some_and(|[x, y]| self.layout.has(BevLayer::DrivableArea, x, y))
     }
 
     /// One thing over a whole row: a line that follows the road.
@@ -141,7 +143,8 @@ impl Things<'_> {
                 _ => runs.push(Vec::new()),
             }
         }
-        for points_m in runs.iter().flat_map(|run| clipped(run, MapSquare::HALF_M)) {
+        let window = self.window;
+        for points_m in runs.iter().flat_map(|run| window.clipped(run, 0.0)) {
             let line = line(kind, points_m, first.height_m, first.size_m[1]);
             self.add(Form::Line(line), skipped);
         }
@@ -195,7 +198,7 @@ fn line(kind: LineKind, points_m: Vec<DVec2>, height_m: f64, width_m: f64) -> Li
 }
 
 /// The forms of one copy in the ego frame; none if its size tells nothing.
-fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, window: MapSquare) -> Vec<Form> {
+fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, window: MapCut) -> Vec<Form> {
     let base = road.reference.at(copy.s_m);
     let position_m = window.to_ego(base.offset(copy.t_m));
     let heading_rad = window.heading_to_ego(base.heading_rad);
@@ -308,7 +311,7 @@ fn forms(road: &Road, object: &RoadObject, standing: Standing, copy: &Copy, wind
 }
 
 /// A wall, fence or rail: along the longer side of a slim outline, around a wide one, else its length along its heading.
-fn lines(road: &Road, object: &RoadObject, kind: LineKind, copy: &Copy, window: MapSquare) -> Vec<Form> {
+fn lines(road: &Road, object: &RoadObject, kind: LineKind, copy: &Copy, window: MapCut) -> Vec<Form> {
     let mut out = Vec::new();
     for area in object.areas_m(&road.reference, copy) {
         let area: Vec<DVec2> = area.into_iter().map(|p| window.to_ego(p)).collect();
@@ -323,18 +326,15 @@ fn lines(road: &Road, object: &RoadObject, kind: LineKind, copy: &Copy, window: 
             Some((end, width_m)) => (vec![middle(end), middle(end + 2)], width_m),
             None => (area.iter().chain(area.first()).copied().collect(), 0.0),
         };
-        for points_m in clipped(&points_m, MapSquare::HALF_M + 20.0) {
+        for points_m in window.clipped(&points_m, 20.0) {
             out.push(Form::Line(line(kind, points_m, copy.height_m, width_m)));
         }
     }
     out
 }
 
-impl MapSquare {
-    /// True if a form reaches into the window.
-    fn holds(form: &Form) -> bool {
-        let (min, max) = form.bounds_m();
-        let half = Window::MAX_M[0];
-        max.min_element() > -half && min.max_element() < half
-    }
+/// True if a form reaches into the map.
+fn reaches_in(window: &MapCut, form: &Form) -> bool {
+    let (min, max) = form.bounds_m();
+    window.meets(min, max)
 }

@@ -1,6 +1,6 @@
 //! Small gaps in drivable ground, closed. Grids are `[x][y]`, one flag per cell.
 
-use scene::Window;
+use scene::Extent;
 
 const SIDES: [(i64, i64); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
 const AROUND: [(i64, i64); 9] = [
@@ -20,17 +20,22 @@ const LARGEST_HOLE: usize = 60;
 
 /// Morphological closing by one cell. Cells that are `named` by a lane of the file (a median, a kerb) stay
 /// what they are.
-pub(super) fn close_gaps(drivable: &mut [bool], named: &[bool]) {
+pub(super) fn close_gaps(extent: Extent, drivable: &mut [bool], named: &[bool]) {
     let grown: Vec<bool> = (0..drivable.len())
-        .map(|i| neighbours(i, &AROUND).flatten().any(|n| drivable[n]))
+        .map(|i| neighbours(extent, i, &AROUND).flatten().any(|n| drivable[n]))
         .collect();
     for i in 0..drivable.len() {
-        drivable[i] |= !named[i] && neighbours(i, &AROUND).flatten().all(|n| grown[n]);
+        drivable[i] |= !named[i] && neighbours(extent, i, &AROUND).flatten().all(|n| grown[n]);
     }
 }
 
 /// Paves the small patches that the connecting roads of a junction leave between them.
-pub(super) fn fill_junction_holes(drivable: &mut [bool], named: &[bool], in_junction: &[bool]) {
+pub(super) fn fill_junction_holes(
+    extent: Extent,
+    drivable: &mut [bool],
+    named: &[bool],
+    in_junction: &[bool],
+) {
     let mut seen = drivable.to_vec();
     for first in 0..drivable.len() {
         if std::mem::replace(&mut seen[first], true) {
@@ -42,7 +47,7 @@ pub(super) fn fill_junction_holes(drivable: &mut [bool], named: &[bool], in_junc
             let cell = patch[next];
             next += 1;
             stays |= named[cell];
-            for neighbour in neighbours(cell, &SIDES) {
+            for neighbour in neighbours(extent, cell, &SIDES) {
                 match neighbour {
                     None => stays = true, // cut by the window: its size is not known
                     Some(n) if drivable[n] => at_junction |= in_junction[n],
@@ -60,19 +65,20 @@ pub(super) fn fill_junction_holes(drivable: &mut [bool], named: &[bool], in_junc
     }
 }
 
-/// The cells at these steps from one; `None` for those outside of the window.
-fn neighbours(cell: usize, steps: &[(i64, i64)]) -> impl Iterator<Item = Option<usize>> {
-    let (x, y) = ((cell / Window::NY) as i64, (cell % Window::NY) as i64);
+/// The cells at these steps from one; `None` for those outside of the map.
+fn neighbours(extent: Extent, cell: usize, steps: &[(i64, i64)]) -> impl Iterator<Item = Option<usize>> {
+    let [x, y] = extent.column(cell).map(|n| n as i64);
     steps.iter().map(move |(dx, dy)| {
         let (x, y) = (x + dx, y + dy);
-        let inside = (0..Window::NX as i64).contains(&x) && (0..Window::NY as i64).contains(&y);
-        inside.then(|| x as usize * Window::NY + y as usize)
+        let inside = (0..extent.nx() as i64).contains(&x) && (0..extent.ny() as i64).contains(&y);
+        inside.then(|| extent.index(x as usize, y as usize))
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use scene::Window;
 
     fn at(x: usize, y: usize) -> usize {
         x * Window::NY + y
@@ -88,7 +94,7 @@ mod tests {
             }
             named[at(x, 50)] = true;
         }
-        close_gaps(&mut drivable, &named);
+        close_gaps(Extent::WINDOW, &mut drivable, &named);
         assert!(
             (0..Window::NX).all(|x| drivable[at(x, 20)]),
             "a crack closes, to the edge of the window"
@@ -109,7 +115,12 @@ mod tests {
         hole(&mut drivable, 100, 20); // an island
         hole(&mut drivable, 195, 5); // cut by the window
         (at(50, 0)..Window::COLUMNS).for_each(|i| in_junction[i] = true);
-        fill_junction_holes(&mut drivable, &vec![false; Window::COLUMNS], &in_junction);
+        fill_junction_holes(
+            Extent::WINDOW,
+            &mut drivable,
+            &vec![false; Window::COLUMNS],
+            &in_junction,
+        );
         assert_eq!(
             [22, 62, 110, 197].map(|x| drivable[at(x, 52)]),
             [false, true, false, false]

@@ -38,7 +38,9 @@ impl Apng {
         encoder.set_animated(frames, 0).map_err(FormatError::new)?;
         // Milliseconds: 29.97 a second is 33.
         let delay_ms = (1000.0 / rate_hz).round().clamp(1.0, 60_000.0) as u16;
-        encoder.set_frame_delay(delay_ms, 1000).map_err(FormatError::new)?;
+        encoder
+            .set_frame_delay(delay_ms, 1000)
+            .map_err(FormatError::new)?;
         let writer = encoder.write_header().map_err(FormatError::new)?;
         Ok(Self { written, writer })
     }

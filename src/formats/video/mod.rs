@@ -155,7 +155,10 @@ mod tests {
         let mut reader = png::Decoder::new(Cursor::new(written(VideoKind::Apng)))
             .read_info()
             .expect("a PNG");
-        assert_eq!(reader.info().animation_control().map(|a| a.num_frames), Some(FRAMES));
+        assert_eq!(
+            reader.info().animation_control().map(|a| a.num_frames),
+            Some(FRAMES)
+        );
         for i in 0..FRAMES {
             let mut pixels = vec![0; SIZE[0] as usize * SIZE[1] as usize * 4];
             reader.next_frame(&mut pixels).expect("a frame");
@@ -165,7 +168,10 @@ mod tests {
         let len = bytes.len() as u64;
         let movie = ::mp4::Mp4Reader::read_header(Cursor::new(bytes), len).expect("an MP4");
         let track = movie.tracks().values().next().expect("a track");
-        assert_eq!((u32::from(track.width()), u32::from(track.height())), (SIZE[0], SIZE[1]));
+        assert_eq!(
+            (u32::from(track.width()), u32::from(track.height())),
+            (SIZE[0], SIZE[1])
+        );
         assert_eq!((track.sample_count(), track.frame_rate().round()), (FRAMES, 10.0));
         assert_eq!(movie.duration().as_millis(), 700);
     }
@@ -185,8 +191,13 @@ mod tests {
         }
         let mut writer = VideoWriter::new(VideoKind::Gif, SIZE, 2, 10.0).expect("small");
         assert!(writer.frame(&[0; 12]).is_err());
-        assert_eq!(VideoKind::of_path(Path::new("a.APNG")).expect("known"), VideoKind::Apng);
-        let error = VideoKind::of_path(Path::new("a.avi")).expect_err("unknown").to_string();
+        assert_eq!(
+            VideoKind::of_path(Path::new("a.APNG")).expect("known"),
+            VideoKind::Apng
+        );
+        let error = VideoKind::of_path(Path::new("a.avi"))
+            .expect_err("unknown")
+            .to_string();
         assert!(error.contains(".gif, .png (an APNG) or .mp4"), "{error}");
     }
 }

@@ -43,8 +43,7 @@ impl Mp4 {
             .intra_frame_period(IntraFramePeriod::from_num_frames((rate_hz * 2.0).max(1.0) as u32))
             .skip_frames(false)
             .num_threads(1); // more would give other bytes
-        let encoder =
-            H264::with_api_config(OpenH264API::from_source(), config).map_err(FormatError::new)?;
+        let encoder = H264::with_api_config(OpenH264API::from_source(), config).map_err(FormatError::new)?;
         Ok(Self {
             size,
             duration: (f64::from(TIMESCALE) / rate_hz).round() as u32,
@@ -63,8 +62,7 @@ fn begin(size: [u32; 2], sps: &[u8], pps: &[u8]) -> Result<Mp4Writer<Cursor<Vec<
         compatible_brands: vec![brand(b"isom"), brand(b"iso2"), brand(b"avc1"), brand(b"mp41")],
         timescale: TIMESCALE,
     };
-    let mut file =
-        Mp4Writer::write_start(Cursor::new(Vec::new()), &config).map_err(FormatError::new)?;
+    let mut file = Mp4Writer::write_start(Cursor::new(Vec::new()), &config).map_err(FormatError::new)?;
     let [width, height] = size.map(|n| n as u16);
     let track = TrackConfig {
         track_type: TrackType::Video,

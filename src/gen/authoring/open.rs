@@ -7,11 +7,11 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use super::scenery_around;
+use super::{large, scenery_around};
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
 use formats::{atomic, input, loom};
-use scene::{Frame, Scene, SensorRig, draft};
+use scene::{Extent, Frame, Scene, SensorRig, draft};
 use world::scenery::{self, Setting, Side, Style};
 use world::terrain::Terrain;
 use world::voxelize::{Vertical, complete};
@@ -68,12 +68,48 @@ pub struct Placement {
     pub at_m: Option<DVec2>,
     /// Ego heading in the file's frame, rad; none means along the lane.
     pub heading_rad: Option<f64>,
+    /// Length along the heading and width of the map, m; none means the networks' window.
+    pub size_m: Option<[f64; 2]>,
     /// Fixes the traffic.
     pub seed: u64,
     /// No vehicles and people.
     pub empty: bool,
     /// Nothing beside the road but what the file puts there.
     pub bare: bool,
+}
+
+/// A long map begins this far behind the ego vehicle, m.
+const BEHIND_M: f64 = 60.0;
+
+impl Placement {
+    /// Largest side of a map, m.
+    pub const MAX_SIZE_M: f64 = 3200.0;
+
+    /// The map in the ego frame: around the ego vehicle, most of a long one ahead of it.
+    fn extent(&self) -> Extent {
+        let Some([length_m, width_m]) = self.size_m else {
+            return Extent::WINDOW;
+        };
+        let columns = |m: f64| (m * 2.5).round().clamp(1.0, Extent::MAX_SIDE as f64) as usize;
+        let (nx, ny) = (columns(length_m), columns(width_m));
+        let behind = columns((length_m / 2.0).min(BEHIND_M)) as i32;
+        Extent::new([-behind, -(ny as i32 / 2)], [nx, ny]).unwrap_or(Extent::WINDOW)
+    }
+
+    /// What is wrong with it, in one line.
+    pub fn problem(&self) -> Option<String> {
+        let [length_m, width_m] = self.size_m?;
+        // Written so that NaN fails too.
+        let sound = |m: f64| (20.0..=Self::MAX_SIZE_M).contains(&m);
+        let fits = length_m * width_m * 6.25 <= Extent::MAX_COLUMNS as f64;
+        (!(sound(length_m) && sound(width_m) && fits)).then(|| {
+            format!(
+                "a map of {length_m} x {width_m} m, expected sides of 20 to {} m and at most {:.1} km²",
+                Self::MAX_SIZE_M,
+                Extent::MAX_COLUMNS as f64 / 6.25e6
+            )
+        })
+    }
 }
 
 /// A scene made from a foreign file, and what was found in it.
@@ -124,7 +160,8 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         None => network.suggest_pose(),
     };
     let heading = placement.heading_rad.unwrap_or(lane_heading);
-    let import = network.to_layout(at, heading);
+    let extent = placement.extent();
+    let import = network.to_layout_over(extent, at, heading);
     let spec = if placement.empty {
         traffic::TrafficSpec::EMPTY
     } else {
@@ -140,17 +177,30 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         scene.background = Arc::new(import.background);
         scene
     } else {
-        let background = match things_of_file < ENOUGH_THINGS {
-            true => {
-                let drawn = scenery::background(&import.layout, &boxes, seed);
-                scenery_around::merged(scene::Extent::WINDOW, import.background, &drawn)
-            }
-            false => import.background,
-        };
-        of_world(
-            &World::with_background(import.layout, boxes, background, seed),
-            name,
-        )
+        let is_bare = things_of_file < ENOUGH_THINGS;
+        if extent == Extent::WINDOW {
+            let background = match is_bare {
+                true => {
+                    let drawn = scenery::background(&import.layout, &boxes, seed);
+                    scenery_around::merged(extent, import.background, &drawn)
+                }
+                false => import.background,
+            };
+            of_world(
+                &World::with_background(import.layout, boxes, background, seed),
+                name,
+            )
+        } else {
+            let background = match is_bare {
+                true => large::scenery_over(&import.layout, &boxes, import.background, seed),
+                false => import.background,
+            };
+            let occupancy = large::occupancy_over(&import.layout, &boxes, &background, seed);
+            let frame = Frame::new(import.layout, boxes, occupancy);
+            let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), seed);
+            scene.background = Arc::new(background);
+            scene
+        }
     };
     scene.seed = seed;
     Imported {

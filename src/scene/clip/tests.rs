@@ -187,11 +187,11 @@ fn a_moved_object_moves_at_one_moment_from_there_on_or_always() {
 #[test]
 fn a_removed_object_is_gone_and_a_resized_one_is_a_draft() {
     let mut gone = scene().at(1.0);
-    gone.change(Scope::WholeTrack, |f| drop(f.boxes.remove(&BoxId(7))));
+    gone.change(Scope::WholeTrack, |f| f.boxes.remove(&BoxId(7)));
     assert!(gone.clip().tracks.is_empty() && gone.at(3.0).frame().boxes.len() == 1);
     assert_eq!(gone.at(3.0).frame().occupancy, gone.canvas().occupancy);
     let mut leaves = scene().at(1.0);
-    leaves.change(Scope::FromHereOn, |f| drop(f.boxes.remove(&BoxId(7))));
+    leaves.change(Scope::FromHereOn, |f| f.boxes.remove(&BoxId(7)));
     assert!(leaves.at(0.9).frame().boxes.contains_key(&BoxId(7)));
     assert!(!leaves.at(1.0).frame().boxes.contains_key(&BoxId(7)));
     // Its id is not free.

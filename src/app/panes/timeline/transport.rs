@@ -5,7 +5,7 @@ use egui::{DragValue, RichText, Ui};
 use scene::{Clip, Scene, Scope};
 
 use super::motion_menu;
-use crate::command::{Command, TimeCommand};
+use crate::command::{Command, FileCommand, TimeCommand};
 use crate::playback::Playback;
 use crate::state::UiState;
 use editor::Edit;
@@ -123,6 +123,13 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
             .on_hover_text("The 3D view goes along with the ego vehicle");
         ui.separator();
         motion_menu::menu(ui, scene, state, commands);
+        if ui
+            .button("Save clip…")
+            .on_hover_text("Writes the 3D view of all that is played: .mp4, .gif or .png")
+            .clicked()
+        {
+            commands.push(Command::File(FileCommand::SaveClip));
+        }
     });
 }
 

@@ -122,6 +122,9 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Time, "time_out", "Play up to here", "", || {
         Command::Time(TimeCommand::Out)
     }),
+    action(Time, "save_clip", "Save clip as moving pictures…", "", || {
+        Command::File(FileCommand::SaveClip)
+    }),
     action(Time, "timeline", "Timeline", "", || {
         Command::View(ViewCommand::TogglePane(PaneId::TIMELINE))
     }),
