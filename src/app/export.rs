@@ -142,7 +142,13 @@ pub fn view_camera(scene: &Scene, name: &str) -> anyhow::Result<ViewCamera> {
             .map(ViewCamera::through)
     };
     ViewPreset::from_name(name)
-        .map(ViewCamera::preset)
+        .map(|preset| {
+            let mut camera = ViewCamera::preset_over(preset, scene.frame().extent());
+            if preset != ViewPreset::Top {
+                camera.go_along(&scene::Pose::IDENTITY, &scene.frame().world_from_ego);
+            }
+            camera
+        })
         .or_else(of_rig)
         .ok_or_else(|| {
             let cameras: Vec<&str> = scene.rig.cameras.iter().map(|c| c.name.as_str()).collect();

@@ -9,6 +9,9 @@ use scene::draw::Draw;
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, PolylineKind, SceneBox, Window};
 
+/// Nothing stands nearer than this to the rim of the map, m.
+const RIM_M: f64 = 0.5;
+
 /// How much of everything, 1 = as on an ordinary city street.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrafficSpec {
@@ -48,7 +51,7 @@ pub fn place(layout: &BevLayout, seed: u64, spec: &TrafficSpec) -> BTreeMap<BoxI
     let mut p = Placer {
         layout,
         draw: Draw::new(seed, "traffic"),
-        taken: vec![false; Window::COLUMNS],
+        taken: vec![false; layout.extent().columns()],
         clearance_m: 0.35,
         boxes: BTreeMap::new(),
     };
@@ -71,8 +74,8 @@ impl Placer<'_> {
             velocity_mps: DVec2::ZERO,
             label: BoxLabel::default(),
         };
-        let taken = &mut self.taken;
-        box_cells(Extent::WINDOW, &ego, 0.0, |x, y| taken[x * Window::NY + y] = true);
+        let (extent, taken) = (self.layout.extent(), &mut self.taken);
+        box_cells(extent, &ego, 0.0, |x, y| taken[extent.index(x, y)] = true);
     }
 
     /// Adds the box unless it leaves the grid, overlaps another or `on` refuses a cell of it.
@@ -102,19 +105,20 @@ impl Placer<'_> {
             velocity_mps: DVec2::from_angle(yaw_rad) * speed,
             label: BoxLabel::default(),
         };
-        let inside = b.footprint().iter().all(|c| c.abs().max_element() < 39.5);
+        let extent = self.layout.extent();
+        let inside = b.footprint().iter().all(|c| self.on_map(*c, RIM_M));
         // Where the ground leaves the grid, what stands on it would not be seen.
         let (low, high) = (b.center_m.z - size_m.z / 2.0, b.center_m.z + size_m.z / 2.0);
-        if !inside || low < Window::MIN_M[2] || high > Window::MAX_M[2] {
+        if !inside || low < Extent::BOTTOM_M || high > Extent::TOP_M {
             return false;
         }
         let mut free = true;
         let mut cells = Vec::new();
-        box_cells(Extent::WINDOW, &b, self.clearance_m, |x, y| {
-            free &= !self.taken[x * Window::NY + y];
-            cells.push(x * Window::NY + y);
+        box_cells(extent, &b, self.clearance_m, |x, y| {
+            free &= !self.taken[extent.index(x, y)];
+            cells.push(extent.index(x, y));
         });
-        box_cells(Extent::WINDOW, &b, 0.0, |x, y| free &= on(self.layout.cell(x, y)));
+        box_cells(extent, &b, 0.0, |x, y| free &= on(self.layout.cell(x, y)));
         if free {
             cells.into_iter().for_each(|c| self.taken[c] = true);
             self.boxes.insert(b.id, b);
@@ -195,9 +199,7 @@ impl Placer<'_> {
             }
         }
         // In car parks: rows of places at right angles to the nearest road.
-        let cells: Vec<usize> = (0..Window::COLUMNS)
-            .filter(|&c| layout.cells()[c] & lot != 0)
-            .collect();
+        let cells = self.cells_with(lot);
         self.parked_rows(&cells, share);
     }
 
@@ -208,7 +210,8 @@ impl Placer<'_> {
         let (Some(first), lot) = (cells.first(), BevLayer::CarparkArea.bit()) else {
             return;
         };
-        let center = |c: usize| Window::center(c / Window::NY, c % Window::NY, 0).truncate();
+        let extent = self.layout.extent();
+        let center = |c: usize| center_m(extent, c);
         let middle = cells.iter().map(|c| center(*c)).sum::<DVec2>() / cells.len() as f64;
         let along = DVec2::from_angle(self.heading_near(middle).unwrap_or(0.0));
         // Rows are counted from one corner of the lot, so that they run the whole of it.
@@ -222,7 +225,7 @@ impl Placer<'_> {
                     let (taken, jitter) = (self.draw.chance(share), self.draw.range(-0.2, 0.2));
                     let (nose_in, turn) = (self.draw.chance(0.7), self.draw.range(-0.05, 0.05));
                     let at = origin + along * (f64::from(bay) * BAY_M.x) + along.perp() * (v + jitter);
-                    if !taken || at.abs().max_element() > 39.0 {
+                    if !taken || !self.on_map(at, 1.0) {
                         continue;
                     }
                     let facing = if nose_in == (half > 0.0) { -1.0 } else { 1.0 };
@@ -244,7 +247,7 @@ impl Placer<'_> {
             return;
         }
         let c = cells[self.draw.below(cells.len())];
-        let start = Window::center(c / Window::NY, c % Window::NY, 0).truncate();
+        let start = center_m(self.layout.extent(), c);
         let yaw = self.heading_near(start).unwrap_or(0.0);
         let d = DVec2::from_angle(yaw);
         let class = if self.draw.chance(0.6) {
@@ -284,7 +287,9 @@ impl Placer<'_> {
         if cells.is_empty() {
             return;
         }
-        let busy = (self.draw.unit().powi(2) * 40.0 * amount) as usize + 1;
+        // As many on each 80 m of a long road.
+        let windows = (self.layout.extent().columns() as f64 / Window::COLUMNS as f64).max(1.0);
+        let busy = (self.draw.unit().powi(2) * 40.0 * amount * windows) as usize + 1;
         // Now and then a crowd: an event, a stop, a school.
         let crowd = if self.draw.chance(0.12 * amount) {
             12 + self.draw.below(30)
@@ -294,7 +299,7 @@ impl Placer<'_> {
         let centre = cells[self.draw.below(cells.len())];
         for i in 0..busy + crowd {
             let any = cells[self.draw.below(cells.len())];
-            let p = |c: usize| Window::center(c / Window::NY, c % Window::NY, 0).truncate();
+            let p = |c: usize| center_m(self.layout.extent(), c);
             let spread = DVec2::from_angle(self.draw.range(0.0, 6.3)) * self.draw.range(0.3, 6.5);
             let p = if i < busy { p(any) } else { p(centre) + spread };
             let jitter = DVec2::new(self.draw.range(-0.2, 0.2), self.draw.range(-0.2, 0.2));
@@ -310,9 +315,18 @@ impl Placer<'_> {
         }
     }
 
+    /// True if a point lies on the map and farther than this from its rim.
+    fn on_map(&self, p: DVec2, rim_m: f64) -> bool {
+        let extent = self.layout.extent();
+        let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
+        (p - low).min_element() > rim_m && (high - p).min_element() > rim_m
+    }
+
     fn cells_with(&self, bits: u32) -> Vec<usize> {
-        (0..Window::COLUMNS)
-            .filter(|&c| self.layout.cells()[c] & bits != 0)
+        let cells = self.layout.cells().iter().enumerate();
+        cells
+            .filter(|(_, cell)| **cell & bits != 0)
+            .map(|(c, _)| c)
             .collect()
     }
 
@@ -327,6 +341,12 @@ impl Placer<'_> {
             segments.min_by(|a, b| a[0].distance_squared(p).total_cmp(&b[0].distance_squared(p)))?;
         Some((nearest[1] - nearest[0]).to_angle())
     }
+}
+
+/// Centre of a cell, m.
+fn center_m(extent: Extent, cell: usize) -> DVec2 {
+    let [x, y] = extent.column(cell);
+    extent.center(x, y, 0).truncate()
 }
 
 #[cfg(test)]
