@@ -25,7 +25,7 @@ fn main() {
         let field = net.field(&grid).expect("a finite field");
         println!("world {seed}: {} voxels", field.keys.len());
         timing::time("field", 15, || net.field(&grid).map_or(0, |f| f.keys.len()));
-        let rays = learned::rays(&rig.lidars[0], 0.0);
+        let rays = learned::rays(&rig.lidars[0], glam::DVec3::ZERO);
         timing::time("rays", 15, || {
             let answers = net.shoot(&field, &rays, Sampling::Prior);
             let answers = answers.expect("the processor never fails");

@@ -113,7 +113,7 @@ fn main() {
         };
         with_car.set(x, y, z, label);
     }
-    let mut caster = Caster::new(&grid, pattern, 0.0, None);
+    let mut caster = Caster::new(&grid, pattern, glam::DVec3::ZERO, None);
     let mut there = false;
     timing::time("kept sweep after a car came or went", 60, || {
         there = !there;

@@ -31,7 +31,7 @@ fn main() {
         .rig
         .lidars
         .first()
-        .map(|pattern| Caster::new(&frame.occupancy, pattern, 0.0, None).sweep())
+        .map(|pattern| Caster::new(&frame.occupancy, pattern, glam::DVec3::ZERO, None).sweep())
         .unwrap_or_default();
     let colors = lidar_colors(&sweep, LidarColorMode::Range);
     let boxes: Vec<&SceneBox> = frame.boxes.values().collect();

@@ -66,8 +66,11 @@ impl Playback {
             return None;
         }
         let [from, to] = self.span(length_s);
-        // `max` also turns NaN into 0.
-        let passed_s = (now_s - last_s.unwrap_or(now_s)).max(0.0).min(LONGEST_TICK_S);
+        let passed_s = now_s - last_s.unwrap_or(now_s);
+        let passed_s = match passed_s.is_nan() {
+            true => 0.0,
+            false => passed_s.clamp(0.0, LONGEST_TICK_S),
+        };
         let mut next_s = shown_s.max(from) + passed_s * self.speed;
         if next_s >= to {
             match self.looping && to > from {

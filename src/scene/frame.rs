@@ -100,7 +100,7 @@ impl Frame {
         }
     }
 
-    /// All 18 BEV channels, one bit per [`BevLayer`] and cell, row-major `[x][y]`:
+    /// All 18 BEV channels, one bit per [`crate::BevLayer`] and cell, row-major `[x][y]`:
     /// the layout's map layers and the footprints of the boxes.
     pub fn bev_channels(&self) -> Vec<u32> {
         raster::bev_channels(&self.layout, self.boxes.values())

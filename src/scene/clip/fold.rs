@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{Clip, MARGIN_M, Moving, ObjectVoxels, Sampling, Track};
 use crate::grid::NOT_PAINTED;
 use crate::raster::box_cells;
-use crate::{BoxId, Extent, Frame, SceneBox, SourceFrame, VoxelGrid, VoxelPaint};
+use crate::{BoxId, Frame, SceneBox, SourceFrame, VoxelGrid, VoxelPaint};
 
 /// How far from a box a painted voxel is still a part of the object, m: one on its roof.
 const ONTO_M: f64 = 0.6;
@@ -255,12 +255,12 @@ impl<'a> Owners<'a> {
     ) {
         for &[x, y] in columns {
             let column = after.column(x, y);
-            for z in 0..Extent::NZ {
+            for (z, &label) in column.iter().enumerate() {
                 match owner([x, y, z]) {
                     Some(id) => {
                         touched.insert(id);
                     }
-                    None => canvas.set(x, y, z, column[z]),
+                    None => canvas.set(x, y, z, label),
                 }
             }
         }
@@ -278,9 +278,9 @@ impl<'a> Owners<'a> {
         [x, y, z]: [usize; 3],
     ) -> Option<BoxId> {
         let near = self.near.get(&[x, y])?;
-        let stamped = self.stamped.get(&[x, y]).into_iter().flatten();
+        let mut stamped = self.stamped.get(&[x, y]).into_iter().flatten().rev();
         // The later one was stamped over the earlier.
-        if let Some((id, _)) = stamped.filter(|(_, bins)| bins >> z & 1 == 1).last() {
+        if let Some((id, _)) = stamped.find(|(_, bins)| bins >> z & 1 == 1) {
             return Some(*id);
         }
         let label = after.get(x, y, z);

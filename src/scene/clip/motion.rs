@@ -286,8 +286,7 @@ fn keys_problem(keys: &[Key]) -> Option<String> {
         return Some(format!("{found} keyframes, expected 1 to {}", Motion::MAX_POINTS));
     }
     for (i, key) in keys.iter().enumerate() {
-        // Written so that NaN fails too.
-        if !(key.time_s.abs() <= Motion::MAX_TIME_S) {
+        if key.time_s.is_nan() || key.time_s.abs() > Motion::MAX_TIME_S {
             return Some(format!(
                 "keyframe {i}: time_s is {}, expected at most {}",
                 key.time_s,
@@ -313,8 +312,7 @@ fn keys_problem(keys: &[Key]) -> Option<String> {
 fn at_keys(keys: &[Key], time_s: f64) -> Option<Moving> {
     let (first, last) = (keys.first()?, keys.last()?);
     let still = |k: &Key| Some(Moving::still(k.at_m, k.yaw_deg.to_radians()));
-    // Written so that NaN stands at the first key.
-    if !(time_s > first.time_s) {
+    if time_s.is_nan() || time_s <= first.time_s {
         return still(first);
     }
     if time_s >= last.time_s {

@@ -75,12 +75,11 @@ impl Path {
             return Some(format!("{speeds} speeds, expected 1 to {most}"));
         }
         for (i, speed) in self.speeds.iter().enumerate() {
-            // Written so that NaN fails too.
-            if !(speed.mps.abs() <= Self::MAX_MPS) {
+            if speed.mps.is_nan() || speed.mps.abs() > Self::MAX_MPS {
                 let (found, most) = (speed.mps, Self::MAX_MPS);
                 return Some(format!("speed {i} is {found} m/s, expected at most {most}"));
             }
-            if !(speed.time_s.abs() <= Motion::MAX_TIME_S) {
+            if speed.time_s.is_nan() || speed.time_s.abs() > Motion::MAX_TIME_S {
                 let (found, most) = (speed.time_s, Motion::MAX_TIME_S);
                 return Some(format!("speed {i}: time_s is {found}, expected at most {most}"));
             }

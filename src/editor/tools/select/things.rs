@@ -167,10 +167,10 @@ pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64, shift:
         return None;
     }
     let mut chosen = things.chosen_in(&scene.background);
-    if let (Some(one), None, None) = (chosen.next(), chosen.next(), hand.selected) {
-        if let Some(corner) = pick_things::corner_at(&one.form, at_m, reach_m) {
-            return ThingDrag::new(scene, hand, Pull::Corner(corner));
-        }
+    if let (Some(one), None, None) = (chosen.next(), chosen.next(), hand.selected)
+        && let Some(corner) = pick_things::corner_at(&one.form, at_m, reach_m)
+    {
+        return ThingDrag::new(scene, hand, Pull::Corner(corner));
     }
     let hit = thing_under(scene, hand, at_m, reach_m)?;
     things
