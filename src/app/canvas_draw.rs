@@ -212,42 +212,20 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
     }
 }
 
-/// On a map that is not just that: a thin dashed frame around what the networks generate, with a word.
-pub(super) fn draw_window(ui: &Ui, map: &ScreenMap, extent: Extent) {
-    if extent == Extent::WINDOW {
-        return;
-    }
-    let color = theme::ON_CANVAS.gamma_multiply(0.5);
-    let (low, high) = (
-        Extent::WINDOW.min_m().truncate(),
-        Extent::WINDOW.max_m().truncate(),
-    );
-    let rect = map.rect_of(low, high);
-    let [a, b, c, d] = [
-        rect.left_top(),
-        rect.right_top(),
-        rect.right_bottom(),
-        rect.left_bottom(),
-    ];
-    let frame = egui::Shape::dashed_line(&[a, b, c, d, a], Stroke::new(1.0, color), 5.0, 4.0);
-    ui.painter().extend(frame);
-    let font = egui::FontId::proportional(12.0);
-    let text = "The networks generate this part".to_owned();
-    let galley = ui.painter().layout_no_wrap(text, font, theme::ON_CANVAS);
-    let tag = Rect::from_min_size(a, galley.size() + vec2(10.0, 4.0));
-    ui.painter().rect_filled(tag, 0.0, Color32::from_black_alpha(170));
-    ui.painter()
-        .galley(tag.min + vec2(5.0, 2.0), galley, theme::ON_CANVAS);
-}
-
-/// A dashed frame around what is still to be generated, in columns of the networks' window.
-pub(super) fn draw_unsettled(ui: &Ui, map: &ScreenMap, unsettled: &[Bounds], generating: bool) {
+/// A dashed frame around what is still to be generated, in columns of the map.
+pub(super) fn draw_unsettled(
+    ui: &Ui,
+    map: &ScreenMap,
+    extent: Extent,
+    unsettled: &[Bounds],
+    generating: bool,
+) {
     let color = if generating {
         theme::accent()
     } else {
         theme::warn()
     };
-    let corner = |c: [usize; 2]| Extent::WINDOW.center(c[0], c[1], 0).truncate();
+    let corner = |c: [usize; 2]| extent.center(c[0], c[1], 0).truncate();
     let half = DVec2::splat(Extent::VOXEL_M / 2.0);
     for (low, high) in unsettled {
         let rect = map.rect_of(corner(*low) - half, corner(*high) + half).expand(2.0);

@@ -1,8 +1,7 @@
 //! The generation that the window runs: the bundled networks, warmed up while nobody waits.
 
-use job::inpaint;
-use job::pipeline::OccPipeline;
-use job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline, RegionMode};
+use job::pipeline::{OccPipeline, is_idle};
+use job::{GenError, GenReport, GenResult, Job, JobCtx, Pipeline};
 
 /// [`OccPipeline`], where a job that edits nothing reads the networks and inverts the frame's source,
 /// so that the first edit finds both ready.
@@ -17,17 +16,14 @@ impl WarmPipeline {
 
 impl Pipeline for WarmPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
-        let scene = job.scene.for_generation();
-        let frame = scene.frame();
-        let nothing_edited =
-            job.params.region == RegionMode::Auto && inpaint::region_of(frame, &job.params).is_empty();
-        if !nothing_edited {
+        if !is_idle(job) {
             return self.0.run(job, ctx);
         }
+        let scene = job.scene.for_generation();
         let network_calls = self.0.prepare(job, ctx)?;
         Ok(GenResult {
             key: job.key(),
-            occupancy: frame.occupancy.clone(),
+            occupancy: scene.frame().occupancy.clone(),
             report: GenReport {
                 network_calls,
                 inversion_calls: network_calls,

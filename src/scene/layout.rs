@@ -108,6 +108,22 @@ impl BevLayout {
         }
     }
 
+    /// The part of it that lies in another extent; beyond its border everything goes on as it is there.
+    pub fn crop_continued(&self, extent: Extent) -> Self {
+        let mut out = self.crop(extent);
+        if extent == self.extent {
+            return out;
+        }
+        let (own, other) = (self.extent.from(), extent.from());
+        let last = [self.extent.nx(), self.extent.ny()].map(|n| n as i32 - 1);
+        let nearest = |axis: usize, at: usize| (at as i32 + other[axis] - own[axis]).clamp(0, last[axis]);
+        let cells = extent
+            .all_columns()
+            .map(|[x, y]| self.cell(nearest(0, x) as usize, nearest(1, y) as usize));
+        out.cells = Arc::new(cells.collect());
+        out
+    }
+
     /// The same cells and heights over another extent of the same size; polylines stay where they are.
     pub(crate) fn relabelled(&self, extent: Extent) -> Self {
         assert_eq!(extent.columns(), self.extent.columns(), "another size");

@@ -29,6 +29,7 @@ pub mod rig;
 pub mod rig_presets;
 pub mod road_map;
 pub mod sensor_data;
+mod settle;
 pub mod shape;
 pub mod solid;
 pub mod splats;
@@ -271,17 +272,12 @@ impl Scene {
         self.set_parts(canvas, clip);
     }
 
-    /// The scene with its frame cut to the networks' window; itself if the frame is one. The revisions stay.
-    pub fn in_window(&self) -> Cow<'_, Scene> {
-        if self.frame().extent() == Extent::WINDOW {
-            return Cow::Borrowed(self);
-        }
-        let mut scene = self.clone();
-        scene.view = Arc::new(self.frame().crop(Extent::WINDOW));
-        scene.canvas = match Arc::ptr_eq(&self.canvas, &self.view) {
-            true => scene.view.clone(),
-            false => Arc::new(self.canvas.crop(Extent::WINDOW)),
-        };
-        Cow::Owned(scene)
+    /// What lies in the networks' window after a move by whole columns, with the whole scene moved. It stands still and shows
+    /// the frame that this scene shows. The content's revision stays.
+    pub fn window_at(&self, by: moved::Columns) -> Scene {
+        let mut scene = self.still();
+        scene.view = Arc::new(self.frame().crop(by.back().extent(Extent::WINDOW)));
+        scene.canvas = scene.view.clone();
+        scene.moved(by)
     }
 }

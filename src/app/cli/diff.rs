@@ -11,7 +11,7 @@ use app::open;
 use app::picture::{Picture, layout_top, lidar_top, occupancy_top};
 use editor::columns_between;
 use job::GenParams;
-use job::region::Region;
+use job::region::edited_columns;
 use scene::{Background, BevLayer, Class, Extent, Frame, LidarSweep, Scene, SceneBox, SourceFrame, Thing};
 use sensors::lidar;
 
@@ -52,12 +52,12 @@ impl Diff {
         report.insert("things".into(), things(&a.background, &b.background));
         // Where B's voxels may differ: what an edit from A to B would inpaint, and around things that differ.
         let of_things = columns_between(&a.background, &b.background, after);
-        let region = Region::of_edit(&edited(before, after), GenParams::default().halo_columns as usize);
-        let region_columns = after.extent().crop(&Extent::WINDOW, &region.columns, false);
+        let region = edited_columns(&edited(before, after), GenParams::default().halo_columns as usize);
+        let region_count = region.iter().filter(|c| **c).count();
         let changed = changed_voxels(before, after);
         let inside = |(x, y, _): &(usize, usize, usize)| {
             let column = after.extent().index(*x, *y);
-            region_columns[column] || of_things[column]
+            region[column] || of_things[column]
         };
         let changed_inside = changed.iter().filter(|v| inside(v)).count();
         report.insert("voxels_changed".into(), changed.len().into());
@@ -65,8 +65,8 @@ impl Diff {
         report.insert(
             "region".into(),
             json!({
-                "columns": region.column_count(),
-                "share": region.share(),
+                "columns": region_count,
+                "share": region_count as f64 / region.len() as f64,
                 "columns_of_things": of_things.iter().filter(|c| **c).count(),
             }),
         );

@@ -73,12 +73,6 @@ impl SceneloomApp {
                 .push(Level::Info, "Nothing was edited since the last generation", now_s);
             return;
         }
-        let region = &self.state.tools.region;
-        if inpaints && region.count_beyond_window() == region.count() {
-            let text = "What is marked lies beyond the part of the map that the networks generate";
-            self.toasts.push(Level::Info, text, now_s);
-            return;
-        }
         let mut params = self.generation.live.params_for(&scene, full);
         if inpaints {
             self.state.tools.inpaint_region(&mut params);

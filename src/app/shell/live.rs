@@ -6,9 +6,11 @@ use std::sync::Arc;
 
 use super::guard::{self, Pace, Pause};
 use job::inpaint::InpaintMask;
-use job::region::{CELLS, COLUMNS_PER_CELL, Region};
+pub use job::pipeline::Bounds;
+use job::pipeline::parts;
+use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
 use job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
-use scene::{Extent, Scene, SceneRev};
+use scene::{Extent, Scene, SceneRev, Window};
 
 /// Edge of a latent cell, m.
 const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Extent::VOXEL_M;
@@ -45,12 +47,9 @@ pub struct Touched {
     pub is_empty: bool,
     /// Extent along x and y, m.
     pub extent_m: [f64; 2],
-    /// Share of all columns.
+    /// Columns, as a share of those of the networks' window; 1 for more.
     pub share: f64,
 }
-
-/// Lowest and highest column along x and y, both included.
-pub type Bounds = ([usize; 2], [usize; 2]);
 
 /// What a job is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -230,13 +229,17 @@ impl Live {
         {
             return touched;
         }
-        let region = Region::of_edit(scene.for_generation().frame(), self.params.halo_columns as usize);
+        let standing = scene.for_generation();
+        let frame = standing.frame();
+        let columns = edited_columns(frame, self.params.halo_columns as usize);
+        let parts = parts(frame.extent(), &columns);
+        let count = columns.iter().filter(|c| **c).count();
         let touched = Touched {
-            is_empty: region.is_empty(),
-            extent_m: region.extent_m(),
-            share: region.share(),
+            is_empty: parts.is_empty(),
+            extent_m: size_m(&parts),
+            share: (count as f64 / Window::COLUMNS as f64).min(1.0),
         };
-        self.parts = region.parts().into();
+        self.parts = parts.into();
         self.seen = Some((scene.content(), touched));
         self.last_edit_s = now_s;
         touched
@@ -314,6 +317,16 @@ impl Live {
         let mean_s = self.recent_s.iter().sum::<f64>() / self.recent_s.len().max(1) as f64;
         if mean_s <= QUICK_S { 0.0 } else { GRACE_S }
     }
+}
+
+/// Size along x and y of all parts together, m.
+fn size_m(parts: &[Bounds]) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let low = parts.iter().map(|(low, _)| low[axis]).min();
+        let high = parts.iter().map(|(_, high)| high[axis]).max();
+        low.zip(high)
+            .map_or(0.0, |(low, high)| (high + 1 - low) as f64 * Extent::VOXEL_M)
+    })
 }
 
 /// Extent, m, and share of the columns of what an edit touches together with inpainted cells. Both are upper bounds.

@@ -1,12 +1,8 @@
 //! Edits of voxels: paint, unlock, a generated result that is taken over.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
-
 use scene::grid::NOT_PAINTED;
-use scene::raster::box_cells;
 use scene::shape::at_least;
-use scene::{BevLayout, BoxId, Edit, EditError, Extent, Frame, SceneBox, SourceFrame, VoxelGrid, VoxelPaint};
+use scene::{Edit, EditError, Extent, Frame, VoxelGrid, VoxelPaint};
 
 /// Applies an edit of voxels; `false` if it is about something else.
 pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
@@ -31,9 +27,8 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
     Ok(true)
 }
 
-/// Makes a generated occupancy the frame's own and its source. Painted voxels keep what was painted. It was generated
-/// within the networks' window alone: what was authored beyond it stays as it was in the source, to be generated yet.
-/// Refused if it covers another part of the ground than the frame.
+/// Makes a generated occupancy the frame's own and its source. Painted voxels keep what was painted. Refused if it covers
+/// another part of the ground than the frame.
 pub(crate) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) -> Result<(), EditError> {
     let (found, expected) = (occupancy.extent(), frame.extent());
     if found != expected {
@@ -43,48 +38,8 @@ pub(crate) fn adopt(frame: &mut Frame, mut occupancy: VoxelGrid) -> Result<(), E
         occupancy.set(x, y, z, class);
     }
     frame.occupancy = occupancy;
-    let (layout, boxes) = match expected == Extent::WINDOW {
-        true => (frame.layout.clone(), frame.boxes.clone()),
-        false => settled_within(Extent::WINDOW, frame),
-    };
-    frame.source = Arc::new(SourceFrame {
-        layout,
-        boxes,
-        occupancy: frame.occupancy.clone(),
-    });
+    frame.settle();
     Ok(())
-}
-
-/// Layout and boxes of a frame's source, with what was authored within an extent taken over.
-fn settled_within(extent: Extent, frame: &Frame) -> (BevLayout, BTreeMap<BoxId, SceneBox>) {
-    let mut layout = frame.source.layout.clone();
-    layout.paste(&frame.layout.crop(extent));
-    let mut boxes = frame.source.boxes.clone();
-    let ids: BTreeSet<_> = boxes.keys().chain(frame.boxes.keys()).copied().collect();
-    for id in ids {
-        let states = [frame.source.boxes.get(&id), frame.boxes.get(&id)];
-        if states[0] == states[1] || !is_settled(frame.extent(), extent, states) {
-            continue;
-        }
-        match states[1] {
-            Some(now) => boxes.insert(id, *now),
-            None => boxes.remove(&id),
-        };
-    }
-    (layout, boxes)
-}
-
-/// True if some state of a box stands within an extent, or none on the map: nothing is ever generated there.
-fn is_settled(map: Extent, extent: Extent, states: [Option<&SceneBox>; 2]) -> bool {
-    let (mut within, mut on_map) = (false, false);
-    for b in states.into_iter().flatten() {
-        box_cells(map, b, 0.0, |x, y| {
-            let p = map.center(x, y, 0);
-            on_map = true;
-            within |= extent.column_at(p.x, p.y).is_some();
-        });
-    }
-    within || !on_map
 }
 
 fn check_voxels(extent: Extent, cells: &[[usize; 3]]) -> Result<(), EditError> {

@@ -5,9 +5,10 @@ use editor::{Edit, Shape};
 use job::GenError;
 use job::inpaint::InpaintMask;
 use job::network_scenery::drawn_scenery;
+use job::pipeline::windows_over;
 use nets::scenery::SceneryNet;
 use scene::raster::box_cells;
-use scene::{Background, BevLayer, Class, Extent, Form, Scene, ThingId, Window};
+use scene::{Background, BevLayer, Class, Extent, Form, Scene, Thing, ThingId, Window};
 use world::scenery::{self, Setting, Side, Style};
 
 use super::scenery_around;
@@ -70,17 +71,68 @@ impl SceneryWish {
         }
     }
 
-    /// Edits that regenerate the scenery of a scene's current frame: what stands whole in the region goes, so do voxels of
-    /// scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border. On a
-    /// larger map all of that happens in the networks' window.
+    /// Edits that regenerate the scenery of the frame that a scene shows: what stands whole in the region goes, so do voxels
+    /// of scenery there that belong to no thing; what comes keeps clear of all that stays, and of the region's border. On a
+    /// larger map that happens window by window.
     pub fn edits(&self, scene: &Scene) -> Result<Vec<Edit>, GenError> {
         let map = scene.frame().extent();
-        if map.overlap(&Extent::WINDOW).is_none() {
-            return Err(GenError::failed(job::pipeline::BESIDE_THE_MAP));
+        let (mut ids, mut forms, mut cleared) = (Vec::new(), Vec::new(), Vec::new());
+        for (place, own) in windows_over(map) {
+            let to_window = place.to_window();
+            let wish = Self {
+                seed: place.seed(self.seed),
+                region: self.region.from_cell(place.0),
+                ..self.clone()
+            };
+            let mut columns = wish.columns();
+            if map != Extent::WINDOW {
+                let owned = to_window.extent(own);
+                for (column, [x, y]) in columns.iter_mut().zip(Extent::WINDOW.all_columns()) {
+                    let p = Extent::WINDOW.center(x, y, 0);
+                    *column &= owned.column_at(p.x, p.y).is_some();
+                }
+            }
+            if !columns.contains(&true) {
+                continue;
+            }
+            let within = match map == Extent::WINDOW {
+                true => scene.clone(),
+                false => scene.window_at(to_window),
+            };
+            let drawn = wish.in_window(&within, &columns, map == Extent::WINDOW)?;
+            ids.extend(drawn.0);
+            let things: Background = drawn.1.into_iter().collect();
+            let back = scene::Pose {
+                rotation: glam::DQuat::IDENTITY,
+                translation_m: to_window.back().way_m().extend(0.0),
+            };
+            let on_map = match map == Extent::WINDOW {
+                true => things,
+                false => things.in_frame(&back),
+            };
+            forms.extend(on_map.iter().map(|t| t.form.clone()));
+            cleared.extend(on_the_map(map, place.extent(), &columns));
         }
-        let scene = &*scene.in_window();
+        let mut edits = Vec::new();
+        if !ids.is_empty() {
+            edits.push(Edit::RemoveThings { ids });
+        }
+        let shape = (!self.region.is_empty()).then_some(Shape::Cells(cleared));
+        edits.push(Edit::ClearScenery { shape });
+        if !forms.is_empty() {
+            edits.push(Edit::AddThings { forms });
+        }
+        Ok(edits)
+    }
+
+    /// What goes and what comes in some columns of a window. Alone, it also draws what stands beside the window.
+    fn in_window(
+        &self,
+        scene: &Scene,
+        columns: &[bool],
+        alone: bool,
+    ) -> Result<(Vec<ThingId>, Vec<Thing>), GenError> {
         let frame = scene.frame();
-        let columns = self.columns();
         let whole = |form: &Form| {
             let (mut inside, mut beyond) = (true, true);
             scenery_around::columns(Extent::WINDOW, form, Window::VOXEL_M, |x, y| {
@@ -89,11 +141,14 @@ impl SceneryWish {
             });
             (inside, beyond)
         };
-        let whole_or_beyond = |form: &Form| whole(form).0;
-        let stands_whole = |form: &Form| whole(form) == (true, false);
+        let comes = |form: &Form| match whole(form) {
+            (inside, false) => inside,
+            (_, true) => alone,
+        };
+        let goes = |form: &Form| whole(form) == (true, false);
         let (mut ids, mut stays) = (Vec::<ThingId>::new(), Background::default());
         for thing in scene.background.iter() {
-            match stands_whole(&thing.form) {
+            match goes(&thing.form) {
                 true => ids.push(thing.id),
                 false => drop(stays.add(thing.form.clone())),
             }
@@ -103,28 +158,12 @@ impl SceneryWish {
                 let style = self.style(scene, setting);
                 scenery::background_of(&frame.layout, &frame.boxes, &style, self.seed)
             }
-            Drawer::Network => self.by_network(scene, &columns)?,
+            Drawer::Network => self.by_network(scene, columns)?,
         };
-        let drawn: Background = drawn
-            .iter()
-            .filter(|t| whole_or_beyond(&t.form))
-            .cloned()
-            .collect();
+        let drawn: Background = drawn.iter().filter(|t| comes(&t.form)).cloned().collect();
         let known = stays.len();
         let merged = scenery_around::merged(Extent::WINDOW, stays, &drawn);
-        let come = merged.iter().skip(known);
-        let forms: Vec<Form> = come.map(|t| t.form.clone()).collect();
-        let mut edits = Vec::new();
-        if !ids.is_empty() {
-            edits.push(Edit::RemoveThings { ids });
-        }
-        let everywhere = self.region.is_empty() && map == Extent::WINDOW;
-        let shape = (!everywhere).then(|| Shape::Cells(on_map(map, &columns)));
-        edits.push(Edit::ClearScenery { shape });
-        if !forms.is_empty() {
-            edits.push(Edit::AddThings { forms });
-        }
-        Ok(edits)
+        Ok((ids, merged.iter().skip(known).cloned().collect()))
     }
 
     fn by_network(&self, scene: &Scene, columns: &[bool]) -> Result<Background, GenError> {
@@ -172,9 +211,9 @@ impl SceneryWish {
     }
 }
 
-/// Columns of a map, `[x, y]`, out of flags of the window's columns.
-fn on_map(map: Extent, of_window: &[bool]) -> Vec<[usize; 2]> {
-    let flags = map.crop(&Extent::WINDOW, of_window, false);
+/// Columns of a map, `[x, y]`, out of flags of a window's columns.
+fn on_the_map(map: Extent, window: Extent, flags: &[bool]) -> Vec<[usize; 2]> {
+    let flags = map.crop(&window, flags, false);
     let set = map.all_columns().zip(flags).filter(|(_, set)| *set);
     set.map(|(column, _)| column).collect()
 }

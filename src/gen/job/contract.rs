@@ -99,7 +99,7 @@ pub struct GenReport {
     pub wall_s: BTreeMap<&'static str, f64>,
     /// Columns in the region.
     pub region_columns: usize,
-    /// Share of all columns.
+    /// Share of all columns of the map.
     pub region_share: f64,
     /// Latent cells regenerated.
     pub region_cells: usize,
@@ -158,6 +158,51 @@ impl GenReport {
     /// Notes what hung in the air.
     pub fn grounded(&mut self, found: super::keep_grounded::Grounded) {
         (self.stems_added, self.loose_dropped) = (found.stems, found.dropped);
+    }
+
+    /// Adds what another part of the same job did. The share of the columns is the caller's to set.
+    pub fn add(&mut self, part: &Self) {
+        let first = self.network_calls == 0 && self.region_columns == 0;
+        for (stage, wall_s) in &part.wall_s {
+            *self.wall_s.entry(stage).or_default() += wall_s;
+        }
+        let counts: [(&mut usize, usize); 15] = [
+            (&mut self.network_calls, part.network_calls),
+            (&mut self.inversion_calls, part.inversion_calls),
+            (&mut self.region_columns, part.region_columns),
+            (&mut self.region_cells, part.region_cells),
+            (&mut self.untouched_voxels_changed, part.untouched_voxels_changed),
+            (&mut self.voxels_changed, part.voxels_changed),
+            (&mut self.unchanged_kept, part.unchanged_kept),
+            (&mut self.objects_kept, part.objects_kept),
+            (&mut self.ground_kept, part.ground_kept),
+            (&mut self.invented_cleared, part.invented_cleared),
+            (&mut self.holes_closed, part.holes_closed),
+            (&mut self.stems_added, part.stems_added),
+            (&mut self.loose_dropped, part.loose_dropped),
+            (&mut self.unobserved_kept, part.unobserved_kept),
+            (&mut self.tokens, part.tokens),
+        ];
+        for (sum, more) in counts {
+            *sum += more;
+        }
+        self.untouched_hash = match first {
+            true => part.untouched_hash,
+            false => self.untouched_hash.rotate_left(1) ^ part.untouched_hash,
+        };
+        self.seam_change_share = self.seam_change_share.max(part.seam_change_share);
+        // The worst of the parts.
+        let worst = |a: Option<f64>, b: Option<f64>| a.into_iter().chain(b).reduce(f64::max);
+        self.round_trip_error = worst(self.round_trip_error, part.round_trip_error);
+        self.noise_std = worst(self.noise_std, part.noise_std);
+        self.noise_max_abs = worst(self.noise_max_abs, part.noise_max_abs);
+        let known: Vec<String> = part
+            .notes
+            .iter()
+            .filter(|n| !self.notes.contains(n))
+            .cloned()
+            .collect();
+        self.notes.extend(known);
     }
 
     /// Wall time of all stages, s.

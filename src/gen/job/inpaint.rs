@@ -7,13 +7,12 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::params::GenParams;
-use super::region::{CELLS_PER_SIDE, COLUMNS_PER_CELL, Region};
+use super::region::{COLUMNS_PER_CELL, Region, edited_columns};
 use scene::raster::{box_cells, polygon_cells};
-use scene::{Extent, Frame, Window};
+use scene::{Extent, Frame, SceneBox};
 
 /// A sparse set of latent cells, 1.6 m wide: `[i, j]` along ego x and y, counted from the corner of the networks' window, so
-/// that a cell of the window lies in `0..50`. A cell may lie anywhere on the map; those beyond the window wait until a window
-/// reaches them. As JSON a list of `[i, j]`.
+/// that a cell of the window at the origin lies in `0..50`. A cell may lie anywhere on the map. As JSON a list of `[i, j]`.
 #[derive(Clone, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(try_from = "Vec<[i32; 2]>", into = "Vec<[i32; 2]>")]
 pub struct InpaintMask(Arc<BTreeSet<[i32; 2]>>);
@@ -103,13 +102,33 @@ impl InpaintMask {
         self.0.iter().copied()
     }
 
-    /// How many of its cells no network reaches, because they lie beyond the window.
-    pub fn count_beyond_window(&self) -> usize {
-        let within = |[i, j]: &[i32; 2]| {
-            let side = 0..CELLS_PER_SIDE as i32;
-            side.contains(i) && side.contains(j)
-        };
-        self.0.iter().filter(|cell| !within(cell)).count()
+    /// A rectangle of cells along x and y.
+    pub fn of_cells([x, y]: &[std::ops::Range<i32>; 2]) -> Self {
+        let cells = x.clone().flat_map(|i| y.clone().map(move |j| [i, j]));
+        Self(Arc::new(cells.collect()))
+    }
+
+    /// The same with cells counted from another one.
+    pub fn from_cell(&self, [i0, j0]: [i32; 2]) -> Self {
+        match [i0, j0] == [0, 0] {
+            true => self.clone(),
+            false => Self(Arc::new(self.cells().map(|[i, j]| [i - i0, j - j0]).collect())),
+        }
+    }
+
+    /// The same without the cells of a square of `side` cells from its lowest cell on.
+    pub fn without(&self, low: [i32; 2], side: i32) -> Self {
+        let within = |cell: &[i32; 2]| (0..2).all(|axis| (0..side).contains(&(cell[axis] - low[axis])));
+        Self(Arc::new(self.cells().filter(|cell| !within(cell)).collect()))
+    }
+
+    /// True if a box stands on one of its cells, in the window at the origin.
+    pub fn touches(&self, b: &SceneBox) -> bool {
+        let mut found = false;
+        box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+            found |= self.has_column(Extent::WINDOW, [x, y])
+        });
+        found
     }
 }
 
@@ -133,27 +152,36 @@ impl TryFrom<Vec<[i32; 2]>> for InpaintMask {
     }
 }
 
-/// The region that parameters in automatic mode regenerate: what was edited, and the mask. Unchanged boxes in the mask are
-/// left out, so that no untouched object is inpainted.
+/// The region of the window that parameters in automatic mode regenerate; see [`wanted_columns`].
 pub fn region_of(frame: &Frame, params: &GenParams) -> Region {
-    let edited = Region::of_edit(frame, params.halo_columns as usize);
+    match frame.extent() == Extent::WINDOW {
+        true => Region::of_columns(wanted_columns(frame, params)),
+        false => region_of(&frame.crop(Extent::WINDOW), params),
+    }
+}
+
+/// The columns `[x][y]` of a frame's map that parameters in automatic mode regenerate: what was edited, and the mask.
+/// Unchanged boxes in the mask are left out, so that no untouched object is inpainted.
+pub fn wanted_columns(frame: &Frame, params: &GenParams) -> Vec<bool> {
+    let edited = edited_columns(frame, params.halo_columns as usize);
     if params.inpaint.is_empty() {
         return edited;
     }
-    let mut columns = params.inpaint.columns(Extent::WINDOW);
+    let extent = frame.extent();
+    let mut columns = params.inpaint.columns(extent);
     let kept = frame
         .boxes
         .values()
         .filter(|b| frame.source.boxes.get(&b.id) == Some(b));
     for b in kept {
-        box_cells(Extent::WINDOW, b, Window::VOXEL_M, |x, y| {
-            columns[x * Window::NY + y] = false
+        box_cells(extent, b, Extent::VOXEL_M, |x, y| {
+            columns[extent.index(x, y)] = false
         });
     }
-    for (column, edited) in columns.iter_mut().zip(edited.columns) {
+    for (column, edited) in columns.iter_mut().zip(edited) {
         *column |= edited;
     }
-    Region::of_columns(columns)
+    columns
 }
 
 #[cfg(test)]
@@ -161,6 +189,7 @@ mod tests {
     use super::*;
     use crate::composite::{composite, untouched_voxels_changed};
     use crate::region::CELLS;
+    use scene::Window;
     use scene::{BevLayer, BevLayout, BoxId, Class, SceneBox, VoxelGrid};
 
     const WINDOW: Extent = Extent::WINDOW;
@@ -172,10 +201,7 @@ mod tests {
         mask.set([49, 49], true);
         mask.set([0, 0], false);
         mask.set([-3, 60], true);
-        assert_eq!(
-            (mask.count(), mask.is_empty(), mask.count_beyond_window()),
-            (3, false, 1)
-        );
+        assert_eq!((mask.count(), mask.is_empty()), (3, false));
         let text = serde_json::to_string(&mask).expect("JSON");
         assert_eq!(text, "[[-3,60],[1,0],[49,49]]");
         assert_eq!(serde_json::from_str::<InpaintMask>(&text).expect("JSON"), mask);
@@ -188,7 +214,7 @@ mod tests {
         );
         assert!(InpaintMask::of_rect(WINDOW, DVec2::NAN, DVec2::ZERO).is_empty());
         let all = InpaintMask::of_rect(WINDOW, DVec2::splat(-1e9), DVec2::splat(1e9));
-        assert_eq!((all.count(), all.count_beyond_window()), (CELLS, 0));
+        assert_eq!(all.count(), CELLS);
         assert!(all.columns(WINDOW).iter().all(|held| *held));
     }
 
@@ -203,7 +229,10 @@ mod tests {
         }
         assert_eq!(at(map, DVec2::new(-40.1, 41.7)), [-1, 51]);
         let mask = InpaintMask::of_rect(map, DVec2::new(96.0, 0.0), DVec2::new(99.2, 1.6));
-        assert_eq!((mask.count(), mask.count_beyond_window()), (2, 2));
+        assert_eq!(mask.count(), 2);
+        let moved = mask.from_cell([85, 24]);
+        assert_eq!(moved.cells().collect::<Vec<_>>(), [[0, 1], [1, 1]]);
+        assert_eq!(moved.without([1, 0], 4).cells().collect::<Vec<_>>(), [[0, 1]]);
         assert_eq!(mask.columns(map).iter().filter(|held| **held).count(), 2 * 16);
         assert!(!mask.columns(WINDOW).contains(&true));
     }

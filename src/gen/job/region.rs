@@ -1,7 +1,6 @@
 //! Which part of a scene an edit touches: the columns to be inpainted, and the latent cells that the networks generate for
 //! them.
 
-use nets::pieces::pieces;
 use scene::raster::box_cells;
 use scene::{Extent, Frame, SceneBox, Window};
 
@@ -62,63 +61,10 @@ impl Region {
     ///
     /// Columns of boxes that did not change are left out, so that no untouched object is cut.
     pub fn of_edit(frame: &Frame, halo_columns: usize) -> Self {
-        if frame.extent() != Extent::WINDOW {
-            return Self::of_edit(&frame.crop(Extent::WINDOW), halo_columns);
+        match frame.extent() == Extent::WINDOW {
+            true => Self::of_columns(edited_columns(frame, halo_columns)),
+            false => Self::of_edit(&frame.crop(Extent::WINDOW), halo_columns),
         }
-        let source = &*frame.source;
-        let mut changed: Vec<bool> = frame
-            .layout
-            .cells()
-            .iter()
-            .zip(source.layout.cells())
-            .map(|(now, before)| now != before)
-            .collect();
-        let mut footprints = vec![false; Window::COLUMNS]; // of changed boxes, without overhang
-        let mut unchanged = Vec::new();
-        let mut mark = |b: &SceneBox| {
-            box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                changed[x * Window::NY + y] = true
-            });
-            box_cells(Extent::WINDOW, b, 0.0, |x, y| {
-                footprints[x * Window::NY + y] = true
-            });
-        };
-        for (id, now) in &frame.boxes {
-            match source.boxes.get(id) {
-                Some(before) if same_solid(now, before) => unchanged.push(now),
-                _ => mark(now),
-            }
-        }
-        // Columns that hold voxels of a removed box. Boxes inferred from labels may overlap others, so they may also lie in
-        // the footprint of an unchanged box.
-        let mut left = vec![false; Window::COLUMNS];
-        for (id, before) in &source.boxes {
-            if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
-                mark(before);
-                box_cells(Extent::WINDOW, before, 0.0, |x, y| {
-                    left[x * Window::NY + y] |= source.occupancy.column(x, y).contains(&before.class.id());
-                });
-            }
-        }
-        if !changed.contains(&true) {
-            return Self::empty();
-        }
-        let mut columns = dilate(&changed, Window::NX, halo_columns);
-        for b in unchanged {
-            box_cells(Extent::WINDOW, b, 0.0, |x, y| {
-                let i = x * Window::NY + y;
-                let own = || source.occupancy.column(x, y).contains(&b.class.id());
-                columns[i] &= left[i] && !own();
-            });
-            // Overhanging voxels of its class belong to it as well, except under a changed box.
-            box_cells(Extent::WINDOW, b, OVERHANG_M, |x, y| {
-                let i = x * Window::NY + y;
-                if !footprints[i] && source.occupancy.column(x, y).contains(&b.class.id()) {
-                    columns[i] = false;
-                }
-            });
-        }
-        Self::of_columns(columns)
     }
 
     /// True if it holds no column.
@@ -148,33 +94,68 @@ impl Region {
         })
     }
 
-    /// For each part that is generated separately: lowest and highest x and y of its columns, both included.
-    pub fn parts(&self) -> Vec<([usize; 2], [usize; 2])> {
-        let mut out = Vec::new();
-        for cells in pieces(&self.cells, 0) {
-            let columns = self.columns.iter().enumerate().filter(|(i, c)| {
-                let (x, y) = (i / Window::NY, i % Window::NY);
-                **c && cells[x / COLUMNS_PER_CELL * CELLS_PER_SIDE + y / COLUMNS_PER_CELL]
-            });
-            let places = columns.map(|(i, _)| [i / Window::NY, i % Window::NY]);
-            out.extend(places.fold(None, |bounds: Option<([usize; 2], [usize; 2])>, at| {
-                let (lo, hi) = bounds.unwrap_or((at, at));
-                Some((
-                    [lo[0].min(at[0]), lo[1].min(at[1])],
-                    [hi[0].max(at[0]), hi[1].max(at[1])],
-                ))
-            }));
-        }
-        out
-    }
-
     /// Columns of the region within `width` columns of its border. The edge of the grid is no border.
     pub fn seam(&self, width: usize) -> Vec<bool> {
         let outside: Vec<bool> = self.columns.iter().map(|c| !c).collect();
-        let near_outside = dilate(&outside, Window::NX, width);
+        let near_outside = dilate(&outside, Window::NY, width);
         let pairs = self.columns.iter().zip(near_outside);
         pairs.map(|(inside, near)| *inside && near).collect()
     }
+}
+
+/// The columns `[x][y]` of a frame's map that an edit touches, on a map of any extent; see [`Region::of_edit`].
+pub fn edited_columns(frame: &Frame, halo_columns: usize) -> Vec<bool> {
+    let extent = frame.extent();
+    let source = &*frame.source;
+    let mut changed: Vec<bool> = frame
+        .layout
+        .cells()
+        .iter()
+        .zip(source.layout.cells())
+        .map(|(now, before)| now != before)
+        .collect();
+    let mut footprints = vec![false; extent.columns()]; // of changed boxes, without overhang
+    let mut unchanged = Vec::new();
+    let mut mark = |b: &SceneBox| {
+        box_cells(extent, b, OVERHANG_M, |x, y| changed[extent.index(x, y)] = true);
+        box_cells(extent, b, 0.0, |x, y| footprints[extent.index(x, y)] = true);
+    };
+    for (id, now) in &frame.boxes {
+        match source.boxes.get(id) {
+            Some(before) if same_solid(now, before) => unchanged.push(now),
+            _ => mark(now),
+        }
+    }
+    // Columns that hold voxels of a removed box. Boxes inferred from labels may overlap others, so they may also lie in
+    // the footprint of an unchanged box.
+    let mut left = vec![false; extent.columns()];
+    for (id, before) in &source.boxes {
+        if !frame.boxes.get(id).is_some_and(|now| same_solid(now, before)) {
+            mark(before);
+            box_cells(extent, before, 0.0, |x, y| {
+                left[extent.index(x, y)] |= source.occupancy.column(x, y).contains(&before.class.id());
+            });
+        }
+    }
+    if !changed.contains(&true) {
+        return changed;
+    }
+    let mut columns = dilate(&changed, extent.ny(), halo_columns);
+    for b in unchanged {
+        box_cells(extent, b, 0.0, |x, y| {
+            let i = extent.index(x, y);
+            let own = || source.occupancy.column(x, y).contains(&b.class.id());
+            columns[i] &= left[i] && !own();
+        });
+        // Overhanging voxels of its class belong to it as well, except under a changed box.
+        box_cells(extent, b, OVERHANG_M, |x, y| {
+            let i = extent.index(x, y);
+            if !footprints[i] && source.occupancy.column(x, y).contains(&b.class.id()) {
+                columns[i] = false;
+            }
+        });
+    }
+    columns
 }
 
 /// True if two boxes are equal in all that occupancy shows (velocity, for example, it does not show).
@@ -182,22 +163,23 @@ fn same_solid(a: &SceneBox, b: &SceneBox) -> bool {
     a.class == b.class && a.center_m == b.center_m && a.size_m == b.size_m && a.yaw_rad == b.yaw_rad
 }
 
-/// Sets every flag within `reach` of a set one, diagonals included, on a square of `side`; first
+/// Sets every flag within `reach` of a set one, diagonals included, in rows of `ny`; first
 /// along rows, then along columns.
-pub(super) fn dilate(flags: &[bool], side: usize, reach: usize) -> Vec<bool> {
+pub(super) fn dilate(flags: &[bool], ny: usize, reach: usize) -> Vec<bool> {
     if reach == 0 {
         return flags.to_vec();
     }
     let mut along_y = vec![false; flags.len()];
     let mut out = vec![false; flags.len()];
     for i in (0..flags.len()).filter(|i| flags[*i]) {
-        let (row, y) = (i / side * side, i % side);
-        along_y[row + y.saturating_sub(reach)..=row + (y + reach).min(side - 1)].fill(true);
+        let (row, y) = (i / ny * ny, i % ny);
+        along_y[row + y.saturating_sub(reach)..=row + (y + reach).min(ny - 1)].fill(true);
     }
-    for x in 0..side {
-        for from in x.saturating_sub(reach)..=(x + reach).min(side - 1) {
-            let source = &along_y[from * side..(from + 1) * side];
-            for (o, s) in out[x * side..(x + 1) * side].iter_mut().zip(source) {
+    let nx = flags.len() / ny;
+    for x in 0..nx {
+        for from in x.saturating_sub(reach)..=(x + reach).min(nx - 1) {
+            let source = &along_y[from * ny..(from + 1) * ny];
+            for (o, s) in out[x * ny..(x + 1) * ny].iter_mut().zip(source) {
                 *o |= s;
             }
         }
@@ -211,6 +193,7 @@ pub(super) mod tests {
 
     use super::*;
     use crate::composite::composite;
+    use nets::pieces::pieces;
     use numeric::philox::philox4x32;
     use scene::{BevLayer, BevLayout, BoxId, Class, VoxelGrid};
 
@@ -249,11 +232,6 @@ pub(super) mod tests {
         assert_eq!(pieces(&cells, 3).len(), 2);
         assert!(pieces(&vec![false; CELLS], 3).is_empty());
         assert_eq!(pieces(&vec![true; 100 * 100], 3).len(), 1, "of the fine latent");
-        let mut columns = vec![false; Window::COLUMNS];
-        columns[8 * Window::NY + 9] = true;
-        columns[180 * Window::NY + 190] = true;
-        let parts = Region::of_columns(columns).parts();
-        assert_eq!(parts, [([8, 9], [8, 9]), ([180, 190], [180, 190])]);
     }
 
     pub fn car(id: u32, x_m: f64, y_m: f64, yaw_rad: f64) -> SceneBox {

@@ -3,6 +3,7 @@
 //! are copied from the source. After UniScene (occupancy; editing in C.1).
 
 mod network;
+mod plan;
 mod round_trip;
 mod source;
 mod standing;
@@ -36,8 +37,9 @@ use source::{Source, stored_for};
 use standing::Standing;
 
 pub use network::Ablation;
+pub use plan::{Bounds, Place, parts, windows_over};
 pub use round_trip::RoundTrip;
-pub use window::BESIDE_THE_MAP;
+pub use window::is_idle;
 
 /// Numbers per latent cell.
 const CHANNELS: usize = 8;
@@ -213,7 +215,7 @@ impl OccPipeline {
     /// Inverts the source of the job's frame now, so that a later edit finds it. Returns the network calls it took.
     pub fn prepare(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<usize, GenError> {
         let mut report = GenReport::default();
-        let cut = window::cut(job);
+        let cut = window::at_origin(job);
         let scene = cut.as_ref().map_or(&job.scene, |cut| &cut.scene);
         let condition = self.condition_of_source(scene);
         self.source(scene, &condition, &job.params, &mut report, ctx)?;
@@ -340,7 +342,7 @@ impl OccPipeline {
             .filter(|(_, held)| **held)
             .for_each(|(column, _)| mask.set_columns(Extent::WINDOW, &[column], true));
         window::in_window(job, ctx, |job, ctx| {
-            self.inpaint(job, region, &mask, GenReport::default(), ctx)
+            self.inpaint(job, region.clone(), &mask, GenReport::default(), ctx)
         })
     }
 
@@ -499,7 +501,7 @@ impl Pipeline for OccPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         job.params.check()?;
         ctx.check()?;
-        window::in_window(job, ctx, |job, ctx| match job.params.region {
+        window::over_the_map(job, ctx, |job, ctx| match job.params.region {
             RegionMode::Full => self.generate(job, ctx),
             RegionMode::Auto => self.edit(job, ctx),
         })

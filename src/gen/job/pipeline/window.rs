@@ -1,141 +1,456 @@
-//! Maps of another extent than the networks' window: the frame is cut to the window around the ego vehicle before a job,
-//! and what the networks made of it is put back into the map after it.
+//! Maps of another extent than the networks' window: a job is done window by window, and what the networks made of each is
+//! put back into the map.
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::contract::{GenError, GenResult, Job, JobCtx, JobUpdate, RegionMode};
-use scene::{Extent, VoxelGrid};
+use super::plan::{Part, Place, Task, extent_of, plan};
+use crate::contract::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, JobUpdate, RegionMode};
+use crate::inpaint::{self, InpaintMask};
+use crate::region::CELLS_PER_SIDE;
+use scene::{BevLayout, Extent, Frame, Scene, VoxelGrid};
 
-/// The same job with its frame cut to the window; `None` if the frame is the window.
-pub(super) fn cut(job: &Job) -> Option<Job> {
-    match job.scene.in_window() {
-        Cow::Borrowed(_) => None,
-        Cow::Owned(scene) => Some(Job {
+/// The window at the origin of a job's scene, as a job; `None` if the frame is that window.
+pub(super) fn at_origin(job: &Job) -> Option<Job> {
+    (job.scene.frame().extent() != Extent::WINDOW).then(|| Job {
+        scene: Arc::new(job.scene.window_at(Place([0, 0]).to_window())),
+        params: job.params.clone(),
+    })
+}
+
+/// The same job on what stands still, and what moves and is a draft.
+fn standing(job: &Job) -> Cow<'_, Job> {
+    match job.scene.for_generation() {
+        Cow::Borrowed(_) => Cow::Borrowed(job),
+        Cow::Owned(scene) => Cow::Owned(Job {
             scene: Arc::new(scene),
             params: job.params.clone(),
         }),
     }
 }
 
-/// Why nothing can be generated on a map.
-pub const BESIDE_THE_MAP: &str =
-    "the networks generate 80 m around the ego vehicle, and none of that lies on this map";
-
-/// Puts a result back: the map around the window stays as the frame shows it.
-fn put_back(map: &VoxelGrid, result: &GenResult) -> GenResult {
-    let mut occupancy = map.clone();
-    occupancy.paste(&result.occupancy);
-    GenResult {
-        occupancy,
-        ..result.clone()
-    }
+/// True if a job has nothing to generate.
+pub fn is_idle(job: &Job) -> bool {
+    let frame = job.scene.for_generation();
+    job.params.region == RegionMode::Auto && plan(frame.frame(), &job.params).is_empty()
 }
 
-/// Runs a job on what stands still (and what moves and is a draft), in the window, previews and result put back into the map.
+/// Runs a job in the window at the origin alone.
 pub(super) fn in_window(
     job: &Job,
     ctx: &JobCtx<'_>,
-    run: impl FnOnce(&Job, &JobCtx<'_>) -> Result<GenResult, GenError>,
+    mut run: impl FnMut(&Job, &JobCtx<'_>) -> Result<GenResult, GenError>,
 ) -> Result<GenResult, GenError> {
-    let standing;
-    let job = match job.scene.for_generation() {
-        Cow::Borrowed(_) => job,
-        Cow::Owned(scene) => {
-            standing = Job {
-                scene: Arc::new(scene),
-                params: job.params.clone(),
-            };
-            &standing
-        }
-    };
-    let Some(cut) = cut(job) else {
+    let job = &*standing(job);
+    let Some(cut) = at_origin(job) else {
         return run(job, ctx);
     };
-    let map = &job.scene.frame().occupancy;
-    if job.params.region == RegionMode::Full && map.extent().overlap(&Extent::WINDOW).is_none() {
-        return Err(GenError::failed(BESIDE_THE_MAP));
+    let mut map = Frame::clone(job.scene.frame());
+    let result = run(&cut, ctx)?;
+    map.occupancy.paste(&result.occupancy);
+    Ok(GenResult {
+        occupancy: map.occupancy,
+        ..result
+    })
+}
+
+/// Runs a job window by window. Previews and the result are of the whole map.
+pub(super) fn over_the_map(
+    job: &Job,
+    ctx: &JobCtx<'_>,
+    mut run: impl FnMut(&Job, &JobCtx<'_>) -> Result<GenResult, GenError>,
+) -> Result<GenResult, GenError> {
+    let job = &*standing(job);
+    if job.scene.frame().extent() == Extent::WINDOW {
+        return run(job, ctx);
     }
-    let report = |update: JobUpdate| match update {
-        JobUpdate::Preview(result) => ctx.preview(put_back(map, &result)),
-        other => ctx.report(other),
+    let mut map = Map {
+        scene: Scene::clone(&job.scene),
+        params: job.params.clone(),
     };
-    let stop = || ctx.check().is_err();
-    let inner = JobCtx::new(&stop, &report);
-    let inner = match ctx.previews() {
-        true => inner.with_previews(),
-        false => inner,
-    };
-    let mut result = put_back(map, &run(&cut, &inner)?);
-    let beyond = job.params.inpaint.count_beyond_window();
-    if beyond > 0 {
-        result.report.notes.push(format!(
-            "{beyond} of the cells to inpaint lie beyond the networks' window of 80 m and stay as they are"
-        ));
+    let rounds = plan(job.scene.frame(), &job.params);
+    let all: usize = rounds.iter().map(Vec::len).sum();
+    let (mut report, mut done) = (GenReport::default(), 0);
+    for round in &rounds {
+        let before = map.scene.clone();
+        for part in round {
+            ctx.check()?;
+            done += 1;
+            let Some(cut) = map.cut(&before, part) else {
+                continue;
+            };
+            let stop = || ctx.check().is_err();
+            let (so_far, report_so_far) = (&map, &report);
+            let forward = |update: JobUpdate| match update {
+                JobUpdate::Preview(result) => ctx.preview(GenResult {
+                    key: job.key(),
+                    occupancy: so_far.with(part, &cut, &result),
+                    report: report_so_far.clone(),
+                }),
+                JobUpdate::Progress { stage, step, steps } => ctx.report(JobUpdate::Progress {
+                    stage,
+                    step: (done - 1) * steps + step,
+                    steps: all * steps,
+                }),
+                other => ctx.report(other),
+            };
+            let inner = match ctx.previews() {
+                true => JobCtx::new(&stop, &forward).with_previews(),
+                false => JobCtx::new(&stop, &forward),
+            };
+            let result = run(&cut.job, &inner)?;
+            map.take(part, &cut, &result);
+            report.add(&result.report);
+            if ctx.previews() && done < all {
+                ctx.preview(GenResult {
+                    key: job.key(),
+                    occupancy: map.scene.frame().occupancy.clone(),
+                    report: report.clone(),
+                });
+            }
+        }
     }
-    Ok(result)
+    report.region_share = report.region_columns as f64 / job.scene.frame().extent().columns() as f64;
+    Ok(GenResult {
+        key: job.key(),
+        occupancy: map.scene.frame().occupancy.clone(),
+        report,
+    })
+}
+
+/// A part as a job in the window at the origin.
+struct Cut {
+    job: Job,
+    /// The columns of that window, `[x][y]`, that are taken over; none: those of the part's task.
+    columns: Option<Vec<bool>>,
+}
+
+/// A map that is being generated.
+struct Map {
+    /// As far as it is.
+    scene: Scene,
+    /// The job's; cells to inpaint go as they are done.
+    params: GenParams,
+}
+
+impl Map {
+    /// A part of a map as it was before the part's round; `None` if nothing is left to do there.
+    fn cut(&self, before: &Scene, part: &Part) -> Option<Cut> {
+        let mut scene = window(before, part.place);
+        let mut params = GenParams {
+            seed: part.place.seed(self.params.seed),
+            inpaint: InpaintMask::default(),
+            ..self.params.clone()
+        };
+        let mut columns = None;
+        match &part.task {
+            Task::Whole(_) => {}
+            Task::Edit => {
+                params.inpaint = self.params.inpaint.from_cell(part.place.0);
+                if inpaint::region_of(scene.frame(), &params).is_empty() {
+                    return None;
+                }
+            }
+            Task::Seam(cells) => {
+                let cells = InpaintMask::of_cells(cells).from_cell(part.place.0);
+                params.region = RegionMode::Auto;
+                params.strength = 1.0;
+                // An object across the seam was drawn by halves: it is drawn again.
+                scene.change_canvas(|frame| {
+                    let mut source = (*frame.source).clone();
+                    source.boxes.retain(|_, b| !cells.touches(b));
+                    frame.source = Arc::new(source);
+                });
+                params.inpaint = cells;
+                columns = Some(inpaint::wanted_columns(scene.frame(), &params));
+            }
+        }
+        let scene = Arc::new(scene);
+        Some(Cut {
+            job: Job { scene, params },
+            columns,
+        })
+    }
+
+    /// The map's voxels with a result in its place.
+    fn with(&self, part: &Part, cut: &Cut, result: &GenResult) -> VoxelGrid {
+        let mut occupancy = self.scene.frame().occupancy.clone();
+        let made = part.place.to_window().back().grid(&result.occupancy);
+        match (&part.task, &cut.columns) {
+            (Task::Whole(cells), _) => occupancy.paste(&made.crop(extent_of(cells))),
+            (_, None) => occupancy.paste(&made),
+            (_, Some(columns)) => {
+                let taken = Extent::WINDOW
+                    .all_columns()
+                    .zip(columns)
+                    .filter(|(_, taken)| **taken);
+                for ([x, y], _) in taken {
+                    let p = made.extent().center(x, y, 0);
+                    if let Some([to_x, to_y]) = occupancy.extent().column_at(p.x, p.y) {
+                        *occupancy.column_mut(to_x, to_y) = *made.column(x, y);
+                    }
+                }
+            }
+        }
+        occupancy
+    }
+
+    /// Takes a result over.
+    fn take(&mut self, part: &Part, cut: &Cut, result: &GenResult) {
+        let occupancy = self.with(part, cut, result);
+        let settled = match &part.task {
+            Task::Whole(cells) => extent_of(cells),
+            Task::Edit | Task::Seam(_) => part.place.extent(),
+        };
+        self.scene.change_canvas(|frame| {
+            frame.occupancy = occupancy;
+            frame.settle_within(settled);
+        });
+        if part.task == Task::Edit {
+            self.params.inpaint = self.params.inpaint.without(part.place.0, CELLS_PER_SIDE as i32);
+        }
+    }
+}
+
+/// What lies in a window of a scene. Roads go on beyond the border of the map, as in all that the networks have seen.
+fn window(scene: &Scene, place: Place) -> Scene {
+    let (to_window, extent, map) = (place.to_window(), place.extent(), scene.frame());
+    let mut scene = scene.window_at(to_window);
+    let shared = map.extent().overlap(&extent);
+    if shared.is_some_and(|shared| shared.size == [extent.nx(), extent.ny()]) {
+        return scene;
+    }
+    scene.change_canvas(|frame| {
+        let continued = |layout: &BevLayout| to_window.layout(&layout.crop_continued(extent));
+        frame.layout = continued(&map.layout);
+        let mut source = (*frame.source).clone();
+        source.layout = continued(&map.source.layout);
+        frame.source = Arc::new(source);
+    });
+    scene
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contract::{GenParams, GenReport};
-    use scene::{BevLayout, Class, Frame, Scene, SensorRig};
+    use scene::{BevLayer, BoxId, Class, SceneBox, SensorRig};
+    use std::sync::Mutex;
 
-    #[test]
-    fn the_window_changes_and_the_map_around_it_stays() {
-        let extent = Extent::new([-150, -110], [480, 320]).expect("sound");
-        let mut occupancy = VoxelGrid::over(extent);
+    fn map() -> Extent {
+        Extent::new([-150, -110], [480, 320]).expect("sound")
+    }
+
+    fn scene() -> Scene {
+        let mut occupancy = VoxelGrid::over(map());
         occupancy.set(400, 160, 3, Class::Manmade.id()); // 100 m ahead
         occupancy.set(150, 110, 0, Class::DriveableSurface.id()); // below the ego vehicle
-        let frame = Frame::new(BevLayout::over(extent), Default::default(), occupancy.clone());
-        let scene = Arc::new(Scene::single("map", frame, Arc::new(SensorRig::default()), 1));
-        let params = GenParams::default();
-        let job = Job { scene, params };
-        let run = |job: &Job, ctx: &JobCtx<'_>| {
-            let mut grid = job.scene.frame().occupancy.clone();
-            assert_eq!((grid.extent(), grid.count_set()), (Extent::WINDOW, 1));
-            grid.set(100, 100, 1, Class::Car.id());
-            let result = GenResult {
-                key: job.key(),
-                occupancy: grid,
-                report: GenReport::default(),
-            };
-            ctx.preview(result.clone());
-            Ok(result)
+        let frame = Frame::new(BevLayout::over(map()), Default::default(), occupancy);
+        Scene::single("map", frame, Arc::new(SensorRig::default()), 1)
+    }
+
+    fn job(scene: Scene, params: GenParams) -> Job {
+        let scene = Arc::new(scene);
+        Job { scene, params }
+    }
+
+    /// Instead of networks: vegetation wherever something is to be generated, as high as the job's seed says.
+    fn grow(job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
+        let frame = job.scene.frame();
+        assert_eq!(frame.extent(), Extent::WINDOW);
+        let columns = match job.params.region {
+            RegionMode::Auto => inpaint::wanted_columns(frame, &job.params),
+            RegionMode::Full => vec![true; Extent::WINDOW.columns()],
         };
-        let previews = std::sync::Mutex::new(Vec::new());
-        let report = |update| {
-            if let JobUpdate::Preview(result) = update {
-                previews.lock().expect("not poisoned").push(result);
-            }
+        let mut grid = frame.source.occupancy.clone();
+        let high = 1 + (job.params.seed % 13) as usize;
+        for ([x, y], _) in Extent::WINDOW.all_columns().zip(&columns).filter(|(_, c)| **c) {
+            (0..high).for_each(|z| grid.set(x, y, z, Class::Vegetation.id()));
+        }
+        ctx.progress(crate::Stage::Denoise, 1, 2)?;
+        let result = GenResult {
+            key: job.key(),
+            occupancy: grid,
+            report: GenReport {
+                network_calls: 1,
+                region_columns: columns.iter().filter(|c| **c).count(),
+                ..GenReport::default()
+            },
         };
-        let result = in_window(&job, &JobCtx::new(&|| false, &report), run).expect("runs");
-        assert_eq!(
-            (result.key.clone(), result.occupancy.count_different(&occupancy)),
-            (job.key(), 1)
-        );
-        assert_eq!(result.occupancy.get(150, 110, 1), Class::Car.id());
-        let previews = previews.into_inner().expect("not poisoned");
-        assert_eq!(previews.len(), 1);
-        assert_eq!(previews[0].occupancy, result.occupancy);
+        ctx.preview(result.clone());
+        Ok(result)
+    }
+
+    fn car(id: u32, x_m: f64, y_m: f64) -> SceneBox {
+        crate::region::tests::car(id, x_m, y_m, 0.0)
     }
 
     #[test]
-    fn a_map_beside_the_window_is_not_generated() {
-        let extent = Extent::new([300, 300], [40, 40]).expect("sound");
-        let frame = Frame::new(
-            BevLayout::over(extent),
-            Default::default(),
-            VoxelGrid::over(extent),
-        );
-        let scene = Arc::new(Scene::single("away", frame, Arc::new(SensorRig::default()), 1));
-        let job = Job {
-            scene,
-            params: GenParams::whole_scene(),
+    fn an_edit_far_from_the_origin_is_generated_where_it_is() {
+        let mut scene = scene();
+        scene.change_canvas(|frame| {
+            for b in [car(1, 100.0, 0.0), car(2, 5.0, 0.0)] {
+                frame.boxes.insert(b.id, b);
+            }
+        });
+        let before = scene.frame().occupancy.clone();
+        let updates = Mutex::new(Vec::new());
+        let report = |update| updates.lock().expect("not poisoned").push(update);
+        let stop = || false;
+        let ctx = JobCtx::new(&stop, &report).with_previews();
+        let job = job(scene, GenParams::default());
+        assert!(!is_idle(&job));
+        let result = over_the_map(&job, &ctx, grow).expect("runs");
+        assert_eq!((result.key.clone(), result.report.network_calls), (job.key(), 2));
+        assert_eq!(result.occupancy.extent(), map());
+        let label = |x_m, y_m| {
+            let [x, y] = map().column_at(x_m, y_m).expect("on the map");
+            result.occupancy.get(x, y, 0)
         };
-        let run = |_: &Job, _: &JobCtx<'_>| panic!("no network is asked");
-        let error = in_window(&job, &JobCtx::detached(), run).expect_err("beside");
-        assert_eq!(error.to_string(), BESIDE_THE_MAP);
+        assert_eq!([label(100.0, 0.0), label(5.0, 0.0)], [Class::Vegetation.id(); 2]);
+        let changed = result.occupancy.count_different(&before);
+        assert!(changed > 100 && changed < 4000, "{changed}");
+        assert!(result.report.region_columns < 2000);
+        let updates = updates.into_inner().expect("not poisoned");
+        let steps: Vec<_> = updates
+            .iter()
+            .filter_map(|u| match u {
+                JobUpdate::Progress { step, steps, .. } => Some((*step, *steps)),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(steps, [(1, 4), (3, 4)], "of both windows together");
+        let sizes = updates.iter().filter_map(|u| match u {
+            JobUpdate::Preview(result) => Some(result.occupancy.extent()),
+            _ => None,
+        });
+        assert!(sizes.clone().count() >= 2 && sizes.into_iter().all(|e| e == map()));
+        // One that has nothing to do asks no network.
+        let mut settled = Scene::clone(&job.scene);
+        settled.change_canvas(Frame::settle);
+        let idle = Job {
+            scene: Arc::new(settled),
+            params: GenParams::default(),
+        };
+        assert!(is_idle(&idle));
+        let none = |_: &Job, _: &JobCtx<'_>| panic!("no network is asked");
+        let result = over_the_map(&idle, &JobCtx::detached(), none).expect("nothing");
+        assert_eq!(result.occupancy, before);
+    }
+
+    #[test]
+    fn cells_that_are_marked_far_away_change_once_each() {
+        let mut mask = InpaintMask::default();
+        // A strip of 112 m: more than a window.
+        let columns: Vec<[usize; 2]> = (100..380).flat_map(|x| (150..170).map(move |y| [x, y])).collect();
+        mask.set_columns(map(), &columns, true);
+        let params = GenParams {
+            inpaint: mask.clone(),
+            strength: 1.0,
+            ..GenParams::default()
+        };
+        let job = job(scene(), params);
+        let result = over_the_map(&job, &JobCtx::detached(), grow).expect("runs");
+        let held = mask.columns(map()).iter().filter(|c| **c).count();
+        assert_eq!(result.report.region_columns, held, "none twice, none left out");
+        for [x, y] in map().all_columns() {
+            let grown = result.occupancy.get(x, y, 0) == Class::Vegetation.id();
+            assert_eq!(grown, mask.has_column(map(), [x, y]), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_whole_map_is_made_of_windows_with_their_own_seeds_and_seams() {
+        let mut scene = scene();
+        scene.change_canvas(|frame| {
+            let b = car(1, 6.4, 2.0); // where two windows meet
+            frame.boxes.insert(b.id, b);
+            frame.settle();
+            frame.layout.set(BevLayer::Walkway, 0, 0, true);
+        });
+        let params = GenParams {
+            region: RegionMode::Full,
+            seed: 5,
+            ..GenParams::default()
+        };
+        let job = job(scene, params);
+        let calls = Mutex::new(Vec::new());
+        let log = |job: &Job, ctx: &JobCtx<'_>| {
+            let frame = job.scene.frame();
+            let redrawn = job.params.strength > 0.0 && frame.source.boxes.is_empty();
+            calls
+                .lock()
+                .expect("not poisoned")
+                .push((job.params.clone(), redrawn));
+            grow(job, ctx)
+        };
+        let result = over_the_map(&job, &JobCtx::detached(), log).expect("runs");
+        let calls = calls.into_inner().expect("not poisoned");
+        let seams: Vec<_> = calls.iter().filter(|(p, _)| p.strength == 1.0).collect();
+        assert_eq!((calls.len(), seams.len()), (15, 9));
+        assert!(
+            seams.iter().any(|(_, redrawn)| *redrawn),
+            "the car across a seam is drawn again"
+        );
+        let seeds: std::collections::BTreeSet<u64> = calls.iter().map(|(p, _)| p.seed).collect();
+        assert_eq!(seeds.len(), calls.len());
+        let free = |[x, y]: &[usize; 2]| result.occupancy.get(*x, *y, 0) == Class::FREE;
+        assert!(!map().all_columns().any(|c| free(&c)), "no column is left out");
+        // The same whatever came first: windows of one kind see nothing of each other.
+        let again = over_the_map(&job, &JobCtx::detached(), grow).expect("runs");
+        assert_eq!(again.occupancy, result.occupancy);
+    }
+
+    #[test]
+    fn a_job_that_is_stopped_ends_between_windows() {
+        let done = std::cell::Cell::new(0);
+        let params = GenParams {
+            region: RegionMode::Full,
+            ..GenParams::default()
+        };
+        let stopped = std::sync::atomic::AtomicBool::new(false);
+        let stop = || stopped.load(std::sync::atomic::Ordering::Relaxed);
+        let ignore = |_| {};
+        let ctx = JobCtx::new(&stop, &ignore);
+        let run = |job: &Job, ctx: &JobCtx<'_>| {
+            done.set(done.get() + 1);
+            stopped.store(done.get() == 3, std::sync::atomic::Ordering::Relaxed);
+            match done.get() < 3 {
+                true => grow(job, ctx),
+                false => Err(GenError::Superseded),
+            }
+        };
+        let error = over_the_map(&job(scene(), params), &ctx, run).expect_err("stopped");
+        assert_eq!((error, done.get()), (GenError::Superseded, 3));
+    }
+
+    #[test]
+    fn the_parts_of_a_round_may_be_made_in_any_order() {
+        let params = GenParams {
+            region: RegionMode::Full,
+            ..GenParams::default()
+        };
+        let made = |reverse: bool| {
+            let mut scene = scene();
+            scene.change_canvas(|f| {
+                f.boxes.insert(BoxId(3), car(3, 6.0, 19.0));
+            });
+            let mut map = Map {
+                params: params.clone(),
+                scene,
+            };
+            for mut round in plan(map.scene.frame(), &map.params) {
+                let before = map.scene.clone();
+                if reverse {
+                    round.reverse();
+                }
+                for part in &round {
+                    let cut = map.cut(&before, part).expect("work to do");
+                    let result = grow(&cut.job, &JobCtx::detached()).expect("grown");
+                    map.take(part, &cut, &result);
+                }
+            }
+            map.scene.frame().occupancy.clone()
+        };
+        assert_eq!(made(false), made(true));
     }
 }

@@ -209,7 +209,8 @@ impl Bench {
             invented: match params.region {
                 RegionMode::Full => 0.0, // all of it is new
                 RegionMode::Auto => {
-                    Invented::count(case.after.in_window().frame(), &result, &region).total() as f64
+                    let frame = case.after.frame().crop(Extent::WINDOW);
+                    Invented::count(&frame, &result, &region).total() as f64
                 }
             },
             seam: report.seam_change_share,
