@@ -24,6 +24,7 @@ pub struct Playback {
     /// The scene was a clip already when it was looked at last.
     pub known: bool,
     last_s: Option<f64>,
+    sensed_s: Option<f64>,
 }
 
 impl Default for Playback {
@@ -39,12 +40,15 @@ impl Default for Playback {
             follow: false,
             known: false,
             last_s: None,
+            sensed_s: None,
         }
     }
 }
 
 /// A pause between two ticks that is longer than this was no playing: the window was hidden, say. s.
 const LONGEST_TICK_S: f64 = 0.5;
+/// While it plays, the sensors look once in so many seconds.
+const SENSORS_EVERY_S: f64 = 0.5;
 
 impl Playback {
     /// Speeds to choose from.
@@ -56,6 +60,17 @@ impl Playback {
             Some([from, to]) if from < to && from < length_s => [from.max(0.0), to.min(length_s)],
             _ => [0.0, length_s],
         }
+    }
+
+    /// True if the sensors should look now: always while it rests, and seldom enough to leave the views their time while it
+    /// plays.
+    pub fn sensors_are_due(&mut self, now_s: f64) -> bool {
+        let waited_s = self.sensed_s.map_or(f64::INFINITY, |last_s| now_s - last_s);
+        let due = !self.playing || waited_s.is_nan() || waited_s >= SENSORS_EVERY_S;
+        if due {
+            self.sensed_s = self.playing.then_some(now_s);
+        }
+        due
     }
 
     /// The moment to show now, if it is another one than `shown_s`.
@@ -96,6 +111,21 @@ impl Playback {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sensors_look_always_at_rest_and_seldom_while_it_plays() {
+        let mut playback = Playback::default();
+        assert!(
+            [0.0, 0.1, f64::NAN, 0.2]
+                .iter()
+                .all(|t| playback.sensors_are_due(*t))
+        );
+        playback.playing = true;
+        let looks = (0..100).filter(|i| playback.sensors_are_due(f64::from(*i) * 0.1));
+        assert_eq!(looks.count(), 20);
+        playback.playing = false;
+        assert!(playback.sensors_are_due(10.0));
+    }
 
     #[test]
     fn it_plays_in_real_time_and_starts_over() {

@@ -40,10 +40,12 @@ impl SceneloomApp {
         let for_a_moment = self.document.is_dragging()
             || self.state.playback.playing
             || self.generation.live.running.is_some();
-        let wanted = Wanted::of(&self.state.cameras, &self.state.lidar);
-        self.threads
-            .sensing
-            .ask(self.document.scene(), wanted, for_a_moment);
+        if self.state.playback.sensors_are_due(now_s) {
+            let wanted = Wanted::of(&self.state.cameras, &self.state.lidar);
+            self.threads
+                .sensing
+                .ask(self.document.scene(), wanted, for_a_moment);
+        }
     }
 
     pub(crate) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {

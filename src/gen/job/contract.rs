@@ -207,7 +207,7 @@ impl GenReport {
 
     /// Wall time of all stages, s.
     pub fn total_s(&self) -> f64 {
-        self.wall_s.values().sum()
+        self.wall_s.values().sum::<f64>() + 0.0 // an empty sum is -0
     }
 }
 
