@@ -90,14 +90,11 @@ fn rooms_know_only_whom_they_may() {
 
 /// Files of the rooms that work on maps of any extent which may name the networks' window: they talk to the networks, or
 /// show what those did.
-const MAY_NAME_THE_WINDOW: [&str; 8] = [
+const MAY_NAME_THE_WINDOW: [&str; 5] = [
     "src/app/canvas.rs",
-    "src/app/canvas_draw.rs",
-    "src/app/cli/diff.rs",
     "src/app/cli/region_arg.rs",
     "src/app/marks.rs",
     "src/app/panes/modelled.rs",
-    "src/editor/apply/voxels.rs",
     "src/gen/sensors/learned.rs",
 ];
 

@@ -12,7 +12,7 @@ pub enum RegionArg {
     Auto,
     /// Everything, from fresh noise.
     Full,
-    /// What an edit touches, and the cells of a rectangle in the networks' window.
+    /// What an edit touches, and the cells of a rectangle.
     Rect(InpaintMask),
 }
 
@@ -34,14 +34,17 @@ impl std::str::FromStr for RegionArg {
         if numbers.iter().any(|n| !n.is_finite()) {
             return Err(wanted());
         }
-        let mask = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(x0, y0), DVec2::new(x1, y1));
+        let mask = InpaintMask::of_rect(reach(), DVec2::new(x0, y0), DVec2::new(x1, y1));
         match mask.is_empty() {
-            true => Err(
-                "the rectangle covers no cell of the networks' window, 80 m around the ego vehicle".into(),
-            ),
+            true => Err("the rectangle covers no cell within 819 m of the origin".into()),
             false => Ok(Self::Rect(mask)),
         }
     }
+}
+
+/// Where a rectangle may lie: as large as a square map can be.
+fn reach() -> Extent {
+    Extent::new([-2048; 2], [4096; 2]).unwrap_or(Extent::WINDOW)
 }
 
 #[cfg(test)]
@@ -54,7 +57,7 @@ mod tests {
         assert_eq!("full".parse(), Ok(RegionArg::Full));
         let rect = InpaintMask::of_rect(Extent::WINDOW, DVec2::new(-10.0, -5.0), DVec2::new(10.0, 5.0));
         assert_eq!("-10, 5,10,-5".parse(), Ok(RegionArg::Rect(rect)));
-        for bad in ["", "some", "1,2,3", "1,2,3,4,5", "1,2,3,nan", "100,100,200,200"] {
+        for bad in ["", "some", "1,2,3", "1,2,3,4,5", "1,2,3,nan", "900,100,990,200"] {
             assert!(bad.parse::<RegionArg>().is_err(), "{bad}");
         }
     }

@@ -10,7 +10,7 @@ pub use job::pipeline::Bounds;
 use job::pipeline::parts;
 use job::region::{CELLS, COLUMNS_PER_CELL, edited_columns};
 use job::{GenParams, JobId, JobKey, Named, RegionMode, Stage};
-use scene::{Extent, Scene, SceneRev, Window};
+use scene::{Extent, Scene, SceneRev};
 
 /// Edge of a latent cell, m.
 const CELL_M: f64 = COLUMNS_PER_CELL as f64 * Extent::VOXEL_M;
@@ -237,7 +237,7 @@ impl Live {
         let touched = Touched {
             is_empty: parts.is_empty(),
             extent_m: size_m(&parts),
-            share: (count as f64 / Window::COLUMNS as f64).min(1.0),
+            share: (count as f64 / COLUMNS as f64).min(1.0),
         };
         self.parts = parts.into();
         self.seen = Some((scene.content(), touched));
@@ -328,6 +328,9 @@ fn size_m(parts: &[Bounds]) -> [f64; 2] {
             .map_or(0.0, |(low, high)| (high + 1 - low) as f64 * Extent::VOXEL_M)
     })
 }
+
+/// Columns that the networks see at once.
+const COLUMNS: usize = CELLS * COLUMNS_PER_CELL * COLUMNS_PER_CELL;
 
 /// Extent, m, and share of the columns of what an edit touches together with inpainted cells. Both are upper bounds.
 fn with_inpainted(touched: &Touched, inpaint: &InpaintMask) -> ([f64; 2], f64) {

@@ -1,5 +1,7 @@
 //! One revolution of a spinning LiDAR through the learned field: sub-voxel ranges, echo strength, lost echoes. The field
-//! covers the networks' window; what lies in the rest of a larger map comes from the exact ray cast.
+//! covers 80 m around the vehicle; what lies in the rest of a larger map comes from the exact ray cast.
+
+use std::borrow::Cow;
 
 use glam::DVec3;
 
@@ -9,7 +11,8 @@ use super::texture::textured;
 use nets::ModelError;
 use nets::lidar::field::{Field, Ray, Sampling};
 use nets::lidar::{LearnedRay, LidarNet};
-use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, SensorRig, VoxelGrid};
+use scene::moved::Columns;
+use scene::{Class, Extent, LidarPattern, LidarPoint, LidarSweep, Pose, SensorRig, VoxelGrid};
 use world::draw::{Draw, hash};
 
 /// What happens to echoes that a real sensor may lose.
@@ -67,6 +70,50 @@ fn class_is_ground(label: impl Into<u8>) -> bool {
     Class::from_id(label.into()).is_some_and(Class::is_ground)
 }
 
+/// A rig in the middle of what the network sees: moved there by whole columns, with the grid that it looks at.
+pub(super) struct Centred<'a> {
+    /// The rig there.
+    pub rig: Cow<'a, SensorRig>,
+    /// Brings the map there.
+    pub from_map: Columns,
+}
+
+impl<'a> Centred<'a> {
+    /// A vehicle farther from the origin than any map is taken to be at the farthest place.
+    const FARTHEST: f64 = 4096.0;
+
+    /// The rig of a vehicle anywhere on a map.
+    pub fn new(rig: &'a SensorRig) -> Self {
+        let column = |m: f64| {
+            -(m / Extent::VOXEL_M)
+                .round()
+                .clamp(-Self::FARTHEST, Self::FARTHEST) as i32
+        };
+        let p = rig.vehicle.translation_m;
+        let by = Columns([column(p.x), column(p.y)]);
+        if by == Columns::default() {
+            let rig = Cow::Borrowed(rig);
+            return Self { rig, from_map: by };
+        }
+        let moved = Pose {
+            translation_m: by.way_m().extend(0.0),
+            ..Pose::IDENTITY
+        };
+        let rig = Cow::Owned(rig.placed(&moved));
+        Self { rig, from_map: by }
+    }
+
+    /// A grid of the map there.
+    pub fn grid(&self, grid: &VoxelGrid) -> VoxelGrid {
+        self.from_map.grid(grid)
+    }
+
+    /// The way back, m.
+    pub fn back_m(&self) -> DVec3 {
+        self.from_map.back().way_m().extend(0.0)
+    }
+}
+
 /// The rays of a pattern, beam-major; see [`Rays::new`].
 pub fn rays(pattern: &LidarPattern, velocity_mps: DVec3) -> Vec<Ray> {
     rays_of(pattern, &Rays::new(pattern, velocity_mps))
@@ -96,7 +143,7 @@ pub fn sweep(
     let rays = rays(pattern, DVec3::ZERO);
     let answers = net.shoot(field, &rays, Sampling::Prior)?;
     let columns = pattern.columns_in_sector();
-    Ok(points(&rays, &answers, columns, drops, None))
+    Ok(points(&rays, &answers, columns, drops, None, DVec3::ZERO))
 }
 
 /// The sweep of the first LiDAR of a rig on its moving vehicle, with the vehicle itself and what lies beyond the grid;
@@ -107,6 +154,8 @@ pub fn rig_sweep(
     rig: &SensorRig,
     drops: Drops,
 ) -> Result<LidarSweep, ModelError> {
+    let centred = Centred::new(rig);
+    let (rig, grid) = (&*centred.rig, &centred.grid(grid));
     let Some(pattern) = rig.lidars.first() else {
         return Ok(LidarSweep::default());
     };
@@ -117,16 +166,18 @@ pub fn rig_sweep(
     let rays = rays_of(pattern, &shape);
     let answers = net.shoot(&field, &rays, Sampling::Prior)?;
     let columns = pattern.columns_in_sector();
-    Ok(points(&rays, &answers, columns, drops, Some(&around)))
+    let back_m = centred.back_m();
+    Ok(points(&rays, &answers, columns, drops, Some(&around), back_m))
 }
 
-/// The points of answered rays, and of those that end on what is `around` the grid.
+/// The points of answered rays, and of those that end on what is `around` the grid, all moved by `back_m`.
 pub fn points(
     rays: &[Ray],
     answers: &[LearnedRay],
     columns: u32,
     drops: Drops,
     around: Option<&Around>,
+    back_m: DVec3,
 ) -> LidarSweep {
     let columns = columns.max(1) as usize;
     let is_lost = |ray: usize, probability: f32, dropped: bool| match drops {
@@ -137,7 +188,7 @@ pub fn points(
     let mut points = Vec::with_capacity(rays.len());
     for (i, (ray, answer)) in rays.iter().zip(answers).enumerate() {
         let range_m = answer.met.median_m;
-        let position: DVec3 = ray.origin + ray.direction * f64::from(range_m);
+        let position: DVec3 = ray.origin + ray.direction * f64::from(range_m) + back_m;
         let class = Class::from_id(answer.met.class).unwrap_or(Class::Others);
         let inside = || LidarPoint {
             position_in_ego: position.as_vec3().to_array(),
@@ -150,7 +201,9 @@ pub fn points(
         };
         let met = answer.is_hit();
         let kept = match around.and_then(|around| around.instead(i, met)) {
-            Some(other) => other.filter(|p| !is_lost(i, p.drop_probability, p.drop_probability >= 0.5)),
+            Some(other) => other
+                .filter(|p| !is_lost(i, p.drop_probability, p.drop_probability >= 0.5))
+                .map(|p| moved(p, back_m)),
             None => {
                 let found = (met && range_m.is_finite()).then(inside);
                 found.filter(|p| !is_lost(i, p.drop_probability, is_dropped(answer.drop_logit)))
@@ -162,6 +215,14 @@ pub fn points(
         points,
         rays: rays.len(),
         physical: true,
+    }
+}
+
+fn moved(point: LidarPoint, by_m: DVec3) -> LidarPoint {
+    let p = DVec3::from_array(point.position_in_ego.map(f64::from)) + by_m;
+    LidarPoint {
+        position_in_ego: p.as_vec3().to_array(),
+        ..point
     }
 }
 

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::learned::{self, Drops, SEEN};
+use super::learned::{self, Centred, Drops, SEEN};
 use super::lidar::{EgoBox, Rays};
 use super::surroundings::{Around, Height};
 use nets::ModelError;
 use nets::lidar::field::{Field, Ray, Sampling};
 use nets::lidar::update::{Changed, Region};
 use nets::lidar::{LearnedRay, LidarNet};
+use scene::moved::Columns;
 use scene::{Extent, LidarPattern, LidarSweep, SensorRig, VoxelGrid};
 
 /// A voxel's numbers reach half a voxel beyond it, as far as the neighbours' centres.
@@ -33,6 +34,8 @@ pub struct LearnedCaster {
     field: Field,
     answers: Vec<LearnedRay>,
     shot: Vec<u32>, // rays of the last update, rising
+    /// Where the vehicle is on the map, by whole columns.
+    from_map: Columns,
 }
 
 /// What of some rays the network looked at.
@@ -72,19 +75,28 @@ impl LearnedCaster {
             rays,
             field,
             answers,
+            from_map: Columns::default(),
         })
     }
 
     /// The first LiDAR of a rig on its moving vehicle; `None` if it has none.
     pub fn of_rig(net: Arc<LidarNet>, grid: &VoxelGrid, rig: &SensorRig) -> Result<Option<Self>, ModelError> {
-        let ego = Some(EgoBox::of_rig(rig));
-        let new = |pattern| Self::new(net, grid, pattern, rig.velocity_mps(), ego);
-        rig.lidars.first().map(new).transpose()
+        let centred = Centred::new(rig);
+        let (rig, grid) = (&*centred.rig, &centred.grid(grid));
+        let Some(pattern) = rig.lidars.first() else {
+            return Ok(None);
+        };
+        let caster = Self::new(net, grid, pattern, rig.velocity_mps(), Some(EgoBox::of_rig(rig)))?;
+        Ok(Some(Self {
+            from_map: centred.from_map,
+            ..caster
+        }))
     }
 
     /// Brings the sweep up to date with `grid`. Errors if the network's numbers are not finite; the sweep is that of the
     /// last grid then.
     pub fn update(&mut self, grid: &VoxelGrid) -> Result<(), ModelError> {
+        let grid = &self.from_map.grid(grid);
         let seen = learned::seen(grid, self.exclude);
         self.shot = match self.net.update(&mut self.field, &seen)? {
             Changed::Everywhere => {
@@ -119,7 +131,13 @@ impl LearnedCaster {
     /// The points, beam-major.
     pub fn sweep(&self, drops: Drops) -> LidarSweep {
         let columns = self.pattern.columns_in_sector();
-        learned::points(&self.rays, &self.answers, columns, drops, Some(&self.around))
+        let around = Some(&self.around);
+        learned::points(&self.rays, &self.answers, columns, drops, around, self.back_m())
+    }
+
+    /// The way back onto the map, m.
+    fn back_m(&self) -> DVec3 {
+        self.from_map.back().way_m().extend(0.0)
     }
 
     /// Rays that the last update shot.
@@ -141,7 +159,7 @@ impl LearnedCaster {
                 continue;
             }
             way_m += reach_m - ray.range_m[0];
-            let at = |t_m: f64| ray.origin + ray.direction * t_m;
+            let at = |t_m: f64| ray.origin + ray.direction * t_m + self.back_m();
             let mut run: Option<[f64; 2]> = None;
             let walk = self
                 .field

@@ -274,6 +274,34 @@ fn a_kept_sweep_takes_another_extent() {
     );
 }
 
+/// What a vehicle sees goes with it over the map.
+#[test]
+fn a_learned_sweep_is_around_the_vehicle() {
+    let net = LidarNet::bundled().expect("the shipped weights");
+    let mut rig = SensorRig::default();
+    (rig.lidars[0].columns, rig.lidars[0].max_range_m) = (120, 150.0);
+    let grid = walled();
+    let here = learned::rig_sweep(&net, &grid, &rig, Drops::Keep).expect("finite");
+    let by = scene::moved::Columns([300, -175]);
+    let way_m = by.way_m().extend(0.0);
+    let there = rig.placed(&scene::Pose {
+        translation_m: way_m,
+        ..scene::Pose::IDENTITY
+    });
+    let moved = by.grid(&grid);
+    let found = learned::rig_sweep(&net, &moved, &there, Drops::Keep).expect("finite");
+    assert_eq!(found.points.len(), here.points.len());
+    for (a, b) in here.points.iter().zip(&found.points) {
+        let [a_m, b_m] = [a, b].map(|p| DVec3::from_array(p.position_in_ego.map(f64::from)));
+        assert!((a_m + way_m).distance(b_m) < 1e-3, "{a_m} {b_m}");
+        assert_eq!((a.ring, a.azimuth, a.class), (b.ring, b.azimuth, b.class));
+    }
+    let kept = LearnedCaster::of_rig(net.clone(), &moved, &there)
+        .expect("finite")
+        .expect("a LiDAR");
+    assert_eq!(kept.sweep(Drops::Keep), found);
+}
+
 /// The network sees the window; the rest of the map is met by the exact cast, at its physical height.
 #[test]
 fn a_learned_sweep_goes_on_beyond_the_window() {
