@@ -12,6 +12,7 @@ mod recovery;
 mod sensors;
 mod shell;
 mod staged;
+mod timeline;
 mod tools;
 mod trade;
 mod views;
