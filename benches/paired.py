@@ -34,7 +34,10 @@ def commands(edits, out):
 def contents(path):
     """What a file holds, whatever way it is packed."""
     if path.suffix == ".loom":
-        return hashlib.sha1(zipfile.ZipFile(path).read("frames/00000/occupancy.u8")).hexdigest()
+        file = zipfile.ZipFile(path)
+        names = ["canvas/occupancy.u8", "frames/00000/occupancy.u8"]  # since version 5, and before
+        held = next(name for name in names if name in file.namelist())
+        return hashlib.sha1(file.read(held)).hexdigest()
     if path.suffix == ".png":
         return hashlib.sha1(np.array(Image.open(path)).tobytes()).hexdigest()
     if path.suffix == ".npz":
