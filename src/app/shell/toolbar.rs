@@ -32,6 +32,8 @@ pub struct ToolbarInput<'a> {
     pub live: bool,
     /// A job is on its way.
     pub busy: bool,
+    /// Cells are marked to be inpainted.
+    pub marked: bool,
     /// An edit waits for its generation.
     pub waiting: bool,
     /// Numbers of views that are kept.
@@ -181,6 +183,15 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
                 running: true,
                 waiting: false,
             }),
+        )
+    } else if input.marked {
+        (
+            "Inpaint",
+            "Generate what is marked",
+            "fresh content where the region is marked, and nowhere else",
+            theme::accent_fill(),
+            Icon::Play,
+            Command::Generation(GenerationCommand::Generate { full: false }),
         )
     } else {
         let command = Command::Generation(GenerationCommand::Generate { full: true });

@@ -104,6 +104,7 @@ impl SceneloomApp {
             redo: self.document.redo_label(),
             live: self.generation.live.on,
             busy: self.generation.live.running.is_some(),
+            marked: !self.state.tools.region.is_empty(),
             waiting: self
                 .generation
                 .live

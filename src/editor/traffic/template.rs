@@ -143,6 +143,11 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
         Some(id) => format!("box {} does not exist in this frame", id.0),
         None => "there is no ego vehicle".to_owned(),
     })?;
+    // How far it is turned against us; 0.5 is 60 degrees.
+    let along = DVec2::from_angle(from.yaw_rad).dot(DVec2::from_angle(ego(scene).yaw_rad));
+    if wish.template == Template::CutIn && along < 0.5 {
+        return Err("only an object that goes our way can cut in; this one does not".to_owned());
+    }
     let path = path_of(scene, id, &from, half_length_m, wish, length_s);
     let mut edits = Vec::new();
     if clip.length_s == 0.0 {
@@ -437,6 +442,13 @@ mod tests {
             (at(&cuts, 1, 2.0).center_m.y - 3.6).abs() < 1e-6 && at(&cuts, 1, 5.2).center_m.y.abs() < 1e-6
         );
         assert!(at(&cuts, 1, 3.5).yaw_rad < -0.05, "it steers to the right");
+        let mut oncoming = start.clone();
+        oncoming.change_canvas(|f| {
+            f.boxes.get_mut(&BoxId(1)).expect("there").yaw_rad = std::f64::consts::PI;
+        });
+        let wish = Wish::usual(Template::CutIn, Some(Class::Car));
+        let refused = motion_of(&oncoming, Some(BoxId(1)), &wish).expect_err("it comes towards us");
+        assert!(refused.contains("goes our way"), "{refused}");
         let crosses = with(&start, Some(3), Template::Cross, 1.5);
         assert!((at(&crosses, 3, 2.0).center_m.y + 6.0).abs() < 1e-6);
         assert!((at(&crosses, 3, 4.0).center_m.y + 3.375).abs() < 1e-6);

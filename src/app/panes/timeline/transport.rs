@@ -52,7 +52,7 @@ pub(super) fn scope(ui: &mut Ui, state: &mut UiState, _commands: &mut Vec<Comman
 /// The row of buttons and numbers.
 pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mut Vec<Command>) {
     let clip = scene.clip();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let playing = state.playback.playing;
         let buttons = [
