@@ -23,6 +23,9 @@ impl std::fmt::Debug for InpaintMask {
     }
 }
 
+/// How far around an unchanged box nothing is inpainted, m.
+pub const KEPT_M: f64 = Extent::VOXEL_M;
+
 impl InpaintMask {
     /// Cells farther from the corner of the window than this are refused: no map is larger.
     const FARTHEST: i32 = (Extent::MAX_COLUMNS / COLUMNS_PER_CELL) as i32;
@@ -174,7 +177,7 @@ pub fn wanted_columns(frame: &Frame, params: &GenParams) -> Vec<bool> {
         .values()
         .filter(|b| frame.source.boxes.get(&b.id) == Some(b));
     for b in kept {
-        box_cells(extent, b, Extent::VOXEL_M, |x, y| {
+        box_cells(extent, b, KEPT_M, |x, y| {
             columns[extent.index(x, y)] = false
         });
     }

@@ -1,5 +1,6 @@
 //! The canvas as it is seen at a moment.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Clip;
@@ -14,7 +15,8 @@ impl Clip {
             return canvas.clone();
         }
         let there = self.boxes_at(time_s, canvas);
-        let absent = self.tracks.keys().filter(|id| there.iter().all(|b| b.id != **id));
+        let present: BTreeSet<BoxId> = there.iter().map(|b| b.id).collect();
+        let absent = self.tracks.keys().filter(|id| !present.contains(id));
         let mut frame = self.with(canvas, &there, time_s, world_from_ego);
         frame.absent = Arc::new(absent.copied().collect());
         Arc::new(frame)
@@ -30,14 +32,14 @@ impl Clip {
     /// What the networks are asked about: the canvas with those moving objects whose voxels are still drafts, each where it
     /// was made. The same at every time.
     pub fn unsettled(&self, canvas: &Arc<Frame>) -> Arc<Frame> {
-        let drafts = self.tracks.values().filter(|t| !t.settled);
-        let drafts: Vec<SceneBox> = drafts.map(|t| t.made).collect();
         if self.tracks.is_empty() {
             return canvas.clone();
         }
+        let drafts = self.tracks.values().filter(|t| !t.settled);
+        let drafts: Vec<SceneBox> = drafts.map(|t| t.made).collect();
         let mut frame = self.with(canvas, &drafts, canvas.time_s, canvas.world_from_ego);
-        let is_draft = |id: &&BoxId| drafts.iter().any(|b| b.id == **id);
-        frame.absent = Arc::new(self.tracks.keys().filter(|id| !is_draft(id)).copied().collect());
+        let settled = self.tracks.iter().filter(|(_, t)| t.settled);
+        frame.absent = Arc::new(settled.map(|(id, _)| *id).collect());
         Arc::new(frame)
     }
 

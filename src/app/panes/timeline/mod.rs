@@ -40,9 +40,9 @@ impl Pane for Timeline {
         Place::BelowViews
     }
 
-    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
         if cx.document.scene().clip().length_s > 0.0 {
-            transport::scope(ui, cx.state, commands);
+            transport::scope(ui, cx.state);
         }
     }
 

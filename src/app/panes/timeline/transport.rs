@@ -22,7 +22,7 @@ pub(super) fn scope_name(scope: Scope) -> &'static str {
 }
 
 /// Which moments an edit of a moving object is for.
-pub(super) fn scope(ui: &mut Ui, state: &mut UiState, _commands: &mut Vec<Command>) {
+pub(super) fn scope(ui: &mut Ui, state: &mut UiState) {
     let choices = [
         (
             Scope::WholeTrack,

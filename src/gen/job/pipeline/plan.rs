@@ -9,7 +9,7 @@ use crate::contract::{GenParams, RegionMode};
 use crate::inpaint::{InpaintMask, wanted_columns};
 use crate::region::{CELLS_PER_SIDE, COLUMNS_PER_CELL};
 use scene::moved::Columns;
-use scene::{Extent, Frame};
+use scene::{Extent, Frame, SceneBox};
 use world::draw::hash;
 
 /// Latent cells along a window.
@@ -67,6 +67,17 @@ pub struct Part {
     pub place: Place,
     /// What.
     pub task: Task,
+}
+
+impl Part {
+    /// True if it generates cells of a seam on which a box stands, as far as that can be seen in a window, in whose frame the
+    /// box is given.
+    pub fn seam_touches(&self, window: Place, b: &SceneBox) -> bool {
+        match &self.task {
+            Task::Seam(cells) => InpaintMask::of_cells(cells).from_cell(window.0).touches(b),
+            Task::Edit | Task::Whole(_) => false,
+        }
+    }
 }
 
 /// What a job on a map needs: rounds, one after another. The parts of a round see the map as it was before the round.

@@ -8,7 +8,8 @@ use super::plan::{Part, Place, Task, extent_of, plan};
 use crate::contract::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, JobUpdate, RegionMode};
 use crate::inpaint::{self, InpaintMask};
 use crate::region::CELLS_PER_SIDE;
-use scene::{BevLayout, Extent, Frame, Scene, VoxelGrid};
+use scene::raster::box_cells;
+use scene::{BevLayout, Extent, Frame, Scene, SceneBox, VoxelGrid};
 
 /// The window at the origin of a job's scene, as a job; `None` if the frame is that window.
 pub(super) fn at_origin(job: &Job) -> Option<Job> {
@@ -76,7 +77,7 @@ pub(super) fn over_the_map(
         for part in round {
             ctx.check()?;
             done += 1;
-            let Some(cut) = map.cut(&before, part) else {
+            let Some(cut) = map.cut(&before, round, part) else {
                 continue;
             };
             let stop = || ctx.check().is_err();
@@ -134,8 +135,8 @@ struct Map {
 }
 
 impl Map {
-    /// A part of a map as it was before the part's round; `None` if nothing is left to do there.
-    fn cut(&self, before: &Scene, part: &Part) -> Option<Cut> {
+    /// A part of a round, of the map as it was before the round; `None` if nothing is left to do there.
+    fn cut(&self, before: &Scene, round: &[Part], part: &Part) -> Option<Cut> {
         let mut scene = window(before, part.place);
         let mut params = GenParams {
             seed: part.place.seed(self.params.seed),
@@ -155,14 +156,37 @@ impl Map {
                 let cells = InpaintMask::of_cells(cells).from_cell(part.place.0);
                 params.region = RegionMode::Auto;
                 params.strength = 1.0;
-                // An object across the seam was drawn by halves: it is drawn again.
+                // An object across the seam was drawn by halves: it is drawn again, by one part alone.
+                let first_at = |b: &SceneBox| {
+                    let touching = round.iter().filter(|p| p.seam_touches(part.place, b));
+                    touching.map(|p| p.place).min()
+                };
+                let mut again = Vec::new();
                 scene.change_canvas(|frame| {
                     let mut source = (*frame.source).clone();
-                    source.boxes.retain(|_, b| !cells.touches(b));
+                    source.boxes.retain(|_, b| {
+                        let mine = cells.touches(b) && first_at(b) == Some(part.place);
+                        again.extend(mine.then_some(*b));
+                        !mine
+                    });
                     frame.source = Arc::new(source);
                 });
-                params.inpaint = cells;
-                columns = Some(inpaint::wanted_columns(scene.frame(), &params));
+                params.inpaint = cells.clone();
+                // Its halo may lie in the cells of another part: those are taken over from there.
+                let mut own = cells.columns(Extent::WINDOW);
+                for b in &again {
+                    box_cells(Extent::WINDOW, b, inpaint::KEPT_M, |x, y| {
+                        own[Extent::WINDOW.index(x, y)] = true
+                    });
+                }
+                let wanted = inpaint::wanted_columns(scene.frame(), &params);
+                columns = Some(
+                    wanted
+                        .into_iter()
+                        .zip(own)
+                        .map(|(wanted, own)| wanted && own)
+                        .collect(),
+                );
             }
         }
         let scene = Arc::new(scene);
@@ -233,7 +257,7 @@ fn window(scene: &Scene, place: Place) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BevLayer, BoxId, Class, SceneBox, SensorRig};
+    use scene::{BevLayer, BoxId, Class, SensorRig};
     use std::sync::Mutex;
 
     fn map() -> Extent {
@@ -253,7 +277,8 @@ mod tests {
         Job { scene, params }
     }
 
-    /// Instead of networks: vegetation wherever something is to be generated, as high as the job's seed says.
+    /// Instead of networks: vegetation wherever something is to be generated, as high as the job's seed and what stands in the
+    /// window say.
     fn grow(job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         let frame = job.scene.frame();
         assert_eq!(frame.extent(), Extent::WINDOW);
@@ -262,7 +287,8 @@ mod tests {
             RegionMode::Full => vec![true; Extent::WINDOW.columns()],
         };
         let mut grid = frame.source.occupancy.clone();
-        let high = 1 + (job.params.seed % 13) as usize;
+        let around = frame.source.occupancy.count_set() as u64;
+        let high = 1 + (job.params.seed.wrapping_add(around) % 13) as usize;
         for ([x, y], _) in Extent::WINDOW.all_columns().zip(&columns).filter(|(_, c)| **c) {
             (0..high).for_each(|z| grid.set(x, y, z, Class::Vegetation.id()));
         }
@@ -444,7 +470,7 @@ mod tests {
                     round.reverse();
                 }
                 for part in &round {
-                    let cut = map.cut(&before, part).expect("work to do");
+                    let cut = map.cut(&before, &round, part).expect("work to do");
                     let result = grow(&cut.job, &JobCtx::detached()).expect("grown");
                     map.take(part, &cut, &result);
                 }
