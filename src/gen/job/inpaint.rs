@@ -177,9 +177,7 @@ pub fn wanted_columns(frame: &Frame, params: &GenParams) -> Vec<bool> {
         .values()
         .filter(|b| frame.source.boxes.get(&b.id) == Some(b));
     for b in kept {
-        box_cells(extent, b, KEPT_M, |x, y| {
-            columns[extent.index(x, y)] = false
-        });
+        box_cells(extent, b, KEPT_M, |x, y| columns[extent.index(x, y)] = false);
     }
     for (column, edited) in columns.iter_mut().zip(edited) {
         *column |= edited;
