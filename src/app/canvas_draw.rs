@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Pos2, Rect, Response, Shape, Stroke, StrokeKind, Ui,
 use glam::{DVec2, DVec3};
 
 use editor::pick;
-use editor::tools::select;
+use editor::tools::{HANDLE_REACH, select};
 use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Pose, Scene, SceneBox, SensorRig};
 
 use super::camera_views::LidarShown;
@@ -200,7 +200,9 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
     let knob = map.to_screen(pick::rotate_knob(b));
     painter.line_segment([front, knob], Stroke::new(1.0, Color32::from_white_alpha(150)));
     painter.circle(knob, 5.0, theme::accent(), Stroke::new(1.5, Color32::WHITE));
-    for corner in b.footprint() {
+    let reach_m = HANDLE_REACH / map.scale;
+    let corners = if pick::has_corner_handles(b, reach_m) { b.footprint().to_vec() } else { Vec::new() };
+    for corner in corners {
         let square = Rect::from_center_size(map.to_screen(corner), egui::Vec2::splat(6.0));
         painter.rect(
             square,

@@ -144,6 +144,8 @@ pub enum GenerationCommand {
 pub enum TimeCommand {
     /// Shows a moment, s.
     Show(f64),
+    /// Shows the frame nearest to a moment, s.
+    Scrub(f64),
     /// Plays, or pauses.
     Play,
     /// So many frames forward, or back.

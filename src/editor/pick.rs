@@ -272,17 +272,25 @@ pub fn rotate_knob(b: &SceneBox) -> DVec2 {
     b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0 + ROTATE_KNOB_M)
 }
 
-/// The handle of a selected box within `tolerance_m` of a point: knob before corners before body.
+/// True if a box is large enough on the screen to be resized by its corners: they would cover a smaller one.
+pub fn has_corner_handles(b: &SceneBox, tolerance_m: f64) -> bool {
+    b.size_m.truncate().min_element() >= 1.2 * tolerance_m
+}
+
+/// The handle of a selected box within `tolerance_m` of a point: corners before body before knob. Within the box a corner is
+/// a corner for a quarter of the shorter edge at most, so that most of the box is there to move it.
 pub fn handle_at(b: &SceneBox, p_m: DVec2, tolerance_m: f64) -> Option<Handle> {
-    let near = |q: DVec2| q.distance(p_m) <= tolerance_m;
-    if near(rotate_knob(b)) {
-        return Some(Handle::Rotate);
-    }
+    let inside = b.contains(p_m.extend(b.center_m.z), 0.0);
+    let reach_m = match inside {
+        true => tolerance_m.min(b.size_m.truncate().min_element() / 4.0),
+        false => tolerance_m,
+    };
     let corners = b.footprint();
     let nearest = (0..4).min_by(|&i, &j| corners[i].distance(p_m).total_cmp(&corners[j].distance(p_m)));
     match nearest {
-        Some(i) if near(corners[i]) => Some(Handle::Corner(i)),
-        _ if b.contains(p_m.extend(b.center_m.z), 0.0) => Some(Handle::Body),
+        Some(i) if has_corner_handles(b, tolerance_m) && corners[i].distance(p_m) <= reach_m => Some(Handle::Corner(i)),
+        _ if inside => Some(Handle::Body),
+        _ if rotate_knob(b).distance(p_m) <= tolerance_m => Some(Handle::Rotate),
         _ => None,
     }
 }

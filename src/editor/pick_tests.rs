@@ -249,6 +249,9 @@ fn birds_eye_picking_takes_the_topmost_box_and_its_handles() {
         Some(Handle::Corner(1))
     );
     assert_eq!(handle_at(&truck, DVec2::new(1.0, 0.5), 0.3), Some(Handle::Body));
+    // Seen from afar it is moved, not resized by corners that would cover it.
+    assert_eq!(handle_at(&truck, DVec2::new(0.2, 0.1), 1.5), Some(Handle::Body));
+    assert_eq!(handle_at(&truck, DVec2::new(-4.1, 1.4), 9.0), None);
     assert_eq!(handle_at(&truck, DVec2::new(0.0, 5.0), 0.3), None);
     assert_eq!(yaw_deg_towards(&truck, DVec2::new(0.0, 3.0)), Some(90.0));
     assert_eq!(yaw_deg_towards(&truck, DVec2::ZERO), None);

@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::{Common, Outcome, output};
 use app::memory;
 use app::open;
+use authoring::drives::{drive_scene, frames_of};
 use authoring::roads::Roads;
 use dataset::layout::layout_frame;
 use dataset::lidar::lidar_frame;
@@ -21,7 +22,7 @@ use formats::occ3d;
 pub struct Dataset {
     /// What the frames hold, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
     /// `memory` the bank of remembered scenes.
-    #[arg(value_parser = ["occupancy", "lidar", "layout", "text", "occ3d", "memory"])]
+    #[arg(value_parser = ["occupancy", "drives", "lidar", "layout", "text", "occ3d", "memory"])]
     kind: String,
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
@@ -97,6 +98,10 @@ impl Dataset {
             }
             "text" => {
                 let make = |i: usize| anyhow::Ok(text_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            "drives" => {
+                let make = |i: usize| anyhow::Ok(frames_of(&drive_scene(self.seed, i as u64, |seed| roads.layout(seed))));
                 dataset::write(&self.output, frames, make, step)
             }
             "occ3d" => {

@@ -25,7 +25,7 @@ pub mod prompt;
 mod statistics;
 mod thing_list;
 mod things;
-mod timeline;
+pub(crate) mod timeline;
 pub mod tools;
 pub mod trade;
 pub mod versions;

@@ -91,6 +91,7 @@ impl SceneloomApp {
         if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
             return self.fail("Background things are locked".to_owned());
         }
+        let label = self.meant_label(label.into(), edits);
         let edits = self.meant(edits.to_vec());
         if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());

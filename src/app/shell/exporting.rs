@@ -33,6 +33,13 @@ struct Running {
     written: Receiver<Written>,
 }
 
+impl Exporting {
+    /// What is being written, and how far it has come.
+    pub fn under_way(&self) -> Option<(&'static str, &ExportProgress)> {
+        self.running.as_ref().map(|r| (r.name, &*r.progress))
+    }
+}
+
 impl SceneloomApp {
     /// Opens the dialog, or closes it.
     pub(crate) fn toggle_export(&mut self) {

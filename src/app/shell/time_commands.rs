@@ -5,7 +5,9 @@ use egui::Context;
 use super::app::SceneloomApp;
 use crate::command::TimeCommand;
 use crate::panes::id::PaneId;
+use crate::panes::timeline::scope_name;
 use editor::Edit;
+use editor::document::Label;
 use editor::traffic::motion_of;
 use scene::Scope;
 
@@ -19,8 +21,20 @@ impl SceneloomApp {
         let (clip, shown_s) = (scene.clip(), scene.time_s());
         let playback = &mut self.state.playback;
         let to_s = match command {
-            TimeCommand::Show(time_s) => Some(time_s),
-            TimeCommand::Play => playback.toggle(shown_s, clip.length_s),
+            TimeCommand::Show(time_s) => {
+                playback.playing = false;
+                Some(time_s)
+            }
+            TimeCommand::Scrub(time_s) => {
+                playback.playing = false;
+                Some(clip.time_of(clip.frame_at(time_s)))
+            }
+            TimeCommand::Play => {
+                let from_s = playback.toggle(shown_s, clip.length_s);
+                // Where it pauses is a frame, as where one steps to.
+                let frame_s = || clip.time_of(clip.frame_at(shown_s));
+                if playback.playing { from_s } else { Some(frame_s()) }
+            }
             TimeCommand::Step(frames) => {
                 playback.playing = false;
                 let at = clip.frame_at(shown_s) as i64 + i64::from(frames);
@@ -112,7 +126,9 @@ impl SceneloomApp {
             )
         });
         let since: Option<f64> = ctx.data(|d| d.get_temp(id));
-        if released && !typing && since.is_some_and(|since| now_s - since < TAP_S) {
+        // A quick tap goes down and comes up between two frames.
+        let since_s = since.or(pressed.then_some(now_s));
+        if released && !moved && !typing && since_s.is_some_and(|since| now_s - since < TAP_S) {
             self.time_command(TimeCommand::Play);
         }
         // A button that goes down meanwhile means that it was held for the views.
@@ -125,6 +141,20 @@ impl SceneloomApp {
             Some(since) => drop(d.insert_temp(id, since)),
             None => d.remove::<f64>(id),
         });
+    }
+
+    /// The label of edits, which says for which moments a moving object changes where that is not all of them.
+    pub(crate) fn meant_label(&self, label: Label, edits: &[Edit]) -> Label {
+        let scope = self.state.playback.scope;
+        let clip = self.document.scene().clip();
+        let moves = |edit: &Edit| match edit {
+            Edit::RemoveBox { id } | Edit::MoveBox { id, .. } => clip.tracks.contains_key(id),
+            _ => false,
+        };
+        match scope != Scope::WholeTrack && edits.iter().any(moves) {
+            true => format!("{label}, {}", scope_name(scope).to_lowercase()).into(),
+            false => label,
+        }
     }
 
     /// The edits as they are meant: of one moment, or from here on, where the timeline says so.

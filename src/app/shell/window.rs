@@ -145,6 +145,7 @@ impl SceneloomApp {
             live: self.generation.live.on,
             unsettled,
             busy_with: self.files.opening.as_ref().map(|o| o.what.as_str()),
+            exporting: self.files.exporting.under_way(),
             unread: self.toasts.unread(),
             paused: self.generation.live.paused.as_ref(),
             waiting: self.generation.live.has_waiting(settled.content()),

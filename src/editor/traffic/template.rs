@@ -74,6 +74,11 @@ impl Template {
         }
     }
 
+    /// True if what it is about begins at a moment of its own.
+    pub fn has_a_moment(self) -> bool {
+        !matches!(self, Self::Drive | Self::Follow)
+    }
+
     /// What it does, in a sentence.
     pub fn hint(self) -> &'static str {
         match self {

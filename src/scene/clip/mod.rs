@@ -1,6 +1,7 @@
 //! What moves in a scene, and when: tracks of objects and of the ego vehicle. What stands still is the scene's canvas; a
 //! frame is the canvas with the moving objects where they are at a moment.
 
+mod fit;
 mod fold;
 mod motion;
 mod object_voxels;

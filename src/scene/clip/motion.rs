@@ -4,8 +4,12 @@
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
+use super::fit::fitted;
 use super::path::Path;
 use crate::{BoxId, SceneBox};
+
+/// Within this time a path that became keyframes leaves its old line for the new one, s.
+const COME_OVER_S: f64 = 1.0;
 
 /// Where something is on the ground at a moment, and how fast. World frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,10 +150,11 @@ impl Motion {
         }
     }
 
-    /// The same motion from `time_s` on changed by the move that takes `from` (where it is then) to `to`. A path becomes
-    /// keyframes, `every_s` apart, over `length_s`.
+    /// The same motion from `time_s` on changed by the move that takes `from` (where it is then) to `to`; it comes over within
+    /// the second before. A path becomes keyframes.
     pub fn carried_from(&self, time_s: f64, from: &Moving, to: &Moving, sampling: &Sampling) -> Self {
         let mut keys = self.as_keys(sampling);
+        self.hold(&mut keys, time_s - COME_OVER_S, sampling);
         set_key(&mut keys, key(time_s, from));
         let Self::Keys(moved) = Self::Keys(keys.clone()).carried(from, to) else {
             return self.clone();
@@ -165,11 +170,24 @@ impl Motion {
     /// The same motion through `to` at a time, and as before at its other keyframes. A path becomes keyframes.
     pub fn through(&self, time_s: f64, to: &Moving, sampling: &Sampling) -> Self {
         let mut keys = self.as_keys(sampling);
+        self.hold(&mut keys, time_s - COME_OVER_S, sampling);
+        self.hold(&mut keys, time_s + COME_OVER_S, sampling);
         set_key(&mut keys, key(time_s, to));
         Self::Keys(keys)
     }
 
-    /// The motion as keyframes; those of a path are taken at regular times.
+    /// A key where a motion without keys of its own is at a time, if that is between those it has become.
+    fn hold(&self, keys: &mut Vec<Key>, time_s: f64, sampling: &Sampling) {
+        let inside = keys.first().is_some_and(|k| k.time_s < time_s) && keys.last().is_some_and(|k| time_s < k.time_s);
+        if !matches!(self, Self::Keys(_))
+            && inside
+            && let Some(pose) = self.at(time_s, |id| (sampling.parent)(id, time_s))
+        {
+            set_key(keys, key(time_s, &pose));
+        }
+    }
+
+    /// The motion as keyframes; of a path, as few as tell it.
     fn as_keys(&self, sampling: &Sampling) -> Vec<Key> {
         match self {
             Self::Keys(keys) => keys.clone(),
@@ -180,7 +198,7 @@ impl Motion {
                     self.at(time_s(i), |id| (sampling.parent)(id, time_s(i)))
                         .map(|m| key(time_s(i), &m))
                 };
-                (0..=steps).filter_map(pose).collect()
+                fitted(&(0..=steps).filter_map(pose).collect::<Vec<_>>())
             }
         }
     }
@@ -237,8 +255,8 @@ pub struct Sampling<'a> {
 }
 
 impl Sampling<'_> {
-    /// Time between two keyframes, s.
-    const EVERY_S: f64 = 0.5;
+    /// Time between two poses that the keyframes must tell, s.
+    const EVERY_S: f64 = 0.1;
 }
 
 impl From<&SceneBox> for Moving {
@@ -309,7 +327,7 @@ fn keys_problem(keys: &[Key]) -> Option<String> {
 
 /// A cubic through the keys: the tangent at a key is the mean of its neighbours' slope, shortened so that nothing
 /// overshoots (Fritsch and Carlson 1980, for vectors).
-fn at_keys(keys: &[Key], time_s: f64) -> Option<Moving> {
+pub(super) fn at_keys(keys: &[Key], time_s: f64) -> Option<Moving> {
     let (first, last) = (keys.first()?, keys.last()?);
     let still = |k: &Key| Some(Moving::still(k.at_m, k.yaw_deg.to_radians()));
     if time_s.is_nan() || time_s <= first.time_s {

@@ -149,10 +149,14 @@ fn carried_motions_keep_their_shape() {
         assert!((at(&later, 0.0).at_m - at(&motion, 0.0).at_m).length() < 1e-9);
         assert!((at(&later, 2.0).at_m - to.at_m).length() < 1e-9);
         assert!((at(&later, 5.0).at_m - at(&carried, 5.0).at_m).length() < 0.3);
+        // A path comes over within a second.
+        if matches!(motion, Motion::Path(_)) {
+            assert!((at(&later, 0.9).at_m - at(&motion, 0.9).at_m).length() < 0.15);
+        }
         // One moment: the keys around it stay.
         let through = motion.through(2.0, &to, &sampling);
         assert!((at(&through, 2.0).at_m - to.at_m).length() < 1e-9);
-        assert!((at(&through, 5.0).at_m - at(&motion, 5.0).at_m).length() < 1e-6);
+        assert!((at(&through, 5.0).at_m - at(&motion, 5.0).at_m).length() < 0.15);
         for m in [later, through] {
             assert_eq!(m.problem(), None);
         }

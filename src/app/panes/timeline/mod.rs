@@ -5,6 +5,8 @@ mod motion_menu;
 mod rows;
 mod transport;
 
+pub(crate) use transport::scope_name;
+
 use egui::Ui;
 
 use super::id::PaneId;
@@ -56,7 +58,8 @@ impl Pane for Timeline {
             transport::bar(ui, &scene, cx.state, commands);
             let graph_points = if ui.available_height() > 150.0 { 58.0 } else { 0.0 };
             let rows_points = (ui.available_height() - graph_points).max(40.0);
-            let track = self.rows.show(ui, &scene, cx.state, rows_points, commands);
+            let findings = cx.checking.findings().map_or(&[][..], |f| f.as_slice());
+            let track = self.rows.show(ui, &scene, (cx.state, findings), rows_points, commands);
             if graph_points > 0.0 {
                 graph::show(ui, &scene, cx.state.selected, track);
             }

@@ -49,32 +49,35 @@ fn templates(
                 .suffix(" km/h"),
         );
         ui.end_row();
-        ui.label("From second");
-        ui.add(
-            DragValue::new(&mut at_s)
-                .range(0.0..=600.0)
-                .speed(0.1)
-                .fixed_decimals(1),
-        );
-        ui.end_row();
     });
-    ui.data_mut(|d| d.insert_temp(wish_id, (class, [kmh, at_s])));
-    ui.separator();
-    for template in Template::ALL {
-        if ui
-            .button(template.title())
-            .on_hover_text(template.hint())
-            .clicked()
-        {
-            let wish = Wish {
-                template,
-                mps: kmh / 3.6,
-                at_s,
-                ..usual
-            };
-            commands.push(Command::Time(TimeCommand::Motion(id, wish)));
-            ui.close();
+    let (timed, steady): (Vec<_>, Vec<_>) = Template::ALL.iter().partition(|t| t.has_a_moment());
+    let mut chosen = None;
+    let mut choices = |ui: &mut Ui, templates: Vec<Template>| {
+        for template in templates {
+            let button = ui.button(template.title()).on_hover_text(template.hint());
+            if button.clicked() {
+                chosen = Some(template);
+            }
         }
+    };
+    choices(ui, steady);
+    ui.separator();
+    ui.horizontal(|ui| {
+        ui.label("At second");
+        let value = DragValue::new(&mut at_s).range(0.0..=600.0).speed(0.1).fixed_decimals(1);
+        ui.add(value).on_hover_text("When the motions below begin");
+    });
+    choices(ui, timed);
+    ui.data_mut(|d| d.insert_temp(wish_id, (class, [kmh, at_s])));
+    if let Some(template) = chosen {
+        let wish = Wish {
+            template,
+            mps: kmh / 3.6,
+            at_s,
+            ..usual
+        };
+        commands.push(Command::Time(TimeCommand::Motion(id, wish)));
+        ui.close();
     }
     ui.separator();
     let moves = scene.clip().motion(id).is_some();

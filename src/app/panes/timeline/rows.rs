@@ -8,6 +8,7 @@ use scene::{BoxId, Motion, Scene};
 use crate::command::{Command, TimeCommand};
 use crate::state::UiState;
 use editor::Edit;
+use editor::checks::{Finding, Severity, waive};
 use widgets::theme;
 
 /// Width of the names, points.
@@ -68,7 +69,7 @@ impl Rows {
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
-        state: &UiState,
+        (state, findings): (&UiState, &[Finding]),
         height: f32,
         commands: &mut Vec<Command>,
     ) -> Track {
@@ -97,6 +98,7 @@ impl Rows {
         });
         let x = track.x(scene.time_s());
         let line = shown.inner_rect.y_range();
+        faults(ui, Rect::from_min_max(top.min, pos2(top.right(), line.max)), track, scene, findings, commands);
         ui.painter()
             .vline(x, top.bottom()..=line.max, Stroke::new(1.0, theme::accent()));
         track
@@ -255,6 +257,29 @@ fn diamond(painter: &egui::Painter, at: Pos2, color: Color32) {
     ));
 }
 
+/// Moments at which the checks found something, marked over all rows; a click shows them.
+fn faults(ui: &Ui, area: Rect, track: Track, scene: &Scene, findings: &[Finding], commands: &mut Vec<Command>) {
+    let open = waive::open(scene.frame(), findings);
+    for (i, finding) in open.filter(|f| f.severity == Severity::Error).enumerate() {
+        let Some(time_s) = finding.time_s else {
+            continue;
+        };
+        let x = track.x(time_s.clamp(0.0, track.length_s));
+        let stroke = Stroke::new(1.0, theme::bad().gamma_multiply(0.5));
+        ui.painter().vline(x, area.top() + RULER_POINTS..=area.bottom(), stroke);
+        let knob = Rect::from_center_size(pos2(x, area.top() + RULER_POINTS - 4.0), vec2(9.0, 9.0));
+        ui.painter().circle_filled(knob.center(), 3.5, theme::bad());
+        let response = ui.interact(knob, ui.scope_id().with(("fault", i)), Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &finding.text));
+        if response.on_hover_text(&finding.text).clicked() {
+            if finding.box_id.is_some() {
+                commands.push(Command::Select(finding.box_id));
+            }
+            commands.push(Command::Time(TimeCommand::Show(time_s)));
+        }
+    }
+}
+
 /// Times with ticks; a click or a drag shows that moment.
 fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
     let (left, right) = track.ends();
@@ -287,28 +312,28 @@ fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, comm
             Stroke::new(1.0, theme::text_weak()),
         );
         let digits = usize::from(step_s < 1.0);
+        // The last one has no room to its right.
+        let (place, align) = match right - x < 30.0 {
+            true => (x - 3.0, Align2::RIGHT_TOP),
+            false => (x + 3.0, Align2::LEFT_TOP),
+        };
         painter.text(
-            pos2(x + 3.0, rect.top() + 1.0),
-            Align2::LEFT_TOP,
+            pos2(place, rect.top() + 1.0),
+            align,
             format!("{time_s:.digits$}"),
             font.clone(),
             theme::text_weak(),
         );
     }
     let x = track.x(scene.time_s());
-    let knob = vec![
-        pos2(x - 5.0, rect.top()),
-        pos2(x + 5.0, rect.top()),
-        pos2(x, rect.bottom()),
-    ];
+    // It leaves the times above it readable.
+    let top = rect.bottom() - 9.0;
+    let knob = vec![pos2(x - 5.0, top), pos2(x + 5.0, top), pos2(x, rect.bottom())];
     painter.add(egui::Shape::convex_polygon(knob, theme::accent(), Stroke::NONE));
     if let Some(at) = response
         .interact_pointer_pos()
         .filter(|_| response.is_pointer_button_down_on() || response.clicked())
     {
-        let time_s = track.time_s(at.x);
-        if time_s != scene.time_s() {
-            commands.push(Command::Time(TimeCommand::Show(time_s)));
-        }
+        commands.push(Command::Time(TimeCommand::Scrub(track.time_s(at.x))));
     }
 }

@@ -13,7 +13,7 @@ use widgets::icons::{self, Icon};
 use widgets::theme;
 
 /// What a scope is called.
-pub(super) fn scope_name(scope: Scope) -> &'static str {
+pub(crate) fn scope_name(scope: Scope) -> &'static str {
     match scope {
         Scope::Moment => "This moment",
         Scope::FromHereOn => "From here on",
@@ -32,7 +32,7 @@ pub(super) fn scope(ui: &mut Ui, state: &mut UiState) {
         (
             Scope::FromHereOn,
             scope_name(Scope::FromHereOn),
-            "what was before this moment stays",
+            "until a second before this moment it moves as before",
         ),
         (
             Scope::Moment,
@@ -106,8 +106,9 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
         ui.label(RichText::new(time).monospace().color(theme::text_strong()))
             .on_hover_text(format!("Frame {frame} of {}", clip.frames() - 1));
         ui.label(
-            RichText::new(format!("frame {frame}"))
+            RichText::new(format!("frame {frame:>3}"))
                 .small()
+                .monospace()
                 .color(theme::text_weak()),
         );
         ui.separator();
