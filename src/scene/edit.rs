@@ -8,7 +8,7 @@ use crate::grid::Extent;
 use crate::shape::Shape;
 use crate::{
     BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox, Scope, SensorRig,
-    ThingId, VoxelGrid,
+    Template, ThingId, VoxelGrid,
 };
 
 /// One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
@@ -175,6 +175,24 @@ pub enum Edit {
         /// When it disappears, s; it is there to the end if left out. Not of the ego vehicle.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         to_s: Option<f64>,
+    },
+    /// Lets a box move in a way that has a name, from where it is at the moment that is shown, along the lanes of the map. A
+    /// scene of one moment becomes a clip.
+    LetMove {
+        /// The box; the ego vehicle if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        id: Option<BoxId>,
+        /// How.
+        template: Template,
+        /// Speed, m/s; a usual one of its class if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        mps: Option<f64>,
+        /// When what it is about begins, s; soon if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        from_s: Option<f64>,
+        /// It begins when so much is between it and the ego vehicle, m, in place of at a time.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        gap_m: Option<f64>,
     },
     /// Sets how long the scene lasts. What happens later than that stays, and is not shown.
     SetLength {

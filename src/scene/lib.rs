@@ -46,7 +46,7 @@ pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
 pub use classes::{BevLayer, Class};
-pub use clip::{Clip, Key, Motion, Moving, Scope, Track};
+pub use clip::{Clip, Key, Motion, Moving, Scope, Template, Track};
 pub use conditions::{Conditions, Sun, TimeOfDay, Weather};
 pub use density::Density;
 pub use edit::{Edit, EditError};

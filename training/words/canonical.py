@@ -1,6 +1,6 @@
 """One order for what can be said in any order: the network learns it, the judge of validation compares in it."""
 
-FIRST = ["road", "lanes", "one_way", "narrow", "wide", "own_lane", "time", "weather", "env", "density", "has", "lacks"]
+FIRST = ["road", "lanes", "one_way", "narrow", "wide", "own_lane", "time", "weather", "env", "density", "has", "lacks", "length"]
 LAST = ["no", "leave"]
 RELATIONS = (
     "there like in_line side_by_side on blocking crossing waiting between following ahead behind left right next_to near "
@@ -41,7 +41,7 @@ def acts(list_, prompt):
         else:
             out.append(a)
     if prompt:
-        rank = lambda a: FIRST.index(a["act"]) if a["act"] in FIRST else len(FIRST) + 1 + (LAST.index(a["act"]) if a["act"] in LAST else -1)
+        rank = lambda a: len(FIRST) + 0.5 if a["act"] == "go" else FIRST.index(a["act"]) if a["act"] in FIRST else len(FIRST) + 1 + (LAST.index(a["act"]) if a["act"] in LAST else -1)
         out.sort(key=rank)
     else:
         # time and weather first; what stays, last

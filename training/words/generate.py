@@ -5,6 +5,7 @@ import re
 import sys
 
 import notation
+import motion_phrases as motion
 from phrases import *
 
 WORDS = "zero one two three four five six seven eight nine ten eleven twelve".split()
@@ -364,12 +365,66 @@ def say_add(r, s, t, edit):
     return thing_words(s, t)
 
 
+def seconds(s, n):
+    return str(n) if s.digits or n > 12 or n != int(n) else WORDS[int(n)]
+
+
+def motion_act(r, s, who_, words, many, ego=False, noun="car"):
+    """(act, words) of a motion of somebody said in `words`."""
+    walks = noun in LIVING
+    choices = ["cross", "drive", "stop"] if walks else list(motion.VERBS)
+    what = r.choices(choices, [8, 1, 2] if walks else [3, 1.5, 4, 0 if ego else 5, 0.3 if ego else 1.2, 1.5 if ego else 4, 2])[0]
+    act = {"act": "go", **({"ego": True} if ego else {"who": who_}), "what": what}
+    verbs, tails = motion.VERBS[what], []
+    if what == "cross" and walks and r.random() < 0.35:
+        verbs, act["pace"] = motion.RUNS, "fast"
+    do, does = s.pick(verbs)
+    q = r.random()
+    if q < 0.62 or (ego and q < 0.8):
+        n = r.choice([1, 2, 2, 3, 3, 4, 5, 6, 7, 8, 10, 1.5, 2.5, 3.5])
+        text = seconds(s, n)
+        tails.append(s.fill(s.pick(motion.WHEN), n=text, sec=s.pick(["second"] if n == 1 else ["seconds", "seconds", "sec", "s"]), s="s" if text[0].isdigit() else " s"))
+        act["from"] = float(n)
+    elif q < 0.8 and not ego:
+        m = s.metres(float(r.choice([5, 6, 8, 10, 12, 15, 20])))
+        act["gap"] = s.exact
+        tails.append(s.fill(s.pick(motion.GAP), m=m))
+    if "pace" not in act and r.random() < (0.5 if what in ("drive", "follow") else 0.16):
+        if r.random() < 0.7:
+            unit, per = s.pick(motion.UNITS)
+            n = r.choice([5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 100, 120] if per < 3 else [5, 8, 10, 15, 20])
+            act["speed"] = round(n * per, 1)
+            tails.append(s.fill(s.pick(motion.SPEED), n=str(n), u=unit))
+        else:
+            act["pace"] = r.choice(["fast", "slow"])
+            tails.append(s.pick(motion.FAST if act["pace"] == "fast" else motion.SLOW))
+    r.shuffle(tails)
+    if ego and words in ("we", "I"):
+        core = f"{words} {do}" if r.random() < 0.7 else f"{words} will {do}"
+    elif many or r.random() < 0.6:
+        core = s.fill(s.pick(motion.LET), w=words, do=do)
+    else:
+        core = f"{words} {does}"
+    core = s.fill(core)
+    if tails and r.random() < 0.25:
+        return act, tails[0] + s.pick([" ", ", "]) + " ".join([core, *tails[1:]])
+    return act, " ".join([core, *tails])
+
+
 def edit_act(r, s):
     """(act, words) of a random edit."""
     kind = r.choices(
-        ["add", "remove", "move", "by", "replace", "count", "paint", "keep", "leave", "turn", "swap", "state", "time", "weather", "no", "paint_of", "times", "has", "range"],
-        [16, 13, 11, 8, 9, 7, 9, 4, 3, 6, 2.5, 3, 5, 5, 2, 0.8, 2.5, 1, 4],
+        ["add", "remove", "move", "by", "replace", "count", "paint", "keep", "leave", "turn", "swap", "state", "time", "weather", "no", "paint_of", "times", "has", "range", "go", "length"],
+        [16, 13, 11, 8, 9, 7, 9, 4, 3, 6, 2.5, 3, 5, 5, 2, 0.8, 2.5, 1, 4, 15, 1],
     )[0]
+    if kind == "go":
+        if r.random() < 0.2:
+            return motion_act(r, s, None, s.pick(motion.EGO), False, ego=True)
+        w = [who(r, 0.15)]
+        return motion_act(r, s, w, list_words(s, w, True), w[0].get("n") not in (None, 1), noun=w[0]["noun"])
+    if kind == "length":
+        n = r.randint(3, 20)
+        return {"act": "length", "n": float(n)}, s.fill(s.pick(motion.LENGTH), n=seconds(s, n), sec=s.pick(["seconds", "s", "sec"]))
     if kind == "add":
         things = [new_thing(r) for _ in range(r.choices([1, 2], [9, 1.5])[0])]
         words = s.fill(s.pick(ADD), t=" and ".join(say_add(r, s, t, True) for t in things))
@@ -563,6 +618,20 @@ def say_prompt(r, s):
     text = said[0]
     for w in said[1:]:
         text += s.pick(JOINS) + w
+    if r.random() < 0.3:
+        movers = [t for t in things if t.get("n") == 1 and sum(t["noun"] == u["noun"] for u in things) == 1]
+        for t in r.sample(movers, min(len(movers), r.choice([1, 1, 2]))):
+            if t["noun"] in FIXED:
+                continue
+            w = {"the": True, "noun": t["noun"]}
+            words = thing_words(s, w) if len(things) > 1 or r.random() < 0.5 else s.pick(["it", "which then", "and it"])
+            a, said_of = motion_act(r, s, [w], words, False, noun=t["noun"])
+            acts.append(a)
+            text += s.pick([", ", ". ", "; ", " and then ", ". Then "]) + said_of
+        if r.random() < 0.3:
+            a, said_of = motion_act(r, s, None, s.pick(motion.EGO), False, ego=True)
+            acts.append(a)
+            text += s.pick([", ", ". ", "; "]) + said_of
     if r.random() < 0.12:
         t = {"noun": r.choice(COMMON + ["vehicle"])}
         acts.append({"act": "no", "who": [t]})
@@ -592,7 +661,7 @@ def say_prompt(r, s):
     text = s.pick(SCENES) + lead + text
     for _, w in after:
         text += s.pick([", ", ", ", ". ", " "]) + w
-    order = ["road", "time", "weather", "env", "density", "has", "lacks", "add", "no"]
+    order = ["road", "time", "weather", "env", "density", "has", "lacks", "add", "go", "no"]
     acts.sort(key=lambda a: order.index(a["act"]))
     return acts, text
 

@@ -19,10 +19,10 @@ LONGEST_PHRASE = 5
 
 @dataclass
 class Token:
-    text: str  # lower case; "<n>" for digits, "<m>" for a measure
+    text: str  # lower case; "<n>" for digits, "<m>" for a measure, "<v>" for a speed
     start: int  # bytes of the text
     end: int
-    value: float | None = None  # of a number word, digits, or a measure in metres
+    value: float | None = None  # of a number word, digits, a measure in metres or a speed in km/h
     measure: bool = False
     senses: list = field(default_factory=list)  # (kind, symbol)
     was: str | None = None  # before a typing error was mended
@@ -50,8 +50,8 @@ def load():
         kind, symbol = key.split(" ", 1)
         for word in words.split(", "):
             forms = word.split("/")
-            if kind == "unit":
-                units[tuple(forms[0].split())] = float(symbol)
+            if kind in ("unit", "speed"):
+                units[tuple(forms[0].split())] = (kind, float(symbol))
                 continue
             many = forms[1:] or ([plural(forms[0])] if kind in ("noun", "group", "place") else [])
             for form, is_plural in [(forms[0], False), *[(f, True) for f in many]]:
@@ -167,11 +167,12 @@ def tokens(text, speller=None):
                     i += 1
             i += 1
         if t.value is not None:
-            for n in (2, 1):
+            for n in (3, 2, 1):
                 unit = tuple(x[0] for x in words[i : i + n])
                 if len(unit) == n and unit in UNITS and not (unit == ("m",) and t.text != "<n>") and unit != ("ms",):
-                    t.text, t.measure = "<m>", True
-                    t.value *= UNITS[unit]
+                    kind, factor = UNITS[unit]
+                    t.text, t.measure = "<m>" if kind == "unit" else "<v>", True
+                    t.value *= factor
                     t.end = words[i + n - 1][2]
                     i += n
                     break

@@ -37,7 +37,9 @@ VALUES = {
     "own_lane": "left right middle".split(),
     "lacks": ["crossing", "sidewalk"],
 }
-VERBS = "add no remove keep leave replace move turn set count swap has lanes one_way narrow wide".split() + list(VALUES)
+MANOEUVRES = "drive follow stop cut_in cross pull_out park".split()
+PACES = ["fast", "slow"]
+VERBS = "add no remove keep leave replace move turn set count swap go length has lanes one_way narrow wide".split() + list(VALUES)
 
 
 class Wrong(ValueError):
@@ -76,6 +78,13 @@ class Parser:
         m = re.fullmatch(r"(\d+(?:\.\d+)?)m", self.peek())
         if not m:
             return None
+        self.at += 1
+        return float(m[1])
+
+    def measure(self, unit):
+        m = re.fullmatch(r"(\d+(?:\.\d+)?)" + unit, self.peek())
+        if not m:
+            raise Wrong(f"{self.peek()!r} where a number of {unit} should be")
         self.at += 1
         return float(m[1])
 
@@ -163,6 +172,21 @@ class Parser:
                 act["n"] = self.amount()
             else:
                 act["times"] = self.number()
+        elif verb == "go":
+            if self.peek() == "ego":
+                self.take()
+                act["ego"] = True
+            else:
+                act["who"] = self.list(False)
+            act["what"] = self.take(*MANOEUVRES)
+            for key, unit in (("from", "s"), ("gap", "m"), ("speed", "kmh")):
+                if self.peek() == key:
+                    self.take()
+                    act[key] = self.measure(unit)
+            if self.peek() in PACES:
+                act["pace"] = self.take()
+        elif verb == "length":
+            act["n"] = self.measure("s")
         elif verb == "has":
             act["what"] = self.take("crossing", "sidewalk")
             act["places"] = self.places(0)
@@ -348,6 +372,14 @@ def write_act(a):
             return f"count {things('who')} times {number(a['times'])}"
         n = a["n"]
         return f"count {things('who')} to " + (f"{n[0]} .. {n[1]}" if isinstance(n, list) else str(n))
+    if verb == "go":
+        out = ["go", "ego" if a.get("ego") else things("who"), a["what"]]
+        for key, unit in (("from", "s"), ("gap", "m"), ("speed", "kmh")):
+            if key in a:
+                out += [key, number(a[key]) + unit]
+        return " ".join(out + ([a["pace"]] if "pace" in a else []))
+    if verb == "length":
+        return f"length {number(a['n'])}s"
     if verb == "has":
         return " ".join(["has", a["what"], *[write_place(p) for p in a["places"]]])
     if verb == "lanes":

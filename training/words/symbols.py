@@ -14,7 +14,7 @@ WHOLE = [str(n) for n in range(21)]
 METRES = [f"{n}m" for n in range(1, 46)]
 SYMBOLS = (
     ["<end>", ";", "(", ")", "and", "to", "by", "with", "the", "all", "half", "some", "many", "other", "..", "nth", "except", "rest", "around", "along", "paint_of", "#"]
-    + notation.VERBS
+    + [v for v in notation.VERBS if v not in ("go", "length")]
     + list(notation.NOUNS)
     + notation.PAINTS
     + ["not_" + p for p in notation.PAINTS]
@@ -31,7 +31,10 @@ SYMBOLS = (
     + [f"@{k}" for k in range(MOST_NUMBERS)]  # metres, and after "#" an id
     + [f"={k}" for k in range(MOST_NUMBERS)]  # a number of things above twenty
     + ["each"]
+    # (what is new stands at the end: weights of before keep their places)
+    + ["go", "length", *notation.MANOEUVRES, "from", "gap", "speed", *notation.PACES, "2.5", "3.5"]
 )
+UNIT = {"from": "s", "length": "s", "speed": "kmh"}  # of a number after these symbols; else metres
 SYMBOLS = list(dict.fromkeys(SYMBOLS))
 ID = {s: i for i, s in enumerate(SYMBOLS)}
 END = 0
@@ -94,9 +97,12 @@ def to_symbols(line, tokens):
             if not at:
                 return None
             out += ["#", at]
-        elif re.fullmatch(r"[\d.]+m", s):
-            v = float(s[:-1])
+        elif re.fullmatch(r"[\d.]+(m|s|kmh)", s):
+            v = float(re.match(r"[\d.]+", s)[0])
             at = point(v, 0.06)
+            if not at and not s.endswith("m") and v != int(v):
+                out.append(notation.number(v) if notation.number(v) in ID else None)
+                continue
             # (a length that no words give)
             out.append(at or (f"{round(v)}m" if 1 <= round(v) <= 45 else None))
         elif re.fullmatch(r"\d+", s):
@@ -125,7 +131,9 @@ def to_line(ids, tokens):
             if out and out[-1] == "#":
                 out[-1] = f"#{int(v)}"
             else:
-                out.append(f"{notation.number(v)}m")
+                out.append(f"{notation.number(v)}{UNIT.get(out[-1] if out else '', 'm')}")
+        elif out and out[-1] in UNIT and re.fullmatch(r"[\d.]+m?", s):
+            out.append(s.rstrip("m") + UNIT[out[-1]])
         else:
             out.append(s)
     return " ".join(out)

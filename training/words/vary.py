@@ -18,6 +18,9 @@ ARITHMETIC = set("half twice double triple halve quarter many more fewer less ea
 WORDS = "zero one two three four five six seven eight nine ten eleven twelve".split()
 
 
+MOTION = [("from", range(2, 13)), ("gap", range(4, 26)), ("speed", range(10, 120, 5))]
+
+
 def walk(node, fn):
     """Calls fn on every dict of a reading."""
     if isinstance(node, dict):
@@ -147,6 +150,22 @@ def vary(r, text, acts):
         changes.append((t.start, t.end, number + rest))
         for d in mine:
             d["m"] = round(n * factor, 1)
+
+    # Seconds, speeds and gaps of motions; lengths of a scene.
+    timed = []
+    walk(acts, lambda d: timed.extend((d, k, c) for k, c in MOTION if k in d) if d.get("act") == "go" else timed.append((d, "n", range(3, 21))) if d.get("act") == "length" else None)
+    for d, key, choices in timed:
+        spoken_of = [t for t in numeric if abs(t.value - d[key]) < 0.06]
+        if len(spoken_of) != 1 or len([1 for e, k, _ in timed if abs(e[k] - d[key]) < 0.06]) != 1 or r.random() < 0.25:
+            continue
+        t, n = spoken_of[0], r.choice(choices)
+        m = re.match(r"[\d.,]+", raw[t.start : t.end].decode())
+        if any(abs(u.value - n) < 0.06 for u in numeric) or not (m or n <= 12) or any(c[0] == t.start for c in changes) or not m and t.measure:
+            continue
+        factor = t.value / float(m[0].replace(",", ".")) if m and t.value else 1.0
+        piece = raw[t.start : t.end].decode()
+        changes.append((t.start, t.end, str(n) + piece[m.end() :] if m else WORDS[n]))
+        d[key] = round(n * factor, 1)
 
     sides = [t for t in tokens if t.text in ("left", "right")]
     line = notation.write(acts)

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use scene::{Edit, EditError, Frame, Scene, Scope, SensorRig};
 
 use super::things;
+use super::traffic::let_move;
 pub(crate) use voxels::adopt;
 
 /// How many typed texts a scene keeps, and how many letters of each.
@@ -73,6 +74,11 @@ impl Apply for Edit {
             }
             Self::At { .. } => at::apply(self, scene)?,
             Self::SetMotion { .. } | Self::SetLength { .. } => motion::apply(self, scene)?,
+            Self::LetMove { .. } => {
+                let mut after = scene.clone();
+                apply_all(&let_move(scene, self)?, &mut after)?;
+                *scene = after;
+            }
             edit => at::apply_scoped(edit, scene, Scope::default())?,
         }
         Ok(())

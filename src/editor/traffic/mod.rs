@@ -5,4 +5,5 @@ pub mod follow;
 pub mod lane_path;
 pub mod template;
 
-pub use template::{Side, Template, Wish, motion_of};
+pub use scene::clip::Template;
+pub use template::{Wish, let_move, motion_of};

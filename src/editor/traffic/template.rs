@@ -2,11 +2,12 @@
 
 use glam::DVec2;
 
-use scene::clip::{Path, Speed};
-use scene::{BoxId, Class, Clip, Edit, Motion, Moving, Scene, SceneBox};
+use scene::clip::{Path, Speed, Template};
+use scene::{BoxId, Class, Clip, Edit, EditError, Motion, Moving, Scene, SceneBox};
 
 use super::follow::{self, Driver, Other};
 use super::lane_path::{aside, lane_path, lane_through, smooth};
+use crate::apply_all;
 use crate::kerb;
 use crate::lanes::nearest_lane;
 
@@ -20,80 +21,6 @@ const STRIDE: f64 = 3.0;
 const LANE_M: f64 = 3.5;
 /// Farthest that somebody walks across a road, m.
 const WIDEST_M: f64 = 60.0;
-
-/// The side that somebody comes from, as the ego vehicle sees it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// From the left.
-    Left,
-    /// From the right.
-    Right,
-}
-
-/// A way to move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Template {
-    /// Along its lane at a steady speed.
-    Drive,
-    /// Along its lane behind whoever is ahead, at their distance.
-    Follow,
-    /// Along its lane, then to a stop that begins at the time asked for.
-    Stop,
-    /// Along its lane, then into the lane of the ego vehicle, or the next one.
-    CutIn,
-    /// Straight across the road from where it stands.
-    Cross,
-    /// From the side of the road into the lane.
-    PullOut,
-    /// From the lane to the side of the road.
-    Park,
-}
-
-impl Template {
-    /// Every template.
-    pub const ALL: [Template; 7] = [
-        Template::Drive,
-        Template::Follow,
-        Template::Stop,
-        Template::CutIn,
-        Template::Cross,
-        Template::PullOut,
-        Template::Park,
-    ];
-
-    /// Its name for a person.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Drive => "Drive along the lane",
-            Self::Follow => "Follow the one ahead",
-            Self::Stop => "Stop",
-            Self::CutIn => "Cut in",
-            Self::Cross => "Cross the road",
-            Self::PullOut => "Pull out",
-            Self::Park => "Park",
-        }
-    }
-
-    /// True if what it is about begins at a moment of its own.
-    pub fn has_a_moment(self) -> bool {
-        !matches!(self, Self::Drive | Self::Follow)
-    }
-
-    /// What it does, in a sentence.
-    pub fn hint(self) -> &'static str {
-        match self {
-            Self::Drive => "Along its lane at a steady speed",
-            Self::Follow => "Along its lane; keeps its distance to whoever is ahead, and stops behind them",
-            Self::Stop => "Along its lane; brakes gently to a stop from the chosen time on",
-            Self::CutIn => {
-                "Along its lane; from the chosen time on it changes into ours, or into the next lane"
-            }
-            Self::Cross => "Waits until the chosen time, then goes straight across the road",
-            Self::PullOut => "Stands until the chosen time, then drives off into the lane",
-            Self::Park => "Along its lane; from the chosen time on it slows down and stops at the side",
-        }
-    }
-}
 
 /// What is asked of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,14 +38,9 @@ pub struct Wish {
 impl Wish {
     /// A usual one for a class: 10 m/s on a road, 1.5 on foot, from the second second on.
     pub fn usual(template: Template, class: Option<Class>) -> Self {
-        let mps = match class {
-            Some(Class::Pedestrian) => 1.5,
-            Some(Class::Bicycle) => 5.0,
-            _ => 10.0,
-        };
         Self {
             template,
-            mps,
+            mps: Template::usual_mps(class),
             at_s: 2.0,
             over_s: 3.0,
         }
@@ -168,6 +90,61 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
         to_s: None,
     });
     Ok(edits)
+}
+
+/// The edits of an [`Edit::LetMove`]; none of another edit.
+pub fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditError> {
+    let &Edit::LetMove {
+        id,
+        template,
+        mps,
+        from_s,
+        gap_m,
+    } = edit
+    else {
+        return Ok(Vec::new());
+    };
+    let bad = EditError::BadMotion;
+    let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
+    let usual = Wish::usual(template, class);
+    let mut wish = Wish {
+        mps: mps.unwrap_or(usual.mps),
+        at_s: from_s.unwrap_or(usual.at_s),
+        ..usual
+    };
+    if let Some(gap_m) = gap_m {
+        wish.at_s = approach_s(scene, id, &wish, gap_m).map_err(bad)?;
+    }
+    // Who drives from a moment on stands until then.
+    if template == Template::Drive && (from_s.is_some_and(|s| s > 0.0) || gap_m.is_some()) {
+        wish.template = Template::PullOut;
+    }
+    motion_of(scene, id, &wish).map_err(bad)
+}
+
+/// When an object and the ego vehicle are so near to each other, s. Errors in one line.
+fn approach_s(scene: &Scene, id: Option<BoxId>, wish: &Wish, gap_m: f64) -> Result<f64, String> {
+    if !(0.0..=1000.0).contains(&gap_m) {
+        return Err(format!("gap_m is {gap_m}, expected 0 to 1000 m"));
+    }
+    let id = id.ok_or("gap_m is between an object and the ego vehicle, which has none to itself")?;
+    // Until then it does what it does before its manoeuvre.
+    let stands = matches!(wish.template, Template::Cross | Template::PullOut | Template::Drive);
+    let before = match stands {
+        true => Vec::new(),
+        false => motion_of(
+            scene,
+            Some(id),
+            &Wish {
+                template: Template::Drive,
+                ..*wish
+            },
+        )?,
+    };
+    let mut until = scene.clone();
+    apply_all(&before, &mut until).map_err(|e| e.to_string())?;
+    time_near(until.clip(), until.canvas(), id, gap_m, scene.rig.ego_size_m[0])
+        .ok_or_else(|| format!("box {} and the ego vehicle never come within {gap_m} m of each other", id.0))
 }
 
 /// Where it is now, and half of its length, m.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::beside_road::Said;
+use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState, RelationKind, SizeHint};
 use scene::{BoxLabel, Class, Conditions, TimeOfDay, Weather};
 
@@ -124,6 +125,9 @@ pub struct ObjectSpec {
     /// Where they are.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub relations: Vec<Stated>,
+    /// How they move in the course of time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Manoeuvre>,
 }
 
 impl ObjectSpec {
@@ -193,6 +197,12 @@ pub struct Description {
     pub density: Option<Density>,
     /// The road.
     pub road: RoadWish,
+    /// How the ego vehicle moves in the course of time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ego_motion: Option<Manoeuvre>,
+    /// How long the scene lasts, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length_s: Option<f64>,
     /// The statements about places, in words.
     pub layout: Vec<String>,
     /// One sentence.

@@ -103,7 +103,7 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
         }
         let before = i.checked_sub(1).map_or("", |k| tokens[k].text.as_str());
         let why = if let Some(v) = t.value {
-            let there = number_is_said(v, t.is_length, &said) || !t.is_length && sums.contains(&v);
+            let there = number_is_said(v, t, &said) || !t.is_length && sums.contains(&v);
             let around = &tokens[i.saturating_sub(NEAR)..tokens.len().min(i + NEAR + 1)];
             let works_out = around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
             let small = !t.is_length && (v <= 1.0 || works_out);
@@ -169,7 +169,8 @@ fn sums(reading: &Reading) -> Vec<f64> {
             | What::Leave { who }
             | What::Move { who, .. }
             | What::Turn { who, .. }
-            | What::Set { who, .. } => (who, &[]),
+            | What::Set { who, .. }
+            | What::Go { who, .. } => (who, &[]),
             What::Swap { one, other } => (std::slice::from_ref(one), std::slice::from_ref(other)),
             _ => continue,
         };
@@ -178,14 +179,16 @@ fn sums(reading: &Reading) -> Vec<f64> {
     sums.into_iter().skip(1).map(f64::from).collect()
 }
 
-fn number_is_said(v: f64, is_length: bool, said: &[&str]) -> bool {
+fn number_is_said(v: f64, token: &Token, said: &[&str]) -> bool {
     said.iter().any(|s| {
         let length = s.strip_suffix('m').and_then(|n| n.parse::<f64>().ok());
         let plain = s
             .trim_start_matches('#')
+            .trim_end_matches("kmh")
+            .trim_end_matches('s')
             .parse::<f64>()
             .ok()
-            .filter(|_| !is_length);
+            .filter(|_| !token.is_length);
         length.or(plain).is_some_and(|n| (n - v).abs() < 0.06 + 1e-3 * v)
     })
 }

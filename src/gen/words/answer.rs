@@ -9,6 +9,7 @@ use super::reading::{
 use super::remark::Remark;
 use super::resolve::plural;
 use super::stage::Outcome;
+use scene::clip::{Manoeuvre, Pace, Template};
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 
 /// Longest list of words that are named as having no effect.
@@ -115,6 +116,9 @@ pub fn sentence(what: &What) -> String {
             }
         }
         What::Swap { one, other } => format!("swaps {} and {}", thing(one), thing(other)),
+        What::Go { who, how } if who.is_empty() => format!("we {}", manoeuvre(how)),
+        What::Go { who, how } => format!("lets {} {}", list(who), manoeuvre(how)),
+        What::Length { seconds } => format!("lasts {seconds} s"),
         What::Time { what } => format!("time of day: {}", what.name()),
         What::Weather { what } => format!("weather: {}", what.name()),
         What::Road { what } => format!("road: {}", what.name()),
@@ -132,6 +136,34 @@ pub fn sentence(what: &What) -> String {
             LaneSide::Middle => "we drive in the middle lane".into(),
         },
     }
+}
+
+fn manoeuvre(how: &Manoeuvre) -> String {
+    let mut text = match how.what {
+        Template::Drive => "drive along the lane",
+        Template::Follow => "follow whoever is ahead",
+        Template::Stop => "brake to a stop",
+        Template::CutIn => "cut in",
+        Template::Cross => "cross the road",
+        Template::PullOut => "pull out",
+        Template::Park => "pull over and park",
+    }
+    .to_owned();
+    if let Some(s) = how.from_s {
+        text += &format!(" after {s} s");
+    }
+    if let Some(m) = how.gap_m {
+        text += &format!(" when {m} m are left between us");
+    }
+    if let Some(kmh) = how.kmh {
+        text += &format!(" at {kmh} km/h");
+    }
+    match how.pace {
+        Some(Pace::Fast) => text += " fast",
+        Some(Pace::Slow) => text += " slowly",
+        None => {}
+    }
+    text
 }
 
 fn feature(what: Feature) -> &'static str {

@@ -37,6 +37,7 @@ fn rank(what: &What, mode: Mode) -> u8 {
     match (what, mode) {
         (What::Leave { .. }, _) => 30,
         (What::No { .. }, Mode::Prompt) => 29,
+        (What::Go { .. }, Mode::Prompt) => 20,
         (What::Time { .. } | What::Weather { .. }, Mode::Edit) => 0,
         (_, Mode::Edit) => 1,
         (What::Road { .. }, _) => 0,
@@ -51,7 +52,8 @@ fn rank(what: &What, mode: Mode) -> u8 {
         (What::Density { .. }, _) => 9,
         (What::Has { .. }, _) => 10,
         (What::Lacks { .. }, _) => 11,
-        _ => 12,
+        (What::Length { .. }, _) => 12,
+        _ => 13,
     }
 }
 
@@ -60,7 +62,9 @@ fn sort_what(what: &mut What) {
         What::Add { things: a } | What::No { who: a } | What::Remove { who: a } | What::Keep { who: a } => {
             sort_all(a)
         }
-        What::Leave { who: a } | What::Set { who: a, .. } | What::Count { who: a, .. } => sort_all(a),
+        What::Leave { who: a } | What::Set { who: a, .. } | What::Count { who: a, .. } | What::Go { who: a, .. } => {
+            sort_all(a)
+        },
         What::Replace { who, things } => {
             sort_all(who);
             sort_all(things);

@@ -96,6 +96,8 @@ fn edits_by_words_set_the_conditions() {
             layout: &world.layout,
             prompt: "night, rain, downtown",
             conditions,
+            ego_moves: false,
+            length_s: 0.0,
         };
         let edits = carry_out(&heard.reading, &scene, 1).edits;
         let set = edits.iter().rev().find_map(|e| match e {

@@ -11,7 +11,9 @@ use super::reading::{
 use super::remark::Remark;
 use super::resolve::words_of;
 use place::description::{Absent, Anchor, Count, Density, Description, Road};
-use scene::graph::LaneRole;
+use scene::Class;
+use scene::clip::{Manoeuvre, Template};
+use scene::graph::{LaneRole, RelationKind};
 
 /// A description and where it comes from.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,6 +87,7 @@ impl Describing {
             What::Weather { what } => d.weather = Some(*what),
             What::Env { what } => d.environment = Some(*what),
             What::Density { what } => d.density = Some(*what),
+            What::Length { seconds } => d.length_s = Some(*seconds),
             _ => return false,
         }
         true
@@ -157,6 +160,8 @@ impl Describing {
                 turn: Turn::To(places),
             } => who.iter().for_each(|t| self.place(t, places)),
             What::Replace { things, .. } => self.add(things),
+            What::Go { who, how } if who.is_empty() => self.d.ego_motion = Some(*how),
+            What::Go { who, how } => who.iter().for_each(|t| self.go(t, how)),
             What::Leave { .. } => {}
             _ => self.remark(Remark::Nobody {
                 what: "thing to change".into(),
@@ -195,6 +200,49 @@ impl Describing {
             s.state = traits.state.or(s.state);
             s.size = traits.size.or(s.size);
             s.label.paint = paint.or(s.label.paint);
+        }
+    }
+
+    /// Objects move; what nobody spoke of before is new.
+    fn go(&mut self, t: &Thing, how: &Manoeuvre) {
+        let mut them = self.matching(t);
+        if them.is_empty() {
+            self.add(&[as_new(t)]);
+            them = self.plan.specs.len().checked_sub(1).into_iter().collect();
+        }
+        for k in them {
+            if self.plan.specs[k].motion.replace(*how).is_some() {
+                self.remark(Remark::OneMotion { what: words_of(t) });
+            }
+            if let Some(role) = self.usual_start(k, how.what) {
+                let place = Place {
+                    relation: Relation::On,
+                    to: Some(Said::Lane(role)),
+                    and: None,
+                    metres: None,
+                };
+                self.plan.also_at(k, &[place], &mut Nowhere);
+            }
+        }
+    }
+
+    /// Where something starts of which nobody said in which lane or at which side it is.
+    fn usual_start(&self, k: usize, what: Template) -> Option<LaneRole> {
+        let spec = &self.plan.specs[k];
+        let is_lane = |r: &place::description::Stated| {
+            matches!(r.anchor, Anchor::Lane(_) | Anchor::Crossing | Anchor::Junction)
+                || matches!(r.anchor, Anchor::Object(_)) && r.relation == RelationKind::Between
+        };
+        if spec.relations.iter().any(is_lane) {
+            return None;
+        }
+        let walks = spec.class == Class::Pedestrian;
+        match what {
+            Template::CutIn => Some(LaneRole::Left),
+            Template::Cross if walks => Some(LaneRole::RightSidewalk),
+            Template::Cross => Some(LaneRole::Cross),
+            Template::PullOut => Some(LaneRole::RightRoadside),
+            _ => None,
         }
     }
 

@@ -18,10 +18,19 @@ pub struct Sense {
     pub many: bool,
 }
 
+/// A unit of length or of speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// So many metres, or km/h.
+    pub times: f64,
+    /// It is one of speed.
+    pub is_speed: bool,
+}
+
 /// All phrases.
 pub struct Lexicon {
     senses: HashMap<String, Vec<Sense>>,
-    units: HashMap<String, f64>,
+    units: HashMap<String, Unit>,
     ids: HashMap<Sense, usize>,
 }
 
@@ -69,9 +78,10 @@ impl Lexicon {
             for word in words.split(", ") {
                 let mut forms = word.split('/');
                 let Some(one) = forms.next() else { continue };
-                if kind == "unit" {
-                    if let Ok(metres) = symbol.parse() {
-                        out.units.insert(one.to_owned(), metres);
+                if matches!(kind, "unit" | "speed") {
+                    if let Ok(times) = symbol.parse() {
+                        let is_speed = kind == "speed";
+                        out.units.insert(one.to_owned(), Unit { times, is_speed });
                     }
                     continue;
                 }
@@ -97,8 +107,8 @@ impl Lexicon {
         self.senses.get(phrase).map(Vec::as_slice)
     }
 
-    /// Metres of a unit of length.
-    pub fn unit(&self, phrase: &str) -> Option<f64> {
+    /// The unit that a phrase names.
+    pub fn unit(&self, phrase: &str) -> Option<Unit> {
         self.units.get(phrase).copied()
     }
 

@@ -9,6 +9,7 @@ use super::named::named;
 use super::nouns::Noun;
 use place::beside_road::Span;
 use place::description::{Density, Environment, Road};
+use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 use scene::{Paint, TimeOfDay, Weather};
 
@@ -141,6 +142,19 @@ pub enum What {
         one: Box<Thing>,
         /// The other.
         other: Box<Thing>,
+    },
+    /// Somebody moves in the course of time.
+    Go {
+        /// Who; the ego vehicle if the list is empty.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        who: Vec<Thing>,
+        /// How.
+        how: Manoeuvre,
+    },
+    /// So long the scene lasts.
+    Length {
+        /// Seconds.
+        seconds: f64,
     },
     /// Time of day.
     Time {

@@ -100,6 +100,18 @@ pub enum Remark {
         /// What.
         what: String,
     },
+    /// Something can do one thing only in the course of a scene: the last that was said.
+    OneMotion {
+        /// What.
+        what: String,
+    },
+    /// A motion that cannot be.
+    NoMotion {
+        /// Why.
+        why: String,
+    },
+    /// The ego vehicle drives, though nobody said so: what was asked for needs it.
+    EgoDrives,
     /// More than is carried out.
     TooMuch,
 }
@@ -134,6 +146,11 @@ impl fmt::Display for Remark {
                 write!(f, "{} means nothing here", relation.name().replace('_', " "))
             }
             Self::Spared { what } => write!(f, "{what} was said to stay, and is changed"),
+            Self::OneMotion { what } => {
+                write!(f, "{what}: one motion each, the last one counts")
+            }
+            Self::NoMotion { why } => write!(f, "{why}"),
+            Self::EgoDrives => write!(f, "we drive along our lane at 36 km/h"),
             Self::TooMuch => write!(f, "more was asked for than is carried out at once"),
         }
     }

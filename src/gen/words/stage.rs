@@ -25,6 +25,10 @@ pub struct OpenScene<'a> {
     pub prompt: &'a str,
     /// Its light and air.
     pub conditions: Conditions,
+    /// The ego vehicle moves.
+    pub ego_moves: bool,
+    /// How long it lasts, s; 0 for one moment.
+    pub length_s: f64,
 }
 
 /// A box that a question names.
@@ -93,6 +97,8 @@ pub struct Stage<'a> {
     pub(super) first: &'a BTreeMap<BoxId, SceneBox>,
     pub(super) prompt: String,
     pub(super) conditions: Conditions,
+    pub(super) ego_moves: bool,
+    pub(super) length_s: f64,
     pub(super) seed: u64,
     pub(super) act: usize,
     /// Boxes that some act of the text says to stay.
@@ -120,6 +126,8 @@ impl<'a> Stage<'a> {
             first: scene.boxes,
             prompt: scene.prompt.to_owned(),
             conditions: scene.conditions,
+            ego_moves: scene.ego_moves,
+            length_s: scene.length_s,
             seed,
             act: 0,
             stays: std::collections::BTreeSet::new(),
@@ -140,7 +148,7 @@ impl<'a> Stage<'a> {
         }
     }
 
-    fn done(&mut self) -> &mut Done {
+    pub(super) fn done(&mut self) -> &mut Done {
         while self.out.done.len() <= self.act {
             self.out.done.push(Done::default());
         }

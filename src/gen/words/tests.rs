@@ -174,7 +174,9 @@ fn random_and_hostile_texts_end() {
         layout: &chosen.layout,
         prompt: "day",
         conditions: Default::default(),
-    };
+            ego_moves: false,
+            length_s: 0.0,
+        };
     let n: u64 = std::env::var("SCENELOOM_TEXTS")
         .ok()
         .and_then(|n| n.parse().ok())

@@ -21,6 +21,8 @@ pub struct Token {
     pub value: Option<f64>,
     /// A length.
     pub is_length: bool,
+    /// The value is a speed, km/h.
+    pub is_speed: bool,
     /// What the lexicon says of the phrase that it belongs to.
     pub senses: Vec<Sense>,
     /// The word as it was typed, where a slip was mended.
@@ -256,6 +258,7 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
             span: *span,
             value: None,
             is_length: false,
+            is_speed: false,
             senses: Vec::new(),
             typed: None,
         };
@@ -285,15 +288,15 @@ pub fn tokens(text: &str, speller: Option<&Speller>) -> Vec<Token> {
             }
         }
         if let Some(value) = token.value {
-            for n in [2, 1] {
+            for n in [3, 2, 1] {
                 let Some(unit) = words.get(i..i + n) else { continue };
                 let unit: Vec<&str> = unit.iter().map(|w| w.0.as_str()).collect();
                 let phrase = unit.join(" ");
                 let doubtful = phrase == "ms" || phrase == "m" && token.text != "<n>";
-                if let Some(metres) = lexicon.unit(&phrase).filter(|_| !doubtful) {
-                    token.text = "<m>".into();
-                    token.is_length = true;
-                    token.value = Some(value * metres);
+                if let Some(unit) = lexicon.unit(&phrase).filter(|_| !doubtful) {
+                    token.text = if unit.is_speed { "<v>" } else { "<m>" }.into();
+                    (token.is_speed, token.is_length) = (unit.is_speed, !unit.is_speed);
+                    token.value = Some(value * unit.times);
                     token.span.end = words[i + n - 1].1.end;
                     i += n;
                     break;

@@ -6,6 +6,7 @@ mod fold;
 mod motion;
 mod object_voxels;
 mod path;
+mod template;
 mod view;
 
 use std::collections::BTreeMap;
@@ -15,6 +16,7 @@ pub use fold::{Scope, Seen, fold};
 pub use motion::{Key, Motion, Moving, Sampling};
 pub use object_voxels::{MARGIN_M, ObjectVoxels};
 pub use path::{Path, Speed};
+pub use template::{Manoeuvre, Pace, Template};
 
 use crate::{BoxId, Pose, Relief, SceneBox};
 

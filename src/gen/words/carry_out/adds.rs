@@ -341,6 +341,7 @@ impl Stage<'_> {
             label: BoxLabel::default(),
             size_m: Some(b.size_m.to_array()),
             relations: Vec::new(),
+            motion: None,
         }
     }
 }

@@ -4,6 +4,7 @@ mod adds;
 mod changes;
 mod crossing;
 mod destinations;
+mod motion;
 mod moves;
 #[cfg(test)]
 mod tests;
@@ -96,6 +97,8 @@ impl Stage<'_> {
                 }
             }
             What::Swap { one, other } => self.swap(one, other),
+            What::Go { who, how } => self.go(who, how),
+            What::Length { seconds } => self.last_for(*seconds),
             What::Time { what } => self.conditions(Some(*what), None),
             What::Weather { what } => self.conditions(None, Some(*what)),
             What::Has {

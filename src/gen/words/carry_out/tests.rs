@@ -12,6 +12,7 @@ use super::carry_out;
 use place::road;
 use place::rules::place_with;
 use place::to_graph::to_graph;
+use scene::clip::Template;
 use scene::{BevLayout, BoxId, Class, Conditions, Edit, Paint, SceneBox, TimeOfDay, Weather};
 
 struct Base {
@@ -37,6 +38,8 @@ impl Base {
             layout: &self.layout,
             prompt: "day",
             conditions: Default::default(),
+            ego_moves: false,
+            length_s: 0.0,
         };
         carry_out(&parse(line).unwrap_or_else(|e| panic!("{line}: {e}")), &scene, 1)
     }
@@ -331,4 +334,31 @@ fn what_is_said_of_it_waits_for_the_answer() {
     // (where nothing is asked, that nobody was spoken of is said)
     let done = base.edit("set it red");
     assert_eq!(done.remarks.len(), 1, "{done:?}");
+}
+
+/// What moves is an edit of its own; who cuts in needs somebody to cut in before, and what begins late needs a longer scene.
+#[test]
+fn motions_become_edits() {
+    let base = Base::new("add 1 car ( ahead ego 15m ) and 1 bus ( behind ego )");
+    let car = base.of(Class::Car)[0];
+    let outcome = base.edit("go the car stop from 9s speed 36kmh");
+    let [Edit::SetLength { length_s, .. }, stop] = outcome.edits.as_slice() else {
+        panic!("{outcome:?}");
+    };
+    assert!(*length_s >= 14.0);
+    let wanted = Edit::LetMove {
+        id: Some(car),
+        template: Template::Stop,
+        mps: Some(10.0),
+        from_s: Some(9.0),
+        gap_m: None,
+    };
+    assert_eq!(*stop, wanted);
+    let outcome = base.edit("go the car cut_in");
+    assert!(matches!(outcome.edits[0], Edit::LetMove { id: None, .. }), "{outcome:?}");
+    assert_eq!(outcome.remarks, [(0, Remark::EgoDrives)]);
+    let outcome = base.edit("go ego drive fast ; go the bus drive gap 5m");
+    assert!(outcome.remarks.is_empty() && outcome.edits.len() == 2, "{outcome:?}");
+    let outcome = base.edit("go the truck stop");
+    assert!(outcome.edits.is_empty() && matches!(outcome.remarks[0].1, Remark::Nobody { .. }));
 }

@@ -79,7 +79,7 @@ impl Grammar<'_> {
             let token = self.tokens.get(i)?;
             let v = token
                 .value
-                .filter(|v| !token.is_length && v.fract() == 0.0 && (0.0..1e6).contains(v))?;
+                .filter(|v| !token.is_length && !token.is_speed && v.fract() == 0.0 && (0.0..1e6).contains(v))?;
             Some(v as u32)
         };
         // "two to four", "3-5", "between three and five"

@@ -11,6 +11,7 @@ pub use write::{thing, write};
 
 use super::reading::Anchor;
 use scene::Paint;
+use scene::clip::Pace;
 use scene::graph::{LaneRole, ObjectState, SizeHint};
 
 const ANCHORS: [(&str, Anchor); 17] = [
@@ -41,6 +42,7 @@ const STATES: [(&str, ObjectState); 3] = [
     ("parked", ObjectState::Parked),
     ("waiting", ObjectState::Waiting),
 ];
+const PACES: [(&str, Pace); 2] = [("fast", Pace::Fast), ("slow", Pace::Slow)];
 const SIZES: [(&str, SizeHint); 2] = [("small", SizeHint::Small), ("large", SizeHint::Large)];
 
 fn anchors() -> impl Iterator<Item = (&'static str, Anchor)> {

@@ -5,8 +5,9 @@ use super::super::reading::{
     Amount, Anchor, Destination, Feature, LaneSide, PaintWish, Pick, Place, Quantity, Reading, Relation,
     Thing, Traits, Turn, Way, What,
 };
-use super::{SIZES, STATES, anchors, paint, plain};
+use super::{PACES, SIZES, STATES, anchors, paint, plain};
 use place::description::{Density, Environment, Road};
+use scene::clip::{Manoeuvre, Template};
 use scene::graph::{ObjectState, SizeHint};
 use scene::{TimeOfDay, Weather};
 
@@ -203,6 +204,14 @@ impl<'t> Parser<'t> {
                 let amount = self.count()?;
                 What::Count { who, amount }
             }
+            "go" => {
+                let who = if self.takes("ego") { Vec::new() } else { self.list()? };
+                let how = self.manoeuvre()?;
+                What::Go { who, how }
+            }
+            "length" => What::Length {
+                seconds: self.must("seconds", |t| measure(t, "s"))?,
+            },
             "time" => What::Time {
                 what: self.must("a time of day", |t| {
                     TimeOfDay::ALL.iter().copied().find(|x| x.name() == t)
@@ -247,6 +256,22 @@ impl<'t> Parser<'t> {
                 return self.wrong("a verb");
             }
         })
+    }
+
+    fn manoeuvre(&mut self) -> Parsed<Manoeuvre> {
+        let named = |t: &str| Template::ALL.iter().copied().find(|x| x.name() == t);
+        let mut how = Manoeuvre::of(self.must("a manoeuvre", named)?);
+        if self.takes("from") {
+            how.from_s = Some(self.must("seconds", |t| measure(t, "s"))?);
+        }
+        if self.takes("gap") {
+            how.gap_m = Some(self.must("metres", |t| measure(t, "m"))?);
+        }
+        if self.takes("speed") {
+            how.kmh = Some(self.must("km/h", |t| measure(t, "kmh"))?);
+        }
+        how.pace = self.maybe(|t| PACES.into_iter().find(|x| x.0 == t).map(|x| x.1));
+        Ok(how)
     }
 
     fn destination(&mut self) -> Parsed<Destination> {

@@ -14,6 +14,7 @@ fn readings_survive_writing_and_json() {
         "set the car large parked red ; set 1 truck paint_of the bus",
         "count cone to 2 .. 4 ; count bicycle times 2 ; swap the car and the bus",
         "has crossing ( ahead ego 20m ) ; lacks sidewalk ; lanes 4 ; one_way ; narrow ; own_lane left ; road t_junction",
+        "go the car cut_in from 2s ; go ego drive speed 48.3kmh ; go all bus pull_out gap 10m slow ; length 12s",
         "add many cone ( in_line ) ; add 2 bus ( facing each_other ) ; move the bus to ( on other_side ) ( there )",
     ] {
         let reading = parse(line).unwrap_or_else(|e| panic!("{line}: {e}"));
@@ -37,6 +38,10 @@ fn what_is_no_reading_is_refused_with_its_place() {
         ("add 1 car ( on", ""),
         ("add 1 car ( at ego )", ")"),
         ("dance", "dance"),
+        ("go the car", ""),
+        ("go the car fly", "fly"),
+        ("go ego stop from 3m", "3m"),
+        ("length 10", "10"),
         ("time noon", "noon"),
         ("add 99999999999 car", "99999999999"),
     ] {

@@ -3,7 +3,8 @@
 use super::super::reading::{
     Amount, Anchor, Destination, PaintWish, Place, Quantity, Reading, Thing, Traits, Turn, What,
 };
-use super::{SIZES, STATES, anchors, plain};
+use super::{PACES, SIZES, STATES, anchors, plain};
+use scene::clip::Manoeuvre;
 use scene::graph::{ObjectState, SizeHint};
 
 /// The line of a reading; `parse` of it gives the same reading.
@@ -26,6 +27,9 @@ fn act(what: &What) -> String {
         What::Set { who, traits } => format!("set {} {}", list(who), traits_in_words(traits)),
         What::Count { who, amount } => format!("count {} {}", list(who), count(*amount)),
         What::Swap { one, other } => format!("swap {} and {}", thing(one), thing(other)),
+        What::Go { who, how } if who.is_empty() => format!("go ego {}", manoeuvre(how)),
+        What::Go { who, how } => format!("go {} {}", list(who), manoeuvre(how)),
+        What::Length { seconds } => format!("length {seconds}s"),
         What::Time { what } => format!("time {}", what.name()),
         What::Weather { what } => format!("weather {}", what.name()),
         What::Road { what } => format!("road {}", plain(what.name())),
@@ -45,6 +49,20 @@ fn act(what: &What) -> String {
 fn list(things: &[Thing]) -> String {
     let things: Vec<String> = things.iter().map(thing).collect();
     things.join(" and ")
+}
+
+fn manoeuvre(how: &Manoeuvre) -> String {
+    let mut out = how.what.name().to_owned();
+    let numbers = [("from", how.from_s, "s"), ("gap", how.gap_m, "m"), ("speed", how.kmh, "kmh")];
+    for (name, number, unit) in numbers {
+        if let Some(n) = number {
+            out += &format!(" {name} {n}{unit}");
+        }
+    }
+    if let Some((name, _)) = PACES.into_iter().find(|x| Some(x.1) == how.pace) {
+        out += &format!(" {name}");
+    }
+    out
 }
 
 fn destination(to: &Destination) -> String {

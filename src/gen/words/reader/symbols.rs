@@ -97,7 +97,7 @@ impl Symbols {
             });
             numbers += usize::from(points);
             x.copy_sense.push(match t.value {
-                Some(v) if !t.is_length && v.fract() == 0.0 && v <= 20.0 => {
+                Some(v) if !t.is_length && !t.is_speed && v.fract() == 0.0 && v <= 20.0 => {
                     self.id.get(&(v as u32).to_string()).copied()
                 }
                 _ => t.senses.iter().find_map(|s| self.of_sense(s)),
@@ -132,8 +132,15 @@ impl Symbols {
                     let v = value(name);
                     match out.last_mut() {
                         Some(last) if last == "#" => *last = format!("#{}", v as u64),
-                        _ => out.push(format!("{}m", (v * 1000.0).round() / 1000.0)),
+                        last => {
+                            let unit = last.and_then(|last| unit_after(last)).unwrap_or("m");
+                            out.push(format!("{}{unit}", (v * 1000.0).round() / 1000.0));
+                        }
                     }
+                }
+                _ if out.last().is_some_and(|last| unit_after(last).is_some()) && is_number(name) => {
+                    let unit = out.last().and_then(|last| unit_after(last)).unwrap_or("m");
+                    out.push(format!("{}{unit}", name.trim_end_matches('m')));
                 }
                 _ => out.push(name.to_owned()),
             }
@@ -173,6 +180,19 @@ impl Symbols {
             }
         }
     }
+}
+
+/// The unit of a number that stands after a symbol, where it is not metres.
+fn unit_after(symbol: &str) -> Option<&'static str> {
+    match symbol {
+        "from" | "length" => Some("s"),
+        "speed" => Some("kmh"),
+        _ => None,
+    }
+}
+
+fn is_number(name: &str) -> bool {
+    name.trim_end_matches('m').parse::<f64>().is_ok_and(f64::is_finite)
 }
 
 /// Buckets of the letter triples of a word with its ends.

@@ -1,0 +1,73 @@
+//! Readings with motion become clips; the reader network has tests of its own.
+
+use scene::{BoxId, Class, Scene};
+use words::describe::describe;
+use words::notation::parse;
+
+use super::*;
+
+fn made_of(line: &str, seed: u64) -> (Scene, Vec<String>) {
+    let description = describe(&parse(line).expect("notation")).description;
+    let made = make("", &description, seed, &How::default());
+    (made.scene, made.laid.road.missing)
+}
+
+fn first(scene: &Scene, class: Class) -> BoxId {
+    let of_class = scene.clip().tracks.values().find(|t| t.made.class == class);
+    of_class.expect("it moves").made.id
+}
+
+/// Where a box is in the frame of the ego vehicle, m.
+fn seen(scene: &Scene, id: BoxId, time_s: f64) -> glam::DVec2 {
+    let view = scene.at(time_s);
+    let frame = view.frame();
+    let at = frame.boxes[&id].center_m;
+    frame.world_from_ego.inverse().apply(at).truncate()
+}
+
+#[test]
+fn a_car_from_the_right_lane_ends_in_ours() {
+    for seed in 0..6 {
+        let (scene, missing) = made_of("road straight ; lanes 4 ; own_lane left ; add 1 car ( on right_lane ) ( ahead ego ) ; go the car cut_in from 2s", seed);
+        assert_eq!(missing, Vec::<String>::new());
+        assert_eq!(scene.clip().length_s, 8.0);
+        let car = first(&scene, Class::Car);
+        let [before, after] = [1.5, 7.0].map(|t| seen(&scene, car, t).y);
+        assert!(before < -2.0 && after.abs() < 1.2, "seed {seed}: {before} to {after} m");
+        assert!(scene.clip().ego.is_some());
+    }
+}
+
+#[test]
+fn a_child_waits_at_the_side_and_runs_across() {
+    for seed in 0..6 {
+        let (scene, missing) = made_of("add 1 child ( ahead ego 15m ) ; go the child cross from 3s fast", seed);
+        assert_eq!(missing, Vec::<String>::new());
+        let child = first(&scene, Class::Pedestrian);
+        let at = |t: f64| scene.at(t).frame().boxes[&child].center_m.truncate();
+        assert_eq!(at(0.0), at(2.9), "seed {seed}");
+        let way = at(6.0) - at(3.0);
+        assert!(way.length() > 5.0 && way.y.abs() > way.x.abs(), "seed {seed}: {way}");
+    }
+}
+
+#[test]
+fn a_bus_pulls_out_when_we_are_near() {
+    let (scene, missing) = made_of("add 1 bus ( ahead ego 30m ) ; go the bus pull_out gap 10m", 2);
+    assert_eq!(missing, Vec::<String>::new());
+    let bus = first(&scene, Class::Bus);
+    let moves = |t: f64| scene.at(t).frame().boxes[&bus].velocity_mps.length() > 0.2;
+    let from_s = (0..80).map(|i| f64::from(i) * 0.1).find(|t| moves(*t)).expect("it moves");
+    let gap_m = seen(&scene, bus, from_s).length() - 5.5 - 2.1;
+    assert!((5.0..12.0).contains(&gap_m), "{gap_m} m at {from_s} s");
+}
+
+#[test]
+fn what_cannot_be_is_said_and_the_rest_is_done() {
+    let (scene, missing) = made_of("length 4s ; add 1 bus ( behind ego 30m ) and 1 person ; go the bus pull_out gap 2m ; go the person cross from 1s", 1);
+    assert_eq!(scene.clip().length_s, 4.0);
+    assert!(missing.iter().any(|m| m.contains("never come within 2 m")), "{missing:?}");
+    assert!(scene.clip().tracks.values().any(|t| t.made.class == Class::Pedestrian));
+    let (still, _) = made_of("add 1 bus", 1);
+    assert!(still.clip().is_still());
+}

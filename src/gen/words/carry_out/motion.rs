@@ -1,0 +1,54 @@
+//! What moves in the course of time.
+
+use super::super::reading::Thing;
+use super::super::remark::Remark;
+use super::super::resolve::Spare;
+use super::super::stage::Stage;
+use scene::clip::{Manoeuvre, Template};
+use scene::{Clip, Edit};
+
+/// Something that begins later than this makes the scene longer, s.
+const USUAL_LENGTH_S: f64 = 8.0;
+/// What begins is seen for so long, s.
+const SEEN_S: f64 = 5.0;
+
+impl Stage<'_> {
+    /// Somebody, or (nobody named) the ego vehicle, moves.
+    pub(super) fn go(&mut self, who: &[Thing], how: &Manoeuvre) {
+        let least_s = how.from_s.map_or(0.0, |from_s| from_s + SEEN_S);
+        if least_s > self.length_s.max(USUAL_LENGTH_S) {
+            self.last_for(least_s);
+        }
+        if who.is_empty() {
+            self.ego_moves = true;
+            self.out.edits.push(how.edit(None, None));
+            self.done().scene = true;
+            return;
+        }
+        let Some(ids) = self.those(who, Spare::Farthest) else {
+            return;
+        };
+        // Nobody cuts in before a vehicle that stands, or comes nearer to one.
+        let needs_us = how.what == Template::CutIn || how.gap_m.is_some();
+        if needs_us && !self.ego_moves && !ids.is_empty() {
+            self.ego_moves = true;
+            self.out.edits.push(Manoeuvre::of(Template::Follow).edit(None, None));
+            self.remark(Remark::EgoDrives);
+        }
+        for id in ids {
+            let class = self.boxes.get(&id).map(|b| b.class);
+            self.out.edits.push(how.edit(Some(id), class));
+            self.done().changed.push(id);
+        }
+    }
+
+    /// The scene lasts so long.
+    pub(super) fn last_for(&mut self, seconds: f64) {
+        self.done().scene = true;
+        self.length_s = seconds.clamp(0.0, Clip::MAX_LENGTH_S);
+        self.out.edits.push(Edit::SetLength {
+            length_s: self.length_s,
+            rate_hz: None,
+        });
+    }
+}

@@ -1,0 +1,22 @@
+"""Phrases about motion: {w} is who; {t} when, {v} how fast."""
+
+# (what follows "let {w} ...", what follows "{w} ..." of one)
+VERBS = {
+    "drive": [("drive", "drives"), ("drive on", "drives on"), ("go", "goes"), ("travel", "travels"), ("keep going", "keeps going"), ("move along its lane", "moves along its lane"), ("cruise", "cruises"), ("drive along", "drives along")],
+    "follow": [("follow the one ahead", "follows the one ahead"), ("keep its distance to the car ahead", "keeps its distance to the car ahead"), ("follow traffic", "follows the traffic"), ("follow whoever is ahead", "follows whoever is ahead"), ("stay behind the vehicle ahead", "stays behind the vehicle ahead")],
+    "stop": [("brake", "brakes"), ("stop", "stops"), ("come to a stop", "comes to a stop"), ("brake to a standstill", "brakes to a standstill"), ("slow down and stop", "slows down and stops"), ("come to a halt", "comes to a halt"), ("hit the brakes", "hits the brakes"), ("brake hard", "brakes hard"), ("stop dead", "stops dead")],
+    "cut_in": [("cut in", "cuts in"), ("cut in front of us", "cuts in front of us"), ("change into our lane", "changes into our lane"), ("merge into my lane", "merges into my lane"), ("pull into our lane", "pulls into our lane"), ("swerve into our lane", "swerves into our lane"), ("move over into {my} lane", "moves over into {my} lane"), ("change lanes in front of me", "changes lanes in front of me"), ("do a cut-in", "does a cut-in"), ("squeeze in ahead of us", "squeezes in ahead of us")],
+    "cross": [("cross the road", "crosses the road"), ("cross", "crosses"), ("cross the street", "crosses the street"), ("walk across", "walks across"), ("step into the road", "steps into the road"), ("start crossing", "starts crossing"), ("go across", "goes across"), ("set out across the road", "sets out across the road")],
+    "pull_out": [("pull out", "pulls out"), ("drive off", "drives off"), ("set off", "sets off"), ("pull away from the kerb", "pulls away from the kerb"), ("pull out into the lane", "pulls out into the lane"), ("leave its parking place", "leaves its parking place"), ("pull out of the parking space", "pulls out of the parking space"), ("move off", "moves off")],
+    "park": [("pull over", "pulls over"), ("pull over and park", "pulls over and parks"), ("park at the side", "parks at the side"), ("park", "parks"), ("pull in at the kerb", "pulls in at the kerb"), ("stop at the roadside", "stops at the roadside"), ("draw up at the kerb", "draws up at the kerb")],
+}
+RUNS = [("run across", "runs across"), ("run across the road", "runs across the road"), ("dash across the street", "dashes across the street"), ("run into the road", "runs into the road"), ("sprint across", "sprints across"), ("dart out", "darts out")]
+LET = ["let {w} {do}", "have {w} {do}", "make {w} {do}", "{w} should {do}", "{w} shall {do}", "{w} must {do}", "{w} will {do}", "I want {w} to {do}", "{w} is to {do}", "get {w} to {do}"]
+EGO = ["we", "we", "I", "our car", "the ego vehicle", "ego", "my car", "the ego car"]
+WHEN = ["after {n} {sec}", "at second {n}", "{n} {sec} in", "in {n} {sec}", "from second {n} on", "at t={n}", "at {n} {sec}", "{n} {sec} later", "after {n}{s}", "at {n} s", "t = {n} s", "starting at {n} {sec}", "{n} {sec} into the scene", "at the {n} {sec} mark", "once {n} {sec} have passed"]
+GAP = ["when {i} am {m} away", "when we are {m} away", "when we are {m} from it", "as soon as we are within {m}", "once the gap is {m}", "when the gap to us is {m}", "when we are {m} behind it", "as soon as I am {m} behind", "when there are {m} left between us", "when we come within {m}", "at a gap of {m}", "if we are {m} away", "when it is {m} from us"]
+SPEED = ["at {n} {u}", "at {n}{u}", "with {n} {u}", "doing {n} {u}", "at a speed of {n} {u}", "going {n} {u}", "{n} {u}"]
+UNITS = [("km/h", 1.0), ("km/h", 1.0), ("kmh", 1.0), ("kph", 1.0), ("kilometres per hour", 1.0), ("km per hour", 1.0), ("mph", 1.609344), ("miles per hour", 1.609344), ("m/s", 3.6)]
+FAST = ["fast", "quickly", "at high speed", "at full speed", "very fast", "at speed", "in a hurry"]
+SLOW = ["slowly", "very slowly", "at walking pace", "at a crawl", "gently and slowly"]
+LENGTH = ["the scene lasts {n} {sec}", "a clip of {n} {sec}", "make it {n} {sec} long", "{n} {sec} long", "it should last {n} {sec}", "length {n} {sec}", "duration {n} {sec}", "let it run for {n} {sec}", "record {n} {sec}"]
