@@ -12,6 +12,7 @@ pub mod export;
 pub(crate) mod fields;
 mod finding_marks;
 pub mod graphics;
+mod map_edges;
 mod marks;
 pub mod paint;
 pub mod panes;

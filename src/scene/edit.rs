@@ -176,6 +176,21 @@ pub enum Edit {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         to_s: Option<f64>,
     },
+    /// Makes the map larger, in the world frame. Roads go on beyond the edge as they reach it; what is new is to be generated.
+    ExtendMap {
+        /// So much farther along x, m.
+        #[serde(default)]
+        ahead_m: f64,
+        /// So much farther against x, m.
+        #[serde(default)]
+        behind_m: f64,
+        /// So much farther along y, m.
+        #[serde(default)]
+        left_m: f64,
+        /// So much farther against y, m.
+        #[serde(default)]
+        right_m: f64,
+    },
     /// Lets a box move in a way that has a name, from where it is at the moment that is shown, along the lanes of the map. A
     /// scene of one moment becomes a clip.
     LetMove {
@@ -282,6 +297,9 @@ pub enum EditError {
     /// The thing that would result is not sound; see [`Form::problem`].
     #[error("{0}")]
     BadThing(String),
+    /// A map that is too large.
+    #[error("{0}")]
+    BadMap(String),
     /// As many boxes as a frame holds are there.
     #[error("this frame holds {} boxes already, expected at most {}", .0, Frame::MAX_BOXES)]
     TooManyBoxes(usize),

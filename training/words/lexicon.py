@@ -49,10 +49,10 @@ def load():
         key, words = line.split(": ", 1)
         kind, symbol = key.split(" ", 1)
         for word in words.split(", "):
-            forms = word.split("/")
             if kind in ("unit", "speed"):
-                units[tuple(forms[0].split())] = (kind, float(symbol))
+                units[tuple(word.split())] = (kind, float(symbol))
                 continue
+            forms = word.split("/")
             many = forms[1:] or ([plural(forms[0])] if kind in ("noun", "group", "place") else [])
             for form, is_plural in [(forms[0], False), *[(f, True) for f in many]]:
                 table.setdefault(tuple(form.split()), []).append((kind, symbol, is_plural))

@@ -7,6 +7,7 @@ use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::canvas::CanvasInput;
+use crate::map_edges;
 use crate::command::Command;
 use crate::views_shown::Underlay;
 use widgets::icons::{self, Icon};
@@ -70,6 +71,11 @@ impl Pane for Bev {
         let (canvas, state) = (&mut *cx.canvas, &mut *cx.state);
         in_rect(ui, rect, |ui| {
             canvas.show(ui, &input, state, commands);
+            if mode == CompareMode::Off
+                && let Some(map) = &canvas.map
+            {
+                map_edges::show(ui, map, scene.canvas().extent(), commands);
+            }
         });
         if let (true, Some(last), Some(map)) = (cx.tuning.show_modelled, &cx.tuning.last, &cx.canvas.map) {
             super::modelled::draw(ui, rect, map, last, cx.sensing.sampled());

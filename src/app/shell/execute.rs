@@ -9,6 +9,7 @@ use scene::SceneBox;
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
+use crate::map_edges::with_scenery;
 use crate::command::Command;
 use crate::panes::objects::neighbour;
 use crate::tools::{Choose, ToolState};
@@ -92,7 +93,7 @@ impl SceneloomApp {
             return self.fail("Background things are locked".to_owned());
         }
         let label = self.meant_label(label.into(), edits);
-        let edits = self.meant(edits.to_vec());
+        let edits = self.meant(with_scenery(self.document.scene(), edits.to_vec()));
         if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());
         }

@@ -4,6 +4,7 @@ mod at;
 mod box_run;
 mod boxes;
 mod correct;
+mod extend;
 mod map;
 mod motion;
 mod voxels;
@@ -74,6 +75,7 @@ impl Apply for Edit {
             }
             Self::At { .. } => at::apply(self, scene)?,
             Self::SetMotion { .. } | Self::SetLength { .. } => motion::apply(self, scene)?,
+            Self::ExtendMap { .. } => extend::apply(self, scene)?,
             Self::LetMove { .. } => {
                 let mut after = scene.clone();
                 apply_all(&let_move(scene, self)?, &mut after)?;

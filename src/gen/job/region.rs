@@ -2,7 +2,7 @@
 //! them.
 
 use scene::raster::box_cells;
-use scene::{Extent, Frame, SceneBox, Window};
+use scene::{Class, Extent, Frame, SceneBox, Window};
 
 /// Latent cells along x and along y.
 pub const CELLS_PER_SIDE: usize = 50;
@@ -103,6 +103,25 @@ impl Region {
     }
 }
 
+/// Columns that hold ground by now, and of which the source knows nothing: those of a map that was made larger.
+fn never_generated(frame: &Frame) -> Vec<[usize; 2]> {
+    let (now, source) = (&frame.occupancy, &frame.source.occupancy);
+    let is_ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
+    let mut out = Vec::new();
+    for brick in now.changed_bricks(source) {
+        let (from, size) = now.brick_columns(brick);
+        for x in from[0]..from[0] + size[0] {
+            for y in from[1]..from[1] + size[1] {
+                let was_empty = || source.column(x, y).iter().all(|label| *label == Class::FREE);
+                if now.column(x, y).iter().any(is_ground) && was_empty() {
+                    out.push([x, y]);
+                }
+            }
+        }
+    }
+    out
+}
+
 /// The columns `[x][y]` of a frame's map that an edit touches, on a map of any extent; see [`Region::of_edit`].
 pub fn edited_columns(frame: &Frame, halo_columns: usize) -> Vec<bool> {
     let extent = frame.extent();
@@ -114,6 +133,9 @@ pub fn edited_columns(frame: &Frame, halo_columns: usize) -> Vec<bool> {
         .zip(source.layout.cells())
         .map(|(now, before)| now != before)
         .collect();
+    for [x, y] in never_generated(frame) {
+        changed[extent.index(x, y)] = true;
+    }
     let mut footprints = vec![false; extent.columns()]; // of changed boxes, without overhang
     let mut unchanged = Vec::new();
     let mut mark = |b: &SceneBox| {

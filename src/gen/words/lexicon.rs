@@ -76,15 +76,15 @@ impl Lexicon {
                 continue;
             };
             for word in words.split(", ") {
-                let mut forms = word.split('/');
-                let Some(one) = forms.next() else { continue };
                 if matches!(kind, "unit" | "speed") {
                     if let Ok(times) = symbol.parse() {
                         let is_speed = kind == "speed";
-                        out.units.insert(one.to_owned(), Unit { times, is_speed });
+                        out.units.insert(word.to_owned(), Unit { times, is_speed });
                     }
                     continue;
                 }
+                let mut forms = word.split('/');
+                let Some(one) = forms.next() else { continue };
                 let mut add = |form: &str, many: bool| {
                     let sense = Sense { kind, symbol, many };
                     out.senses.entry(form.to_owned()).or_default().push(sense);

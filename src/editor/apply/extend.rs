@@ -1,0 +1,203 @@
+//! More map: roads go on beyond its edge as they reach it, and the ground there waits to be generated.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use scene::{BevLayout, Edit, EditError, Extent, Frame, Inferred, Polyline, PolylineKind, Scene, SourceFrame, draft};
+
+/// How far from a lane's middle, along the edge, the ground goes on in its direction, m; elsewhere it goes straight out.
+const BESIDE_LANE_M: f64 = 18.0;
+/// A line that ends this near to the edge is one that reaches it, m.
+const AT_EDGE_M: f64 = 2.5;
+/// Flatter than this against the edge no line leaves the map.
+const STEEPEST: f64 = 0.35;
+
+/// Applies an [`Edit::ExtendMap`]. On error nothing has changed.
+pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
+    let &Edit::ExtendMap {
+        ahead_m,
+        behind_m,
+        left_m,
+        right_m,
+    } = edit
+    else {
+        return Ok(());
+    };
+    let mut columns = [0; 4];
+    let sides = [("behind_m", behind_m), ("ahead_m", ahead_m), ("right_m", right_m), ("left_m", left_m)];
+    for ((field, m), columns) in sides.into_iter().zip(&mut columns) {
+        if !(0.0..=FARTHEST_M).contains(&m) {
+            return Err(EditError::Number {
+                field,
+                found: m.to_string(),
+                expected: "0 to 2000 m",
+            });
+        }
+        *columns = (m / Extent::VOXEL_M).round() as i32;
+    }
+    let old = scene.canvas().extent();
+    let mut layout = scene.canvas().layout.clone();
+    for (side, columns) in SIDES.into_iter().zip(columns).filter(|(_, columns)| *columns > 0) {
+        layout = side.extended(&layout, columns)?;
+    }
+    if layout.extent() == old {
+        return Ok(());
+    }
+    scene.change_canvas(|canvas| *canvas = over(canvas, layout));
+    Ok(())
+}
+
+/// Farthest that a map grows on one side at once, m.
+const FARTHEST_M: f64 = 2000.0;
+
+/// A frame over a larger layout. What is new holds a draft of its ground and nothing of a source: it is to be generated.
+fn over(frame: &Frame, layout: BevLayout) -> Frame {
+    let (old, new) = (frame.extent(), layout.extent());
+    let mut occupancy = draft::draft(&layout, frame.boxes.values());
+    occupancy.paste(&frame.occupancy);
+    let source = SourceFrame {
+        layout: frame.source.layout.crop(new),
+        boxes: frame.source.boxes.clone(),
+        occupancy: frame.source.occupancy.crop(new),
+    };
+    debug_assert!(old.overlap(&new).is_some());
+    Frame {
+        layout,
+        occupancy,
+        painted: frame.painted.crop(new),
+        inferred: Inferred {
+            unobserved: frame.inferred.unobserved.as_ref().map(|u| u.crop(new)),
+            ..frame.inferred.clone()
+        },
+        source: Arc::new(source),
+        ..frame.clone()
+    }
+}
+
+/// One side of a map: along x or y, at its lower or upper end.
+#[derive(Clone, Copy)]
+struct Side {
+    axis: usize,
+    upper: bool,
+}
+
+const SIDES: [Side; 4] = [
+    Side { axis: 0, upper: false },
+    Side { axis: 0, upper: true },
+    Side { axis: 1, upper: false },
+    Side { axis: 1, upper: true },
+];
+
+/// Where a lane leaves the map: the place along the edge, m, and how far along the edge it goes per metre outward.
+#[derive(Clone, Copy)]
+struct Leaving {
+    along_m: f64,
+    slope: f64,
+}
+
+impl Side {
+    fn outward(self) -> DVec2 {
+        let sign = if self.upper { 1.0 } else { -1.0 };
+        if self.axis == 0 { DVec2::new(sign, 0.0) } else { DVec2::new(0.0, sign) }
+    }
+
+    /// How far a point lies outside of this edge, m; negative inside.
+    fn outside_m(self, extent: Extent, p: DVec2) -> f64 {
+        let edge = if self.upper { extent.max_m() } else { extent.min_m() };
+        (p - edge.truncate()).dot(self.outward())
+    }
+
+    fn along_m(self, p: DVec2) -> f64 {
+        if self.axis == 0 { p.y } else { p.x }
+    }
+
+    /// Place along the edge and slope of a line through a point in a direction that leads out.
+    fn leaving(self, extent: Extent, p: DVec2, way: DVec2) -> Option<Leaving> {
+        let out = way.normalize_or_zero().dot(self.outward());
+        let slope = self.along_m(way.normalize_or_zero()) / out;
+        (out >= STEEPEST).then(|| Leaving {
+            along_m: self.along_m(p) - self.outside_m(extent, p) * slope,
+            slope,
+        })
+    }
+
+    /// Where lanes leave the map here, whichever way they are driven.
+    fn leavings(self, layout: &BevLayout) -> Vec<Leaving> {
+        let extent = layout.extent();
+        let lanes = layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+        let leaving = |[a, b]: [DVec2; 2]| {
+            let (a_m, b_m) = (self.outside_m(extent, a), self.outside_m(extent, b));
+            let crosses = a_m <= 0.0 && b_m > 0.0 || a_m < b_m && (-AT_EDGE_M..=0.0).contains(&b_m);
+            crosses.then(|| self.leaving(extent, b, b - a)).flatten()
+        };
+        let found = lanes.flat_map(|line| {
+            let both_ways = line.points_m.array_windows::<2>().flat_map(|[a, b]| [[*a, *b], [*b, *a]]);
+            both_ways.filter_map(leaving).collect::<Vec<_>>()
+        });
+        let corners = [extent.min_m().truncate(), extent.max_m().truncate()].map(|p| self.along_m(p));
+        found.filter(|l| (corners[0]..=corners[1]).contains(&l.along_m)).collect()
+    }
+
+    /// The layout with so many columns more on this side.
+    fn extended(self, layout: &BevLayout, columns: i32) -> Result<BevLayout, EditError> {
+        let old = layout.extent();
+        let (mut from, mut size) = (old.from(), [old.nx(), old.ny()]);
+        size[self.axis] += columns as usize;
+        if !self.upper {
+            from[self.axis] -= columns;
+        }
+        let new = Extent::new(from, size).map_err(EditError::BadMap)?;
+        let leavings = self.leavings(layout);
+        let last = [old.nx(), old.ny()].map(|n| n as i64 - 1);
+        // Each new column takes what lies where its road comes from, at the edge.
+        let cell = |[x, y]: [usize; 2]| {
+            let p = new.center(x, y, 0).truncate();
+            let outside_m = self.outside_m(old, p);
+            let nearest = leavings
+                .iter()
+                .map(|l| (l, (self.along_m(p) - outside_m * l.slope - l.along_m).abs()))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            let slope = nearest.filter(|(_, off_m)| *off_m <= BESIDE_LANE_M).map_or(0.0, |(l, _)| l.slope);
+            let mut at = p - self.outward() * outside_m.max(0.0);
+            at[1 - self.axis] -= outside_m.max(0.0) * slope;
+            let column = |axis: usize| {
+                let column = (at[axis] / Extent::VOXEL_M).floor() as i64 - i64::from(old.from()[axis]);
+                column.clamp(0, last[axis]) as usize
+            };
+            layout.cell(column(0), column(1))
+        };
+        let cells = new.all_columns().map(cell).collect();
+        let lines = layout.polylines.iter().map(|line| self.line_to(old, new, line)).collect();
+        let mut out = BevLayout::from_cells_over(new, cells, lines)
+            .map_err(|found| EditError::BadMap(format!("{found} columns")))?;
+        out.relief = layout.relief.crop(new);
+        Ok(out)
+    }
+
+    /// A line of the road that ends at the old edge goes on to the new one.
+    fn line_to(self, old: Extent, new: Extent, line: &Polyline) -> Polyline {
+        let mut line = line.clone();
+        if matches!(line.kind, PolylineKind::StopLine | PolylineKind::PedCrossing) {
+            return line;
+        }
+        for _ in 0..2 {
+            line.points_m.reverse();
+            let [.., before, end] = line.points_m.as_slice() else {
+                return line;
+            };
+            let (end, way) = (*end, *end - *before);
+            let reaches = (-AT_EDGE_M..=AT_EDGE_M).contains(&self.outside_m(old, end));
+            if reaches && let Some(leaving) = self.leaving(old, end, way) {
+                let outside_m = -self.outside_m(new, end) + 5.0;
+                let mut on = end + self.outward() * outside_m;
+                on[1 - self.axis] += outside_m * leaving.slope;
+                line.points_m.push(on);
+            }
+        }
+        line
+    }
+}
+
+#[cfg(test)]
+#[path = "extend_tests.rs"]
+mod tests;
