@@ -24,9 +24,10 @@ pub struct Import {
     /// Ego heading in the file's frame, degrees counter-clockwise; without it along the lane.
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     heading: Option<f64>,
-    /// Length (along the heading) and width of the map, m; without it 80x80. A long one lies mostly ahead.
+    /// Length (along the heading) and width of the map, m; without it 80x80. A long one lies mostly ahead. `all`: the whole
+    /// network.
     #[arg(long, value_name = "LxW", value_parser = map_size)]
-    size: Option<[f64; 2]>,
+    size: Option<MapSize>,
     /// Fixes the traffic.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -52,8 +53,18 @@ fn point(text: &str) -> Result<DVec2, String> {
     }
 }
 
-/// `LxW` in metres.
-fn map_size(text: &str) -> Result<[f64; 2], String> {
+/// How large a map is.
+#[derive(Clone, Copy)]
+enum MapSize {
+    All,
+    Sides([f64; 2]),
+}
+
+/// `LxW` in metres, or `all`.
+fn map_size(text: &str) -> Result<MapSize, String> {
+    if text == "all" {
+        return Ok(MapSize::All);
+    }
     let numbers: Option<Vec<f64>> = text.split('x').map(|v| v.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[length_m, width_m]) => {
@@ -62,9 +73,9 @@ fn map_size(text: &str) -> Result<[f64; 2], String> {
                 size_m,
                 ..Placement::default()
             };
-            placement.problem().map_or(Ok([length_m, width_m]), Err)
+            placement.problem().map_or(Ok(MapSize::Sides([length_m, width_m])), Err)
         }
-        _ => Err("expected two lengths in metres, such as 300x100".into()),
+        _ => Err("expected two lengths in metres, such as 300x100, or all".into()),
     }
 }
 
@@ -82,11 +93,18 @@ impl Import {
                 let placement = Placement {
                     at_m: self.at,
                     heading_rad: self.heading.map(f64::to_radians),
-                    size_m: self.size,
+                    size_m: match self.size {
+                        Some(MapSize::Sides(size_m)) => Some(size_m),
+                        _ => None,
+                    },
+                    whole: matches!(self.size, Some(MapSize::All)),
                     seed: self.seed,
                     empty: self.empty,
                     bare: self.bare,
                 };
+                if let Some(problem) = placement.problem_on(&network) {
+                    return Err(anyhow!("{}: {problem}", self.file.display()).into());
+                }
                 let name = import::scene_name(&self.file);
                 self.roads(importer, &open::on_roads(*network, &name, &placement))
             }

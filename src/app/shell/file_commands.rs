@@ -95,6 +95,9 @@ impl SceneloomApp {
                 };
                 self.load("New scene".into(), None, false, ctx, make);
             }
+            Next::Open(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xodr")) => {
+                self.pick_place(path, ctx);
+            }
             Next::Open(path) => {
                 let (open, file) = (self.files.disk.open.clone(), path.clone());
                 let what = format!("Opening {}", path.display());

@@ -8,6 +8,7 @@ use crossbeam_channel::Receiver;
 use scene::Scene;
 
 use super::exporting::Exporting;
+use crate::windows::place_picker::PlacePicker;
 use super::file_dialogs::FileDialogs;
 use super::recovery::Recovery;
 
@@ -49,6 +50,14 @@ pub(crate) struct Opening {
     pub scene: Receiver<anyhow::Result<Scene>>,
 }
 
+/// Roads from a file, on which a scene will stand.
+pub(crate) enum Picking {
+    /// They are being read.
+    Reading(Receiver<anyhow::Result<PlacePicker>>),
+    /// A place is chosen.
+    Choosing(Box<PlacePicker>),
+}
+
 /// Owner of the scene's file and of what is read and written.
 pub struct Files {
     /// The scene's file, if it has one.
@@ -56,6 +65,8 @@ pub struct Files {
     pub(crate) disk: Disk,
     pub(crate) dialogs: FileDialogs,
     pub(crate) opening: Option<Opening>,
+    /// Roads on which a place is chosen.
+    pub(crate) picking: Option<Picking>,
     /// Waits for an answer about unsaved changes.
     pub(crate) unsaved: Option<Next>,
     /// Goes on after the scene was saved.
@@ -74,6 +85,7 @@ impl Files {
             disk,
             dialogs: FileDialogs::new(native_dialogs),
             opening: None,
+            picking: None,
             unsaved: None,
             after_save: None,
             may_close: false,

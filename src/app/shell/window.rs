@@ -241,6 +241,7 @@ impl SceneloomApp {
             drop_hint(ui, self.views.center);
         }
         self.export_dialog(ui);
+        self.picking_ui(ui);
         self.recovery_dialog(ui);
         if self.files.unsaved.is_some()
             && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name)

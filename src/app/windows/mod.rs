@@ -4,6 +4,7 @@ pub mod export;
 pub mod open;
 pub mod palette;
 pub mod performance;
+pub mod place_picker;
 pub mod recovery;
 pub mod row;
 pub mod sensors;

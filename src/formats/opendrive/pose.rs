@@ -68,6 +68,24 @@ impl RoadNetwork {
             .unwrap_or((DVec2::ZERO, 0.0))
     }
 
+    /// Corners of the rectangle around all reference lines, file frame, m; both the origin if there is no road.
+    pub fn bounds_m(&self) -> [DVec2; 2] {
+        let (low, high) = self.bounds_from(|p| p);
+        [low, high]
+    }
+
+    /// The same in another frame.
+    pub fn bounds_from(&self, frame: impl Fn(DVec2) -> DVec2) -> (DVec2, DVec2) {
+        // A curve bends out of the chord between two of its points by less than the margin that anybody adds.
+        const STEPS: usize = 64;
+        let points = self.roads.iter().flat_map(|road| {
+            let length_m = road.length_m();
+            (0..=STEPS).map(move |i| road.reference.at(length_m * i as f64 / STEPS as f64).position_m)
+        });
+        let sound = points.map(frame).filter(|p| p.is_finite());
+        sound.map(|p| (p, p)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+    }
+
     /// The nearest place in the middle of a traffic lane; `None` if the network has none or `at_m` is
     /// not finite. Found to a quarter of a metre along the lane.
     pub fn pose_on_lane_near(&self, at_m: DVec2) -> Option<LanePose> {

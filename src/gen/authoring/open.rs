@@ -70,6 +70,8 @@ pub struct Placement {
     pub heading_rad: Option<f64>,
     /// Length along the heading and width of the map, m; none means the networks' window.
     pub size_m: Option<[f64; 2]>,
+    /// The map holds the whole network, whatever size was asked for.
+    pub whole: bool,
     /// Fixes the traffic.
     pub seed: u64,
     /// No vehicles and people.
@@ -85,8 +87,12 @@ impl Placement {
     /// Largest side of a map, m.
     pub const MAX_SIZE_M: f64 = 3200.0;
 
-    /// The map in the ego frame: around the ego vehicle, most of a long one ahead of it.
-    fn extent(&self) -> Extent {
+    /// The map in the ego frame: around the ego vehicle, most of a long one ahead of it; or all of the network, seen from a
+    /// place and heading (m, rad) of its frame.
+    pub fn extent(&self, network: &RoadNetwork, from: (DVec2, f64)) -> Extent {
+        if self.whole {
+            return whole_extent(network, from).unwrap_or(Extent::WINDOW);
+        }
         let Some([length_m, width_m]) = self.size_m else {
             return Extent::WINDOW;
         };
@@ -96,7 +102,15 @@ impl Placement {
         Extent::new([-behind, -(ny as i32 / 2)], [nx, ny]).unwrap_or(Extent::WINDOW)
     }
 
-    /// What is wrong with it, in one line.
+    /// What is wrong with it on a network, in one line.
+    pub fn problem_on(&self, network: &RoadNetwork) -> Option<String> {
+        match self.whole {
+            true => whole_extent(network, (self.at_m.unwrap_or_default(), self.heading_rad.unwrap_or_default())).err(),
+            false => self.problem(),
+        }
+    }
+
+    /// What is wrong with its size, in one line.
     pub fn problem(&self) -> Option<String> {
         let [length_m, width_m] = self.size_m?;
         // Written so that NaN fails too.
@@ -110,6 +124,20 @@ impl Placement {
             )
         })
     }
+}
+
+/// Around the roads of a whole network, m.
+const MARGIN_M: f64 = 24.0;
+
+/// The map that holds all roads, seen from a place and heading of the file's frame. Errors if it would be too large.
+fn whole_extent(network: &RoadNetwork, (at_m, heading_rad): (DVec2, f64)) -> Result<Extent, String> {
+    let back = DVec2::from_angle(-heading_rad);
+    let (low, high) = network.bounds_from(|p| back.rotate(p - at_m));
+    let column = |m: f64| (m / Extent::VOXEL_M).floor().clamp(-1e8, 1e8) as i32;
+    let from = (low - MARGIN_M).to_array().map(column);
+    let to = (high + MARGIN_M).to_array().map(column);
+    let size = [0, 1].map(|axis| (i64::from(to[axis]) - i64::from(from[axis]) + 1).max(1) as usize);
+    Extent::new(from, size).map_err(|problem| format!("all of the network is {problem}"))
 }
 
 /// A scene made from a foreign file, and what was found in it.
@@ -160,7 +188,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         None => network.suggest_pose(),
     };
     let heading = placement.heading_rad.unwrap_or(lane_heading);
-    let extent = placement.extent();
+    let extent = placement.extent(&network, (at, heading));
     let import = network.to_layout_over(extent, at, heading);
     let spec = if placement.empty {
         traffic::TrafficSpec::EMPTY
