@@ -72,6 +72,8 @@ pub mod weights {
     pub static LIDAR_FLAT: &[u8] = include_bytes!("weights/lidar_flat.safetensors");
     /// `occ_dit.safetensors`.
     pub static OCC_DIT: &[u8] = include_bytes!("weights/occ_dit.safetensors");
+    /// `occ_dit_time.safetensors`.
+    pub static OCC_DIT_TIME: &[u8] = include_bytes!("weights/occ_dit_time.safetensors");
     /// `occ_vae.safetensors`.
     pub static OCC_VAE: &[u8] = include_bytes!("weights/occ_vae.safetensors");
     /// `occ_vae_fine.safetensors`.

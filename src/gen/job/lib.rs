@@ -3,6 +3,7 @@
 pub mod close_holes;
 pub mod composite;
 mod contract;
+pub mod drive;
 pub mod guard;
 pub mod inpaint;
 pub mod invented;

@@ -1,11 +1,12 @@
 //! The table of suites.
 
 use crate::suite::{Found, Options, Suite};
+use crate::suites::forecast;
 use job::pipeline::OccPipeline;
 use nets::OccModels;
 
 /// All suites, in the order of `eval all`.
-pub static SUITES: [Suite; 7] = [
+pub static SUITES: [Suite; 8] = [
     Suite {
         name: "world",
         title: "Procedural worlds beside what is known of real drives",
@@ -94,6 +95,19 @@ pub static SUITES: [Suite; 7] = [
         quick: |options| (options.frames, options.rows_only) = (4, true),
         table: Some(crate::suites::generation::table),
         run: |options, progress| with_pipeline(options, |pipeline| options.generation(pipeline, progress)),
+    },
+    Suite {
+        name: "forecast",
+        title: "How a drive goes on after two frames",
+        figures: &[
+            ("temporal networks, mIoU after 1 s", "/layouts that came/temporal/mIoU 1 s"),
+            ("the same, after 3 s", "/layouts that came/temporal/mIoU 3 s"),
+            ("frame by frame, after 1 s", "/layouts that came/single frames/mIoU 1 s"),
+            ("on the canvas, after 1 s", "/layouts that came/canvas, inpainted/mIoU 1 s"),
+        ],
+        quick: |options| options.frames = 1,
+        table: Some(forecast::table),
+        run: |options, progress| with_pipeline(options, |pipeline| options.forecast(pipeline, progress)),
     },
     Suite {
         name: "editing",

@@ -26,7 +26,9 @@ pub use error::ModelError;
 pub(crate) use error::{check_finite, check_length};
 pub use latent::{CELLS, CHANNELS, LATENT, SIDE};
 pub use nn::map::CellRect;
-pub use occ_dit::{DitCondition, DitConfig, KeysValues, Middle, OccDit, Prepared, tokens_of};
+pub use occ_dit::{
+    Between, DitCondition, DitConfig, KeysValues, Middle, OccDit, OccDitTime, Prepared, TimeConfig, tokens_of,
+};
 pub use occ_vae::{DecoderInput, OccVae, VaeConfig};
 pub use refiner::Refiner;
 

@@ -1,6 +1,7 @@
 //! The suites, one folder or file each.
 
 pub mod editing;
+pub mod forecast;
 pub mod generation;
 pub mod layout;
 pub mod lidar;

@@ -5,6 +5,7 @@
 
 mod condition;
 mod config;
+mod time;
 mod tokens;
 
 use super::{CHANNELS, LATENT, ModelError, check_finite, check_length};
@@ -17,6 +18,7 @@ use nn::{Cpu, Precision};
 pub use condition::DitCondition;
 use condition::{CONDITION, NAMED};
 pub use config::DitConfig;
+pub use time::{Between, OccDitTime, TimeConfig};
 pub(super) use tokens::timestep_embedding;
 use tokens::{PATCH_CELLS, TOKENS_PER_SIDE, patch, positions};
 pub use tokens::{TOKENS, tokens_of};
@@ -212,25 +214,46 @@ impl<B: Ops> OccDit<B> {
         if !(0.0..1000.0).contains(&t) {
             return Err(ModelError::Timestep(t));
         }
+        self.make_room(keys_values, condition.tokens.len())?;
+        let (tokens, time) = self.enter(x, t, condition)?;
+        let tokens = self.through_blocks(tokens, &time, &condition.tokens, keys_values, precision, middle)?;
+        self.leave(&tokens, &time, x, condition)
+    }
+
+    /// A state as tokens before the first block, and what the blocks hear of the time and the named numbers.
+    fn enter(
+        &self,
+        x: &[f32],
+        t: f32,
+        condition: &Prepared<B::Tensor>,
+    ) -> Result<(B::Tensor, B::Tensor), ModelError> {
         let (ops, width, places) = (&self.ops, self.config.width, &condition.tokens);
         check_length("condition", condition.embedded.numbers(), places.len() * width)?;
-        self.make_room(keys_values, places.len())?;
         let time = ops.vector(timestep_embedding(t, self.config.frequencies))?;
         let time = ops.silu(ops.apply(&self.time1, &time, 1)?)?;
         let time = ops.add(ops.apply(&self.time2, &time, 1)?, &condition.named)?;
         let time = ops.silu(time)?;
-
-        let cells = || places.iter().flat_map(|token| patch(*token));
-        let patches = cells().flat_map(|cell| &x[cell * CHANNELS..][..CHANNELS]);
+        let cells = places.iter().flat_map(|token| patch(*token));
+        let patches = cells.flat_map(|cell| &x[cell * CHANNELS..][..CHANNELS]);
         let patches = ops.sequence(patches.copied().collect(), PATCH_CELLS * CHANNELS)?;
-        let piece = piece_of(places.len());
-        let tokens = ops.apply(&self.embed_x, &patches, piece)?;
-        let tokens = ops.add(tokens, &condition.embedded)?;
-        let tokens = self.through_blocks(tokens, &time, places, keys_values, precision, middle)?;
-        let normed = ops.modulate(&tokens, &ops.apply(&self.final_ada, &time, 1)?)?;
-        let patches = ops.download(ops.apply(&self.last, &normed, piece)?)?.data;
-        let gates = ops.download(ops.apply(&self.skip, &time, 1)?)?.data;
-        let added = ops.download(ops.apply(&self.skip_given, &time, 1)?)?.data;
+        let tokens = ops.apply(&self.embed_x, &patches, piece_of(places.len()))?;
+        Ok((ops.add(tokens, &condition.embedded)?, time))
+    }
+
+    /// v at the tokens of `condition`, of what the last block left there; 0 elsewhere.
+    fn leave(
+        &self,
+        tokens: &B::Tensor,
+        time: &B::Tensor,
+        x: &[f32],
+        condition: &Prepared<B::Tensor>,
+    ) -> Result<Vec<f32>, ModelError> {
+        let (ops, places) = (&self.ops, &condition.tokens);
+        let cells = || places.iter().flat_map(|token| patch(*token));
+        let normed = ops.modulate(tokens, &ops.apply(&self.final_ada, time, 1)?)?;
+        let patches = ops.download(ops.apply(&self.last, &normed, piece_of(places.len()))?)?.data;
+        let gates = ops.download(ops.apply(&self.skip, time, 1)?)?.data;
+        let added = ops.download(ops.apply(&self.skip_given, time, 1)?)?.data;
         let mut out = vec![0.0; LATENT];
         for (cell, values) in cells().zip(patches.chunks_exact(CHANNELS)) {
             let given = condition.given[cell];

@@ -1,0 +1,143 @@
+//! Figures of a forecast beside how near it comes: how still what stands is, how an object keeps its shape.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use authoring::drives::DriveFrame;
+use metrics::extractor::Extractor;
+use scene::{Class, Extent, Pose, SceneBox, VoxelGrid, Window};
+
+/// Figures of a method by name, one per drive.
+#[derive(Default)]
+pub struct Rows(pub BTreeMap<String, Vec<f64>>);
+
+impl Rows {
+    /// Adds one; what there is none of is left out.
+    pub fn add(&mut self, name: &str, value: Option<f64>) {
+        self.0.entry(name.to_owned()).or_default().extend(value);
+    }
+}
+
+/// The frame's pose on the ground.
+pub fn pose(frame: &DriveFrame) -> Pose {
+    let [x, y, yaw_rad] = frame.pose;
+    Pose::planar(x, y, yaw_rad)
+}
+
+/// Where a point of one frame lies in another, and in which column.
+pub fn column_in(p: DVec3, from: &Pose, to: &Pose) -> Option<[usize; 2]> {
+    let q = to.inverse().apply(from.apply(p.with_z(0.0)));
+    Extent::WINDOW.column_at(q.x, q.y)
+}
+
+/// True in the columns of boxes that move, and around them.
+pub fn moving_columns<'a>(boxes: impl Iterator<Item = &'a SceneBox>) -> Vec<bool> {
+    let mut out = vec![false; Window::COLUMNS];
+    for b in boxes.filter(|b| b.velocity_mps.length() > 0.1) {
+        scene::raster::box_cells(Extent::WINDOW, b, 0.8, |x, y| out[x * Window::NY + y] = true);
+    }
+    out
+}
+
+/// Of the voxels that hold anything in two frames one after the other, where nothing moves and both see: the share that differs.
+pub fn flicker(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
+    let (mut held, mut differ) = (0u64, 0u64);
+    for (pair, grids) in truth.windows(2).zip(found.windows(2)) {
+        let [here, there] = [pose(&pair[1]), pose(&pair[0])];
+        let moving = [1, 0].map(|i| moving_columns(pair[i].boxes.values()));
+        for c in 0..Window::COLUMNS {
+            let (x, y) = (c / Window::NY, c % Window::NY);
+            let Some([i, j]) = column_in(Window::center(x, y, 0), &here, &there) else {
+                continue;
+            };
+            if moving[0][c] || moving[1][i * Window::NY + j] {
+                continue;
+            }
+            for (a, b) in grids[1].column(x, y).iter().zip(grids[0].column(i, j)) {
+                if *a != Class::FREE || *b != Class::FREE {
+                    held += 1;
+                    differ += u64::from(a != b);
+                }
+            }
+        }
+    }
+    (held > 0).then(|| differ as f64 / held as f64)
+}
+
+/// Of each object that moves and stays in sight: how much the number of its voxels varies over the frames (standard deviation
+/// over mean); the mean of all objects.
+pub fn shape_spread(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
+    let inside = |b: &SceneBox| b.center_m.truncate().abs().max_element() < 36.0;
+    let first = truth.first()?;
+    let moving = first.boxes.values().filter(|b| b.velocity_mps.length() > 0.5 && inside(b));
+    let mut spreads = Vec::new();
+    for b in moving {
+        let boxes: Option<Vec<&SceneBox>> = truth.iter().map(|f| f.boxes.get(&b.id).filter(|b| inside(b))).collect();
+        let Some(boxes) = boxes else {
+            continue;
+        };
+        let counts: Vec<f64> = boxes.iter().zip(found).map(|(b, grid)| voxels_of(grid, b)).collect();
+        let mean = counts.iter().sum::<f64>() / counts.len() as f64;
+        if mean > 0.0 {
+            let variance = counts.iter().map(|n| (n - mean).powi(2)).sum::<f64>() / counts.len() as f64;
+            spreads.push(variance.sqrt() / mean);
+        }
+    }
+    (!spreads.is_empty()).then(|| spreads.iter().sum::<f64>() / spreads.len() as f64)
+}
+
+fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> f64 {
+    let mut n = 0;
+    scene::raster::box_cells(Extent::WINDOW, b, 0.4, |x, y| {
+        n += grid.column(x, y).iter().filter(|l| **l == b.class.id()).count();
+    });
+    n as f64
+}
+
+/// How alike the frames look to the extractor of F3D: mean over the frames after the first of the cosines with the frame before
+/// and with the first (the code of UniScene, 2412.05435).
+pub fn steadiness(extractor: &Extractor, found: &[VoxelGrid]) -> anyhow::Result<f64> {
+    let features: Result<Vec<_>, _> = found.iter().map(|grid| extractor.features(grid)).collect();
+    let features = features?;
+    let cos = |a: &[f64], b: &[f64]| {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        dot(a, b) / (dot(a, a) * dot(b, b)).sqrt().max(1e-12)
+    };
+    let later = features.windows(2).map(|pair| (cos(&pair[1], &pair[0]) + cos(&pair[1], &features[0])) / 2.0);
+    Ok(later.sum::<f64>() / (features.len().max(2) - 1) as f64)
+}
+
+/// A box that goes on as it moves.
+pub fn moved_on(b: &SceneBox, seconds: f64, from: &Pose, to: &Pose) -> SceneBox {
+    let way: DVec2 = b.velocity_mps * seconds;
+    let on = SceneBox {
+        center_m: b.center_m + way.extend(0.0),
+        ..*b
+    };
+    on.in_frame(from).in_frame(&to.inverse())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use authoring::drives::{drive_scene, frames_of};
+
+    /// What comes of one world hardly flickers, what comes of two does; the truth's objects keep their shape.
+    #[test]
+    fn one_world_flickers_less_than_two() {
+        let truth = frames_of(&drive_scene(9, 3, |_| None)).0;
+        let own: Vec<VoxelGrid> = truth.iter().map(|f| f.dense.clone()).collect();
+        let still = flicker(&truth, &own).expect("something stands");
+        let other = frames_of(&drive_scene(9, 4, |_| None)).0;
+        let mixed: Vec<VoxelGrid> = own
+            .iter()
+            .zip(&other)
+            .enumerate()
+            .map(|(i, (a, b))| if i % 2 == 0 { a.clone() } else { b.dense.clone() })
+            .collect();
+        let worlds = flicker(&truth, &mixed).expect("something stands");
+        assert!(still < 0.2 && worlds > 2.0 * still, "{still} and {worlds}");
+        assert!(shape_spread(&truth, &own).is_none_or(|s| s < 0.15));
+    }
+}

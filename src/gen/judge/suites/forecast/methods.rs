@@ -1,0 +1,285 @@
+//! Ways to forecast the frames of a drive after the first two.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::figures::{column_in, moved_on, moving_columns, pose};
+use authoring::drives::{DriveFrame, STEP_S};
+use job::drive::DriveNetwork;
+use nets::{CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, SIDE, column_heights};
+use nn::weights::{self, WeightFile};
+use scene::clip::ObjectVoxels;
+use scene::{BevLayout, BoxId, Class, Density, Extent, Pose, SceneBox, VoxelGrid, VoxelPaint, Window, draft, raster};
+
+/// Frames that are known.
+pub const KNOWN: usize = 2;
+/// Steps of the sampler.
+const STEPS: usize = 12;
+
+/// Where the layouts of the frames to come are from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Wish {
+    /// Those that came.
+    Came,
+    /// The last known one as it goes on beyond its edge, and its boxes at their speed.
+    Expected,
+}
+
+/// A way to forecast.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// As reports call it.
+    pub name: &'static str,
+    how: How,
+}
+
+#[derive(Clone, Copy)]
+enum How {
+    Warped,
+    ConstantVelocity,
+    Draft,
+    Single,
+    Together,
+    SameCell,
+    Canvas,
+}
+
+/// All of them.
+pub const METHODS: [Method; 7] = [
+    Method { name: "last frame, warped", how: How::Warped },
+    Method { name: "constant velocity", how: How::ConstantVelocity },
+    Method { name: "draft of the layout", how: How::Draft },
+    Method { name: "single frames", how: How::Single },
+    Method { name: "temporal, same cell", how: How::SameCell },
+    Method { name: "temporal", how: How::Together },
+    Method { name: "canvas, inpainted", how: How::Canvas },
+];
+
+/// A frame to come, as far as it is told.
+struct Told {
+    layout: BevLayout,
+    boxes: BTreeMap<BoxId, SceneBox>,
+    pose: Pose,
+}
+
+/// The networks that forecast.
+pub struct Drives<'a> {
+    models: &'a OccModels,
+    time: OccDitTime,
+    /// The ablation; only a folder of weights may hold it.
+    same_cell: Option<OccDitTime>,
+}
+
+/// File of the ablation in a folder of weights.
+const SAME_CELL: &str = "occ_dit_time_same_cell.safetensors";
+
+impl<'a> Drives<'a> {
+    /// Of a folder of weights, or those that ship.
+    pub fn new(models: &'a OccModels, folder: Option<&Path>) -> anyhow::Result<Self> {
+        let of = |name: &'static str| -> anyhow::Result<Option<OccDitTime>> {
+            let Some(path) = folder.map(|f| f.join(name)).filter(|p| p.exists()) else {
+                return Ok(None);
+            };
+            let bytes = weights::read(&path)?;
+            Ok(Some(OccDitTime::new(WeightFile::parse(name, &bytes)?)?))
+        };
+        Ok(Self {
+            models,
+            time: of(OccDitTime::FILE)?.map_or_else(OccDitTime::bundled, Ok)?,
+            same_cell: of(SAME_CELL)?,
+        })
+    }
+
+    /// The frames after the known ones; none if the method's weights are not there.
+    pub fn forecast(
+        &self,
+        method: Method,
+        truth: &[DriveFrame],
+        wish: Wish,
+        seed: u64,
+    ) -> anyhow::Result<Option<Vec<VoxelGrid>>> {
+        let told: Vec<Told> = (KNOWN..truth.len()).map(|i| told(truth, i, wish)).collect();
+        let last = &truth[KNOWN - 1];
+        Ok(Some(match method.how {
+            How::Warped => told.iter().map(|to| warped(&last.dense, &pose(last), to)).collect(),
+            How::ConstantVelocity => told.iter().enumerate().map(|(i, to)| moved_world(last, to, i).0).collect(),
+            How::Draft => told.iter().map(|to| draft::draft(&to.layout, to.boxes.values())).collect(),
+            How::Single => self.drawn(None, truth, &told, seed)?,
+            How::Together => self.drawn(Some(&self.time), truth, &told, seed)?,
+            How::SameCell => match &self.same_cell {
+                Some(time) => self.drawn(Some(time), truth, &told, seed)?,
+                None => return Ok(None),
+            },
+            How::Canvas => self.on_canvas(last, &told, seed)?,
+        }))
+    }
+
+    /// By the networks, the known frames as context.
+    fn drawn(
+        &self,
+        time: Option<&OccDitTime>,
+        truth: &[DriveFrame],
+        told: &[Told],
+        seed: u64,
+    ) -> anyhow::Result<Vec<VoxelGrid>> {
+        let last = &truth[KNOWN - 1];
+        let density = Density::of(&last.dense, last.layout.cells());
+        let vae = &self.models.vae;
+        let mut conditions = Vec::new();
+        for frame in &truth[..KNOWN] {
+            let mut condition = self.condition(&frame.layout, &frame.boxes, density)?;
+            condition.context = vae.encode(&frame.dense)?;
+            condition.mask = vec![0.0; CELLS];
+            conditions.push(condition);
+        }
+        for to in told {
+            conditions.push(self.condition(&to.layout, &to.boxes, density)?);
+        }
+        let poses: Vec<[f64; 3]> = truth.iter().map(|f| f.pose).collect();
+        let network = DriveNetwork {
+            models: self.models,
+            time,
+            steps: STEPS,
+            seed,
+        };
+        let latents = network.draw(&conditions, &poses, STEP_S)?;
+        let decoded: Result<Vec<_>, _> = latents[KNOWN..].iter().map(|l| vae.decode(l)).collect();
+        Ok(decoded?)
+    }
+
+    /// On the canvas: what was seen stays, moving objects go on, the networks draw what comes into view.
+    fn on_canvas(&self, last: &DriveFrame, told: &[Told], seed: u64) -> anyhow::Result<Vec<VoxelGrid>> {
+        let density = Density::of(&last.dense, last.layout.cells());
+        let vae = &self.models.vae;
+        let mut out = Vec::new();
+        for (i, to) in told.iter().enumerate() {
+            let (world, seen) = moved_world(last, to, i);
+            let mut condition = self.condition(&to.layout, &to.boxes, density)?;
+            let hidden = |cell: usize| {
+                let (x, y) = (cell / SIDE * 4, cell % SIDE * 4);
+                (0..16).any(|c| !seen[(x + c / 4) * Window::NY + y + c % 4])
+            };
+            condition.mask = (0..CELLS).map(|cell| f32::from(u8::from(hidden(cell)))).collect();
+            let latent = vae.encode(&world)?;
+            let kept = |i: usize| latent[i] * (1.0 - condition.mask[i / CHANNELS]);
+            condition.context = (0..LATENT).map(kept).collect();
+            let network = DriveNetwork {
+                models: self.models,
+                time: None,
+                steps: STEPS,
+                seed: seed.wrapping_add(i as u64),
+            };
+            let latents = network.draw(std::slice::from_ref(&condition), &[[0.0; 3]], STEP_S)?;
+            let mut grid = vae.decode(&latents[0])?;
+            for c in (0..Window::COLUMNS).filter(|c| seen[*c]) {
+                let (x, y) = (c / Window::NY, c % Window::NY);
+                *grid.column_mut(x, y) = *world.column(x, y);
+            }
+            out.push(grid);
+        }
+        Ok(out)
+    }
+
+    /// A frame to be drawn from layout and boxes alone.
+    fn condition(
+        &self,
+        layout: &BevLayout,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        density: Density,
+    ) -> anyhow::Result<DitCondition> {
+        let drafted = draft::draft(layout, boxes.values());
+        let Density {
+            vegetation,
+            building,
+            clutter,
+            completeness,
+        } = density;
+        Ok(DitCondition {
+            bev: raster::bev_channels(layout, boxes.values()),
+            heading: raster::headings(Extent::WINDOW, boxes.values()),
+            named: [vegetation, building, clutter, completeness].map(Some),
+            draft_latent: self.models.vae.encode(&drafted)?,
+            given: vec![[0.0; 2]; CELLS],
+            columns: column_heights(&drafted, &drafted),
+            ground: true,
+            mask: vec![1.0; CELLS],
+            context: vec![0.0; LATENT],
+        })
+    }
+}
+
+/// What is told of frame `i`. The vehicle's own way is always known.
+fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
+    let (last, came) = (&truth[KNOWN - 1], &truth[i]);
+    let to = pose(came);
+    if wish == Wish::Came {
+        return Told {
+            layout: came.layout.clone(),
+            boxes: came.boxes.clone(),
+            pose: to,
+        };
+    }
+    let from = pose(last);
+    let seconds = (i + 1 - KNOWN) as f64 * STEP_S;
+    let boxes = last.boxes.iter().map(|(id, b)| (*id, moved_on(b, seconds, &from, &to))).collect();
+    // Beyond its edge the map goes on as it is there.
+    let most = Window::NX as f64 * Window::VOXEL_M / 2.0 - 0.1;
+    let at = |x: usize, y: usize| {
+        let p = from.inverse().apply(to.apply(Window::center(x, y, 0).with_z(0.0)));
+        Extent::WINDOW.column_at(p.x.clamp(-most, most), p.y.clamp(-most, most)).unwrap_or([0, 0])
+    };
+    let cells = Extent::WINDOW.all_columns().map(|[x, y]| {
+        let [i, j] = at(x, y);
+        last.layout.cell(i, j)
+    });
+    let mut layout = BevLayout::from_cells(cells.collect(), Vec::new()).unwrap_or_default();
+    if !last.layout.relief.is_flat() {
+        layout.relief = scene::Relief::from_fn(Extent::WINDOW, |p| {
+            let q = from.inverse().apply(to.apply(p.extend(0.0)));
+            last.layout.relief.height_m(q.truncate())
+        });
+    }
+    Told {
+        layout,
+        boxes,
+        pose: to,
+    }
+}
+
+/// A frame's voxels seen from elsewhere; free where it saw nothing.
+fn warped(grid: &VoxelGrid, from: &Pose, to: &Told) -> VoxelGrid {
+    let mut out = VoxelGrid::new();
+    for [x, y] in Extent::WINDOW.all_columns() {
+        if let Some([i, j]) = column_in(Window::center(x, y, 0), &to.pose, from) {
+            *out.column_mut(x, y) = *grid.column(i, j);
+        }
+    }
+    out
+}
+
+/// The last frame's world after `i + 1` steps: what stands as it was seen, what moves at its speed, the draft beyond; and which
+/// columns were seen.
+fn moved_world(last: &DriveFrame, to: &Told, i: usize) -> (VoxelGrid, Vec<bool>) {
+    let from = pose(last);
+    let moving = moving_columns(last.boxes.values());
+    let drafted = draft::draft(&to.layout, to.boxes.values());
+    let ground = draft::draft(&to.layout, std::iter::empty());
+    let (mut out, mut seen) = (drafted, vec![false; Window::COLUMNS]);
+    for [x, y] in Extent::WINDOW.all_columns() {
+        let Some([i, j]) = column_in(Window::center(x, y, 0), &to.pose, &from) else {
+            continue;
+        };
+        seen[x * Window::NY + y] = true;
+        *out.column_mut(x, y) = match moving[i * Window::NY + j] {
+            true => *ground.column(x, y),
+            false => *last.dense.column(i, j),
+        };
+    }
+    let seconds = (i + 1) as f64 * STEP_S;
+    let painted = VoxelPaint::over(Extent::WINDOW);
+    for b in last.boxes.values().filter(|b| b.velocity_mps.length() > 0.1) {
+        let voxels = ObjectVoxels::cut(&last.dense, b, |_, label| label == b.class.id() && label != Class::FREE);
+        voxels.stamp(&mut out, &painted, b, &moved_on(b, seconds, &from, &to.pose));
+    }
+    (out, seen)
+}
