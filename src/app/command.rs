@@ -146,6 +146,8 @@ pub enum TimeCommand {
     Show(f64),
     /// Shows the frame nearest to a moment, s.
     Scrub(f64),
+    /// So many seconds more: what moves goes on, s.
+    Forecast(f64),
     /// Plays, or pauses.
     Play,
     /// So many frames forward, or back.

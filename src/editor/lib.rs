@@ -21,6 +21,7 @@ pub mod pick;
 pub mod pick_things;
 mod things;
 pub mod tools;
+mod reaching;
 pub mod traffic;
 pub mod transform;
 pub mod voxel_ops;

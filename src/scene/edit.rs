@@ -176,6 +176,12 @@ pub enum Edit {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         to_s: Option<f64>,
     },
+    /// So many seconds more: what moves at the end goes on along its lane and behind whoever is ahead, the ego vehicle too, and
+    /// the map grows to where it comes.
+    Forecast {
+        /// How many, s.
+        seconds: f64,
+    },
     /// Makes the map larger, in the world frame. Roads go on beyond the edge as they reach it; what is new is to be generated.
     ExtendMap {
         /// So much farther along x, m.

@@ -52,6 +52,8 @@ pub struct Staged {
     /// How to make it again with another seed; none if that would give the same.
     pub again: Option<Again>,
     changed: Vec<(Class, usize)>,
+    /// Of a forecast: how much longer the scene lasts, s, and how many objects go on.
+    longer: Option<(f64, usize)>,
     compare: CompareMode, // the user's, before both states were shown
 }
 
@@ -72,6 +74,7 @@ impl SceneloomApp {
             before: before.clone(),
             again,
             changed,
+            longer: None,
             compare: self.state.compare.mode,
         };
         if beside {
@@ -81,6 +84,21 @@ impl SceneloomApp {
             }
         }
         self.generation.staged = Some(staged);
+    }
+
+    /// Makes the present state, a forecast of `before`, a result that waits.
+    pub(crate) fn stage_forecast(&mut self, before: Arc<Scene>, objects: usize) {
+        self.end_staging();
+        let after = self.document.settled_scene();
+        let longer_s = after.clip().length_s - before.clip().length_s;
+        self.generation.staged = Some(Staged {
+            rev: after.content(),
+            before,
+            again: None,
+            changed: Vec::new(),
+            longer: Some((longer_s, objects)),
+            compare: self.state.compare.mode,
+        });
     }
 
     /// The result that waits, if the document still shows it.
@@ -276,7 +294,12 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
         .as_ref()
         .map_or_else(String::new, |a| format!("  ·  seed {}", a.seed()));
     let of_things = matches!(staged.again, Some(Again::Scenery(_)));
-    let text = format!("New result: {} voxels differ{seed}", thousands(n));
+    let text = match staged.longer {
+        Some((longer_s, 0)) => format!("Forecast: {longer_s:.1} s more, we drive on"),
+        Some((longer_s, 1)) => format!("Forecast: {longer_s:.1} s more, 1 object goes on"),
+        Some((longer_s, objects)) => format!("Forecast: {longer_s:.1} s more, {objects} objects go on"),
+        None => format!("New result: {} voxels differ{seed}", thousands(n)),
+    };
     ui.label(RichText::new(text).color(theme::text_strong()));
     let mut decide = |clicked: bool, verdict| {
         if clicked {
@@ -295,6 +318,9 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
         if staged.again.is_some() {
             let next = ui.button("Next seed").on_hover_text("Another one in its place");
             decide(next.clicked(), Verdict::NextSeed);
+        }
+        if staged.longer.is_some() {
+            return;
         }
         ui.menu_button("Accept a part", |ui| {
             let mut entry = |ui: &mut Ui, enabled, text: &str, taken| {

@@ -8,6 +8,7 @@ use crate::panes::id::PaneId;
 use crate::panes::timeline::scope_name;
 use editor::Edit;
 use editor::document::Label;
+use editor::traffic::forecast::forecast;
 use editor::traffic::motion_of;
 use scene::Scope;
 
@@ -65,6 +66,10 @@ impl SceneloomApp {
                 playback.span_s = (!whole).then_some(span);
                 None
             }
+            TimeCommand::Forecast(seconds) => {
+                self.forecast(seconds);
+                None
+            }
             TimeCommand::Motion(id, wish) => {
                 match motion_of(&scene, id, &wish) {
                     Ok(edits) => self.apply(wish.template.title(), &edits),
@@ -76,6 +81,26 @@ impl SceneloomApp {
         if let Some(time_s) = to_s {
             self.show_time(time_s);
         }
+    }
+
+    /// Lets the scene go on, as a result that waits for a verdict.
+    fn forecast(&mut self, seconds: f64) {
+        let before = self.document.settled_scene().clone();
+        let found = match forecast(&before, seconds) {
+            Ok(found) => found,
+            Err(problem) => return self.fail(problem),
+        };
+        self.apply("Forecast", &found.edits);
+        let after = self.document.settled_scene().clone();
+        if after.content() == before.content() {
+            return;
+        }
+        let (from_s, to_s) = (before.clip().length_s, after.clip().length_s);
+        let note = format!("{from_s:.1} to {to_s:.1} s");
+        self.generation.versions.push("Forecast".to_owned(), note, after);
+        self.stage_forecast(before, found.objects);
+        self.show_time(from_s);
+        self.state.playback.playing = true;
     }
 
     fn show_time(&mut self, time_s: f64) {

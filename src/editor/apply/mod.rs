@@ -14,6 +14,7 @@ use std::sync::Arc;
 use scene::{Edit, EditError, Frame, Scene, Scope, SensorRig};
 
 use super::things;
+use super::traffic::forecast::forecast;
 use super::traffic::let_move;
 pub(crate) use voxels::adopt;
 
@@ -76,15 +77,23 @@ impl Apply for Edit {
             Self::At { .. } => at::apply(self, scene)?,
             Self::SetMotion { .. } | Self::SetLength { .. } => motion::apply(self, scene)?,
             Self::ExtendMap { .. } => extend::apply(self, scene)?,
-            Self::LetMove { .. } => {
-                let mut after = scene.clone();
-                apply_all(&let_move(scene, self)?, &mut after)?;
-                *scene = after;
+            Self::LetMove { .. } => all_or_nothing(scene, &let_move(scene, self)?)?,
+            Self::Forecast { seconds } => {
+                let found = forecast(scene, *seconds).map_err(EditError::BadMotion)?;
+                all_or_nothing(scene, &found.edits)?;
             }
             edit => at::apply_scoped(edit, scene, Scope::default())?,
         }
         Ok(())
     }
+}
+
+/// Applies edits in order; on an error the scene is as before.
+fn all_or_nothing(scene: &mut Scene, edits: &[Edit]) -> Result<(), EditError> {
+    let mut after = scene.clone();
+    apply_all(edits, &mut after)?;
+    *scene = after;
+    Ok(())
 }
 
 /// Applies edits in order and stops at the first error. After a run of edits of things, their voxels are drawn once.

@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 
 use super::geometry::{area_m2, shared_area_m2, shared_height_m};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
+use crate::reaching::reaching;
 use glam::DVec2;
 use scene::raster::box_cells;
-use scene::{BoxId, Class, Edit, Extent, Motion, SceneBox};
+use scene::{BoxId, Class, Extent, Motion, SceneBox};
 
 pub const TOO_FAST: &str = "too_fast";
 pub const TOO_SUDDEN: &str = "too_sudden";
@@ -288,32 +289,11 @@ pub fn leaves_map(context: &Context<'_>, out: &mut Findings) {
             out.push(Finding {
                 fixes: vec![Fix {
                     label: "Extend the map",
-                    edits: vec![reaching(extent, places)],
+                    edits: reaching(extent, places, [DVec2::ZERO; 2]).into_iter().collect(),
                 }],
                 ..finding(LEAVES_MAP, Severity::Warning, (trace, time_s, b), text)
             });
         }
-    }
-}
-
-/// What is added around a way that leaves the map, m: what the sensors see there.
-const AROUND_M: f64 = 40.0;
-
-/// Makes a map reach all these places and a window around them.
-fn reaching(extent: Extent, places: impl Iterator<Item = DVec2>) -> Edit {
-    let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
-    let [mut below, mut above] = [DVec2::ZERO; 2];
-    for p in places {
-        // (what stays inside along an axis needs nothing there)
-        below = below.max(low - p);
-        above = above.max(p - high);
-    }
-    let more = |m: f64| if m > 0.0 { ((m + AROUND_M) / AROUND_M).ceil() * AROUND_M } else { 0.0 };
-    Edit::ExtendMap {
-        ahead_m: more(above.x),
-        behind_m: more(below.x),
-        left_m: more(above.y),
-        right_m: more(below.y),
     }
 }
 
@@ -414,14 +394,5 @@ mod tests {
             off[LEAVES_MAP].0.contains("the ego vehicle leaves the map at"),
             "{off:?}"
         );
-        let extent = Extent::new([-50, -50], [300, 100]).expect("sound");
-        let more = reaching(extent, [DVec2::new(-60.0, 3.0), DVec2::new(5.0, 0.0)].into_iter());
-        let wanted = Edit::ExtendMap {
-            ahead_m: 0.0,
-            behind_m: 80.0,
-            left_m: 0.0,
-            right_m: 0.0,
-        };
-        assert_eq!(more, wanted);
     }
 }

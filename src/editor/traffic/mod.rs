@@ -2,6 +2,7 @@
 //! follows the one ahead.
 
 pub mod follow;
+pub mod forecast;
 pub mod lane_path;
 pub mod template;
 

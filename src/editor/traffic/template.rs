@@ -241,7 +241,7 @@ fn easing(list: &[(f64, f64)]) -> Vec<Speed> {
 }
 
 /// Who else is on the road at a time.
-fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
+pub(super) fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
     let of = |b: &SceneBox| Other {
         at_m: b.center_m.truncate(),
         velocity_mps: b.velocity_mps,

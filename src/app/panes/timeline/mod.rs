@@ -75,6 +75,7 @@ fn still(ui: &mut Ui, scene: &scene::Scene, cx: &mut PaneContext<'_>, commands: 
     ui.label(egui::RichText::new(hint).color(theme::text_weak()));
     ui.horizontal(|ui| {
         motion_menu::menu(ui, scene, cx.state, commands);
+        transport::forecast(ui, commands);
         if ui.button(format!("Make it {USUAL_LENGTH_S:.0} s long")).clicked() {
             let edit = Edit::SetLength {
                 length_s: USUAL_LENGTH_S,

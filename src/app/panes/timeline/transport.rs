@@ -124,6 +124,7 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
             .on_hover_text("The 3D view goes along with the ego vehicle");
         ui.separator();
         motion_menu::menu(ui, scene, state, commands);
+        forecast(ui, commands);
         if ui
             .button("Save clip…")
             .on_hover_text("Writes the 3D view of all that is played: .mp4, .gif or .png")
@@ -132,6 +133,17 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
             commands.push(Command::File(FileCommand::SaveClip));
         }
     });
+}
+
+/// How much longer a forecast makes a scene, s.
+const FORECAST_S: f64 = 3.0;
+
+/// The button that lets the scene go on.
+pub(super) fn forecast(ui: &mut Ui, commands: &mut Vec<Command>) {
+    let hint = "3 s more: what moves goes on along its lane and behind whoever is ahead, so do we, and the map grows";
+    if ui.button("Forecast").on_hover_text(hint).clicked() {
+        commands.push(Command::Time(TimeCommand::Forecast(FORECAST_S)));
+    }
 }
 
 fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {

@@ -125,6 +125,9 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Time, "save_clip", "Save clip as moving pictures…", "", || {
         Command::File(FileCommand::SaveClip)
     }),
+    action(Time, "forecast", "Forecast 3 s more", "", || {
+        Command::Time(TimeCommand::Forecast(3.0))
+    }),
     action(Time, "timeline", "Timeline", "", || {
         Command::View(ViewCommand::TogglePane(PaneId::TIMELINE))
     }),

@@ -1,0 +1,232 @@
+//! How a scene goes on after its end: what moves keeps moving along its lane and behind whoever is ahead, the vehicle too, and
+//! the map grows to where it comes.
+
+use glam::DVec2;
+
+use scene::clip::{Path, Speed};
+use scene::{BoxId, Class, Clip, Edit, Key, Motion, Moving, Scene};
+
+use super::follow::{self, Driver, Other};
+use super::lane_path::lane_path;
+use crate::apply_all;
+use crate::reaching::{reaching, sights_m};
+
+/// Slower than this nobody goes on, m/s.
+const MOVES_MPS: f64 = 0.3;
+/// Time between keyframes that are added, s.
+const STEP_S: f64 = 0.5;
+/// Who brakes makes the one behind brake, and that one the next: each round hears of one more.
+const ROUNDS: usize = 4;
+/// A path is laid this much farther than it is driven, m.
+const BEYOND_M: f64 = 20.0;
+
+/// What a forecast does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Forecast {
+    /// The edits, to be applied as one step.
+    pub edits: Vec<Edit>,
+    /// Objects that go on.
+    pub objects: usize,
+}
+
+/// So many seconds more. Errors in one line.
+pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
+    let from_s = scene.clip().length_s;
+    let to_s = from_s + seconds;
+    // Written so that NaN fails too.
+    if !(seconds > 0.0 && to_s <= Clip::MAX_LENGTH_S) {
+        return Err(format!(
+            "{seconds} s more after {from_s} s, expected more than 0 and at most {} s in all",
+            Clip::MAX_LENGTH_S
+        ));
+    }
+    let mut edits = vec![Edit::SetLength {
+        length_s: to_s,
+        rate_hz: None,
+    }];
+    let goers = goers(scene, from_s);
+    if goers.is_empty() {
+        return Err("nothing moves at the end of the scene: let something move first".to_owned());
+    }
+    // First everybody goes on as fast as they are, so that who follows then finds the others moving.
+    let mut later = scene.clone();
+    for round in 0..ROUNDS {
+        let careful = round > 0;
+        let mut motions = Vec::new();
+        for goer in &goers {
+            let motion = goer.goes_on(scene, careful.then_some(&later), (from_s, to_s));
+            motions.push(Edit::SetMotion {
+                id: goer.id,
+                motion: Some(motion),
+                from_s: goer.there_s[0],
+                to_s: goer.there_s[1],
+            });
+        }
+        let mut next = scene.clone();
+        let all: Vec<Edit> = edits.iter().chain(&motions).cloned().collect();
+        apply_all(&all, &mut next).map_err(|e| e.to_string())?;
+        later = next;
+        if round + 1 == ROUNDS {
+            edits = all;
+        }
+    }
+    // What is new of the map lies around the vehicle's way; others may leave it.
+    let relief = &later.canvas().layout.relief;
+    let still = later.canvas().world_from_ego;
+    let way = |to_s: f64| -> Vec<DVec2> {
+        let times = (0..=(to_s / STEP_S).ceil() as usize).map(|i| (i as f64 * STEP_S).min(to_s));
+        let pose = |t| later.clip().ego_at(t, &still, relief).translation_m.truncate();
+        times.map(pose).collect()
+    };
+    // As much is to be seen around it as was before.
+    let extent = later.canvas().extent();
+    let sights = sights_m(extent, way(from_s).into_iter());
+    edits.extend(reaching(extent, way(to_s).into_iter(), sights));
+    Ok(Forecast {
+        edits,
+        objects: goers.iter().filter(|g| g.id.is_some()).count(),
+    })
+}
+
+/// Something that moves at the end.
+struct Goer {
+    id: Option<BoxId>,
+    now: Moving,
+    class: Option<Class>,
+    half_length_m: f64,
+    there_s: [Option<f64>; 2],
+    motion: Option<Motion>,
+}
+
+fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
+    let (clip, end) = (scene.clip(), scene.at(from_s));
+    let mut out = Vec::new();
+    let pose = end.frame().world_from_ego;
+    let ahead = (pose.rotation * glam::DVec3::X).truncate();
+    let still = Moving {
+        velocity_mps: ahead * if clip.length_s > 0.0 { 0.0 } else { scene.rig.ego_speed_mps },
+        ..Moving::still(pose.translation_m.truncate(), ahead.to_angle())
+    };
+    out.push(Goer {
+        id: None,
+        now: clip.ego_moving(from_s).unwrap_or(still),
+        class: None,
+        half_length_m: scene.rig.ego_size_m[0] / 2.0,
+        there_s: [None; 2],
+        motion: clip.ego.clone(),
+    });
+    for b in end.frame().boxes.values() {
+        let track = clip.tracks.get(&b.id);
+        // What stands in a clip stands, whatever speed it was labelled with.
+        if track.is_none() && clip.length_s > 0.0 {
+            continue;
+        }
+        out.push(Goer {
+            id: Some(b.id),
+            now: Moving::from(b),
+            class: Some(b.class),
+            half_length_m: b.size_m.x / 2.0,
+            there_s: track.map_or([None; 2], |t| t.there_s),
+            motion: track.map(|t| t.motion.clone()),
+        });
+    }
+    let attached = |g: &Goer| matches!(g.motion, Some(Motion::Attached { .. }));
+    out.retain(|g| g.now.velocity_mps.length() > MOVES_MPS && !attached(g));
+    out
+}
+
+impl Goer {
+    /// Its motion up to `to_s`; `others`: the scene in which it looks out for others, none to keep its speed.
+    fn goes_on(&self, scene: &Scene, others: Option<&Scene>, (from_s, to_s): (f64, f64)) -> Motion {
+        let mps = self.now.velocity_mps.length();
+        let reach_m = mps * (to_s - from_s) * 1.3 + BEYOND_M;
+        let way = match self.class {
+            // People go where they look.
+            Some(Class::Pedestrian) => {
+                let heading = self.now.velocity_mps.normalize_or_zero();
+                vec![self.now.at_m, self.now.at_m + heading * reach_m]
+            }
+            _ => lane_path(&scene.canvas().layout, &self.now, reach_m),
+        };
+        let speeds = match others {
+            Some(others) => self.careful_speeds(others, &way, (from_s, to_s)),
+            None => vec![Speed { time_s: from_s, mps }],
+        };
+        let on = Path {
+            points_m: way,
+            start_m: 0.0,
+            speeds,
+            rear_first: false,
+        };
+        match &self.motion {
+            None => Motion::Path(on),
+            Some(Motion::Path(path)) if !path.rear_first => Motion::Path(joined(path, &on, from_s)),
+            Some(motion) => Motion::Keys(keyed(motion, &on, (from_s, to_s))),
+        }
+    }
+
+    fn careful_speeds(&self, scene: &Scene, way: &[DVec2], (from_s, to_s): (f64, f64)) -> Vec<Speed> {
+        let mps = self.now.velocity_mps.length();
+        if self.class == Some(Class::Pedestrian) {
+            return vec![Speed { time_s: from_s, mps }];
+        }
+        let others = |t: f64| -> Vec<Other> { super::template::others(scene, self.id, from_s + t) };
+        let found = follow::speeds(&Driver::at(mps.max(2.0)), way, (0.0, mps), self.half_length_m, to_s - from_s, others);
+        let at = |s: Speed| Speed {
+            time_s: from_s + s.time_s,
+            ..s
+        };
+        found.into_iter().map(at).collect()
+    }
+}
+
+/// A path, and from `from_s` on another one that begins where it is then.
+fn joined(path: &Path, on: &Path, from_s: f64) -> Path {
+    let (along_m, _) = path.along(from_s);
+    let mut points_m = vec![path.points_m[0]];
+    let mut way_m = 0.0;
+    for pair in path.points_m.windows(2) {
+        way_m += pair[0].distance(pair[1]);
+        if way_m >= along_m {
+            break;
+        }
+        points_m.push(pair[1]);
+    }
+    points_m.extend(&on.points_m);
+    points_m.dedup();
+    let mut speeds: Vec<Speed> = path.speeds.iter().copied().filter(|s| s.time_s < from_s - 1e-6).collect();
+    speeds.extend(&on.speeds);
+    Path {
+        points_m,
+        speeds,
+        ..path.clone()
+    }
+}
+
+/// Keyframes of a motion up to `from_s`, then of a path.
+fn keyed(motion: &Motion, on: &Path, (from_s, to_s): (f64, f64)) -> Vec<Key> {
+    let mut keys: Vec<Key> = match motion {
+        Motion::Keys(keys) => keys.iter().copied().filter(|k| k.time_s <= from_s + 1e-6).collect(),
+        _ => Vec::new(),
+    };
+    let mut last_deg = keys.last().map_or(0.0, |k| k.yaw_deg);
+    let steps = ((to_s - from_s) / STEP_S).ceil().max(1.0) as usize;
+    let first = usize::from(keys.last().is_some_and(|k| (k.time_s - from_s).abs() < 1e-6));
+    for i in first..=steps {
+        let time_s = from_s + (to_s - from_s) * i as f64 / steps as f64;
+        let at = on.at(time_s);
+        // The nearer way around, as the headings before.
+        let turn = (at.yaw_rad.to_degrees() - last_deg + 180.0).rem_euclid(360.0) - 180.0;
+        last_deg += turn;
+        keys.push(Key {
+            time_s,
+            at_m: at.at_m,
+            yaw_deg: last_deg,
+        });
+    }
+    keys
+}
+
+#[cfg(test)]
+#[path = "forecast_tests.rs"]
+mod tests;
