@@ -1,5 +1,6 @@
 //! Playing a clip: which moment is shown when, and what edits mean for other moments. It knows no clock: it is told the time.
 
+use crate::panes::timeline::row_menu::Copied;
 use scene::Scope;
 
 /// How a clip is played.
@@ -21,6 +22,8 @@ pub struct Playback {
     pub onion: bool,
     /// The 3D view goes along with the ego vehicle.
     pub follow: bool,
+    /// A motion that was copied.
+    pub copied: Option<Copied>,
     /// The scene was a clip already when it was looked at last.
     pub known: bool,
     last_s: Option<f64>,
@@ -38,6 +41,7 @@ impl Default for Playback {
             paths: true,
             onion: true,
             follow: false,
+            copied: None,
             known: false,
             last_s: None,
             sensed_s: None,

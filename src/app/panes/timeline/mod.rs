@@ -2,6 +2,7 @@
 
 mod graph;
 mod motion_menu;
+pub(crate) mod row_menu;
 mod rows;
 mod transport;
 

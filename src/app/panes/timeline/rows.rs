@@ -6,6 +6,7 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo
 use scene::{BoxId, Motion, Scene};
 
 use crate::command::{Command, TimeCommand};
+use super::row_menu;
 use crate::state::UiState;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
@@ -69,7 +70,7 @@ impl Rows {
         &mut self,
         ui: &mut Ui,
         scene: &Scene,
-        (state, findings): (&UiState, &[Finding]),
+        (state, findings): (&mut UiState, &[Finding]),
         height: f32,
         commands: &mut Vec<Command>,
     ) -> Track {
@@ -110,7 +111,7 @@ impl Rows {
         id: Option<BoxId>,
         track: Track,
         scene: &Scene,
-        state: &UiState,
+        state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
         let clip = scene.clip();
@@ -165,6 +166,7 @@ impl Rows {
         }
         let motion = motion.filter(|_| !many).map(|m| (m, there_s));
         self.drag_key(&response, id, motion, track, commands);
+        response.context_menu(|ui| row_menu::entries(ui, scene, &mut state.playback, id, commands));
         if response.clicked() {
             commands.push(Command::Select(id));
             if let Some(at) = response.interact_pointer_pos().filter(|p| p.x >= track.left) {

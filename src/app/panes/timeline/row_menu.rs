@@ -1,0 +1,182 @@
+//! What can be done with the motion of a row: retimed, mirrored, copied, attached, trimmed.
+
+use egui::Ui;
+
+use scene::{BoxId, Motion, Moving, Scene};
+
+use crate::command::Command;
+use crate::playback::Playback;
+use editor::Edit;
+
+/// How many neighbours a thing can be attached to from the menu.
+const MOST_NEIGHBOURS: usize = 8;
+
+/// A motion that was copied, and where it begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Copied {
+    motion: Motion,
+    start: Moving,
+}
+
+/// Draws the menu's entries.
+pub(super) fn entries(
+    ui: &mut Ui,
+    scene: &Scene,
+    playback: &mut Playback,
+    id: Option<BoxId>,
+    commands: &mut Vec<Command>,
+) {
+    let (clip, now_s) = (scene.clip(), scene.time_s());
+    let there_s = id.and_then(|id| clip.tracks.get(&id)).map_or([None; 2], |t| t.there_s);
+    let motion = clip.motion(id);
+    let place = |time_s: f64| match id {
+        Some(id) => clip.moving(id, time_s),
+        None => clip.ego_moving(time_s),
+    };
+    let mut set = |label: &'static str, motion: Motion, [from_s, to_s]: [Option<f64>; 2]| {
+        commands.push(Command::Apply(
+            label,
+            vec![Edit::SetMotion {
+                id,
+                motion: Some(motion),
+                from_s,
+                to_s,
+            }],
+        ));
+    };
+    if let Some(motion) = motion {
+        let timed = !matches!(motion, Motion::Attached { .. });
+        for (text, times) in [("Twice as fast", 2.0), ("Half as fast", 0.5)] {
+            if ui.add_enabled(timed, egui::Button::new(text)).clicked() {
+                set(text, quicker(motion, times), there_s);
+                ui.close();
+            }
+        }
+        if ui.add_enabled(timed, egui::Button::new("Begin at this moment")).clicked() {
+            let start_s = motion.times_s().into_iter().fold(f64::INFINITY, f64::min);
+            set("Begin later", motion.retimed(|t| t + now_s - start_s), there_s);
+            ui.close();
+        }
+        let hint = "To the other side of the way that we drive";
+        if ui.button("Mirror").on_hover_text(hint).clicked() {
+            let pose = scene.frame().world_from_ego;
+            let ahead = (pose.rotation * glam::DVec3::X).truncate();
+            set("Mirror motion", motion.mirrored(pose.translation_m.truncate(), ahead.to_angle()), there_s);
+            ui.close();
+        }
+        ui.separator();
+        if ui.button("Copy motion").clicked() {
+            playback.copied = place(0.0).map(|start| Copied {
+                motion: motion.clone(),
+                start,
+            });
+            ui.close();
+        }
+    }
+    let copied = playback.copied.clone().zip(place(now_s).or_else(|| standing(scene, id)));
+    let hint = "The same way from where this is at the moment that is shown";
+    if ui.add_enabled(copied.is_some(), egui::Button::new("Paste motion")).on_hover_text(hint).clicked()
+        && let Some((copied, here)) = copied
+    {
+        set("Paste motion", copied.motion.carried(&copied.start, &here), there_s);
+        ui.close();
+    }
+    let Some(own) = id else { return };
+    ui.menu_button("Attach to", |ui| {
+        let Some(here) = place(now_s) else { return };
+        for (to, there, name) in neighbours(scene, own, &here) {
+            if ui.button(name).clicked() {
+                let back = glam::DVec2::from_angle(-there.yaw_rad);
+                let attached = Motion::Attached {
+                    to,
+                    at_m: back.rotate(here.at_m - there.at_m),
+                    yaw_deg: (here.yaw_rad - there.yaw_rad).to_degrees(),
+                };
+                set("Attach", attached, there_s);
+                ui.close();
+            }
+        }
+    })
+    .response
+    .on_hover_text("It keeps its place beside another moving object");
+    if let Some(motion) = motion {
+        ui.separator();
+        let trims = [
+            ("Appears at this moment", [Some(now_s), there_s[1].filter(|to| *to > now_s)]),
+            ("Disappears at this moment", [there_s[0].filter(|from| *from < now_s), Some(now_s)]),
+            ("There all the time", [None; 2]),
+        ];
+        for (text, trimmed) in trims {
+            if ui.add_enabled(trimmed != there_s, egui::Button::new(text)).clicked() {
+                set(text, motion.clone(), trimmed);
+                ui.close();
+            }
+        }
+    }
+}
+
+/// The motion as many times as fast, from its start on.
+fn quicker(motion: &Motion, times: f64) -> Motion {
+    let start_s = motion.times_s().into_iter().fold(f64::INFINITY, f64::min);
+    let mut out = motion.retimed(|t| start_s + (t - start_s) / times);
+    // A steady speed has no times by which it could be told.
+    if let Motion::Path(path) = &mut out
+        && let [only] = path.speeds.as_mut_slice()
+    {
+        let most = scene::clip::Path::MAX_MPS;
+        only.mps = (only.mps * times).clamp(-most, most);
+    }
+    out
+}
+
+/// Where a thing without a motion stands.
+fn standing(scene: &Scene, id: Option<BoxId>) -> Option<Moving> {
+    match id {
+        Some(id) => scene.frame().boxes.get(&id).map(Moving::from),
+        None => {
+            let pose = scene.frame().world_from_ego;
+            let ahead = (pose.rotation * glam::DVec3::X).truncate();
+            Some(Moving::still(pose.translation_m.truncate(), ahead.to_angle()))
+        }
+    }
+}
+
+/// Other moving objects, the nearest first, that are not themselves attached to anything.
+fn neighbours(scene: &Scene, own: BoxId, here: &Moving) -> Vec<(BoxId, Moving, String)> {
+    let clip = scene.clip();
+    let free = clip.tracks.iter().filter(|(id, t)| **id != own && !matches!(t.motion, Motion::Attached { .. }));
+    let mut out: Vec<(BoxId, Moving, String)> = free
+        .filter_map(|(id, t)| Some((*id, clip.moving(*id, scene.time_s())?, format!("{} {}", t.made.called(), id.0))))
+        .collect();
+    out.sort_by(|a, b| a.1.at_m.distance(here.at_m).total_cmp(&b.1.at_m.distance(here.at_m)));
+    out.truncate(MOST_NEIGHBOURS);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+    use scene::clip::{Path, Speed};
+
+    #[test]
+    fn twice_as_fast_is_there_in_half_of_the_time() {
+        let path = Path {
+            points_m: vec![DVec2::ZERO, DVec2::new(100.0, 0.0)],
+            start_m: 0.0,
+            speeds: vec![Speed { time_s: 1.0, mps: 2.0 }, Speed { time_s: 5.0, mps: 6.0 }],
+            rear_first: false,
+        };
+        let steady = Path {
+            speeds: vec![Speed { time_s: 1.0, mps: 4.0 }],
+            ..path.clone()
+        };
+        let at = |m: &Motion, t: f64| m.at(t, |_| None).expect("there").at_m.x;
+        for motion in [Motion::Path(path), Motion::Path(steady)] {
+            let fast = quicker(&motion, 2.0);
+            for t in [1.0, 2.0, 4.0, 5.0] {
+                assert!((at(&motion, t) - at(&fast, 1.0 + (t - 1.0) / 2.0)).abs() < 1e-9, "{t}");
+            }
+        }
+    }
+}
