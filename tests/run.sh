@@ -11,6 +11,8 @@ if command -v dpkg >/dev/null; then
   for package in mesa-vulkan-drivers xvfb xauth libxkbcommon-x11-0 libx11-xcb1 libxcursor1 libxi6 libxrandr2; do
     have "$package" || need+=("$package")
   done
+  # The MP4 encoder is C++.
+  command -v c++ >/dev/null || need+=(g++)
 fi
 if [ "${#need[@]}" -gt 0 ]; then
   echo "system packages missing: ${need[*]}"

@@ -201,7 +201,11 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
     painter.line_segment([front, knob], Stroke::new(1.0, Color32::from_white_alpha(150)));
     painter.circle(knob, 5.0, theme::accent(), Stroke::new(1.5, Color32::WHITE));
     let reach_m = HANDLE_REACH / map.scale;
-    let corners = if pick::has_corner_handles(b, reach_m) { b.footprint().to_vec() } else { Vec::new() };
+    let corners = if pick::has_corner_handles(b, reach_m) {
+        b.footprint().to_vec()
+    } else {
+        Vec::new()
+    };
     for corner in corners {
         let square = Rect::from_center_size(map.to_screen(corner), egui::Vec2::splat(6.0));
         painter.rect(

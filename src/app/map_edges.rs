@@ -77,15 +77,28 @@ pub(crate) fn show(ui: &Ui, map: &ScreenMap, extent: Extent, commands: &mut Vec<
         let rect = Rect::from_center_size(at, vec2(BUTTON_POINTS, BUTTON_POINTS));
         let response = ui.interact(rect, ui.scope_id().with(("edge", name)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("More map {name}")));
-        let by_m = if ui.input(|i| i.modifiers.shift) { LONG_M } else { STEP_M };
-        let color = if response.hovered() { theme::accent() } else { theme::text_weak() };
+        let by_m = if ui.input(|i| i.modifiers.shift) {
+            LONG_M
+        } else {
+            STEP_M
+        };
+        let color = if response.hovered() {
+            theme::accent()
+        } else {
+            theme::text_weak()
+        };
         let painter = ui.painter();
         if response.hovered() {
             let more = outward * by_m;
             let new = map.rect_of(low + more.min(DVec2::ZERO), high + more.max(DVec2::ZERO));
             painter.rect_stroke(new, 2.0, Stroke::new(1.0, color), egui::StrokeKind::Inside);
         }
-        painter.circle(at, BUTTON_POINTS / 2.0 - 1.0, theme::well(), Stroke::new(1.2, color));
+        painter.circle(
+            at,
+            BUTTON_POINTS / 2.0 - 1.0,
+            theme::well(),
+            Stroke::new(1.2, color),
+        );
         let font = TextStyle::Button.resolve(ui.style());
         painter.text(at, Align2::CENTER_CENTER, "+", font, color);
         let hint = format!("{STEP_M:.0} m more map {name}; with Shift {LONG_M:.0} m. Roads go on there.");

@@ -1,7 +1,15 @@
 //! Playing a clip: which moment is shown when, and what edits mean for other moments. It knows no clock: it is told the time.
 
-use crate::panes::timeline::row_menu::Copied;
-use scene::Scope;
+use scene::{Motion, Moving, Scope};
+
+/// A motion that was copied, and where it begins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Copied {
+    /// The motion.
+    pub motion: Motion,
+    /// Where what has it is at its beginning.
+    pub start: Moving,
+}
 
 /// How a clip is played.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,13 +19,14 @@ pub mod outline;
 pub mod part;
 pub mod pick;
 pub mod pick_things;
+mod reaching;
 mod things;
 pub mod tools;
-mod reaching;
 pub mod traffic;
 pub mod transform;
 pub mod voxel_ops;
 
+pub use apply::forecast::{Forecast, forecast};
 pub use apply::{Apply, apply_all};
 pub use document::{Document, Stale};
 pub use part::Part;

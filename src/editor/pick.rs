@@ -288,7 +288,9 @@ pub fn handle_at(b: &SceneBox, p_m: DVec2, tolerance_m: f64) -> Option<Handle> {
     let corners = b.footprint();
     let nearest = (0..4).min_by(|&i, &j| corners[i].distance(p_m).total_cmp(&corners[j].distance(p_m)));
     match nearest {
-        Some(i) if has_corner_handles(b, tolerance_m) && corners[i].distance(p_m) <= reach_m => Some(Handle::Corner(i)),
+        Some(i) if has_corner_handles(b, tolerance_m) && corners[i].distance(p_m) <= reach_m => {
+            Some(Handle::Corner(i))
+        }
         _ if inside => Some(Handle::Body),
         _ if rotate_knob(b).distance(p_m) <= tolerance_m => Some(Handle::Rotate),
         _ => None,

@@ -43,7 +43,10 @@ pub(crate) fn reaching(
 pub(crate) fn sights_m(extent: Extent, places: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
     let (low, high) = (extent.min_m().truncate(), extent.max_m().truncate());
     places.fold([DVec2::splat(AROUND_M); 2], |[below, above], p| {
-        [below.min(p - low).max(DVec2::ZERO), above.min(high - p).max(DVec2::ZERO)]
+        [
+            below.min(p - low).max(DVec2::ZERO),
+            above.min(high - p).max(DVec2::ZERO),
+        ]
     })
 }
 
@@ -54,7 +57,11 @@ mod tests {
     #[test]
     fn a_map_grows_where_it_is_left() {
         let extent = Extent::new([-50, -50], [300, 100]).expect("sound");
-        let more = reaching(extent, [DVec2::new(-60.0, 3.0), DVec2::new(5.0, 0.0)].into_iter(), [DVec2::ZERO; 2]);
+        let more = reaching(
+            extent,
+            [DVec2::new(-60.0, 3.0), DVec2::new(5.0, 0.0)].into_iter(),
+            [DVec2::ZERO; 2],
+        );
         let wanted = Edit::ExtendMap {
             ahead_m: 0.0,
             behind_m: 80.0,
@@ -62,6 +69,9 @@ mod tests {
             right_m: 0.0,
         };
         assert_eq!(more, Some(wanted));
-        assert_eq!(reaching(extent, std::iter::once(DVec2::ZERO), [DVec2::ZERO; 2]), None);
+        assert_eq!(
+            reaching(extent, std::iter::once(DVec2::ZERO), [DVec2::ZERO; 2]),
+            None
+        );
     }
 }

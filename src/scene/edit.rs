@@ -4,6 +4,7 @@
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+use crate::clip::Manoeuvre;
 use crate::grid::Extent;
 use crate::shape::Shape;
 use crate::{
@@ -387,6 +388,19 @@ pub enum EditError {
 }
 
 impl Edit {
+    /// Lets a box, or (`None`) the ego vehicle, carry out a manoeuvre.
+    pub fn let_move(how: &Manoeuvre, id: Option<BoxId>, class: Option<Class>) -> Self {
+        let usual = Template::usual_mps(class);
+        let paced = how.pace.map(|pace| pace.factor() * usual);
+        Self::LetMove {
+            id,
+            template: how.what,
+            mps: how.kmh.map(|kmh| kmh / 3.6).or(paced),
+            from_s: how.from_s,
+            gap_m: how.gap_m,
+        }
+    }
+
     /// The box that [`Edit::AddBox`] puts in, where the edit names its number.
     pub fn added_box(&self) -> Option<SceneBox> {
         match self {

@@ -101,7 +101,11 @@ impl Dataset {
                 dataset::write(&self.output, frames, make, step)
             }
             "drives" => {
-                let make = |i: usize| anyhow::Ok(frames_of(&drive_scene(self.seed, i as u64, |seed| roads.layout(seed))));
+                let make = |i: usize| {
+                    anyhow::Ok(frames_of(&drive_scene(self.seed, i as u64, |seed| {
+                        roads.layout(seed)
+                    })))
+                };
                 dataset::write(&self.output, frames, make, step)
             }
             "occ3d" => {

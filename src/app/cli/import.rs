@@ -73,7 +73,9 @@ fn map_size(text: &str) -> Result<MapSize, String> {
                 size_m,
                 ..Placement::default()
             };
-            placement.problem().map_or(Ok(MapSize::Sides([length_m, width_m])), Err)
+            placement
+                .problem()
+                .map_or(Ok(MapSize::Sides([length_m, width_m])), Err)
         }
         _ => Err("expected two lengths in metres, such as 300x100, or all".into()),
     }

@@ -7,8 +7,8 @@ use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::canvas::CanvasInput;
-use crate::map_edges;
 use crate::command::Command;
+use crate::map_edges;
 use crate::views_shown::Underlay;
 use widgets::icons::{self, Icon};
 

@@ -9,8 +9,8 @@ use scene::SceneBox;
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
-use crate::map_edges::with_scenery;
 use crate::command::Command;
+use crate::map_edges::with_scenery;
 use crate::panes::objects::neighbour;
 use crate::tools::{Choose, ToolState};
 

@@ -8,9 +8,9 @@ use crossbeam_channel::Receiver;
 use scene::Scene;
 
 use super::exporting::Exporting;
-use crate::windows::place_picker::PlacePicker;
 use super::file_dialogs::FileDialogs;
 use super::recovery::Recovery;
+use crate::windows::place_picker::PlacePicker;
 
 /// Reads a scene from a file of any kind that can be opened.
 pub type OpenScene = Arc<dyn Fn(&Path) -> anyhow::Result<Scene> + Send + Sync>;

@@ -37,7 +37,9 @@ impl SceneloomApp {
             None => {}
             Some(Picking::Reading(read)) => match read.try_recv() {
                 Err(TryRecvError::Empty) => self.files.picking = Some(Picking::Reading(read)),
-                Err(TryRecvError::Disconnected) => self.fail("Not opened: reading it ended unexpectedly".to_owned()),
+                Err(TryRecvError::Disconnected) => {
+                    self.fail("Not opened: reading it ended unexpectedly".to_owned())
+                }
                 Ok(Err(error)) => self.fail(format!("Not opened: {}", one_line(&error))),
                 Ok(Ok(picker)) => self.files.picking = Some(Picking::Choosing(Box::new(picker))),
             },

@@ -4,8 +4,8 @@
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, Ui, WidgetInfo, vec2};
 
-use crate::export::ExportProgress;
 use crate::command::{Command, GenerationCommand, ViewCommand, Window};
+use crate::export::ExportProgress;
 use crate::panes::id::PaneId;
 use crate::panes::pointed::Pointed;
 use crate::shell::guard::Pause;
@@ -211,7 +211,9 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
 fn exporting(ui: &mut Ui, what: &str, progress: &ExportProgress) {
     ui.separator();
     ui.add(egui::Spinner::new().size(13.0).color(theme::accent()));
-    let count = progress.pictures().map_or(String::new(), |(done, of)| format!(", {done} of {of}"));
+    let count = progress
+        .pictures()
+        .map_or(String::new(), |(done, of)| format!(", {done} of {of}"));
     if progress.is_cancelled() {
         return say(ui, "Cancelling", theme::text());
     }

@@ -8,7 +8,7 @@ use crate::panes::id::PaneId;
 use crate::panes::timeline::scope_name;
 use editor::Edit;
 use editor::document::Label;
-use editor::traffic::forecast::forecast;
+use editor::forecast;
 use editor::traffic::motion_of;
 use scene::Scope;
 

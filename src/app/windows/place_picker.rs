@@ -109,7 +109,9 @@ impl PlacePicker {
 
     fn picture(&mut self, ui: &mut Ui) {
         let (rect, response) = ui.allocate_exact_size(PICTURE_POINTS, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Network of roads: a click chooses the place"));
+        response.widget_info(|| {
+            WidgetInfo::labeled(Role::Canvas, true, "Network of roads: a click chooses the place")
+        });
         let extent_m = (self.bounds_m[1] - self.bounds_m[0]).max(DVec2::splat(1.0));
         let fits = (f64::from(rect.width()) / extent_m.x).min(f64::from(rect.height()) / extent_m.y) * 0.94;
         let mut scale = self.scale.unwrap_or(fits);
@@ -133,8 +135,16 @@ impl PlacePicker {
         }
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, theme::RADIUS, theme::well());
-        let corners: Vec<Pos2> = self.map_m().iter().map(|p| self.to_screen(rect, scale, *p)).collect();
-        painter.add(Shape::convex_polygon(corners, theme::accent_fill(), Stroke::new(1.5, theme::accent())));
+        let corners: Vec<Pos2> = self
+            .map_m()
+            .iter()
+            .map(|p| self.to_screen(rect, scale, *p))
+            .collect();
+        painter.add(Shape::convex_polygon(
+            corners,
+            theme::accent_fill(),
+            Stroke::new(1.5, theme::accent()),
+        ));
         let width = (ROAD_M * scale).clamp(1.5, 60.0) as f32;
         let stroke = Stroke::new(width, theme::text_weak().gamma_multiply(0.6));
         for road in &self.roads_m {
@@ -147,7 +157,11 @@ impl PlacePicker {
             let p = turn.rotate(DVec2::new(x, y));
             pos2(at.x + p.x as f32, at.y - p.y as f32)
         });
-        painter.add(Shape::convex_polygon(arrow.to_vec(), Color32::WHITE, Stroke::new(1.0, theme::accent())));
+        painter.add(Shape::convex_polygon(
+            arrow.to_vec(),
+            Color32::WHITE,
+            Stroke::new(1.0, theme::accent()),
+        ));
     }
 
     fn options(&mut self, ui: &mut Ui) {
@@ -155,10 +169,17 @@ impl PlacePicker {
             ui.label("Map");
             ui.add_enabled_ui(!self.whole, |ui| {
                 for (value, hint) in self.size_m.iter_mut().zip(["Length, along the heading", "Width"]) {
-                    let value = DragValue::new(value).range(20.0..=Placement::MAX_SIZE_M).speed(1.0).suffix(" m");
+                    let value = DragValue::new(value)
+                        .range(20.0..=Placement::MAX_SIZE_M)
+                        .speed(1.0)
+                        .suffix(" m");
                     ui.add(value).on_hover_text(hint);
                 }
-                for (name, size_m) in [("80 × 80", [80.0; 2]), ("300 × 100", [300.0, 100.0]), ("1000 × 100", [1000.0, 100.0])] {
+                for (name, size_m) in [
+                    ("80 × 80", [80.0; 2]),
+                    ("300 × 100", [300.0, 100.0]),
+                    ("1000 × 100", [1000.0, 100.0]),
+                ] {
                     if ui.small_button(name).clicked() {
                         self.size_m = size_m;
                     }
@@ -172,7 +193,10 @@ impl PlacePicker {
             ui.label("Seed");
             ui.add(DragValue::new(&mut self.seed).speed(0.1));
             let degrees = self.at.1.to_degrees().rem_euclid(360.0);
-            let text = format!("at {:.0}, {:.0} m, heading {degrees:.0}°", self.at.0.x, self.at.0.y);
+            let text = format!(
+                "at {:.0}, {:.0} m, heading {degrees:.0}°",
+                self.at.0.x, self.at.0.y
+            );
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
         });
     }
@@ -197,7 +221,10 @@ pub fn place_picker(ui: &Ui, picker: &mut PlacePicker, open: &mut bool) -> bool 
                 let weak = |text: &str, color: Color32| egui::RichText::new(text).color(color);
                 match problem {
                     Some(problem) => ui.label(weak(&problem, theme::bad())),
-                    None => ui.label(weak("Click chooses a lane · drag pans · wheel zooms", theme::text_weak())),
+                    None => ui.label(weak(
+                        "Click chooses a lane · drag pans · wheel zooms",
+                        theme::text_weak(),
+                    )),
                 };
             });
         });
@@ -220,8 +247,15 @@ mod tests {
         let network = formats::opendrive::read(text.as_bytes()).expect("a road");
         let mut picker = PlacePicker::new(network, "road".into());
         picker.choose(DVec2::new(300.0, 2.0));
-        assert!((picker.at.0 - DVec2::new(300.0, 1.75)).length() < 0.3, "{:?}", picker.at);
-        assert!((picker.at.1.abs() - std::f64::consts::PI).abs() < 0.01, "its left lane leads back");
+        assert!(
+            (picker.at.0 - DVec2::new(300.0, 1.75)).length() < 0.3,
+            "{:?}",
+            picker.at
+        );
+        assert!(
+            (picker.at.1.abs() - std::f64::consts::PI).abs() < 0.01,
+            "its left lane leads back"
+        );
         let rect = Rect::from_min_size(Pos2::ZERO, PICTURE_POINTS);
         let p = DVec2::new(120.0, -7.0);
         let back = picker.to_file(rect, 1.5, picker.to_screen(rect, 1.5, p));
@@ -229,10 +263,15 @@ mod tests {
         picker.whole = true;
         let corners = picker.map_m();
         let inside = |p: DVec2| {
-            let (low, high) = corners.iter().fold((corners[0], corners[0]), |(l, h), c| (l.min(*c), h.max(*c)));
+            let (low, high) = corners
+                .iter()
+                .fold((corners[0], corners[0]), |(l, h), c| (l.min(*c), h.max(*c)));
             p.cmpge(low).all() && p.cmple(high).all()
         };
-        assert!(inside(DVec2::ZERO) && inside(DVec2::new(400.0, 0.0)), "{corners:?}");
+        assert!(
+            inside(DVec2::ZERO) && inside(DVec2::new(400.0, 0.0)),
+            "{corners:?}"
+        );
         assert_eq!(picker.placement().problem_on(&picker.network), None);
     }
 }

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use glam::DVec2;
-use scene::{BevLayout, Edit, EditError, Extent, Frame, Inferred, Polyline, PolylineKind, Scene, SourceFrame, draft};
+use scene::{
+    BevLayout, Edit, EditError, Extent, Frame, Inferred, Polyline, PolylineKind, Scene, SourceFrame, draft,
+};
 
 /// How far from a lane's middle, along the edge, the ground goes on in its direction, m; elsewhere it goes straight out.
 const BESIDE_LANE_M: f64 = 18.0;
@@ -24,7 +26,12 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
         return Ok(());
     };
     let mut columns = [0; 4];
-    let sides = [("behind_m", behind_m), ("ahead_m", ahead_m), ("right_m", right_m), ("left_m", left_m)];
+    let sides = [
+        ("behind_m", behind_m),
+        ("ahead_m", ahead_m),
+        ("right_m", right_m),
+        ("left_m", left_m),
+    ];
     for ((field, m), columns) in sides.into_iter().zip(&mut columns) {
         if !(0.0..=FARTHEST_M).contains(&m) {
             return Err(EditError::Number {
@@ -82,9 +89,15 @@ struct Side {
 }
 
 const SIDES: [Side; 4] = [
-    Side { axis: 0, upper: false },
+    Side {
+        axis: 0,
+        upper: false,
+    },
     Side { axis: 0, upper: true },
-    Side { axis: 1, upper: false },
+    Side {
+        axis: 1,
+        upper: false,
+    },
     Side { axis: 1, upper: true },
 ];
 
@@ -98,12 +111,20 @@ struct Leaving {
 impl Side {
     fn outward(self) -> DVec2 {
         let sign = if self.upper { 1.0 } else { -1.0 };
-        if self.axis == 0 { DVec2::new(sign, 0.0) } else { DVec2::new(0.0, sign) }
+        if self.axis == 0 {
+            DVec2::new(sign, 0.0)
+        } else {
+            DVec2::new(0.0, sign)
+        }
     }
 
     /// How far a point lies outside of this edge, m; negative inside.
     fn outside_m(self, extent: Extent, p: DVec2) -> f64 {
-        let edge = if self.upper { extent.max_m() } else { extent.min_m() };
+        let edge = if self.upper {
+            extent.max_m()
+        } else {
+            extent.min_m()
+        };
         (p - edge.truncate()).dot(self.outward())
     }
 
@@ -124,18 +145,26 @@ impl Side {
     /// Where lanes leave the map here, whichever way they are driven.
     fn leavings(self, layout: &BevLayout) -> Vec<Leaving> {
         let extent = layout.extent();
-        let lanes = layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
+        let lanes = layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == PolylineKind::LaneCenter);
         let leaving = |[a, b]: [DVec2; 2]| {
             let (a_m, b_m) = (self.outside_m(extent, a), self.outside_m(extent, b));
             let crosses = a_m <= 0.0 && b_m > 0.0 || a_m < b_m && (-AT_EDGE_M..=0.0).contains(&b_m);
             crosses.then(|| self.leaving(extent, b, b - a)).flatten()
         };
         let found = lanes.flat_map(|line| {
-            let both_ways = line.points_m.array_windows::<2>().flat_map(|[a, b]| [[*a, *b], [*b, *a]]);
+            let both_ways = line
+                .points_m
+                .array_windows::<2>()
+                .flat_map(|[a, b]| [[*a, *b], [*b, *a]]);
             both_ways.filter_map(leaving).collect::<Vec<_>>()
         });
         let corners = [extent.min_m().truncate(), extent.max_m().truncate()].map(|p| self.along_m(p));
-        found.filter(|l| (corners[0]..=corners[1]).contains(&l.along_m)).collect()
+        found
+            .filter(|l| (corners[0]..=corners[1]).contains(&l.along_m))
+            .collect()
     }
 
     /// The layout with so many columns more on this side.
@@ -157,7 +186,9 @@ impl Side {
                 .iter()
                 .map(|l| (l, (self.along_m(p) - outside_m * l.slope - l.along_m).abs()))
                 .min_by(|a, b| a.1.total_cmp(&b.1));
-            let slope = nearest.filter(|(_, off_m)| *off_m <= BESIDE_LANE_M).map_or(0.0, |(l, _)| l.slope);
+            let slope = nearest
+                .filter(|(_, off_m)| *off_m <= BESIDE_LANE_M)
+                .map_or(0.0, |(l, _)| l.slope);
             let mut at = p - self.outward() * outside_m.max(0.0);
             at[1 - self.axis] -= outside_m.max(0.0) * slope;
             let column = |axis: usize| {
@@ -167,7 +198,11 @@ impl Side {
             layout.cell(column(0), column(1))
         };
         let cells = new.all_columns().map(cell).collect();
-        let lines = layout.polylines.iter().map(|line| self.line_to(old, new, line)).collect();
+        let lines = layout
+            .polylines
+            .iter()
+            .map(|line| self.line_to(old, new, line))
+            .collect();
         let mut out = BevLayout::from_cells_over(new, cells, lines)
             .map_err(|found| EditError::BadMap(format!("{found} columns")))?;
         out.relief = layout.relief.crop(new);

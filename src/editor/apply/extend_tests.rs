@@ -48,9 +48,18 @@ fn a_road_goes_on_as_it_leaves_the_map() {
         extend(&mut scene, 60.0, 20.0).expect("a map");
         let canvas = scene.canvas();
         let extent = canvas.extent();
-        assert_eq!((extent.from(), extent.nx(), extent.ny()), ([-100, -150], 350, 250));
+        assert_eq!(
+            (extent.from(), extent.nx(), extent.ny()),
+            ([-100, -150], 350, 250)
+        );
         for x_m in [45.0, 70.0, 99.0] {
-            for (aside_m, road) in [(0.0, true), (2.5, true), (-2.5, true), (6.0, false), (-6.0, false)] {
+            for (aside_m, road) in [
+                (0.0, true),
+                (2.5, true),
+                (-2.5, true),
+                (6.0, false),
+                (-6.0, false),
+            ] {
                 let Some([x, y]) = extent.column_at(x_m, slope * x_m + aside_m) else {
                     continue;
                 };
@@ -64,7 +73,10 @@ fn a_road_goes_on_as_it_leaves_the_map() {
         // What was there is the same, and nothing of it waits to be generated.
         assert_eq!(canvas.layout.crop(Extent::WINDOW).cells(), before.layout.cells());
         assert_eq!(canvas.occupancy.crop(Extent::WINDOW), before.occupancy);
-        assert_eq!(canvas.source.occupancy.crop(Extent::WINDOW), before.source.occupancy);
+        assert_eq!(
+            canvas.source.occupancy.crop(Extent::WINDOW),
+            before.source.occupancy
+        );
         let [x, y] = extent.column_at(80.0, slope * 80.0).expect("inside");
         assert_eq!(canvas.occupancy.get(x, y, 0), Class::DriveableSurface.id());
         assert_eq!(canvas.source.occupancy.get(x, y, 0), Class::FREE);

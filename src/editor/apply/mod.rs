@@ -5,6 +5,8 @@ mod box_run;
 mod boxes;
 mod correct;
 mod extend;
+pub mod forecast;
+mod let_move;
 mod map;
 mod motion;
 mod voxels;
@@ -14,8 +16,6 @@ use std::sync::Arc;
 use scene::{Edit, EditError, Frame, Scene, Scope, SensorRig};
 
 use super::things;
-use super::traffic::forecast::forecast;
-use super::traffic::let_move;
 pub(crate) use voxels::adopt;
 
 /// How many typed texts a scene keeps, and how many letters of each.
@@ -77,9 +77,9 @@ impl Apply for Edit {
             Self::At { .. } => at::apply(self, scene)?,
             Self::SetMotion { .. } | Self::SetLength { .. } => motion::apply(self, scene)?,
             Self::ExtendMap { .. } => extend::apply(self, scene)?,
-            Self::LetMove { .. } => all_or_nothing(scene, &let_move(scene, self)?)?,
+            Self::LetMove { .. } => all_or_nothing(scene, &let_move::let_move(scene, self)?)?,
             Self::Forecast { seconds } => {
-                let found = forecast(scene, *seconds).map_err(EditError::BadMotion)?;
+                let found = forecast::forecast(scene, *seconds).map_err(EditError::BadMotion)?;
                 all_or_nothing(scene, &found.edits)?;
             }
             edit => at::apply_scoped(edit, scene, Scope::default())?,

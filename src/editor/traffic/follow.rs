@@ -108,7 +108,10 @@ fn thinned(all: &[Speed]) -> Vec<Speed> {
             let near = |s: &Speed| (a.mps + slope * (s.time_s - a.time_s) - s.mps).abs() <= OFF_MPS;
             all[from + 1..to].iter().all(near)
         };
-        let to = (from + 1..all.len()).take_while(|to| is_told(*to)).last().unwrap_or(from + 1);
+        let to = (from + 1..all.len())
+            .take_while(|to| is_told(*to))
+            .last()
+            .unwrap_or(from + 1);
         out.push(all[to]);
         from = to;
     }
@@ -137,7 +140,9 @@ mod tests {
     fn on_a_free_road_the_desired_speed_is_reached() {
         let found = speeds(&Driver::at(13.9), &road(), (0.0, 0.0), 2.2, 25.0, |_| Vec::new());
         assert!((found.last().expect("some").mps - 13.9).abs() < 0.3);
-        let harshest = found.windows(2).map(|w| (w[1].mps - w[0].mps) / (w[1].time_s - w[0].time_s));
+        let harshest = found
+            .windows(2)
+            .map(|w| (w[1].mps - w[0].mps) / (w[1].time_s - w[0].time_s));
         assert!(harshest.fold(0.0, f64::max) < 1.51);
         assert!(found.len() < 20, "{} speeds", found.len());
     }

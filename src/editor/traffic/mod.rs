@@ -2,9 +2,8 @@
 //! follows the one ahead.
 
 pub mod follow;
-pub mod forecast;
 pub mod lane_path;
 pub mod template;
 
 pub use scene::clip::Template;
-pub use template::{Wish, let_move, motion_of};
+pub use template::{Wish, motion_of};

@@ -3,11 +3,10 @@
 use glam::DVec2;
 
 use scene::clip::{Path, Speed, Template};
-use scene::{BoxId, Class, Clip, Edit, EditError, Motion, Moving, Scene, SceneBox};
+use scene::{BoxId, Class, Clip, Edit, Motion, Moving, Scene, SceneBox};
 
 use super::follow::{self, Driver, Other};
 use super::lane_path::{aside, lane_path, lane_through, smooth};
-use crate::apply_all;
 use crate::kerb;
 use crate::lanes::nearest_lane;
 
@@ -90,61 +89,6 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
         to_s: None,
     });
     Ok(edits)
-}
-
-/// The edits of an [`Edit::LetMove`]; none of another edit.
-pub fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditError> {
-    let &Edit::LetMove {
-        id,
-        template,
-        mps,
-        from_s,
-        gap_m,
-    } = edit
-    else {
-        return Ok(Vec::new());
-    };
-    let bad = EditError::BadMotion;
-    let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
-    let usual = Wish::usual(template, class);
-    let mut wish = Wish {
-        mps: mps.unwrap_or(usual.mps),
-        at_s: from_s.unwrap_or(usual.at_s),
-        ..usual
-    };
-    if let Some(gap_m) = gap_m {
-        wish.at_s = approach_s(scene, id, &wish, gap_m).map_err(bad)?;
-    }
-    // Who drives from a moment on stands until then.
-    if template == Template::Drive && (from_s.is_some_and(|s| s > 0.0) || gap_m.is_some()) {
-        wish.template = Template::PullOut;
-    }
-    motion_of(scene, id, &wish).map_err(bad)
-}
-
-/// When an object and the ego vehicle are so near to each other, s. Errors in one line.
-fn approach_s(scene: &Scene, id: Option<BoxId>, wish: &Wish, gap_m: f64) -> Result<f64, String> {
-    if !(0.0..=1000.0).contains(&gap_m) {
-        return Err(format!("gap_m is {gap_m}, expected 0 to 1000 m"));
-    }
-    let id = id.ok_or("gap_m is between an object and the ego vehicle, which has none to itself")?;
-    // Until then it does what it does before its manoeuvre.
-    let stands = matches!(wish.template, Template::Cross | Template::PullOut | Template::Drive);
-    let before = match stands {
-        true => Vec::new(),
-        false => motion_of(
-            scene,
-            Some(id),
-            &Wish {
-                template: Template::Drive,
-                ..*wish
-            },
-        )?,
-    };
-    let mut until = scene.clone();
-    apply_all(&before, &mut until).map_err(|e| e.to_string())?;
-    time_near(until.clip(), until.canvas(), id, gap_m, scene.rig.ego_size_m[0])
-        .ok_or_else(|| format!("box {} and the ego vehicle never come within {gap_m} m of each other", id.0))
 }
 
 /// Where it is now, and half of its length, m.
@@ -241,7 +185,7 @@ fn easing(list: &[(f64, f64)]) -> Vec<Speed> {
 }
 
 /// Who else is on the road at a time.
-pub(super) fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
+pub(crate) fn others(scene: &Scene, own: Option<BoxId>, time_s: f64) -> Vec<Other> {
     let of = |b: &SceneBox| Other {
         at_m: b.center_m.truncate(),
         velocity_mps: b.velocity_mps,

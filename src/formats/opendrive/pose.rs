@@ -83,7 +83,10 @@ impl RoadNetwork {
             (0..=STEPS).map(move |i| road.reference.at(length_m * i as f64 / STEPS as f64).position_m)
         });
         let sound = points.map(frame).filter(|p| p.is_finite());
-        sound.map(|p| (p, p)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+        sound
+            .map(|p| (p, p))
+            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+            .unwrap_or_default()
     }
 
     /// The nearest place in the middle of a traffic lane; `None` if the network has none or `at_m` is

@@ -74,7 +74,10 @@ pub fn drive_scene(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayou
         false => draw.range(3.0, 14.0),
     };
     let boxes: Vec<SceneBox> = scene.canvas().boxes.values().copied().collect();
-    let in_lane: Vec<(SceneBox, f64)> = boxes.iter().filter_map(|b| Some((*b, lane_speed(&scene, b, &mut draw)?))).collect();
+    let in_lane: Vec<(SceneBox, f64)> = boxes
+        .iter()
+        .filter_map(|b| Some((*b, lane_speed(&scene, b, &mut draw)?)))
+        .collect();
     // Everybody drives first, so that who follows then finds the others moving.
     drive(&mut scene, None, Template::Drive, mps, &mut draw);
     for (b, mps) in &in_lane {
@@ -189,9 +192,17 @@ impl Shard for Drive {
         let heading = frames().flat_map(|f| raster::headings(Extent::WINDOW, f.boxes.values()));
         let pose = frames().flat_map(|f| f.pose);
         vec![
-            (Dtype::U8, grid.clone(), frames().flat_map(|f| f.dense.to_dense()).collect()),
+            (
+                Dtype::U8,
+                grid.clone(),
+                frames().flat_map(|f| f.dense.to_dense()).collect(),
+            ),
             (Dtype::U8, grid, draft.collect()),
-            (Dtype::I32, columns.clone(), bev.flat_map(u32::to_le_bytes).collect()),
+            (
+                Dtype::I32,
+                columns.clone(),
+                bev.flat_map(u32::to_le_bytes).collect(),
+            ),
             (Dtype::U8, columns, heading.collect()),
             (
                 Dtype::F32,

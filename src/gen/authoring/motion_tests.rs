@@ -28,12 +28,18 @@ fn seen(scene: &Scene, id: BoxId, time_s: f64) -> glam::DVec2 {
 #[test]
 fn a_car_from_the_right_lane_ends_in_ours() {
     for seed in 0..6 {
-        let (scene, missing) = made_of("road straight ; lanes 4 ; own_lane left ; add 1 car ( on right_lane ) ( ahead ego ) ; go the car cut_in from 2s", seed);
+        let (scene, missing) = made_of(
+            "road straight ; lanes 4 ; own_lane left ; add 1 car ( on right_lane ) ( ahead ego ) ; go the car cut_in from 2s",
+            seed,
+        );
         assert_eq!(missing, Vec::<String>::new());
         assert_eq!(scene.clip().length_s, 8.0);
         let car = first(&scene, Class::Car);
         let [before, after] = [1.5, 7.0].map(|t| seen(&scene, car, t).y);
-        assert!(before < -2.0 && after.abs() < 1.2, "seed {seed}: {before} to {after} m");
+        assert!(
+            before < -2.0 && after.abs() < 1.2,
+            "seed {seed}: {before} to {after} m"
+        );
         assert!(scene.clip().ego.is_some());
     }
 }
@@ -41,13 +47,19 @@ fn a_car_from_the_right_lane_ends_in_ours() {
 #[test]
 fn a_child_waits_at_the_side_and_runs_across() {
     for seed in 0..6 {
-        let (scene, missing) = made_of("add 1 child ( ahead ego 15m ) ; go the child cross from 3s fast", seed);
+        let (scene, missing) = made_of(
+            "add 1 child ( ahead ego 15m ) ; go the child cross from 3s fast",
+            seed,
+        );
         assert_eq!(missing, Vec::<String>::new());
         let child = first(&scene, Class::Pedestrian);
         let at = |t: f64| scene.at(t).frame().boxes[&child].center_m.truncate();
         assert_eq!(at(0.0), at(2.9), "seed {seed}");
         let way = at(6.0) - at(3.0);
-        assert!(way.length() > 5.0 && way.y.abs() > way.x.abs(), "seed {seed}: {way}");
+        assert!(
+            way.length() > 5.0 && way.y.abs() > way.x.abs(),
+            "seed {seed}: {way}"
+        );
     }
 }
 
@@ -57,17 +69,32 @@ fn a_bus_pulls_out_when_we_are_near() {
     assert_eq!(missing, Vec::<String>::new());
     let bus = first(&scene, Class::Bus);
     let moves = |t: f64| scene.at(t).frame().boxes[&bus].velocity_mps.length() > 0.2;
-    let from_s = (0..80).map(|i| f64::from(i) * 0.1).find(|t| moves(*t)).expect("it moves");
+    let from_s = (0..80)
+        .map(|i| f64::from(i) * 0.1)
+        .find(|t| moves(*t))
+        .expect("it moves");
     let gap_m = seen(&scene, bus, from_s).length() - 5.5 - 2.1;
     assert!((5.0..12.0).contains(&gap_m), "{gap_m} m at {from_s} s");
 }
 
 #[test]
 fn what_cannot_be_is_said_and_the_rest_is_done() {
-    let (scene, missing) = made_of("length 4s ; add 1 bus ( behind ego 30m ) and 1 person ; go the bus pull_out gap 2m ; go the person cross from 1s", 1);
+    let (scene, missing) = made_of(
+        "length 4s ; add 1 bus ( behind ego 30m ) and 1 person ; go the bus pull_out gap 2m ; go the person cross from 1s",
+        1,
+    );
     assert_eq!(scene.clip().length_s, 4.0);
-    assert!(missing.iter().any(|m| m.contains("never come within 2 m")), "{missing:?}");
-    assert!(scene.clip().tracks.values().any(|t| t.made.class == Class::Pedestrian));
+    assert!(
+        missing.iter().any(|m| m.contains("never come within 2 m")),
+        "{missing:?}"
+    );
+    assert!(
+        scene
+            .clip()
+            .tracks
+            .values()
+            .any(|t| t.made.class == Class::Pedestrian)
+    );
     let (still, _) = made_of("add 1 bus", 1);
     assert!(still.clip().is_still());
 }

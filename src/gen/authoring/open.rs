@@ -105,7 +105,14 @@ impl Placement {
     /// What is wrong with it on a network, in one line.
     pub fn problem_on(&self, network: &RoadNetwork) -> Option<String> {
         match self.whole {
-            true => whole_extent(network, (self.at_m.unwrap_or_default(), self.heading_rad.unwrap_or_default())).err(),
+            true => whole_extent(
+                network,
+                (
+                    self.at_m.unwrap_or_default(),
+                    self.heading_rad.unwrap_or_default(),
+                ),
+            )
+            .err(),
             false => self.problem(),
         }
     }

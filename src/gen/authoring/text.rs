@@ -156,16 +156,21 @@ fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
         return Vec::new();
     }
     // What begins late makes the scene longer.
-    let latest_s = objects.iter().filter_map(|(_, _, how)| how.from_s).fold(0.0, f64::max);
+    let latest_s = objects
+        .iter()
+        .filter_map(|(_, _, how)| how.from_s)
+        .fold(0.0, f64::max);
     let length = length.or((latest_s > LATE_S).then(|| Edit::SetLength {
         length_s: (latest_s + SEEN_S).min(Clip::MAX_LENGTH_S),
         rate_hz: None,
     }));
     let ego = match (d.ego_motion, objects.is_empty()) {
         (None, true) => None,
-        (how, _) => Some(how.unwrap_or(Manoeuvre::of(Template::Follow)).edit(None, None)),
+        (how, _) => Some(Edit::let_move(&how.unwrap_or(Manoeuvre::of(Template::Follow)), None, None)),
     };
-    let edits = objects.iter().map(|(id, class, how)| how.edit(Some(*id), Some(*class)));
+    let edits = objects
+        .iter()
+        .map(|(id, class, how)| Edit::let_move(how, Some(*id), Some(*class)));
     // The ego vehicle first, so that others know when it is near; and once more at the end, so that it sees them.
     let all = length.into_iter().chain(ego.clone()).chain(edits).chain(ego);
     let mut cannot = Vec::new();

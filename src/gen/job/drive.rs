@@ -37,7 +37,14 @@ impl DriveNetwork<'_> {
             prepared,
         };
         let sampler = Sampler::standard(SolverKind::Ddim, self.steps, Guidance::NONE)?;
-        let noise = |frame: u64| normal_field(self.seed.wrapping_add(frame << 32), Stream::Start, CELLS, CHANNELS);
+        let noise = |frame: u64| {
+            normal_field(
+                self.seed.wrapping_add(frame << 32),
+                Stream::Start,
+                CELLS,
+                CHANNELS,
+            )
+        };
         let start: Vec<f64> = (0..conditions.len() as u64).flat_map(noise).collect();
         let states = sampler.sample(start, &mut network, |_| Ok(()))?;
         let last = states.last().map_or(&[][..], |s| s.as_slice());

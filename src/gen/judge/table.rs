@@ -100,10 +100,19 @@ pub static SUITES: [Suite; 8] = [
         name: "forecast",
         title: "How a drive goes on after two frames",
         figures: &[
-            ("temporal networks, mIoU after 1 s", "/layouts that came/temporal/mIoU 1 s"),
+            (
+                "temporal networks, mIoU after 1 s",
+                "/layouts that came/temporal/mIoU 1 s",
+            ),
             ("the same, after 3 s", "/layouts that came/temporal/mIoU 3 s"),
-            ("frame by frame, after 1 s", "/layouts that came/single frames/mIoU 1 s"),
-            ("on the canvas, after 1 s", "/layouts that came/canvas, inpainted/mIoU 1 s"),
+            (
+                "frame by frame, after 1 s",
+                "/layouts that came/single frames/mIoU 1 s",
+            ),
+            (
+                "on the canvas, after 1 s",
+                "/layouts that came/canvas, inpainted/mIoU 1 s",
+            ),
         ],
         quick: |options| options.frames = 1,
         table: Some(forecast::table),

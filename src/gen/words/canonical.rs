@@ -62,9 +62,10 @@ fn sort_what(what: &mut What) {
         What::Add { things: a } | What::No { who: a } | What::Remove { who: a } | What::Keep { who: a } => {
             sort_all(a)
         }
-        What::Leave { who: a } | What::Set { who: a, .. } | What::Count { who: a, .. } | What::Go { who: a, .. } => {
-            sort_all(a)
-        },
+        What::Leave { who: a }
+        | What::Set { who: a, .. }
+        | What::Count { who: a, .. }
+        | What::Go { who: a, .. } => sort_all(a),
         What::Replace { who, things } => {
             sort_all(who);
             sort_all(things);

@@ -386,7 +386,7 @@ fn spec_of(t: &Thing) -> ObjectSpec {
         label: label_of(t),
         size_m: noun.size_m(),
         relations: Vec::new(),
-            motion: None,
+        motion: None,
     }
 }
 

@@ -2,8 +2,9 @@
 
 use super::account::{Why, missing};
 use super::answer::answer;
+use super::canonical::canonical;
 use super::hear::{against, hear};
-use super::notation::parse;
+use super::notation::{self, parse};
 use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
 use super::tokens::tokens;
@@ -174,9 +175,9 @@ fn random_and_hostile_texts_end() {
         layout: &chosen.layout,
         prompt: "day",
         conditions: Default::default(),
-            ego_moves: false,
-            length_s: 0.0,
-        };
+        ego_moves: false,
+        length_s: 0.0,
+    };
     let n: u64 = std::env::var("SCENELOOM_TEXTS")
         .ok()
         .and_then(|n| n.parse().ok())
@@ -246,4 +247,51 @@ fn words_that_a_language_model_knows_are_not_named() {
         "{:?}",
         nothing.missing
     );
+}
+
+/// The exam of motion (`tests/words/motion.jsonl`): sentences in four voices that no reader was trained on. A reading is right if
+/// it is the labelled one to the last symbol.
+#[test]
+fn sentences_about_motion_are_read() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../tests/words/motion.jsonl");
+    let text = std::fs::read_to_string(path).expect("the exam");
+    let (mut right, mut all) = (0, 0);
+    for line in text.lines() {
+        let record: serde_json::Value = serde_json::from_str(line).expect("a record");
+        let said = |key: &str| record[key].as_str().expect("words").to_owned();
+        let mode = if said("kind") == "prompt" {
+            Mode::Prompt
+        } else {
+            Mode::Edit
+        };
+        let wanted = canonical(&parse(&said("reading")).expect("notation"), mode);
+        let heard = hear(&said("text"), mode).expect("the shipped weights").reading;
+        let found = canonical(&Reading::of(heard.acts), mode);
+        all += 1;
+        // (yards and miles are rounded in the labels; "the it" is it)
+        let line = |reading: &Reading| {
+            let words = notation::write(reading).replace("the it", "it");
+            let rounded = words.split(' ').map(|word| {
+                let unit = word.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
+                let number = word[..word.len() - unit.len()]
+                    .parse::<f64>()
+                    .ok()
+                    .filter(|_| !unit.is_empty());
+                number.map_or(word.to_owned(), |n| format!("{:.1}{unit}", n))
+            });
+            rounded.collect::<Vec<_>>().join(" ")
+        };
+        if line(&found) == line(&wanted) {
+            right += 1;
+        } else {
+            println!(
+                "{}\n   is  {}\n   got {}",
+                said("text"),
+                notation::write(&wanted),
+                notation::write(&found)
+            );
+        }
+    }
+    println!("{right} of {all}");
+    assert!(2 * right > all, "{right} of {all} sentences are read as labelled");
 }

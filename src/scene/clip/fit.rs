@@ -27,7 +27,12 @@ pub(super) fn fitted(poses: &[Key]) -> Vec<Key> {
             return keys;
         }
         // A key changes the slopes at its neighbours: gaps that are nearly right may become so by themselves.
-        chosen.extend(worst.iter().filter(|(off, _)| *off >= most / 2.0).map(|(_, i)| *i));
+        chosen.extend(
+            worst
+                .iter()
+                .filter(|(off, _)| *off >= most / 2.0)
+                .map(|(_, i)| *i),
+        );
         chosen.sort_unstable();
     }
 }
@@ -60,7 +65,9 @@ mod tests {
     fn a_steady_drive_is_two_keys_and_a_stop_a_few() {
         assert_eq!(fitted(&[]), Vec::new());
         assert_eq!(fitted(&poses(|t| DVec2::new(10.0 * t, 0.0))).len(), 2);
-        let braked = |t: f64| 10.0 * t.min(3.0) + 10.0 * (t - 3.0).clamp(0.0, 4.0) - 1.25 * (t - 3.0).clamp(0.0, 4.0).powi(2);
+        let braked = |t: f64| {
+            10.0 * t.min(3.0) + 10.0 * (t - 3.0).clamp(0.0, 4.0) - 1.25 * (t - 3.0).clamp(0.0, 4.0).powi(2)
+        };
         let stop = poses(|t| DVec2::new(braked(t), 0.0));
         let keys = fitted(&stop);
         assert!((3..=9).contains(&keys.len()), "{} keys", keys.len());

@@ -178,7 +178,8 @@ impl Motion {
 
     /// A key where a motion without keys of its own is at a time, if that is between those it has become.
     fn hold(&self, keys: &mut Vec<Key>, time_s: f64, sampling: &Sampling) {
-        let inside = keys.first().is_some_and(|k| k.time_s < time_s) && keys.last().is_some_and(|k| time_s < k.time_s);
+        let inside =
+            keys.first().is_some_and(|k| k.time_s < time_s) && keys.last().is_some_and(|k| time_s < k.time_s);
         if !matches!(self, Self::Keys(_))
             && inside
             && let Some(pose) = self.at(time_s, |id| (sampling.parent)(id, time_s))

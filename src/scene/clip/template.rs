@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{BoxId, Class, Edit};
+use crate::Class;
 
 /// A way to move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -107,7 +107,7 @@ pub enum Pace {
 
 impl Pace {
     /// Times the usual speed.
-    fn factor(self) -> f64 {
+    pub fn factor(self) -> f64 {
         match self {
             Self::Slow => 0.5,
             Self::Fast => 1.8,
@@ -144,19 +144,6 @@ impl Manoeuvre {
             gap_m: None,
             kmh: None,
             pace: None,
-        }
-    }
-
-    /// The edit that lets a box, or (`None`) the ego vehicle, do it.
-    pub fn edit(&self, id: Option<BoxId>, class: Option<Class>) -> Edit {
-        let usual = Template::usual_mps(class);
-        let paced = self.pace.map(|pace| pace.factor() * usual);
-        Edit::LetMove {
-            id,
-            template: self.what,
-            mps: self.kmh.map(|kmh| kmh / 3.6).or(paced),
-            from_s: self.from_s,
-            gap_m: self.gap_m,
         }
     }
 }

@@ -15,9 +15,9 @@ use nets::lidar::field::Ray;
 use nets::lidar::{LearnedRay, LidarNet};
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
-use nets::{Between, OccDitTime, 
-    CELLS, CHANNELS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, LATENT, ModelError,
-    OccModels, OccVae, fine_vae, tokens_of,
+use nets::{
+    Between, CELLS, CHANNELS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, LATENT,
+    ModelError, OccDitTime, OccModels, OccVae, fine_vae, tokens_of,
 };
 use safetensors::{Dtype, SafeTensors};
 use scene::VoxelGrid;
@@ -253,13 +253,24 @@ fn temporal_blocks_agree_with_python() {
         .iter()
         .map(|_| models.dit.prepare(&condition()).expect("a condition"))
         .collect();
-    let x: Vec<Vec<f32>> = uniform(3 * LATENT, 9).chunks_exact(LATENT).map(<[f32]>::to_vec).collect();
+    let x: Vec<Vec<f32>> = uniform(3 * LATENT, 9)
+        .chunks_exact(LATENT)
+        .map(<[f32]>::to_vec)
+        .collect();
     let truth = golden.f32("every_fiftieth_v");
-    for (t, truth) in golden.f32("t").into_iter().zip(truth.chunks_exact(3 * LATENT / 50)) {
+    for (t, truth) in golden
+        .f32("t")
+        .into_iter()
+        .zip(truth.chunks_exact(3 * LATENT / 50))
+    {
         let v = time
             .forward(&models.dit, &x, t, &prepared, &between)
             .expect("a finite state");
-        assert_close(&format!("v at t = {t}"), v.concat().into_iter().step_by(50), truth);
+        assert_close(
+            &format!("v at t = {t}"),
+            v.concat().into_iter().step_by(50),
+            truth,
+        );
     }
     let error = time.forward(&models.dit, &x[..2], 1.0, &prepared, &between);
     assert!(error.is_err(), "two states for three frames");

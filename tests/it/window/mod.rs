@@ -11,6 +11,7 @@ mod overdraw;
 mod recovery;
 mod sensors;
 mod shell;
+mod space;
 mod staged;
 mod timeline;
 mod tools;

@@ -2,7 +2,7 @@
 
 mod graph;
 mod motion_menu;
-pub(crate) mod row_menu;
+mod row_menu;
 mod rows;
 mod transport;
 
@@ -60,7 +60,9 @@ impl Pane for Timeline {
             let graph_points = if ui.available_height() > 150.0 { 58.0 } else { 0.0 };
             let rows_points = (ui.available_height() - graph_points).max(40.0);
             let findings = cx.checking.findings().map_or(&[][..], |f| f.as_slice());
-            let track = self.rows.show(ui, &scene, (cx.state, findings), rows_points, commands);
+            let track = self
+                .rows
+                .show(ui, &scene, (cx.state, findings), rows_points, commands);
             if graph_points > 0.0 {
                 graph::show(ui, &scene, cx.state.selected, track);
             }

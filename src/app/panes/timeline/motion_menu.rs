@@ -64,7 +64,10 @@ fn templates(
     ui.separator();
     ui.horizontal(|ui| {
         ui.label("At second");
-        let value = DragValue::new(&mut at_s).range(0.0..=600.0).speed(0.1).fixed_decimals(1);
+        let value = DragValue::new(&mut at_s)
+            .range(0.0..=600.0)
+            .speed(0.1)
+            .fixed_decimals(1);
         ui.add(value).on_hover_text("When the motions below begin");
     });
     choices(ui, timed);

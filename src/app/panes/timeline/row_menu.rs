@@ -5,18 +5,11 @@ use egui::Ui;
 use scene::{BoxId, Motion, Moving, Scene};
 
 use crate::command::Command;
-use crate::playback::Playback;
+use crate::playback::{Copied, Playback};
 use editor::Edit;
 
 /// How many neighbours a thing can be attached to from the menu.
 const MOST_NEIGHBOURS: usize = 8;
-
-/// A motion that was copied, and where it begins.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Copied {
-    motion: Motion,
-    start: Moving,
-}
 
 /// Draws the menu's entries.
 pub(super) fn entries(
@@ -27,7 +20,9 @@ pub(super) fn entries(
     commands: &mut Vec<Command>,
 ) {
     let (clip, now_s) = (scene.clip(), scene.time_s());
-    let there_s = id.and_then(|id| clip.tracks.get(&id)).map_or([None; 2], |t| t.there_s);
+    let there_s = id
+        .and_then(|id| clip.tracks.get(&id))
+        .map_or([None; 2], |t| t.there_s);
     let motion = clip.motion(id);
     let place = |time_s: f64| match id {
         Some(id) => clip.moving(id, time_s),
@@ -52,7 +47,10 @@ pub(super) fn entries(
                 ui.close();
             }
         }
-        if ui.add_enabled(timed, egui::Button::new("Begin at this moment")).clicked() {
+        if ui
+            .add_enabled(timed, egui::Button::new("Begin at this moment"))
+            .clicked()
+        {
             let start_s = motion.times_s().into_iter().fold(f64::INFINITY, f64::min);
             set("Begin later", motion.retimed(|t| t + now_s - start_s), there_s);
             ui.close();
@@ -61,7 +59,11 @@ pub(super) fn entries(
         if ui.button("Mirror").on_hover_text(hint).clicked() {
             let pose = scene.frame().world_from_ego;
             let ahead = (pose.rotation * glam::DVec3::X).truncate();
-            set("Mirror motion", motion.mirrored(pose.translation_m.truncate(), ahead.to_angle()), there_s);
+            set(
+                "Mirror motion",
+                motion.mirrored(pose.translation_m.truncate(), ahead.to_angle()),
+                there_s,
+            );
             ui.close();
         }
         ui.separator();
@@ -73,12 +75,22 @@ pub(super) fn entries(
             ui.close();
         }
     }
-    let copied = playback.copied.clone().zip(place(now_s).or_else(|| standing(scene, id)));
+    let copied = playback
+        .copied
+        .clone()
+        .zip(place(now_s).or_else(|| standing(scene, id)));
     let hint = "The same way from where this is at the moment that is shown";
-    if ui.add_enabled(copied.is_some(), egui::Button::new("Paste motion")).on_hover_text(hint).clicked()
+    if ui
+        .add_enabled(copied.is_some(), egui::Button::new("Paste motion"))
+        .on_hover_text(hint)
+        .clicked()
         && let Some((copied, here)) = copied
     {
-        set("Paste motion", copied.motion.carried(&copied.start, &here), there_s);
+        set(
+            "Paste motion",
+            copied.motion.carried(&copied.start, &here),
+            there_s,
+        );
         ui.close();
     }
     let Some(own) = id else { return };
@@ -102,12 +114,21 @@ pub(super) fn entries(
     if let Some(motion) = motion {
         ui.separator();
         let trims = [
-            ("Appears at this moment", [Some(now_s), there_s[1].filter(|to| *to > now_s)]),
-            ("Disappears at this moment", [there_s[0].filter(|from| *from < now_s), Some(now_s)]),
+            (
+                "Appears at this moment",
+                [Some(now_s), there_s[1].filter(|to| *to > now_s)],
+            ),
+            (
+                "Disappears at this moment",
+                [there_s[0].filter(|from| *from < now_s), Some(now_s)],
+            ),
             ("There all the time", [None; 2]),
         ];
         for (text, trimmed) in trims {
-            if ui.add_enabled(trimmed != there_s, egui::Button::new(text)).clicked() {
+            if ui
+                .add_enabled(trimmed != there_s, egui::Button::new(text))
+                .clicked()
+            {
                 set(text, motion.clone(), trimmed);
                 ui.close();
             }
@@ -144,11 +165,24 @@ fn standing(scene: &Scene, id: Option<BoxId>) -> Option<Moving> {
 /// Other moving objects, the nearest first, that are not themselves attached to anything.
 fn neighbours(scene: &Scene, own: BoxId, here: &Moving) -> Vec<(BoxId, Moving, String)> {
     let clip = scene.clip();
-    let free = clip.tracks.iter().filter(|(id, t)| **id != own && !matches!(t.motion, Motion::Attached { .. }));
+    let free = clip
+        .tracks
+        .iter()
+        .filter(|(id, t)| **id != own && !matches!(t.motion, Motion::Attached { .. }));
     let mut out: Vec<(BoxId, Moving, String)> = free
-        .filter_map(|(id, t)| Some((*id, clip.moving(*id, scene.time_s())?, format!("{} {}", t.made.called(), id.0))))
+        .filter_map(|(id, t)| {
+            Some((
+                *id,
+                clip.moving(*id, scene.time_s())?,
+                format!("{} {}", t.made.called(), id.0),
+            ))
+        })
         .collect();
-    out.sort_by(|a, b| a.1.at_m.distance(here.at_m).total_cmp(&b.1.at_m.distance(here.at_m)));
+    out.sort_by(|a, b| {
+        a.1.at_m
+            .distance(here.at_m)
+            .total_cmp(&b.1.at_m.distance(here.at_m))
+    });
     out.truncate(MOST_NEIGHBOURS);
     out
 }
@@ -164,18 +198,33 @@ mod tests {
         let path = Path {
             points_m: vec![DVec2::ZERO, DVec2::new(100.0, 0.0)],
             start_m: 0.0,
-            speeds: vec![Speed { time_s: 1.0, mps: 2.0 }, Speed { time_s: 5.0, mps: 6.0 }],
+            speeds: vec![
+                Speed {
+                    time_s: 1.0,
+                    mps: 2.0,
+                },
+                Speed {
+                    time_s: 5.0,
+                    mps: 6.0,
+                },
+            ],
             rear_first: false,
         };
         let steady = Path {
-            speeds: vec![Speed { time_s: 1.0, mps: 4.0 }],
+            speeds: vec![Speed {
+                time_s: 1.0,
+                mps: 4.0,
+            }],
             ..path.clone()
         };
         let at = |m: &Motion, t: f64| m.at(t, |_| None).expect("there").at_m.x;
         for motion in [Motion::Path(path), Motion::Path(steady)] {
             let fast = quicker(&motion, 2.0);
             for t in [1.0, 2.0, 4.0, 5.0] {
-                assert!((at(&motion, t) - at(&fast, 1.0 + (t - 1.0) / 2.0)).abs() < 1e-9, "{t}");
+                assert!(
+                    (at(&motion, t) - at(&fast, 1.0 + (t - 1.0) / 2.0)).abs() < 1e-9,
+                    "{t}"
+                );
             }
         }
     }

@@ -5,8 +5,8 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo
 
 use scene::{BoxId, Motion, Scene};
 
-use crate::command::{Command, TimeCommand};
 use super::row_menu;
+use crate::command::{Command, TimeCommand};
 use crate::state::UiState;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
@@ -99,7 +99,14 @@ impl Rows {
         });
         let x = track.x(scene.time_s());
         let line = shown.inner_rect.y_range();
-        faults(ui, Rect::from_min_max(top.min, pos2(top.right(), line.max)), track, scene, findings, commands);
+        faults(
+            ui,
+            Rect::from_min_max(top.min, pos2(top.right(), line.max)),
+            track,
+            scene,
+            findings,
+            commands,
+        );
         ui.painter()
             .vline(x, top.bottom()..=line.max, Stroke::new(1.0, theme::accent()));
         track
@@ -260,7 +267,14 @@ fn diamond(painter: &egui::Painter, at: Pos2, color: Color32) {
 }
 
 /// Moments at which the checks found something, marked over all rows; a click shows them.
-fn faults(ui: &Ui, area: Rect, track: Track, scene: &Scene, findings: &[Finding], commands: &mut Vec<Command>) {
+fn faults(
+    ui: &Ui,
+    area: Rect,
+    track: Track,
+    scene: &Scene,
+    findings: &[Finding],
+    commands: &mut Vec<Command>,
+) {
     let open = waive::open(scene.frame(), findings);
     for (i, finding) in open.filter(|f| f.severity == Severity::Error).enumerate() {
         let Some(time_s) = finding.time_s else {
@@ -268,7 +282,8 @@ fn faults(ui: &Ui, area: Rect, track: Track, scene: &Scene, findings: &[Finding]
         };
         let x = track.x(time_s.clamp(0.0, track.length_s));
         let stroke = Stroke::new(1.0, theme::bad().gamma_multiply(0.5));
-        ui.painter().vline(x, area.top() + RULER_POINTS..=area.bottom(), stroke);
+        ui.painter()
+            .vline(x, area.top() + RULER_POINTS..=area.bottom(), stroke);
         let knob = Rect::from_center_size(pos2(x, area.top() + RULER_POINTS - 4.0), vec2(9.0, 9.0));
         ui.painter().circle_filled(knob.center(), 3.5, theme::bad());
         let response = ui.interact(knob, ui.scope_id().with(("fault", i)), Sense::click());

@@ -33,15 +33,27 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Tools, "extend_ahead", "Extend the map ahead by 40 m", "", || {
         Command::Apply("Extend the map", vec![extend(DVec2::X, 40.0)])
     }),
-    action(Tools, "extend_behind", "Extend the map behind by 40 m", "", || {
-        Command::Apply("Extend the map", vec![extend(DVec2::NEG_X, 40.0)])
-    }),
-    action(Tools, "extend_left", "Extend the map to the left by 40 m", "", || {
-        Command::Apply("Extend the map", vec![extend(DVec2::Y, 40.0)])
-    }),
-    action(Tools, "extend_right", "Extend the map to the right by 40 m", "", || {
-        Command::Apply("Extend the map", vec![extend(DVec2::NEG_Y, 40.0)])
-    }),
+    action(
+        Tools,
+        "extend_behind",
+        "Extend the map behind by 40 m",
+        "",
+        || Command::Apply("Extend the map", vec![extend(DVec2::NEG_X, 40.0)]),
+    ),
+    action(
+        Tools,
+        "extend_left",
+        "Extend the map to the left by 40 m",
+        "",
+        || Command::Apply("Extend the map", vec![extend(DVec2::Y, 40.0)]),
+    ),
+    action(
+        Tools,
+        "extend_right",
+        "Extend the map to the right by 40 m",
+        "",
+        || Command::Apply("Extend the map", vec![extend(DVec2::NEG_Y, 40.0)]),
+    ),
     action(Selection, "delete", "Delete", "Del Backspace", || {
         Command::Tools(ToolCommand::Delete)
     }),

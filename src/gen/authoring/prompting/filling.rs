@@ -105,7 +105,7 @@ pub(super) fn fill_in(
                 label: BoxLabel::default(),
                 size_m: None,
                 relations: Vec::new(),
-            motion: None,
+                motion: None,
             });
         }
     }

@@ -251,7 +251,9 @@ impl<B: Ops> OccDit<B> {
         let (ops, places) = (&self.ops, &condition.tokens);
         let cells = || places.iter().flat_map(|token| patch(*token));
         let normed = ops.modulate(tokens, &ops.apply(&self.final_ada, time, 1)?)?;
-        let patches = ops.download(ops.apply(&self.last, &normed, piece_of(places.len()))?)?.data;
+        let patches = ops
+            .download(ops.apply(&self.last, &normed, piece_of(places.len()))?)?
+            .data;
         let gates = ops.download(ops.apply(&self.skip, time, 1)?)?.data;
         let added = ops.download(ops.apply(&self.skip_given, time, 1)?)?.data;
         let mut out = vec![0.0; LATENT];

@@ -146,10 +146,16 @@ impl OccDitTime {
                 proj: linear("proj", width, width)?,
                 fc1: linear("fc1", width, 2 * width)?,
                 fc2: linear("fc2", 2 * width, width)?,
-                v_offset: Cpu.linear_without_bias(&mut file, &format!("blocks.{i}.v_offset"), [offsets, width])?,
+                v_offset: Cpu.linear_without_bias(
+                    &mut file,
+                    &format!("blocks.{i}.v_offset"),
+                    [offsets, width],
+                )?,
             })
         };
-        let blocks = (0..config.blocks).map(block).collect::<Result<_, WeightsError>>()?;
+        let blocks = (0..config.blocks)
+            .map(block)
+            .collect::<Result<_, WeightsError>>()?;
         file.finish()?;
         Ok(Self { config, blocks })
     }
@@ -194,7 +200,9 @@ impl OccDitTime {
                 let before = std::mem::replace(tokens, empty);
                 *tokens = Cpu.block(block, before, &ada, &places, &mut keys_values, Precision::F32)?;
             }
-            let behind = (i + 1).is_multiple_of(self.config.every).then(|| (i + 1) / self.config.every - 1);
+            let behind = (i + 1)
+                .is_multiple_of(self.config.every)
+                .then(|| (i + 1) / self.config.every - 1);
             if let Some(temporal) = behind.and_then(|k| self.blocks.get(k)) {
                 let mut data: Vec<&mut [f32]> = frames.iter_mut().map(|f| f.data.as_mut_slice()).collect();
                 let times: Vec<&[f32]> = times.iter().map(|t| t.data.as_slice()).collect();
@@ -219,28 +227,37 @@ impl TimeBlock {
         for (f, tokens) in frames.iter().enumerate() {
             let mut normed = vec![0.0; tokens.len()];
             kernels::norm_rows(tokens, NORM_EPS, &scale(f, 1), part(f, 0), &mut normed);
-            told.push((self.qkv.parallel(&normed, piece), self.q_offset.parallel(&normed, piece)));
+            told.push((
+                self.qkv.parallel(&normed, piece),
+                self.q_offset.parallel(&normed, piece),
+            ));
         }
         for (f, tokens) in frames.iter_mut().enumerate() {
             let (scale2, told) = (scale(f, 4), &told);
-            tokens.par_chunks_mut(piece * width).enumerate().for_each(|(at, x)| {
-                let (mut attended, mut places) = (vec![0.0; x.len()], vec![0.0; x.len() / width * heads * OFFSETS]);
-                let rows = attended.chunks_exact_mut(width).zip(places.chunks_exact_mut(heads * OFFSETS));
-                for (i, (out, place)) in rows.enumerate() {
-                    attend(told, between, (f, at * piece + i), heads, out, place);
-                }
-                let mut out = vec![0.0; x.len()];
-                self.v_offset.rows(&places, &mut out);
-                attended.iter_mut().zip(&out).for_each(|(a, o)| *a += o);
-                self.proj.rows(&attended, &mut out);
-                kernels::add_gated(x, part(f, 2), &out);
-                kernels::norm_rows(x, NORM_EPS, &scale2, part(f, 3), &mut attended);
-                let mut hidden = vec![0.0; 2 * x.len()];
-                self.fc1.rows(&attended, &mut hidden);
-                kernels::gelu_all(&mut hidden);
-                self.fc2.rows(&hidden, &mut out);
-                kernels::add_gated(x, part(f, 5), &out);
-            });
+            tokens
+                .par_chunks_mut(piece * width)
+                .enumerate()
+                .for_each(|(at, x)| {
+                    let (mut attended, mut places) =
+                        (vec![0.0; x.len()], vec![0.0; x.len() / width * heads * OFFSETS]);
+                    let rows = attended
+                        .chunks_exact_mut(width)
+                        .zip(places.chunks_exact_mut(heads * OFFSETS));
+                    for (i, (out, place)) in rows.enumerate() {
+                        attend(told, between, (f, at * piece + i), heads, out, place);
+                    }
+                    let mut out = vec![0.0; x.len()];
+                    self.v_offset.rows(&places, &mut out);
+                    attended.iter_mut().zip(&out).for_each(|(a, o)| *a += o);
+                    self.proj.rows(&attended, &mut out);
+                    kernels::add_gated(x, part(f, 2), &out);
+                    kernels::norm_rows(x, NORM_EPS, &scale2, part(f, 3), &mut attended);
+                    let mut hidden = vec![0.0; 2 * x.len()];
+                    self.fc1.rows(&attended, &mut hidden);
+                    kernels::gelu_all(&mut hidden);
+                    self.fc2.rows(&hidden, &mut out);
+                    kernels::add_gated(x, part(f, 5), &out);
+                });
         }
     }
 }
@@ -258,7 +275,11 @@ fn attend(
     let head_width = width / heads;
     let shrink = 1.0 / (head_width as f32).sqrt();
     let seen: Vec<(usize, usize, &[f32; OFFSETS])> = (0..told.len())
-        .filter_map(|s| between.at(frame, s, token).map(|(n, offset)| (s, usize::from(*n), offset)))
+        .filter_map(|s| {
+            between
+                .at(frame, s, token)
+                .map(|(n, offset)| (s, usize::from(*n), offset))
+        })
         .collect();
     let row = |s: usize, n: usize, part: usize| &told[s].0[(n * 3 + part) * width..][..width];
     let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
@@ -276,9 +297,15 @@ fn attend(
         for ((s, n, offset), weight) in seen.iter().zip(&weights) {
             let weight = weight / sum;
             let values = &row(*s, *n, 2)[channels.clone()];
-            out[channels.clone()].iter_mut().zip(values).for_each(|(o, v)| *o += weight * v);
+            out[channels.clone()]
+                .iter_mut()
+                .zip(values)
+                .for_each(|(o, v)| *o += weight * v);
             let offsets = &mut place[head * OFFSETS..][..OFFSETS];
-            offsets.iter_mut().zip(*offset).for_each(|(p, o)| *p += weight * o);
+            offsets
+                .iter_mut()
+                .zip(*offset)
+                .for_each(|(p, o)| *p += weight * o);
         }
     }
 }
@@ -291,7 +318,11 @@ mod tests {
     fn the_token_of_another_frame_lies_at_the_same_place() {
         // The second frame stands two tokens farther ahead; the third is turned by a quarter.
         let quarter = std::f64::consts::FRAC_PI_2;
-        let between = Between::of(&[[0.0; 3], [2.0 * TOKEN_M, 0.0, 0.0], [0.0, 0.0, quarter]], 0.5, false);
+        let between = Between::of(
+            &[[0.0; 3], [2.0 * TOKEN_M, 0.0, 0.0], [0.0, 0.0, quarter]],
+            0.5,
+            false,
+        );
         let token = |x: usize, y: usize| x * TOKENS_PER_SIDE + y;
         let (index, offset) = between.at(0, 1, token(10, 7)).expect("in sight");
         assert_eq!(usize::from(*index), token(8, 7));
@@ -300,10 +331,17 @@ mod tests {
         let (index, offset) = between.at(0, 2, token(20, 12)).expect("in sight");
         assert_eq!(usize::from(*index), token(12, 4));
         assert!((offset[3] + 1.0).abs() < 1e-6);
-        assert!(between.at(1, 1, 3).is_some_and(|p| usize::from(p.0) == 3 && p.1[6] == 1.0));
+        assert!(
+            between
+                .at(1, 1, 3)
+                .is_some_and(|p| usize::from(p.0) == 3 && p.1[6] == 1.0)
+        );
         let lost = Between::of(&[[0.0; 3], [f64::NAN; 3]], 0.5, false);
         assert!(lost.at(0, 1, 0).is_none());
         let same = Between::of(&[[0.0; 3], [90.0, 0.0, 0.0]], 0.5, true);
-        assert!(same.at(0, 1, 5).is_some_and(|p| usize::from(p.0) == 5 && p.1[0] == -1.0));
+        assert!(
+            same.at(0, 1, 5)
+                .is_some_and(|p| usize::from(p.0) == 5 && p.1[0] == -1.0)
+        );
     }
 }

@@ -21,7 +21,7 @@ impl Stage<'_> {
         }
         if who.is_empty() {
             self.ego_moves = true;
-            self.out.edits.push(how.edit(None, None));
+            self.out.edits.push(Edit::let_move(how, None, None));
             self.done().scene = true;
             return;
         }
@@ -32,12 +32,14 @@ impl Stage<'_> {
         let needs_us = how.what == Template::CutIn || how.gap_m.is_some();
         if needs_us && !self.ego_moves && !ids.is_empty() {
             self.ego_moves = true;
-            self.out.edits.push(Manoeuvre::of(Template::Follow).edit(None, None));
+            self.out
+                .edits
+                .push(Edit::let_move(&Manoeuvre::of(Template::Follow), None, None));
             self.remark(Remark::EgoDrives);
         }
         for id in ids {
             let class = self.boxes.get(&id).map(|b| b.class);
-            self.out.edits.push(how.edit(Some(id), class));
+            self.out.edits.push(Edit::let_move(how, Some(id), class));
             self.done().changed.push(id);
         }
     }

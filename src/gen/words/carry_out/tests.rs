@@ -355,10 +355,16 @@ fn motions_become_edits() {
     };
     assert_eq!(*stop, wanted);
     let outcome = base.edit("go the car cut_in");
-    assert!(matches!(outcome.edits[0], Edit::LetMove { id: None, .. }), "{outcome:?}");
+    assert!(
+        matches!(outcome.edits[0], Edit::LetMove { id: None, .. }),
+        "{outcome:?}"
+    );
     assert_eq!(outcome.remarks, [(0, Remark::EgoDrives)]);
     let outcome = base.edit("go ego drive fast ; go the bus drive gap 5m");
-    assert!(outcome.remarks.is_empty() && outcome.edits.len() == 2, "{outcome:?}");
+    assert!(
+        outcome.remarks.is_empty() && outcome.edits.len() == 2,
+        "{outcome:?}"
+    );
     let outcome = base.edit("go the truck stop");
     assert!(outcome.edits.is_empty() && matches!(outcome.remarks[0].1, Remark::Nobody { .. }));
 }

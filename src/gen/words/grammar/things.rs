@@ -77,9 +77,9 @@ impl Grammar<'_> {
         let mut t = Thing::new(Noun::Thing);
         let number = |i: usize| {
             let token = self.tokens.get(i)?;
-            let v = token
-                .value
-                .filter(|v| !token.is_length && !token.is_speed && v.fract() == 0.0 && (0.0..1e6).contains(v))?;
+            let v = token.value.filter(|v| {
+                !token.is_length && !token.is_speed && v.fract() == 0.0 && (0.0..1e6).contains(v)
+            })?;
             Some(v as u32)
         };
         // "two to four", "3-5", "between three and five"

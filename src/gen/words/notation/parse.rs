@@ -205,7 +205,11 @@ impl<'t> Parser<'t> {
                 What::Count { who, amount }
             }
             "go" => {
-                let who = if self.takes("ego") { Vec::new() } else { self.list()? };
+                let who = if self.takes("ego") {
+                    Vec::new()
+                } else {
+                    self.list()?
+                };
                 let how = self.manoeuvre()?;
                 What::Go { who, how }
             }

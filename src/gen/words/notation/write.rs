@@ -53,7 +53,11 @@ fn list(things: &[Thing]) -> String {
 
 fn manoeuvre(how: &Manoeuvre) -> String {
     let mut out = how.what.name().to_owned();
-    let numbers = [("from", how.from_s, "s"), ("gap", how.gap_m, "m"), ("speed", how.kmh, "kmh")];
+    let numbers = [
+        ("from", how.from_s, "s"),
+        ("gap", how.gap_m, "m"),
+        ("speed", how.kmh, "kmh"),
+    ];
     for (name, number, unit) in numbers {
         if let Some(n) = number {
             out += &format!(" {name} {n}{unit}");

@@ -192,7 +192,9 @@ fn unit_after(symbol: &str) -> Option<&'static str> {
 }
 
 fn is_number(name: &str) -> bool {
-    name.trim_end_matches('m').parse::<f64>().is_ok_and(f64::is_finite)
+    name.trim_end_matches('m')
+        .parse::<f64>()
+        .is_ok_and(f64::is_finite)
 }
 
 /// Buckets of the letter triples of a word with its ends.

@@ -70,14 +70,24 @@ pub fn flicker(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
 pub fn shape_spread(truth: &[DriveFrame], found: &[VoxelGrid]) -> Option<f64> {
     let inside = |b: &SceneBox| b.center_m.truncate().abs().max_element() < 36.0;
     let first = truth.first()?;
-    let moving = first.boxes.values().filter(|b| b.velocity_mps.length() > 0.5 && inside(b));
+    let moving = first
+        .boxes
+        .values()
+        .filter(|b| b.velocity_mps.length() > 0.5 && inside(b));
     let mut spreads = Vec::new();
     for b in moving {
-        let boxes: Option<Vec<&SceneBox>> = truth.iter().map(|f| f.boxes.get(&b.id).filter(|b| inside(b))).collect();
+        let boxes: Option<Vec<&SceneBox>> = truth
+            .iter()
+            .map(|f| f.boxes.get(&b.id).filter(|b| inside(b)))
+            .collect();
         let Some(boxes) = boxes else {
             continue;
         };
-        let counts: Vec<f64> = boxes.iter().zip(found).map(|(b, grid)| voxels_of(grid, b)).collect();
+        let counts: Vec<f64> = boxes
+            .iter()
+            .zip(found)
+            .map(|(b, grid)| voxels_of(grid, b))
+            .collect();
         let mean = counts.iter().sum::<f64>() / counts.len() as f64;
         if mean > 0.0 {
             let variance = counts.iter().map(|n| (n - mean).powi(2)).sum::<f64>() / counts.len() as f64;
@@ -104,7 +114,9 @@ pub fn steadiness(extractor: &Extractor, found: &[VoxelGrid]) -> anyhow::Result<
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         dot(a, b) / (dot(a, a) * dot(b, b)).sqrt().max(1e-12)
     };
-    let later = features.windows(2).map(|pair| (cos(&pair[1], &pair[0]) + cos(&pair[1], &features[0])) / 2.0);
+    let later = features
+        .windows(2)
+        .map(|pair| (cos(&pair[1], &pair[0]) + cos(&pair[1], &features[0])) / 2.0);
     Ok(later.sum::<f64>() / (features.len().max(2) - 1) as f64)
 }
 

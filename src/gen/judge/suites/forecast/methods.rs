@@ -9,7 +9,9 @@ use job::drive::DriveNetwork;
 use nets::{CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, SIDE, column_heights};
 use nn::weights::{self, WeightFile};
 use scene::clip::ObjectVoxels;
-use scene::{BevLayout, BoxId, Class, Density, Extent, Pose, SceneBox, VoxelGrid, VoxelPaint, Window, draft, raster};
+use scene::{
+    BevLayout, BoxId, Class, Density, Extent, Pose, SceneBox, VoxelGrid, VoxelPaint, Window, draft, raster,
+};
 
 /// Frames that are known.
 pub const KNOWN: usize = 2;
@@ -46,13 +48,34 @@ enum How {
 
 /// All of them.
 pub const METHODS: [Method; 7] = [
-    Method { name: "last frame, warped", how: How::Warped },
-    Method { name: "constant velocity", how: How::ConstantVelocity },
-    Method { name: "draft of the layout", how: How::Draft },
-    Method { name: "single frames", how: How::Single },
-    Method { name: "temporal, same cell", how: How::SameCell },
-    Method { name: "temporal", how: How::Together },
-    Method { name: "canvas, inpainted", how: How::Canvas },
+    Method {
+        name: "last frame, warped",
+        how: How::Warped,
+    },
+    Method {
+        name: "constant velocity",
+        how: How::ConstantVelocity,
+    },
+    Method {
+        name: "draft of the layout",
+        how: How::Draft,
+    },
+    Method {
+        name: "single frames",
+        how: How::Single,
+    },
+    Method {
+        name: "temporal, same cell",
+        how: How::SameCell,
+    },
+    Method {
+        name: "temporal",
+        how: How::Together,
+    },
+    Method {
+        name: "canvas, inpainted",
+        how: How::Canvas,
+    },
 ];
 
 /// A frame to come, as far as it is told.
@@ -101,9 +124,19 @@ impl<'a> Drives<'a> {
         let told: Vec<Told> = (KNOWN..truth.len()).map(|i| told(truth, i, wish)).collect();
         let last = &truth[KNOWN - 1];
         Ok(Some(match method.how {
-            How::Warped => told.iter().map(|to| warped(&last.dense, &pose(last), to)).collect(),
-            How::ConstantVelocity => told.iter().enumerate().map(|(i, to)| moved_world(last, to, i).0).collect(),
-            How::Draft => told.iter().map(|to| draft::draft(&to.layout, to.boxes.values())).collect(),
+            How::Warped => told
+                .iter()
+                .map(|to| warped(&last.dense, &pose(last), to))
+                .collect(),
+            How::ConstantVelocity => told
+                .iter()
+                .enumerate()
+                .map(|(i, to)| moved_world(last, to, i).0)
+                .collect(),
+            How::Draft => told
+                .iter()
+                .map(|to| draft::draft(&to.layout, to.boxes.values()))
+                .collect(),
             How::Single => self.drawn(None, truth, &told, seed)?,
             How::Together => self.drawn(Some(&self.time), truth, &told, seed)?,
             How::SameCell => match &self.same_cell {
@@ -221,12 +254,20 @@ fn told(truth: &[DriveFrame], i: usize, wish: Wish) -> Told {
     }
     let from = pose(last);
     let seconds = (i + 1 - KNOWN) as f64 * STEP_S;
-    let boxes = last.boxes.iter().map(|(id, b)| (*id, moved_on(b, seconds, &from, &to))).collect();
+    let boxes = last
+        .boxes
+        .iter()
+        .map(|(id, b)| (*id, moved_on(b, seconds, &from, &to)))
+        .collect();
     // Beyond its edge the map goes on as it is there.
     let most = Window::NX as f64 * Window::VOXEL_M / 2.0 - 0.1;
     let at = |x: usize, y: usize| {
-        let p = from.inverse().apply(to.apply(Window::center(x, y, 0).with_z(0.0)));
-        Extent::WINDOW.column_at(p.x.clamp(-most, most), p.y.clamp(-most, most)).unwrap_or([0, 0])
+        let p = from
+            .inverse()
+            .apply(to.apply(Window::center(x, y, 0).with_z(0.0)));
+        Extent::WINDOW
+            .column_at(p.x.clamp(-most, most), p.y.clamp(-most, most))
+            .unwrap_or([0, 0])
     };
     let cells = Extent::WINDOW.all_columns().map(|[x, y]| {
         let [i, j] = at(x, y);
@@ -278,7 +319,9 @@ fn moved_world(last: &DriveFrame, to: &Told, i: usize) -> (VoxelGrid, Vec<bool>)
     let seconds = (i + 1) as f64 * STEP_S;
     let painted = VoxelPaint::over(Extent::WINDOW);
     for b in last.boxes.values().filter(|b| b.velocity_mps.length() > 0.1) {
-        let voxels = ObjectVoxels::cut(&last.dense, b, |_, label| label == b.class.id() && label != Class::FREE);
+        let voxels = ObjectVoxels::cut(&last.dense, b, |_, label| {
+            label == b.class.id() && label != Class::FREE
+        });
         voxels.stamp(&mut out, &painted, b, &moved_on(b, seconds, &from, &to.pose));
     }
     (out, seen)

@@ -21,7 +21,10 @@ use metrics::iou::Confusion;
 /// Frames that are compared: one, two and three seconds after the last known one.
 const COMPARED: [(&str, usize); 3] = [("1 s", 3), ("2 s", 5), ("3 s", 7)];
 /// Which layouts the frames to come are drawn from: those that came, or those that the last frame lets expect.
-const LAYOUTS: [(&str, Wish); 2] = [("layouts that came", Wish::Came), ("layouts expected", Wish::Expected)];
+const LAYOUTS: [(&str, Wish); 2] = [
+    ("layouts that came", Wish::Came),
+    ("layouts expected", Wish::Expected),
+];
 
 impl Options {
     /// Forecasts, side by side.
@@ -73,7 +76,11 @@ pub(crate) fn table(report: &Value) -> String {
         let Some(rows) = report[kind].as_object() else {
             continue;
         };
-        let names: Vec<&String> = rows.values().next().and_then(Value::as_object).map_or(Vec::new(), |r| r.keys().collect());
+        let names: Vec<&String> = rows
+            .values()
+            .next()
+            .and_then(Value::as_object)
+            .map_or(Vec::new(), |r| r.keys().collect());
         out += &format!("{:28}", "");
         names.iter().for_each(|n| out += &format!("{n:>16}"));
         out.push('\n');
@@ -84,7 +91,11 @@ pub(crate) fn table(report: &Value) -> String {
             out += &format!("{:28}", method.name);
             for name in &names {
                 let (mean, ci) = (&row[*name]["mean"], &row[*name]["ci95"]);
-                let cell = format!("{:.3} ± {:.3}", mean.as_f64().unwrap_or(f64::NAN), ci.as_f64().unwrap_or(f64::NAN));
+                let cell = format!(
+                    "{:.3} ± {:.3}",
+                    mean.as_f64().unwrap_or(f64::NAN),
+                    ci.as_f64().unwrap_or(f64::NAN)
+                );
                 out += &format!("{cell:>16}");
             }
             out.push('\n');
@@ -96,6 +107,9 @@ pub(crate) fn table(report: &Value) -> String {
 /// A row for a report.
 impl Rows {
     fn report(&self) -> Value {
-        self.0.iter().map(|(name, values)| (name.clone(), with_interval(values))).collect()
+        self.0
+            .iter()
+            .map(|(name, values)| (name.clone(), with_interval(values)))
+            .collect()
     }
 }

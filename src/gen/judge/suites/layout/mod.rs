@@ -431,9 +431,9 @@ fn changed(
         layout: &frame.layout,
         prompt: &scene.prompt,
         conditions: scene.conditions,
-            ego_moves: false,
-            length_s: 0.0,
-        };
+        ego_moves: false,
+        length_s: 0.0,
+    };
     let outcome = carry_out(reading, &open, seed);
     let wall_s = read.wall_s + started.elapsed().as_secs_f64();
     let asked = outcome.questions.first().map(|q| q.candidates.len());

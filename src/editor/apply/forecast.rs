@@ -6,10 +6,11 @@ use glam::DVec2;
 use scene::clip::{Path, Speed};
 use scene::{BoxId, Class, Clip, Edit, Key, Motion, Moving, Scene};
 
-use super::follow::{self, Driver, Other};
-use super::lane_path::lane_path;
-use crate::apply_all;
+use super::apply_all;
 use crate::reaching::{reaching, sights_m};
+use crate::traffic::follow::{self, Driver, Other};
+use crate::traffic::lane_path::lane_path;
+use crate::traffic::template;
 
 /// Slower than this nobody goes on, m/s.
 const MOVES_MPS: f64 = 0.3;
@@ -104,7 +105,12 @@ fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
     let pose = end.frame().world_from_ego;
     let ahead = (pose.rotation * glam::DVec3::X).truncate();
     let still = Moving {
-        velocity_mps: ahead * if clip.length_s > 0.0 { 0.0 } else { scene.rig.ego_speed_mps },
+        velocity_mps: ahead
+            * if clip.length_s > 0.0 {
+                0.0
+            } else {
+                scene.rig.ego_speed_mps
+            },
         ..Moving::still(pose.translation_m.truncate(), ahead.to_angle())
     };
     out.push(Goer {
@@ -170,8 +176,15 @@ impl Goer {
         if self.class == Some(Class::Pedestrian) {
             return vec![Speed { time_s: from_s, mps }];
         }
-        let others = |t: f64| -> Vec<Other> { super::template::others(scene, self.id, from_s + t) };
-        let found = follow::speeds(&Driver::at(mps.max(2.0)), way, (0.0, mps), self.half_length_m, to_s - from_s, others);
+        let others = |t: f64| -> Vec<Other> { template::others(scene, self.id, from_s + t) };
+        let found = follow::speeds(
+            &Driver::at(mps.max(2.0)),
+            way,
+            (0.0, mps),
+            self.half_length_m,
+            to_s - from_s,
+            others,
+        );
         let at = |s: Speed| Speed {
             time_s: from_s + s.time_s,
             ..s
@@ -194,7 +207,12 @@ fn joined(path: &Path, on: &Path, from_s: f64) -> Path {
     }
     points_m.extend(&on.points_m);
     points_m.dedup();
-    let mut speeds: Vec<Speed> = path.speeds.iter().copied().filter(|s| s.time_s < from_s - 1e-6).collect();
+    let mut speeds: Vec<Speed> = path
+        .speeds
+        .iter()
+        .copied()
+        .filter(|s| s.time_s < from_s - 1e-6)
+        .collect();
     speeds.extend(&on.speeds);
     Path {
         points_m,
@@ -206,7 +224,11 @@ fn joined(path: &Path, on: &Path, from_s: f64) -> Path {
 /// Keyframes of a motion up to `from_s`, then of a path.
 fn keyed(motion: &Motion, on: &Path, (from_s, to_s): (f64, f64)) -> Vec<Key> {
     let mut keys: Vec<Key> = match motion {
-        Motion::Keys(keys) => keys.iter().copied().filter(|k| k.time_s <= from_s + 1e-6).collect(),
+        Motion::Keys(keys) => keys
+            .iter()
+            .copied()
+            .filter(|k| k.time_s <= from_s + 1e-6)
+            .collect(),
         _ => Vec::new(),
     };
     let mut last_deg = keys.last().map_or(0.0, |k| k.yaw_deg);

@@ -29,8 +29,10 @@ fn scene() -> Scene {
     }]);
     let boxes = [car(1, 20.0, 10.0), car(2, 80.0, 0.0)].map(|b| (b.id, b)).into();
     let frame = Frame::new(layout, boxes, VoxelGrid::over(extent));
-    let mut rig = SensorRig::default();
-    rig.ego_speed_mps = 10.0;
+    let rig = SensorRig {
+        ego_speed_mps: 10.0,
+        ..SensorRig::default()
+    };
     Scene::single("test", frame, rig.into(), 1)
 }
 
@@ -67,7 +69,11 @@ fn the_map_grows_to_where_we_come() {
     let mut free = scene();
     free.change_canvas(|c| c.boxes.remove(&BoxId(2)));
     let fast = after(&free, 10.0);
-    assert_eq!(fast.canvas().extent().ny(), 100, "nothing is missing to the sides");
+    assert_eq!(
+        fast.canvas().extent().ny(),
+        100,
+        "nothing is missing to the sides"
+    );
     let extent = fast.canvas().extent();
     assert!(extent.max_m().x > 100.0, "{extent:?}");
     let still = {
@@ -80,6 +86,9 @@ fn the_map_grows_to_where_we_come() {
     assert!(error.starts_with("nothing moves"), "{error}");
     for bad in [0.0, -1.0, f64::NAN, 1e9] {
         let error = forecast(&scene(), bad).expect_err("no time");
-        assert!(error.contains("s more after 0 s") && !error.contains('\n'), "{error}");
+        assert!(
+            error.contains("s more after 0 s") && !error.contains('\n'),
+            "{error}"
+        );
     }
 }
