@@ -12,6 +12,7 @@ import losses
 from data import FREE, Frames, Places, Streamed, as_tensor, leaned, prefetch, turned
 from loop import Run, pick_device
 from models.occ_vae import OccVae, VaeConfig, latent_space, load_vae
+from models.triplane_vae import TriplaneVae
 
 ZERO_AT_FIRST = ("conv2.weight", "conv2.bias", "observed.weight", "drafted.weight")
 SAVE_MINUTES, NOTE_MINUTES = 3.0, 5.0
@@ -76,7 +77,7 @@ def train(args, device, dtype):
     config.hears = args.hears
     if args.kernels:
         config.encoder_kernels, config.decoder_kernels = json.loads(args.kernels)
-    model = OccVae(config).to(device, memory_format=torch.channels_last)
+    model = (TriplaneVae if args.triplane else OccVae)(config).to(device, memory_format=torch.channels_last)
     if args.init:
         begin_with(model, args.init)
     anchor = load_vae(args.anchor, device) if args.anchor else None
@@ -103,7 +104,7 @@ def train(args, device, dtype):
             crops.append((leaned(rng, grid) if lean else grid, *heard))
         return tuple(as_tensor(list(part)) for part in zip(*crops))
 
-    meta = {"kind": "occ_vae", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data}
+    meta = {"kind": "triplane_vae" if args.triplane else "occ_vae", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "data": args.data}
     if args.decoder_of:
         meta["latents"] = latent_space(args.decoder_of)
     mean, noted, since = {}, time.monotonic(), (run.samples, time.monotonic())
@@ -145,6 +146,7 @@ def main():
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
     p.add_argument("--init", help="weights of a network of the same kind to begin with; it may lack blocks and inputs")
     p.add_argument("--fine", action="store_true", help="latents of 100x100x16 instead of 50x50x8")
+    p.add_argument("--triplane", action="store_true", help="three planes for a latent, to compare (models/triplane_vae.py); crops of whole frames")
     p.add_argument("--latent-noise", type=float, default=0.01, help="mean of the noise on latents in training, in their spread")
     p.add_argument("--kernels", help="JSON: kernels of the encoder's and the decoder's blocks, level by level, as in VaeConfig")
     p.add_argument("--anchor", help="weights of a VAE near whose latents these stay, so that its DiT needs little training on them")

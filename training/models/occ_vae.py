@@ -151,6 +151,10 @@ class OccVae(nn.Module):
         observed i32 [B,f x,f y] (a bit per voxel, and bit 16 where that is known) -> voxel features [B,f x,f y,16,8]."""
         with torch.autocast(latent.device.type, enabled=False):
             x = self.decoder_stem(latent.contiguous(memory_format=torch.channels_last))
+        return self.trunk(x, heard)
+
+    def trunk(self, x, heard):
+        """What `features` does once the latent is as wide as the coarsest level."""
         x = self.decoder[0](x)
         for i, (up, level) in enumerate(zip(self.up, self.decoder[1:])):
             x = unfold(up(x))
