@@ -1,5 +1,6 @@
 """python test_training.py REFERENCE: losses and schedule against reference/metrics.json and closed forms."""
 import json
+import math
 import shlex
 import sys
 import tempfile
@@ -16,7 +17,9 @@ from muon import orthogonalised
 from losses import kl_to_normal, lovasz_softmax, vae_loss
 from models.occ_dit import CONDITION, DitConfig, OccDit, condition_of, patchify, unpatchify
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
+from models.occ_dit_time import OccDitTime, TimeConfig, warp
 from models.refiner import Refiner
+from models.triplane_vae import TriplaneVae, numbers, side_of
 from pack import columns_of
 from pack_refiner import ARRAYS, PackedPairs
 from schedule import alpha_bar, ddim_sample
@@ -258,12 +261,42 @@ def a_refiner_sees_one_place_in_all_its_latents():
     assert changed[2, 2] and not changed[12:].any() and not changed[:, 12:].any(), "it sees 8 m and no more"
 
 
+def temporal_blocks_begin_as_nothing():
+    """With gates at zero each frame is drawn as the single-frame transformer draws it; the warp finds the same place of the world."""
+    torch.manual_seed(4)
+    base = OccDit(DitConfig(width=64, depth=2, heads=1)).eval()
+    for p in base.parameters():
+        torch.nn.init.normal_(p, std=0.05)
+    net = OccDitTime(base, TimeConfig(width=64, heads=1, blocks=1)).eval()
+    pose = torch.tensor([[[0.0, 0.0, 0.0], [6.4, 0.0, 0.0], [0.0, 0.0, math.pi / 2]]])
+    index, seen, offset = warp(pose)
+    token = lambda x, y: x * 25 + y
+    assert index[0, 0, 1, token(10, 7)] == token(8, 7) and not seen[0, 0, 1, token(1, 7)]
+    assert index[0, 0, 2, token(20, 12)] == token(12, 4)
+    close(offset[0, 0, 1, token(10, 7)], [0.0, 0.0, 1.0, 0.0, -0.25, 0.25, 0.0, 1.0], 1e-6)
+    x, cells, named = torch.randn(3, 50, 50, 8), torch.rand(3, 50, 50, CONDITION), torch.zeros(3, 9)
+    heard, t = base.condition(cells, named), torch.full((3,), 400.0)
+    close(net(x, t, heard, (index, seen, offset)), base(x, t, heard), 1e-6)
+    torch.nn.init.normal_(net.blocks[0].ada.bias)
+    assert (net(x, t, heard, (index, seen, offset)) - base(x, t, heard)).abs().max() > 1e-3
+
+
+def three_planes_hold_as_much():
+    """The planes of a frame hold about as many numbers as the latent of the top view, and any crop's side is told by their number."""
+    assert abs(numbers(50) - 50 * 50 * 8) < 200 and all(side_of(numbers(s)) == s for s in (4, 16, 50))
+    vae = TriplaneVae(VaeConfig(widths=(8, 8, 8), encoder_kernels=((1,), (1,), (1,)), decoder_kernels=((1,), (1,), (1,))))
+    labels = torch.full((1, 32, 32, 16), 17, dtype=torch.uint8)
+    labels[:, :, :, 0] = 11
+    assert vae.encode(labels).shape == (1, 1, numbers(8), 1) and vae.decode(vae.encode(labels)).shape == labels.shape
+
+
 if __name__ == "__main__":
     reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../shared/reference")
     lovasz_against_reference(reference)
     schedule_against_reference(reference)
     print("references ok")
     for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, a_window_hears_what_its_part_of_the_frame_says,
-                 columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias, a_refiner_sees_one_place_in_all_its_latents):
+                 columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias, a_refiner_sees_one_place_in_all_its_latents,
+                 temporal_blocks_begin_as_nothing, three_planes_hold_as_much):
         test()
         print(test.__name__, "ok")

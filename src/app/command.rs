@@ -146,6 +146,8 @@ pub enum TimeCommand {
     Show(f64),
     /// Shows the frame nearest to a moment, s.
     Scrub(f64),
+    /// Lets everything drive that only says how fast.
+    Traffic,
     /// So many seconds more: what moves goes on, s.
     Forecast(f64),
     /// Plays, or pauses.

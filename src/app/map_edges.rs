@@ -6,9 +6,8 @@ use glam::DVec2;
 
 use crate::command::Command;
 use crate::screen_map::ScreenMap;
-use authoring::scenery::SceneryWish;
+use authoring::scenery;
 use editor::{Edit, apply_all};
-use job::inpaint::InpaintMask;
 use scene::{Extent, Scene};
 use widgets::theme;
 
@@ -38,31 +37,18 @@ pub(crate) fn extend(outward: DVec2, by_m: f64) -> Edit {
     }
 }
 
-/// Edits that make the map larger, and what stands beside the new roads where something stands beside the old ones.
+/// Edits that may make the map larger, and what stands beside the new roads where something stands beside the old ones.
 pub(crate) fn with_scenery(scene: &Scene, mut edits: Vec<Edit>) -> Vec<Edit> {
-    let extends = edits.iter().any(|e| matches!(e, Edit::ExtendMap { .. }));
-    if !extends || scene.background.is_empty() {
-        return edits;
-    }
-    let mut larger = scene.clone();
-    if apply_all(&edits, &mut larger).is_err() {
-        return edits;
-    }
-    let (old, new) = (scene.canvas().extent(), larger.canvas().extent());
-    let mut region = InpaintMask::of_rect(new, new.min_m().truncate(), new.max_m().truncate());
-    let old_columns: Vec<[usize; 2]> = new
-        .all_columns()
-        .filter(|[x, y]| {
-            let p = new.center(*x, *y, 0);
-            old.column_at(p.x, p.y).is_some()
-        })
-        .collect();
-    region.set_columns(new, &old_columns, false);
-    let wish = SceneryWish {
-        region,
-        ..SceneryWish::of_seed(scene.seed)
+    let may_grow = |e: &Edit| {
+        matches!(
+            e,
+            Edit::ExtendMap { .. } | Edit::LetMove { id: None, .. } | Edit::Forecast { .. }
+        )
     };
-    edits.extend(wish.edits(&larger).unwrap_or_default());
+    let mut larger = scene.clone();
+    if edits.iter().any(may_grow) && apply_all(&edits, &mut larger).is_ok() {
+        edits.extend(scenery::beside_new_ground(scene, &larger));
+    }
     edits
 }
 

@@ -26,7 +26,7 @@ pub mod traffic;
 pub mod transform;
 pub mod voxel_ops;
 
-pub use apply::forecast::{Forecast, forecast};
+pub use apply::forecast::{Forecast, forecast, traffic_drives};
 pub use apply::{Apply, apply_all};
 pub use document::{Document, Stale};
 pub use part::Part;

@@ -13,6 +13,7 @@ use crate::panes::compare::CompareMode;
 use crate::scenery::{SceneryWish, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::tools::{Hand, ToolState};
 use editor::Edit;
+use editor::checks::{Finding, Severity};
 use editor::part::{Part, changed_by_class};
 use job::inpaint::InpaintMask;
 use job::{GenParams, RegionMode};
@@ -282,8 +283,34 @@ impl SceneloomApp {
             .pivot(Align2::CENTER_BOTTOM)
             .fixed_pos(over.center_bottom() + egui::vec2(0.0, -12.0));
         area.show(ui.ctx(), |ui| {
-            theme::dialog_frame(ui.style()).show(ui, |ui| bar(ui, staged, &self.state.tools, commands));
+            theme::dialog_frame(ui.style()).show(ui, |ui| {
+                if let Some((longer_s, _)) = staged.longer {
+                    let from_s = self.document.scene().clip().length_s - longer_s;
+                    self.faults_after(ui, from_s);
+                }
+                bar(ui, staged, &self.state.tools, commands);
+            });
         });
+    }
+}
+
+impl SceneloomApp {
+    /// The first of the errors that the checks found after a time, and how many there are.
+    fn faults_after(&self, ui: &mut Ui, from_s: f64) {
+        let Some(findings) = self.threads.checking.findings() else {
+            return;
+        };
+        let later = |f: &&Finding| f.severity == Severity::Error && f.time_s.is_some_and(|t| t >= from_s);
+        let mut faults = findings.iter().filter(later);
+        if let Some(first) = faults.next() {
+            let more = faults.count();
+            let others = if more > 0 {
+                format!(", and {more} more")
+            } else {
+                String::new()
+            };
+            ui.label(RichText::new(format!("{}{others}", theme::sentence(&first.text))).color(theme::bad()));
+        }
     }
 }
 

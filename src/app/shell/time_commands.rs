@@ -8,8 +8,7 @@ use crate::panes::id::PaneId;
 use crate::panes::timeline::scope_name;
 use editor::Edit;
 use editor::document::Label;
-use editor::forecast;
-use editor::traffic::motion_of;
+use editor::{forecast, traffic_drives};
 use scene::Scope;
 
 /// A key that comes up sooner than this was tapped, s.
@@ -66,15 +65,26 @@ impl SceneloomApp {
                 playback.span_s = (!whole).then_some(span);
                 None
             }
+            TimeCommand::Traffic => {
+                match traffic_drives(&scene) {
+                    Ok(edits) => self.apply("Let traffic drive", &edits),
+                    Err(problem) => self.fail(problem),
+                }
+                None
+            }
             TimeCommand::Forecast(seconds) => {
                 self.forecast(seconds);
                 None
             }
             TimeCommand::Motion(id, wish) => {
-                match motion_of(&scene, id, &wish) {
-                    Ok(edits) => self.apply(wish.template.title(), &edits),
-                    Err(problem) => self.fail(problem),
-                }
+                let edit = Edit::LetMove {
+                    id,
+                    template: wish.template,
+                    mps: Some(wish.mps),
+                    from_s: wish.template.has_a_moment().then_some(wish.at_s),
+                    gap_m: None,
+                };
+                self.apply(wish.template.title(), &[edit]);
                 None
             }
         };

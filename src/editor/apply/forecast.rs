@@ -49,13 +49,35 @@ pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
     if goers.is_empty() {
         return Err("nothing moves at the end of the scene: let something move first".to_owned());
     }
+    let (motions, later) = together(scene, &goers, &edits, (from_s, to_s))?;
+    edits.extend(motions);
+    edits.extend(room_for_us(&later, from_s));
+    Ok(Forecast {
+        edits,
+        objects: goers.iter().filter(|g| g.id.is_some()).count(),
+    })
+}
+
+/// Lets everything that is labelled as moving, but has no motion, move from the beginning on. Errors in one line.
+pub fn traffic_drives(scene: &Scene) -> Result<Vec<Edit>, String> {
+    let mut goers = goers(scene, 0.0);
+    goers.retain(|g| g.id.is_some() && g.motion.is_none());
+    Ok(together(scene, &goers, &[], (0.0, scene.clip().length_s))?.0)
+}
+
+/// Edits that let these move on from a time to another, each looking out for the others; and the scene after `first` and them.
+fn together(
+    scene: &Scene,
+    goers: &[Goer],
+    first: &[Edit],
+    (from_s, to_s): (f64, f64),
+) -> Result<(Vec<Edit>, Scene), String> {
     // First everybody goes on as fast as they are, so that who follows then finds the others moving.
-    let mut later = scene.clone();
+    let (mut motions, mut later) = (Vec::new(), scene.clone());
     for round in 0..ROUNDS {
-        let careful = round > 0;
-        let mut motions = Vec::new();
-        for goer in &goers {
-            let motion = goer.goes_on(scene, careful.then_some(&later), (from_s, to_s));
+        motions.clear();
+        for goer in goers {
+            let motion = goer.goes_on(scene, (round > 0).then_some(&later), (from_s, to_s));
             motions.push(Edit::SetMotion {
                 id: goer.id,
                 motion: Some(motion),
@@ -63,30 +85,26 @@ pub fn forecast(scene: &Scene, seconds: f64) -> Result<Forecast, String> {
                 to_s: goer.there_s[1],
             });
         }
-        let mut next = scene.clone();
-        let all: Vec<Edit> = edits.iter().chain(&motions).cloned().collect();
-        apply_all(&all, &mut next).map_err(|e| e.to_string())?;
-        later = next;
-        if round + 1 == ROUNDS {
-            edits = all;
-        }
+        later = scene.clone();
+        let all: Vec<Edit> = first.iter().chain(&motions).cloned().collect();
+        apply_all(&all, &mut later).map_err(|e| e.to_string())?;
     }
-    // What is new of the map lies around the vehicle's way; others may leave it.
-    let relief = &later.canvas().layout.relief;
-    let still = later.canvas().world_from_ego;
+    Ok((motions, later))
+}
+
+/// The edit that makes the map reach where the ego vehicle comes after `from_s`, with as much around it as there was until then;
+/// none if it does. Others may leave the map.
+pub(super) fn room_for_us(scene: &Scene, from_s: f64) -> Option<Edit> {
+    let relief = &scene.canvas().layout.relief;
+    let still = scene.canvas().world_from_ego;
     let way = |to_s: f64| -> Vec<DVec2> {
         let times = (0..=(to_s / STEP_S).ceil() as usize).map(|i| (i as f64 * STEP_S).min(to_s));
-        let pose = |t| later.clip().ego_at(t, &still, relief).translation_m.truncate();
+        let pose = |t| scene.clip().ego_at(t, &still, relief).translation_m.truncate();
         times.map(pose).collect()
     };
-    // As much is to be seen around it as was before.
-    let extent = later.canvas().extent();
+    let extent = scene.canvas().extent();
     let sights = sights_m(extent, way(from_s).into_iter());
-    edits.extend(reaching(extent, way(to_s).into_iter(), sights));
-    Ok(Forecast {
-        edits,
-        objects: goers.iter().filter(|g| g.id.is_some()).count(),
-    })
+    reaching(extent, way(scene.clip().length_s).into_iter(), sights)
 }
 
 /// Something that moves at the end.
@@ -123,10 +141,6 @@ fn goers(scene: &Scene, from_s: f64) -> Vec<Goer> {
     });
     for b in end.frame().boxes.values() {
         let track = clip.tracks.get(&b.id);
-        // What stands in a clip stands, whatever speed it was labelled with.
-        if track.is_none() && clip.length_s > 0.0 {
-            continue;
-        }
         out.push(Goer {
             id: Some(b.id),
             now: Moving::from(b),

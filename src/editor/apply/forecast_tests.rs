@@ -65,6 +65,22 @@ fn what_moves_goes_on_and_stops_behind_what_stands() {
 }
 
 #[test]
+fn traffic_that_only_has_speeds_is_let_drive() {
+    let mut scene = scene();
+    let long = Edit::SetLength {
+        length_s: 5.0,
+        rate_hz: None,
+    };
+    apply_all(&[long], &mut scene).expect("a clip");
+    let edits = traffic_drives(&scene).expect("sound");
+    assert_eq!(edits.len(), 1);
+    apply_all(&edits, &mut scene).expect("sound edits");
+    let x = |t: f64| scene.at(t).frame().boxes[&BoxId(1)].center_m.x;
+    assert!(x(0.0) == 20.0 && (58.0..71.0).contains(&x(5.0)), "{}", x(5.0));
+    assert_eq!(traffic_drives(&scene), Ok(Vec::new()));
+}
+
+#[test]
 fn the_map_grows_to_where_we_come() {
     let mut free = scene();
     free.change_canvas(|c| c.boxes.remove(&BoxId(2)));

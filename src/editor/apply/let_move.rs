@@ -3,6 +3,7 @@
 use scene::{BoxId, Edit, EditError, Scene, Template};
 
 use super::apply_all;
+use super::forecast::room_for_us;
 use crate::traffic::template::{Wish, motion_of, time_near};
 
 /// The edits of an [`Edit::LetMove`]; none of another edit.
@@ -32,7 +33,14 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     if template == Template::Drive && (from_s.is_some_and(|s| s > 0.0) || gap_m.is_some()) {
         wish.template = Template::PullOut;
     }
-    motion_of(scene, id, &wish).map_err(bad)
+    let mut edits = motion_of(scene, id, &wish).map_err(bad)?;
+    if id.is_none() {
+        // Where we drive there is a map.
+        let mut moved = scene.clone();
+        apply_all(&edits, &mut moved)?;
+        edits.extend(room_for_us(&moved, 0.0));
+    }
+    Ok(edits)
 }
 
 /// When an object and the ego vehicle are so near to each other, s. Errors in one line.

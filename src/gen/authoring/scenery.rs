@@ -270,6 +270,27 @@ impl Paved {
     }
 }
 
+/// Edits that draw what stands beside the roads where a map has become larger; none where nothing stood beside the roads before.
+pub fn beside_new_ground(before: &Scene, larger: &Scene) -> Vec<Edit> {
+    let (old, new) = (before.canvas().extent(), larger.canvas().extent());
+    if old == new || before.background.is_empty() {
+        return Vec::new();
+    }
+    let mut region = InpaintMask::of_rect(new, new.min_m().truncate(), new.max_m().truncate());
+    let was_there = |[x, y]: &[usize; 2]| {
+        let p = new.center(*x, *y, 0);
+        old.column_at(p.x, p.y).is_some()
+    };
+    let old_columns: Vec<[usize; 2]> = new.all_columns().filter(was_there).collect();
+    region.set_columns(new, &old_columns, false);
+    let wish = SceneryWish {
+        region,
+        ..SceneryWish::of_seed(before.seed)
+    };
+    // The rules never fail.
+    wish.edits(larger).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec2;

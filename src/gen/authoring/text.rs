@@ -6,7 +6,8 @@ use anyhow::bail;
 
 use super::open;
 use super::prompting::{How, Laid, lay_out};
-use editor::{Apply, Edit};
+use super::scenery::beside_new_ground;
+use editor::{Apply, Edit, apply_all};
 use place::description::Description;
 use scene::clip::{Manoeuvre, Template};
 use scene::{BoxId, Class, Clip, Frame, Scene};
@@ -135,8 +136,11 @@ pub fn made(mut laid: Laid, seed: u64) -> Made {
     let mut scene = open::of_world(&world, "prompt");
     scene.prompt = laid.description.style().into();
     scene.conditions = laid.description.conditions(scene.seed);
+    let before = scene.clone();
     let cannot = set_in_motion(&mut scene, &laid);
     laid.road.missing.extend(cannot);
+    // (what no rule draws is not there)
+    let _ = apply_all(&beside_new_ground(&before, &scene), &mut scene);
     Made { scene, laid }
 }
 
@@ -166,7 +170,11 @@ fn set_in_motion(scene: &mut Scene, laid: &Laid) -> Vec<String> {
     }));
     let ego = match (d.ego_motion, objects.is_empty()) {
         (None, true) => None,
-        (how, _) => Some(Edit::let_move(&how.unwrap_or(Manoeuvre::of(Template::Follow)), None, None)),
+        (how, _) => Some(Edit::let_move(
+            &how.unwrap_or(Manoeuvre::of(Template::Follow)),
+            None,
+            None,
+        )),
     };
     let edits = objects
         .iter()

@@ -160,7 +160,10 @@ impl Describing {
                 turn: Turn::To(places),
             } => who.iter().for_each(|t| self.place(t, places)),
             What::Replace { things, .. } => self.add(things),
-            What::Go { who, how } if who.is_empty() => self.d.ego_motion = Some(*how),
+            What::Go { who, how } if who.is_empty() => {
+                let how = Manoeuvre { gap_m: None, ..*how };
+                self.d.ego_motion = Some(self.d.ego_motion.map_or(how, |before| how.after(&before).0));
+            }
             What::Go { who, how } => who.iter().for_each(|t| self.go(t, how)),
             What::Leave { .. } => {}
             _ => self.remark(Remark::Nobody {
@@ -211,7 +214,12 @@ impl Describing {
             them = self.plan.specs.len().checked_sub(1).into_iter().collect();
         }
         for k in them {
-            if self.plan.specs[k].motion.replace(*how).is_some() {
+            let (how, all) = match &self.plan.specs[k].motion {
+                Some(before) => how.after(before),
+                None => (*how, true),
+            };
+            self.plan.specs[k].motion = Some(how);
+            if !all {
                 self.remark(Remark::OneMotion { what: words_of(t) });
             }
             if let Some(role) = self.usual_start(k, how.what) {

@@ -61,6 +61,7 @@ pub(super) fn take_out_guesses(reading: &mut Reading, tokens: &[Token]) -> Vec<O
             | What::Move { who, .. }
             | What::Turn { who, .. }
             | What::Set { who, .. }
+            | What::Go { who, .. }
             | What::Count { who, .. } => (&mut none, who),
             _ => return true,
         };

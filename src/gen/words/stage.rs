@@ -9,6 +9,7 @@ use super::nouns::Noun;
 use super::remark::Remark;
 use place::holds::{in_role, overlap_m, role_of};
 use place::lanes::LaneMap;
+use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState};
 use scene::{
     BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Edit, Polyline, PolylineKind, SceneBox, Shape,
@@ -99,6 +100,8 @@ pub struct Stage<'a> {
     pub(super) conditions: Conditions,
     pub(super) ego_moves: bool,
     pub(super) length_s: f64,
+    /// What acts before let boxes do.
+    pub(super) does: BTreeMap<BoxId, Manoeuvre>,
     pub(super) seed: u64,
     pub(super) act: usize,
     /// Boxes that some act of the text says to stay.
@@ -128,6 +131,7 @@ impl<'a> Stage<'a> {
             conditions: scene.conditions,
             ego_moves: scene.ego_moves,
             length_s: scene.length_s,
+            does: BTreeMap::new(),
             seed,
             act: 0,
             stays: std::collections::BTreeSet::new(),

@@ -136,6 +136,15 @@ pub struct Manoeuvre {
 }
 
 impl Manoeuvre {
+    /// This one after another: as fast as that, where nothing is said. False beside it if more than its speed is lost.
+    pub fn after(mut self, before: &Self) -> (Self, bool) {
+        if self.kmh.is_none() && self.pace.is_none() {
+            (self.kmh, self.pace) = (before.kmh, before.pace);
+        }
+        let is_a_speed = matches!(before.what, Template::Drive | Template::Follow) && before.from_s.is_none();
+        (self, is_a_speed && before.gap_m.is_none())
+    }
+
     /// One of which nothing else was said.
     pub fn of(what: Template) -> Self {
         Self {

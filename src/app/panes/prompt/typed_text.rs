@@ -164,6 +164,7 @@ pub fn answer(reading: &mut Reading, act: usize, asked: &str, id: BoxId) {
     | What::Keep { who }
     | What::Leave { who }
     | What::Set { who, .. }
+    | What::Go { who, .. }
     | What::Move { who, .. }
     | What::Turn { who, .. }
     | What::Replace { who, .. } = &mut a.what
@@ -231,6 +232,7 @@ fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
         | What::Remove { who: a }
         | What::Keep { who: a }
         | What::Leave { who: a }
+        | What::Go { who: a, .. }
         | What::Count { who: a, .. } => a.iter_mut().for_each(|t| one(t, f)),
         What::Replace { who, things } => who.iter_mut().chain(things).for_each(|t| one(t, f)),
         What::Move { who, to } => {
@@ -256,7 +258,18 @@ fn each_thing(what: &mut What, f: &mut dyn FnMut(&mut Thing)) {
             one(b, f);
         }
         What::Has { places: list, .. } => places(list, f),
-        _ => {}
+        What::Time { .. }
+        | What::Weather { .. }
+        | What::Road { .. }
+        | What::Env { .. }
+        | What::Density { .. }
+        | What::Lacks { .. }
+        | What::Lanes { .. }
+        | What::Length { .. }
+        | What::OneWay
+        | What::Narrow
+        | What::Wide
+        | What::OwnLane { .. } => {}
     }
 }
 
@@ -280,6 +293,9 @@ mod tests {
         set_number(&mut r, 0, 0, 0);
         assert!(r.acts.is_empty());
         take_out(&mut r, 3, Some(1));
+        let mut r = parse("go the car ( behind ego ) cut_in from 3s").expect("valid");
+        answer(&mut r, 0, "the car ( behind ego )", BoxId(5));
+        assert_eq!(write(&r), "go the car #5 cut_in from 3s");
         let mut r = parse("remove the 2 car").expect("valid");
         answer(&mut r, 0, "the 2 car", BoxId(3));
         assert_eq!(write(&r), "remove the car #3 and the car ( except the car #3 )");

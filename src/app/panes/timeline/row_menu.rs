@@ -7,6 +7,7 @@ use scene::{BoxId, Motion, Moving, Scene};
 use crate::command::Command;
 use crate::playback::{Copied, Playback};
 use editor::Edit;
+use widgets::theme;
 
 /// How many neighbours a thing can be attached to from the menu.
 const MOST_NEIGHBOURS: usize = 8;
@@ -39,6 +40,11 @@ pub(super) fn entries(
             }],
         ));
     };
+    let title = match id.and_then(|id| scene.frame().boxes.get(&id)) {
+        Some(b) => format!("{} {}", theme::sentence(&b.called()), b.id.0),
+        None => "Ego vehicle".to_owned(),
+    };
+    ui.label(egui::RichText::new(title).color(theme::text_weak()));
     if let Some(motion) = motion {
         let timed = !matches!(motion, Motion::Attached { .. });
         for (text, times) in [("Twice as fast", 2.0), ("Half as fast", 0.5)] {
@@ -51,12 +57,16 @@ pub(super) fn entries(
             .add_enabled(timed, egui::Button::new("Begin at this moment"))
             .clicked()
         {
-            let start_s = motion.times_s().into_iter().fold(f64::INFINITY, f64::min);
+            let start_s = start_s(motion);
             set("Begin later", motion.retimed(|t| t + now_s - start_s), there_s);
             ui.close();
         }
-        let hint = "To the other side of the way that we drive";
-        if ui.button("Mirror").on_hover_text(hint).clicked() {
+        let hint = "In the line that we drive along: from our left to our right";
+        if ui
+            .button("Mirror to our other side")
+            .on_hover_text(hint)
+            .clicked()
+        {
             let pose = scene.frame().world_from_ego;
             let ahead = (pose.rotation * glam::DVec3::X).truncate();
             set(
@@ -136,10 +146,34 @@ pub(super) fn entries(
     }
 }
 
-/// The motion as many times as fast, from its start on.
+/// When a motion leaves the place where it begins, s.
+fn start_s(motion: &Motion) -> f64 {
+    let stands = match motion {
+        Motion::Keys(keys) => keys
+            .windows(2)
+            .take_while(|pair| pair[0].at_m == pair[1].at_m)
+            .count(),
+        Motion::Path(path) => path
+            .speeds
+            .windows(2)
+            .take_while(|pair| pair[0].mps == 0.0 && pair[1].mps == 0.0)
+            .count(),
+        Motion::Attached { .. } => 0,
+    };
+    motion.times_s().get(stands).copied().unwrap_or(0.0)
+}
+
+/// The motion as many times as fast, from where it starts to move on.
 fn quicker(motion: &Motion, times: f64) -> Motion {
-    let start_s = motion.times_s().into_iter().fold(f64::INFINITY, f64::min);
-    let mut out = motion.retimed(|t| start_s + (t - start_s) / times);
+    let start_s = start_s(motion);
+    let later = |t: f64| {
+        if t > start_s {
+            start_s + (t - start_s) / times
+        } else {
+            t
+        }
+    };
+    let mut out = motion.retimed(later);
     // A steady speed has no times by which it could be told.
     if let Motion::Path(path) = &mut out
         && let [only] = path.speeds.as_mut_slice()

@@ -124,6 +124,7 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
             .on_hover_text("The 3D view goes along with the ego vehicle");
         ui.separator();
         motion_menu::menu(ui, scene, state, commands);
+        traffic(ui, scene, commands);
         forecast(ui, commands);
         if ui
             .button("Save clip…")
@@ -133,6 +134,21 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
             commands.push(Command::File(FileCommand::SaveClip));
         }
     });
+}
+
+/// A button that lets things drive that only say how fast, where there are any.
+fn traffic(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+    let standing = scene.canvas().boxes.values();
+    let waiting = standing.filter(|b| b.velocity_mps.length() > 0.3).count();
+    if waiting == 0 {
+        return;
+    }
+    let hint = format!(
+        "{waiting} objects have a speed but stand still: they drive along their lanes and keep their distance"
+    );
+    if ui.button("Let traffic drive").on_hover_text(hint).clicked() {
+        commands.push(Command::Time(TimeCommand::Traffic));
+    }
 }
 
 /// How much longer a forecast makes a scene, s.

@@ -2,7 +2,7 @@
 
 use super::super::reading::Thing;
 use super::super::remark::Remark;
-use super::super::resolve::Spare;
+use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
 use scene::clip::{Manoeuvre, Template};
 use scene::{Clip, Edit};
@@ -21,7 +21,12 @@ impl Stage<'_> {
         }
         if who.is_empty() {
             self.ego_moves = true;
-            self.out.edits.push(Edit::let_move(how, None, None));
+            if how.gap_m.is_some() {
+                let why = "we are never a distance from ourselves: it begins soon".to_owned();
+                self.remark(Remark::NoMotion { why });
+            }
+            let how = Manoeuvre { gap_m: None, ..*how };
+            self.out.edits.push(Edit::let_move(&how, None, None));
             self.done().scene = true;
             return;
         }
@@ -39,7 +44,16 @@ impl Stage<'_> {
         }
         for id in ids {
             let class = self.boxes.get(&id).map(|b| b.class);
-            self.out.edits.push(Edit::let_move(how, Some(id), class));
+            let (how, all) = self
+                .does
+                .get(&id)
+                .map_or((*how, true), |before| how.after(before));
+            if !all {
+                let what = who.iter().map(words_of).collect::<Vec<_>>().join(" and ");
+                self.remark(Remark::OneMotion { what });
+            }
+            self.does.insert(id, how);
+            self.out.edits.push(Edit::let_move(&how, Some(id), class));
             self.done().changed.push(id);
         }
     }

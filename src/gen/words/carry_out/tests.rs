@@ -365,6 +365,18 @@ fn motions_become_edits() {
         outcome.remarks.is_empty() && outcome.edits.len() == 2,
         "{outcome:?}"
     );
+    // One thing after another: the speed stays, an earlier manoeuvre does not, which is said.
+    let outcome = base.edit("go the car drive slow ; go the car stop from 2s");
+    assert!(outcome.remarks.is_empty(), "{outcome:?}");
+    assert!(
+        matches!(outcome.edits[1], Edit::LetMove { mps: Some(5.0), .. }),
+        "{outcome:?}"
+    );
+    let outcome = base.edit("go the car cross from 1s ; go the car stop from 2s");
+    assert!(
+        matches!(outcome.remarks[0].1, Remark::OneMotion { .. }),
+        "{outcome:?}"
+    );
     let outcome = base.edit("go the truck stop");
     assert!(outcome.edits.is_empty() && matches!(outcome.remarks[0].1, Remark::Nobody { .. }));
 }

@@ -219,6 +219,13 @@ fn place_description(
     (scene, laid)
 }
 
+/// The edits without what moves in the course of time: the cases speak of one moment.
+fn at_the_start(edits: &[scene::Edit]) -> Vec<scene::Edit> {
+    let of_time =
+        |edit: &&scene::Edit| !matches!(edit, scene::Edit::LetMove { .. } | scene::Edit::SetLength { .. });
+    edits.iter().filter(of_time).cloned().collect()
+}
+
 /// Each box in a few words: class, where its centre is (m), which way it looks (deg), how fast it is (m/s).
 fn in_short(scene: &Scene) -> Vec<String> {
     let boxes = scene.frame().boxes.values();
@@ -448,7 +455,7 @@ fn changed(
     let before = in_short(&scene);
     let mut document = Document::new(scene);
     document
-        .apply_all("Edit by text", &outcome.edits)
+        .apply_all("Edit by text", &at_the_start(&outcome.edits))
         .with_context(|| format!("{:?}", case.text))?;
     let told = || Told {
         // (which of several was taken, or that it is so already, is no doubt)
