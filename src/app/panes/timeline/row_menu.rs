@@ -40,11 +40,7 @@ pub(super) fn entries(
             }],
         ));
     };
-    let title = match id.and_then(|id| scene.frame().boxes.get(&id)) {
-        Some(b) => format!("{} {}", theme::sentence(&b.called()), b.id.0),
-        None => "Ego vehicle".to_owned(),
-    };
-    ui.label(egui::RichText::new(title).color(theme::text_weak()));
+    ui.label(egui::RichText::new(title(scene, id)).color(theme::text_weak()));
     if let Some(motion) = motion {
         let timed = !matches!(motion, Motion::Attached { .. });
         for (text, times) in [("Twice as fast", 2.0), ("Half as fast", 0.5)] {
@@ -123,18 +119,7 @@ pub(super) fn entries(
     .on_hover_text("It keeps its place beside another moving object");
     if let Some(motion) = motion {
         ui.separator();
-        let trims = [
-            (
-                "Appears at this moment",
-                [Some(now_s), there_s[1].filter(|to| *to > now_s)],
-            ),
-            (
-                "Disappears at this moment",
-                [there_s[0].filter(|from| *from < now_s), Some(now_s)],
-            ),
-            ("There all the time", [None; 2]),
-        ];
-        for (text, trimmed) in trims {
+        for (text, trimmed) in trims(there_s, now_s) {
             if ui
                 .add_enabled(trimmed != there_s, egui::Button::new(text))
                 .clicked()
@@ -143,6 +128,30 @@ pub(super) fn entries(
                 ui.close();
             }
         }
+    }
+}
+
+/// The ways to trim the span, s, in which a thing is there.
+fn trims(there_s: [Option<f64>; 2], now_s: f64) -> [(&'static str, [Option<f64>; 2]); 3] {
+    let [from_s, to_s] = there_s;
+    [
+        (
+            "Appears at this moment",
+            [Some(now_s), to_s.filter(|to| *to > now_s)],
+        ),
+        (
+            "Disappears at this moment",
+            [from_s.filter(|from| *from < now_s), Some(now_s)],
+        ),
+        ("There all the time", [None; 2]),
+    ]
+}
+
+/// What the row's thing is called.
+fn title(scene: &Scene, id: Option<BoxId>) -> String {
+    match id.and_then(|id| scene.frame().boxes.get(&id)) {
+        Some(b) => format!("{} {}", theme::sentence(&b.called()), b.id.0),
+        None => "Ego vehicle".to_owned(),
     }
 }
 
