@@ -19,6 +19,7 @@ from models.occ_dit import CONDITION, DitConfig, OccDit, condition_of, patchify,
 from models.occ_vae import OccVae, VaeConfig, fold, unfold
 from models.occ_dit_time import OccDitTime, TimeConfig, warp
 from models.refiner import Refiner
+from models.time_decoder import TimeDecoder, cell_warp, window_pose
 from models.triplane_vae import TriplaneVae, numbers, side_of
 from pack import columns_of
 from pack_refiner import ARRAYS, PackedPairs
@@ -290,6 +291,28 @@ def three_planes_hold_as_much():
     assert vae.encode(labels).shape == (1, 1, numbers(8), 1) and vae.decode(vae.encode(labels)).shape == labels.shape
 
 
+def a_temporal_decoder_begins_as_nothing():
+    """At the start it leaves latents as they are; then a cell hears its place of the world in other frames, and nothing of frames that are out of sight."""
+    torch.manual_seed(6)
+    net, latents = TimeDecoder().eval(), torch.randn(2, 3, 50, 50, 8)
+    pose = torch.tensor([[[0.0, 0.0, 0.0], [16.0, 0.0, 0.0], [200.0, 0.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, 0.0, math.pi / 2], [0.0, 0.0, 0.0]]])
+    index, seen, offset = warped = cell_warp(pose)
+    assert index.shape == seen.shape == (2, 3, 3, 2500) and offset.shape == (2, 3, 3, 2500, 8)
+    assert index[0, 0, 1, 20 * 50 + 7] == 10 * 50 + 7 and not seen[0, 0, 1, 9 * 50 + 7] and not seen[0, 2, :2].any() and seen[0, 2, 2].all()
+    assert index[1, 0, 1, 30 * 50 + 24] == 24 * 50 + 19
+    assert torch.equal(net(latents, warped), latents)
+    torch.nn.init.normal_(net.head.weight)
+    moved = latents.clone()
+    moved[0, 2] += 1  # the frame far away
+    moved[0, 1, 10, 7] += 1
+    changed = (net(moved, warped) != net(latents, warped)).any(-1)
+    assert changed[0, 0, 20, 7] and changed[0, 0].sum() <= 9 and changed[0, 2].all() and not changed[1].any()
+    # Windows of one place: what a cell of one of them is in another, it is in the frames.
+    corner = torch.tensor([[[14, 3], [4, 3]]])
+    small = cell_warp(window_pose(pose[:1, :2], corner, 8), 8)[0]
+    assert (small[0, 0, 1] == torch.arange(64)).all() and (index[0, 0, 1, 14 * 50 + 3] == 4 * 50 + 3)
+
+
 if __name__ == "__main__":
     reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../shared/reference")
     lovasz_against_reference(reference)
@@ -297,6 +320,6 @@ if __name__ == "__main__":
     print("references ok")
     for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, a_window_hears_what_its_part_of_the_frame_says,
                  columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias, a_refiner_sees_one_place_in_all_its_latents,
-                 temporal_blocks_begin_as_nothing, three_planes_hold_as_much):
+                 temporal_blocks_begin_as_nothing, a_temporal_decoder_begins_as_nothing, three_planes_hold_as_much):
         test()
         print(test.__name__, "ok")

@@ -18,8 +18,8 @@ use sensors::appearance::Quality;
 use sensors::cameras::{
     self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
 };
-use sensors::learned::{self, Drops};
-use sensors::lidar;
+use sensors::learned::Drops;
+use sensors::rolling;
 use viewport::{ViewCamera, ViewPreset};
 
 /// A format that is written, a line of the table [`formats::export::all`].
@@ -285,14 +285,14 @@ impl Products for Making<'_> {
 }
 
 fn sweep(scene: &Scene, model: LidarModel) -> anyhow::Result<LidarSweep> {
-    let (occupancy, rig) = (&scene.frame().occupancy, &scene.rig);
-    let none = || anyhow!("the rig {:?} has no LiDAR", rig.name);
+    if scene.rig.lidars.is_empty() {
+        bail!("the rig {:?} has no LiDAR", scene.rig.name);
+    }
     match model {
-        LidarModel::Exact => lidar::rig_sweep(occupancy, rig).ok_or_else(none),
-        LidarModel::Learned if rig.lidars.is_empty() => Err(none()),
+        LidarModel::Exact => Ok(rolling::exact(scene)),
         LidarModel::Learned => {
             let net = LidarNet::bundled().context("the LiDAR network")?;
-            learned::rig_sweep(&net, occupancy, rig, Drops::Likely).context("the LiDAR network")
+            rolling::learned(&net, scene, Drops::Likely).context("the LiDAR network")
         }
     }
 }

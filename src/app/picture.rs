@@ -5,7 +5,7 @@ use anyhow::bail;
 use scene::raster::box_cells;
 use scene::{BevLayer, Class, Extent, Frame, LidarSweep, MultiPlaneImage, Scene, SceneBox, VoxelGrid};
 use sensors::cameras::bounds;
-use sensors::{color, lidar};
+use sensors::{color, rolling};
 use viewport::{
     Background, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
     headless_device, lidar_colors,
@@ -233,7 +233,7 @@ impl View3d {
         let scene = &*scene.with_rig_in_world();
         let frame = scene.frame();
         let sweep = match options.lidar {
-            true => lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default(),
+            true => rolling::exact(scene),
             false => LidarSweep::default(),
         };
         let colors = lidar_colors(&sweep, LidarColorMode::Range);

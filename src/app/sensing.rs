@@ -18,6 +18,7 @@ use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::EgoBox;
+use sensors::rolling;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 /// Rays whose samples are shown at most: more would cover the map.
@@ -207,6 +208,9 @@ struct Kept {
 
 impl Kept {
     fn sweep(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
+        if rolling::is_rolling(scene) {
+            return self.rolling(scene, wanted);
+        }
         if wanted.lidar == LidarModel::Learned
             && let Some(sweep) = self.learned(scene, wanted.lost_echoes)
         {
@@ -227,24 +231,45 @@ impl Kept {
             .unwrap_or_default()
     }
 
-    /// `None` where the network cannot be had; the exact sweep takes its place.
-    fn learned(&mut self, scene: &Scene, lost_echoes: bool) -> Option<LidarSweep> {
-        let drops = if lost_echoes { Drops::Keep } else { Drops::Likely };
-        let (grid, rig) = (&scene.frame().occupancy, &scene.rig);
+    /// The sweep of a LiDAR that spins while things move; nothing of it is kept.
+    fn rolling(&mut self, scene: &Scene, wanted: &Wanted) -> LidarSweep {
+        let net = match wanted.lidar {
+            LidarModel::Learned => self.net(),
+            LidarModel::Exact => None,
+        };
+        let learned = net.and_then(|net| rolling::learned(&net, scene, drops(wanted.lost_echoes)).ok());
+        learned.unwrap_or_else(|| rolling::exact(scene))
+    }
+
+    fn net(&mut self) -> Option<Arc<LidarNet>> {
         if self.net.is_none() {
             self.net = LidarNet::bundled().ok();
         }
-        let net = self.net.as_ref()?;
+        self.net.clone()
+    }
+
+    /// `None` where the network cannot be had; the exact sweep takes its place.
+    fn learned(&mut self, scene: &Scene, lost_echoes: bool) -> Option<LidarSweep> {
+        let (grid, rig) = (&scene.frame().occupancy, &scene.rig);
+        let net = self.net()?;
         match &mut self.learned {
             Some((of, caster)) if of == rig => caster.update(grid).ok()?,
             kept => {
-                let caster = LearnedCaster::of_rig(net.clone(), grid, rig).ok()?;
+                let caster = LearnedCaster::of_rig(net, grid, rig).ok()?;
                 *kept = caster.map(|caster| (rig.clone(), caster));
             }
         }
-        let sweep = self.learned.as_ref().map(|(_, caster)| caster.sweep(drops));
+        let sweep = self
+            .learned
+            .as_ref()
+            .map(|(_, caster)| caster.sweep(drops(lost_echoes)));
         Some(sweep.unwrap_or_default())
     }
+}
+
+/// What becomes of echoes that may be lost: they are shown as such, or gone.
+fn drops(shown: bool) -> Drops {
+    if shown { Drops::Keep } else { Drops::Likely }
 }
 
 fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {

@@ -74,7 +74,9 @@ fn mark(scene: &Scene, state: &UiState, id: Option<BoxId>) -> Option<Mark> {
 /// Over the bird's-eye view.
 pub(crate) fn from_above(painter: &Painter, map: &ScreenMap, scene: &Scene, state: &UiState) {
     let on_screen = |p: DVec2| Some(map.to_screen(p));
-    for mark in marks(scene, state) {
+    for mut mark in marks(scene, state) {
+        // The select tool shows them as handles.
+        mark.keys_m.clear();
         draw(painter, &mark, on_screen);
     }
 }

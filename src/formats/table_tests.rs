@@ -58,6 +58,8 @@ impl Products for Small {
             class: Class::Car,
             intensity: 20.0,
             drop_probability: 0.0,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
         };
         Ok(LidarSweep {
             points: vec![point],

@@ -161,6 +161,9 @@ pub struct LidarPattern {
     pub rotation_wxyz: [f64; 4],
     /// Origin in the ego frame, m.
     pub translation_m: [f64; 3],
+    /// A part of the revolution: its first column and how many. Not in files.
+    #[serde(skip)]
+    pub part: Option<[u32; 2]>,
 }
 
 impl LidarPattern {
@@ -180,8 +183,20 @@ impl LidarPattern {
         self.rotation_wxyz = [q.w, q.x, q.y, q.z];
     }
 
-    /// Columns that return anything: those in the sector.
+    /// The same LiDAR for `count` columns from `first` on: those are its columns 0 to `count` then, and it stands still when
+    /// the last of them is fired.
+    pub fn part(&self, first: u32, count: u32) -> LidarPattern {
+        LidarPattern {
+            part: Some([first, count]),
+            ..self.clone()
+        }
+    }
+
+    /// Columns that return anything: those in the sector, or in the part of it.
     pub fn columns_in_sector(&self) -> u32 {
+        if let Some([_, count]) = self.part {
+            return count;
+        }
         let share = (self.sector_deg / 360.0).clamp(0.0, 1.0);
         // A hair less than the product, so that a third of 1080 columns is 360 and not 361.
         (f64::from(self.columns) * share - 1e-6).ceil().max(0.0) as u32
@@ -190,8 +205,18 @@ impl LidarPattern {
     /// Azimuth of a column in the sensor frame, rad. Formed in f64 from the index, so the last column of a full turn
     /// and the first are one step apart like any other two.
     pub fn azimuth_rad(&self, column: u32) -> f64 {
+        let column = self.part.map_or(0, |[first, _]| first) + column;
         let turn = std::f64::consts::TAU * f64::from(column) / f64::from(self.columns.max(1));
         self.first_azimuth_deg.to_radians() + if self.clockwise { -turn } else { turn }
+    }
+
+    /// How long before the end of the sweep a column is fired, s; 0 where the whole sweep is one instant.
+    pub fn before_end_s(&self, column: u32) -> f64 {
+        let all = self.part.map_or(self.columns, |[_, count]| count);
+        match self.spin_hz > 0.0 {
+            true => (f64::from(all) - f64::from(column)) / f64::from(self.columns.max(1)) / self.spin_hz,
+            false => 0.0,
+        }
     }
 
     /// Rays per revolution.

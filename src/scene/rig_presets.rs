@@ -66,6 +66,7 @@ fn level(
         sector_deg: 360.0,
         clockwise: false,
         spin_hz: 0.0,
+        part: None,
         max_range_m,
         min_range_m: 1.0,
         own_body: true,

@@ -171,6 +171,10 @@ pub struct LidarPoint {
     pub intensity: f32,
     /// How likely a real sensor gets no echo from there, 0 to 1.
     pub drop_probability: f32,
+    /// When it was measured, s from the end of the sweep on: 0 or less.
+    pub time_s: f32,
+    /// How fast what was hit moves over the ground, in the frame of the position, m/s.
+    pub velocity_mps: [f32; 2],
 }
 
 /// One revolution of a LiDAR.
@@ -193,6 +197,8 @@ impl LidarSweep {
         for point in &mut self.points {
             let p = glam::DVec3::from_array(point.position_in_ego.map(f64::from));
             point.position_in_ego = to_from_here.apply(p).as_vec3().to_array();
+            let v = glam::Vec2::from(point.velocity_mps).as_dvec2().extend(0.0);
+            point.velocity_mps = (to_from_here.rotation * v).as_vec3().truncate().to_array();
         }
     }
 }

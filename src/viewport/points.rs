@@ -232,6 +232,8 @@ mod tests {
             class,
             intensity: 0.0,
             drop_probability: 0.0,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
         };
         let sweep = LidarSweep {
             points: vec![

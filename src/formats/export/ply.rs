@@ -15,8 +15,8 @@ pub const EXPORTER: Exporter = Exporter {
     write: |_, products| Ok(vec![OutFile::new("lidar.ply", to_bytes(&products.sweep()?))]),
 };
 
-/// Binary little-endian PLY: x, y, z in the ego frame in m, range, intensity, drop probability, ring, class; the names
-/// of the classes as comments.
+/// Binary little-endian PLY: x, y, z in the ego frame in m, range in m, intensity, drop probability, time in s (0 at the end of the
+/// sweep, before it less), velocity over the ground in m/s along x and y, ring, class; the names of the classes as comments.
 pub fn to_bytes(sweep: &LidarSweep) -> Vec<u8> {
     let classes: String = Class::ALL
         .iter()
@@ -25,12 +25,13 @@ pub fn to_bytes(sweep: &LidarSweep) -> Vec<u8> {
     let mut out = format!(
         "ply\nformat binary_little_endian 1.0\ncomment frame ego: x forward, y left, z up, m\n{classes}element vertex {}\n\
          property float x\nproperty float y\nproperty float z\nproperty float range_m\nproperty float intensity\n\
-         property float drop_probability\nproperty ushort ring\nproperty uchar class\nend_header\n",
+         property float drop_probability\nproperty float time_s\nproperty float velocity_x\nproperty float velocity_y\nproperty ushort ring\nproperty uchar class\nend_header\n",
         sweep.points.len()
     )
     .into_bytes();
     for p in &sweep.points {
-        let floats = [p.range_m, p.intensity, p.drop_probability];
+        let [along, aside] = p.velocity_mps;
+        let floats = [p.range_m, p.intensity, p.drop_probability, p.time_s, along, aside];
         let floats = p.position_in_ego.into_iter().chain(floats);
         out.extend(floats.flat_map(f32::to_le_bytes));
         out.extend(p.ring.to_le_bytes());

@@ -246,6 +246,8 @@ mod tests {
             class,
             intensity: 5.0,
             drop_probability: 0.0,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
         };
         let mut product = SweepFigures::default();
         let sweep = LidarSweep {

@@ -241,6 +241,8 @@ impl Caster {
             class: Class::from_id(self.grid.get(x, y, z)).unwrap_or(Class::Others),
             intensity: 0.0,
             drop_probability: 0.0,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
         };
         // Rounded up, so that the voxel that was hit is within reach.
         let reach = (range_m as f32).next_up();

@@ -198,6 +198,8 @@ pub fn points(
             class,
             intensity: textured(answer.intensity, class, position, i as u64),
             drop_probability: answer.drop_probability(),
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
         };
         let met = answer.is_hit();
         let kept = match around.and_then(|around| around.instead(i, met)) {

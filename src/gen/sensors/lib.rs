@@ -23,6 +23,7 @@ mod plots;
 pub mod project;
 pub mod raycast;
 pub mod road_exits;
+pub mod rolling;
 pub mod splat;
 pub mod surroundings;
 mod texture;

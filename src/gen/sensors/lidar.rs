@@ -69,11 +69,7 @@ impl Rays {
     pub fn new(pattern: &LidarPattern, velocity_mps: DVec3) -> Self {
         let ego_from_sensor = pattern.ego_from_sensor();
         let columns = pattern.columns_in_sector();
-        let short_s = |column: u32| match pattern.spin_hz > 0.0 {
-            true => (1.0 - f64::from(column) / f64::from(pattern.columns.max(1))) / pattern.spin_hz,
-            false => 0.0,
-        };
-        let origin = |column| ego_from_sensor.translation_m - velocity_mps * short_s(column);
+        let origin = |column| ego_from_sensor.translation_m - velocity_mps * pattern.before_end_s(column);
         let azimuths: Vec<(f64, f64)> = (0..columns).map(|i| pattern.azimuth_rad(i).sin_cos()).collect();
         let mut directions = Vec::with_capacity(pattern.rays());
         for elevation_deg in &pattern.elevations_deg {
@@ -159,6 +155,7 @@ mod tests {
             sector_deg: 360.0,
             clockwise: false,
             spin_hz: 0.0,
+            part: None,
             max_range_m: 100.0,
             min_range_m: 0.0,
             own_body: true,

@@ -142,6 +142,8 @@ impl Around {
                 class,
                 intensity: intensity as f32,
                 drop_probability: lost as f32,
+                time_s: 0.0,
+                velocity_mps: [0.0; 2],
             };
             let mut draw = Draw::new(hash(SCENE_SEED ^ ray as u64), "outside");
             let (fate, detail) = (draw.unit(), draw.unit());

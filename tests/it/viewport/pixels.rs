@@ -437,6 +437,8 @@ fn odd_input_is_refused_or_drawn_but_never_a_panic() {
             class: Class::Free,
             intensity: f32::NAN,
             drop_probability: f32::NAN,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
         }],
         rays: 1,
         physical: false,

@@ -240,6 +240,8 @@ fn sweep(grid: &VoxelGrid) -> LidarSweep {
                         class,
                         intensity: 0.0,
                         drop_probability: 0.0,
+                        time_s: 0.0,
+                        velocity_mps: [0.0; 2],
                     });
                     break;
                 }

@@ -17,7 +17,7 @@ use app::{open, picture};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
 use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
-use sensors::lidar;
+use sensors::rolling;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 
 pub use arguments::{size, source};
@@ -65,7 +65,7 @@ pub struct Render {
 pub fn sense(scene: &Scene, [width, height]: [u32; 2]) -> (Vec<CameraMaps>, LidarSweep) {
     let scene = &*scene.with_rig_in_world();
     let frame = scene.frame();
-    let sweep = lidar::rig_sweep(&frame.occupancy, &scene.rig).unwrap_or_default();
+    let sweep = rolling::exact(scene);
     let cloud = GaussianCloud::from_grid(&frame.occupancy, frame.layout.cells());
     let maps = splat::render_rig(&cloud, &scene.rig, width, height, &SplatOptions::default());
     (maps, sweep)

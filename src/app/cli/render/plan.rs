@@ -10,8 +10,8 @@ use app::picture::View3d;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
 use sensors::cameras::{self, CameraSource, View, bounds};
-use sensors::learned::{self, Drops};
-use sensors::lidar;
+use sensors::learned::Drops;
+use sensors::rolling;
 
 /// Pictures of one source.
 pub struct Cameras {
@@ -90,12 +90,9 @@ impl LidarModel {
 
     /// The sweep of a scene.
     pub fn sweep(&self, scene: &Scene) -> anyhow::Result<LidarSweep> {
-        let occupancy = &scene.frame().occupancy;
         match self {
-            Self::Exact => Ok(lidar::rig_sweep(occupancy, &scene.rig).unwrap_or_default()),
-            Self::Learned(net) => {
-                learned::rig_sweep(net, occupancy, &scene.rig, Drops::Likely).context("the LiDAR network")
-            }
+            Self::Exact => Ok(rolling::exact(scene)),
+            Self::Learned(net) => rolling::learned(net, scene, Drops::Likely).context("the LiDAR network"),
         }
     }
 }

@@ -13,6 +13,7 @@ use scene::{Extent, Frame, SceneBox};
 
 use super::boxes::{self, Steered, step_name, transform};
 use super::gizmo::{Gizmo, Part};
+use super::motion::{self, MotionDrag};
 use super::things::{self, Pull as ThingPull, ThingDrag, thing_under};
 
 /// What the button held does. All points are of the ego frame, m.
@@ -36,6 +37,12 @@ pub(super) enum Drag {
     /// Drags chosen things.
     Things {
         drag: ThingDrag,
+        from_m: DVec2,
+        moved: bool,
+    },
+    /// Drags a keyframe or a place of a path.
+    Motion {
+        drag: MotionDrag,
         from_m: DVec2,
         moved: bool,
     },
@@ -95,7 +102,18 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             }
             _ => {}
         }
-        if let Some(id) = pick::box_at(frame, at_m) {
+        let over_box = pick::box_at(frame, at_m);
+        // Where the thing itself is, it is dragged, and with it its way.
+        if over_box.is_none_or(|id| !cx.hand.is_chosen(id))
+            && let Some(drag) = MotionDrag::held(cx.settled, cx.hand, at_m, reach_m)
+        {
+            return Some(Drag::Motion {
+                drag,
+                from_m: at_m,
+                moved: false,
+            });
+        }
+        if let Some(id) = over_box {
             if shift && !(chosen.len() == 1 && cx.hand.is_chosen(id)) {
                 cx.hand.choose(&[id], Choose::Toggle);
                 // Letting go elsewhere than pressed moves nothing: the selection is what was meant.
@@ -173,6 +191,13 @@ pub(super) fn drag(drag: &mut Drag, cx: &Context<'_>, pointer: &Pointer) -> Resp
                 false => Vec::new(),
             };
             preview(edits)
+        }
+        Drag::Motion { drag, from_m, moved } => {
+            *moved |= left(*from_m);
+            match *moved {
+                true => drag.preview(cx.settled, cx.hand, at_m, pointer.held),
+                false => Response::none(),
+            }
         }
         Drag::Marquee { to_m, .. } => {
             *to_m = at_m;
@@ -297,6 +322,10 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
                 click(cx.hand, from_m, false);
             }
         }
+        Drag::Motion {
+            drag, moved: true, ..
+        } => return Response::act(Act::Commit(drag.label().into())),
+        Drag::Motion { .. } => {}
         Drag::Marquee { from_m, to_m, add } => {
             if from_m.distance(to_m) * scale > CLICK_SLACK {
                 cx.hand.choose(&choose::in_rect(frame, from_m, to_m), how(add));
@@ -338,6 +367,7 @@ pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
         Some(Handle::Rotate) => Cursor::Turn,
         Some(Handle::Corner(_)) => Cursor::Crosshair,
         Some(Handle::Body) => Cursor::Move,
+        None if motion::is_over_knot(sight, at_m) => Cursor::Move,
         None if pick::box_at(frame, at_m).is_some() => Cursor::Pointing,
         None => match thing_under(sight.scene, hand, at_m, reach_m) {
             Some(id) if hand.things.chosen.contains(&id) => Cursor::Move,
@@ -395,8 +425,17 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
                 out.push(Mark::Tag(at_m.into(), text));
             }
         }
+        Some(Drag::Motion {
+            drag, moved: true, ..
+        }) => {
+            if let Some(at_m) = sight.ground_m() {
+                out.push(Mark::Tag(at_m.into(), drag.text()));
+            }
+        }
         _ => {}
     }
+    let knots_m = motion::knots_m(sight);
+    out.extend(knots_m.into_iter().map(|p| Mark::Handle(p.into())));
     let corners_m = things::handles_m(sight.scene, sight.hand);
     out.extend(corners_m.into_iter().map(|p| Mark::Handle(p.into())));
     out

@@ -3,6 +3,7 @@
 mod above;
 mod boxes;
 mod gizmo;
+mod motion;
 mod space;
 mod things;
 
