@@ -87,6 +87,12 @@ impl Generation {
         true
     }
 
+    /// True while all of the scene is generated.
+    pub(crate) fn runs_whole(&self) -> bool {
+        let running = self.live.running.as_ref();
+        running.is_some_and(|r| r.purpose == Purpose::Full)
+    }
+
     /// Forgets everything that belongs to the scene that was open.
     pub(crate) fn forget_scene(&mut self) {
         self.worker.cancel();

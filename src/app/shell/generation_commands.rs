@@ -6,6 +6,7 @@ use super::app::SceneloomApp;
 use super::live::Running;
 use super::toasts::Level;
 use crate::command::GenerationCommand;
+use scene::Extent;
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -21,7 +22,12 @@ impl SceneloomApp {
                 }
                 if running && self.generation.cancel() {
                     let now_s = self.now_s();
-                    self.toasts.push(Level::Info, "Generation cancelled", now_s);
+                    let several = self.document.settled_scene().frame().extent() != Extent::WINDOW;
+                    let text = match several && self.generation.runs_whole() {
+                        true => "Generation cancelled. Generate goes on where it stopped",
+                        false => "Generation cancelled",
+                    };
+                    self.toasts.push(Level::Info, text, now_s);
                 }
             }
             GenerationCommand::RestoreVersion(rev) => {

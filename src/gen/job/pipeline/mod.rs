@@ -7,6 +7,7 @@ mod plan;
 mod round_trip;
 mod source;
 mod standing;
+mod unfinished;
 mod window;
 
 use std::collections::{BTreeMap, VecDeque};
@@ -35,6 +36,7 @@ use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, Extent, Scene, SceneBox, VoxelGrid, Window};
 use source::{Source, stored_for};
 use standing::Standing;
+use unfinished::Unfinished;
 
 pub use network::Ablation;
 pub use plan::{Bounds, Place, parts, windows_over};
@@ -79,6 +81,8 @@ pub struct OccPipeline {
     standing: Option<Standing>,
     /// The part of the condition that is hidden from the network, to measure what that part is worth.
     ablation: Option<Ablation>,
+    /// What a whole map had come to when it was stopped.
+    unfinished: Unfinished,
 }
 
 impl OccPipeline {
@@ -90,6 +94,7 @@ impl OccPipeline {
             draft: None,
             standing: None,
             ablation: None,
+            unfinished: Unfinished::default(),
         }
     }
 
@@ -501,9 +506,12 @@ impl Pipeline for OccPipeline {
     fn run(&mut self, job: &Job, ctx: &JobCtx<'_>) -> Result<GenResult, GenError> {
         job.params.check()?;
         ctx.check()?;
-        window::over_the_map(job, ctx, |job, ctx| match job.params.region {
+        let mut unfinished = std::mem::take(&mut self.unfinished);
+        let result = window::over_the_map(job, ctx, &mut unfinished, |job, ctx| match job.params.region {
             RegionMode::Full => self.generate(job, ctx),
             RegionMode::Auto => self.edit(job, ctx),
-        })
+        });
+        self.unfinished = unfinished;
+        result
     }
 }

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::plan::{Part, Place, Task, extent_of, plan};
+use super::unfinished::Unfinished;
 use crate::contract::{GenError, GenParams, GenReport, GenResult, Job, JobCtx, JobUpdate, RegionMode};
 use crate::inpaint::{self, InpaintMask};
 use crate::region::CELLS_PER_SIDE;
@@ -55,10 +56,12 @@ pub(super) fn in_window(
     })
 }
 
-/// Runs a job window by window. Previews and the result are of the whole map.
+/// Runs a job window by window. Previews and the result are of the whole map. A whole map that was stopped before goes on
+/// from where it was.
 pub(super) fn over_the_map(
     job: &Job,
     ctx: &JobCtx<'_>,
+    unfinished: &mut Unfinished,
     mut run: impl FnMut(&Job, &JobCtx<'_>) -> Result<GenResult, GenError>,
 ) -> Result<GenResult, GenError> {
     let job = &*standing(job);
@@ -71,7 +74,8 @@ pub(super) fn over_the_map(
     };
     let rounds = plan(job.scene.frame(), &job.params);
     let all: usize = rounds.iter().map(Vec::len).sum();
-    let (mut report, mut done) = (GenReport::default(), 0);
+    let (mut report, mut done, mut made) = (GenReport::default(), 0, 0);
+    let mut kept = unfinished.begin(job);
     for round in &rounds {
         let before = map.scene.clone();
         for part in round {
@@ -81,6 +85,12 @@ pub(super) fn over_the_map(
                 continue;
             };
             let stop = || ctx.check().is_err();
+            made += 1;
+            if let Some(result) = kept.as_ref().and_then(|kept| kept.part(made - 1)) {
+                map.take(part, &cut, &result);
+                report.add(&result.report);
+                continue;
+            }
             let (so_far, report_so_far) = (&map, &report);
             let forward = |update: JobUpdate| match update {
                 JobUpdate::Preview(result) => ctx.preview(GenResult {
@@ -100,6 +110,9 @@ pub(super) fn over_the_map(
                 false => JobCtx::new(&stop, &forward),
             };
             let result = run(&cut.job, &inner)?;
+            if let Some(kept) = &mut kept {
+                kept.keep(&result);
+            }
             map.take(part, &cut, &result);
             report.add(&result.report);
             if ctx.previews() && done < all {
@@ -110,6 +123,9 @@ pub(super) fn over_the_map(
                 });
             }
         }
+    }
+    if let Some(kept) = kept {
+        kept.end();
     }
     report.region_share = report.region_columns as f64 / job.scene.frame().extent().columns() as f64;
     Ok(GenResult {
@@ -325,7 +341,7 @@ mod tests {
         let ctx = JobCtx::new(&stop, &report).with_previews();
         let job = job(scene, GenParams::default());
         assert!(!is_idle(&job));
-        let result = over_the_map(&job, &ctx, grow).expect("runs");
+        let result = over_the_map(&job, &ctx, &mut Unfinished::default(), grow).expect("runs");
         assert_eq!((result.key.clone(), result.report.network_calls), (job.key(), 2));
         assert_eq!(result.occupancy.extent(), map());
         let label = |x_m, y_m| {
@@ -359,7 +375,8 @@ mod tests {
         };
         assert!(is_idle(&idle));
         let none = |_: &Job, _: &JobCtx<'_>| panic!("no network is asked");
-        let result = over_the_map(&idle, &JobCtx::detached(), none).expect("nothing");
+        let result =
+            over_the_map(&idle, &JobCtx::detached(), &mut Unfinished::default(), none).expect("nothing");
         assert_eq!(result.occupancy, before);
     }
 
@@ -375,7 +392,7 @@ mod tests {
             ..GenParams::default()
         };
         let job = job(scene(), params);
-        let result = over_the_map(&job, &JobCtx::detached(), grow).expect("runs");
+        let result = over_the_map(&job, &JobCtx::detached(), &mut Unfinished::default(), grow).expect("runs");
         let held = mask.columns(map()).iter().filter(|c| **c).count();
         assert_eq!(result.report.region_columns, held, "none twice, none left out");
         for [x, y] in map().all_columns() {
@@ -409,7 +426,7 @@ mod tests {
                 .push((job.params.clone(), redrawn));
             grow(job, ctx)
         };
-        let result = over_the_map(&job, &JobCtx::detached(), log).expect("runs");
+        let result = over_the_map(&job, &JobCtx::detached(), &mut Unfinished::default(), log).expect("runs");
         let calls = calls.into_inner().expect("not poisoned");
         let seams: Vec<_> = calls.iter().filter(|(p, _)| p.strength == 1.0).collect();
         assert_eq!((calls.len(), seams.len()), (15, 9));
@@ -422,12 +439,12 @@ mod tests {
         let free = |[x, y]: &[usize; 2]| result.occupancy.get(*x, *y, 0) == Class::FREE;
         assert!(!map().all_columns().any(|c| free(&c)), "no column is left out");
         // The same whatever came first: windows of one kind see nothing of each other.
-        let again = over_the_map(&job, &JobCtx::detached(), grow).expect("runs");
+        let again = over_the_map(&job, &JobCtx::detached(), &mut Unfinished::default(), grow).expect("runs");
         assert_eq!(again.occupancy, result.occupancy);
     }
 
     #[test]
-    fn a_job_that_is_stopped_ends_between_windows() {
+    fn a_job_that_is_stopped_ends_between_windows_and_goes_on_there() {
         let done = std::cell::Cell::new(0);
         let params = GenParams {
             region: RegionMode::Full,
@@ -445,8 +462,33 @@ mod tests {
                 false => Err(GenError::Superseded),
             }
         };
-        let error = over_the_map(&job(scene(), params), &ctx, run).expect_err("stopped");
+        let (job, mut unfinished) = (job(scene(), params.clone()), Unfinished::default());
+        let error = over_the_map(&job, &ctx, &mut unfinished, run).expect_err("stopped");
         assert_eq!((error, done.get()), (GenError::Superseded, 3));
+        // The same scene under another revision: two windows are there already.
+        let again = self::job(scene(), params.clone());
+        assert_ne!(again.key(), job.key());
+        let calls = std::cell::Cell::new(0);
+        let count = |job: &Job, ctx: &JobCtx<'_>| {
+            calls.set(calls.get() + 1);
+            grow(job, ctx)
+        };
+        let resumed = over_the_map(&again, &JobCtx::detached(), &mut unfinished, count).expect("runs");
+        let whole =
+            over_the_map(&again, &JobCtx::detached(), &mut Unfinished::default(), grow).expect("runs");
+        assert_eq!(resumed.occupancy, whole.occupancy);
+        assert_eq!(resumed.report.network_calls, whole.report.network_calls);
+        assert_eq!(calls.get() + 2, whole.report.network_calls);
+        // An edit between leaves it alone; another seed begins anew.
+        unfinished.begin(&again).expect("a whole map").keep(&resumed);
+        assert!(
+            unfinished
+                .begin(&self::job(scene(), GenParams::default()))
+                .is_none()
+        );
+        assert!(unfinished.part(0).is_some());
+        let other = self::job(scene(), GenParams { seed: 77, ..params });
+        assert!(unfinished.begin(&other).expect("a whole map").part(0).is_none());
     }
 
     #[test]
