@@ -18,7 +18,6 @@ use scene::{BevLayer, Class, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 use super::bev_image::{self, LayerStyle};
 use super::canvas_draw::{
     BoxStyle, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
-    draw_unsettled,
 };
 use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
@@ -29,6 +28,7 @@ use super::state::UiState;
 use super::thing_outlines;
 use super::tools::ToolState;
 use super::track_marks;
+use super::unsettled_marks;
 use super::views_shown::Underlay;
 use crate::shell::live::Bounds;
 use crate::windows::row;
@@ -315,7 +315,7 @@ impl Canvas {
         if state.shown.boxes {
             draw_boxes(ui, map, response, input.scene, &state.tools);
         }
-        draw_unsettled(ui, map, self.extent, &input.unsettled, input.generating);
+        unsettled_marks::from_above(ui.painter(), map, self.extent, &input.unsettled, input.generating);
         if let Some(marks) = &state.shown.finding_marks {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
             marks.draw(&inside, map, scene.frame());

@@ -5,12 +5,11 @@ use glam::{DVec2, DVec3};
 
 use editor::pick;
 use editor::tools::{HANDLE_REACH, select};
-use scene::{BevLayer, Extent, LidarSweep, PolylineKind, Pose, Scene, SceneBox, SensorRig};
+use scene::{BevLayer, LidarSweep, PolylineKind, Pose, Scene, SceneBox, SensorRig};
 
 use super::camera_views::LidarShown;
 use super::screen_map::ScreenMap;
 use super::tools::Hand;
-use crate::shell::live::Bounds;
 use widgets::theme;
 
 /// What of `outer` is not covered by `inner`.
@@ -215,36 +214,6 @@ fn draw_handles(ui: &Ui, map: &ScreenMap, b: &SceneBox) {
             Stroke::new(1.0, theme::CANVAS),
             StrokeKind::Outside,
         );
-    }
-}
-
-/// A dashed frame around what is still to be generated, in columns of the map.
-pub(super) fn draw_unsettled(
-    ui: &Ui,
-    map: &ScreenMap,
-    extent: Extent,
-    unsettled: &[Bounds],
-    generating: bool,
-) {
-    let color = if generating {
-        theme::accent()
-    } else {
-        theme::warn()
-    };
-    let corner = |c: [usize; 2]| extent.center(c[0], c[1], 0).truncate();
-    let half = DVec2::splat(Extent::VOXEL_M / 2.0);
-    for (low, high) in unsettled {
-        let rect = map.rect_of(corner(*low) - half, corner(*high) + half).expand(2.0);
-        ui.painter().rect_filled(rect, 2.0, color.gamma_multiply(0.07));
-        let [a, b, c, d] = [
-            rect.left_top(),
-            rect.right_top(),
-            rect.right_bottom(),
-            rect.left_bottom(),
-        ];
-        let stroke = Stroke::new(1.3, color);
-        ui.painter()
-            .extend(Shape::dashed_line(&[a, b, c, d, a], stroke, 6.0, 4.0));
     }
 }
 

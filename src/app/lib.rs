@@ -28,6 +28,7 @@ mod thing_outlines;
 pub mod tools;
 mod track_marks;
 pub mod trade_plot;
+mod unsettled_marks;
 pub mod view3d;
 pub mod views_shown;
 pub mod windows;

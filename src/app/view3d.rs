@@ -25,7 +25,9 @@ use super::state::{UiState, position_text};
 use super::thing_outlines;
 use super::tools::ToolState;
 use super::track_marks;
+use super::unsettled_marks;
 use super::views_shown::ViewsShown;
+use crate::shell::live::Bounds;
 use widgets::software_ui;
 use widgets::theme;
 
@@ -76,6 +78,8 @@ pub struct View3dInput<'a> {
     pub dragging: bool,
     /// Voxels that are marked, by colour.
     pub marked: &'a [BrushCells<'a>],
+    /// What is still to be generated, and whether it is being generated.
+    pub unsettled: (&'a [Bounds], bool),
 }
 
 /// Voxels that are marked at most; more would only hide each other.
@@ -186,6 +190,8 @@ impl View3d {
         let project = |p_m: DVec3| View3d::project(self, p_m);
         thing_outlines::in_3d(&painter, &project, input.scene, &state.things);
         track_marks::in_3d(&painter, &project, input.scene, state);
+        let (parts, generating) = input.unsettled;
+        unsettled_marks::in_3d(&painter, &project, input.scene.frame(), parts, generating);
         let board = Board {
             painter: &painter,
             view: self,

@@ -75,6 +75,7 @@ impl Pane for View3dPane {
             lidar: cx.sensing.lidar(),
             dragging: cx.document.is_dragging(),
             marked: marked.as_ref().map_or(&[], |m| &m[..]),
+            unsettled: (cx.unsettled, cx.generating),
         };
         let (view, state) = (&mut *cx.view3d, &mut *cx.state);
         if shows_before {
@@ -107,6 +108,7 @@ impl Pane for View3dPane {
             lidar,
             dragging: false,
             marked: &[],
+            unsettled: (&[], false),
         };
         let seen_from = (&cx.view3d.camera, &cx.view3d.options);
         if mode == CompareMode::Side {

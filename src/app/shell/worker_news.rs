@@ -263,6 +263,7 @@ impl SceneloomApp {
         match answer {
             Ok(scene) => {
                 self.generation.forget_scene();
+                self.views.prompt.opened(&scene);
                 if opening.is_import {
                     let text = format!("Imported {} as a draft. Ctrl+Enter generates it.", scene.name);
                     self.toasts.push(Level::Info, text, now_s);

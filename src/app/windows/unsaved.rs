@@ -41,6 +41,10 @@ pub fn unsaved_ui(ui: &Ui, name: &str) -> Option<Unsaved> {
                 }
             });
         });
+    // Keys go on working over the buttons: Enter is the one that is filled.
+    if answer.is_none() && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Enter)) {
+        answer = Some(Unsaved::Save);
+    }
     if answer.is_none() && modal.should_close() {
         answer = Some(Unsaved::Stay);
     }

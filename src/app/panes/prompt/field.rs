@@ -61,6 +61,18 @@ impl PromptField {
         self.plan.told()
     }
 
+    /// Another scene is open: words that were typed for the one before go, unless it was made of them. They stay in the
+    /// history.
+    pub fn opened(&mut self, scene: &Scene) {
+        if scene.words.contains(&self.prompt) {
+            return;
+        }
+        self.prompt.clear();
+        (self.read, self.done, self.back) = (None, None, 0);
+        (self.asks, self.offers) = (false, false);
+        self.notes.clear();
+    }
+
     /// Draws the pane.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         egui::ScrollArea::vertical()

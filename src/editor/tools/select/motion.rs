@@ -10,7 +10,7 @@ use scene::{BoxId, Clip, Frame, Motion, Scene};
 
 /// A path can be taken every so far, m.
 const KNOTS_EVERY_M: f64 = 10.0;
-/// What lies so far from where it is taken, along the path, comes along a little, m.
+/// What lies nearer than this to where it is taken, along the path, comes along, m.
 const BEND_M: f64 = 15.0;
 /// Points of a path where it is bent lie at most so far apart, m.
 const STEP_M: f64 = 1.0;
@@ -156,13 +156,15 @@ fn knots(motion: &Motion) -> Vec<(Knot, DVec2)> {
 fn bent(path: &Path, along_m: f64, by_m: DVec2) -> Path {
     let mut points_m: Vec<DVec2> = Vec::with_capacity(path.points_m.len() + 64);
     let mut passed_m = 0.0;
+    // What goes far takes more along, so that the way does not turn sharply.
+    let reach_m = BEND_M.max(2.5 * by_m.length());
     let moved = |at_m: DVec2, passed_m: f64| {
-        let apart = ((passed_m - along_m).abs() / BEND_M).min(1.0);
+        let apart = ((passed_m - along_m).abs() / reach_m).min(1.0);
         at_m + by_m * (0.5 + 0.5 * (apart * std::f64::consts::PI).cos())
     };
     for pair in path.points_m.windows(2) {
         let length_m = pair[0].distance(pair[1]);
-        let near = passed_m < along_m + BEND_M && passed_m + length_m > along_m - BEND_M;
+        let near = passed_m < along_m + reach_m && passed_m + length_m > along_m - reach_m;
         let room = Motion::MAX_POINTS.saturating_sub(points_m.len() + path.points_m.len());
         let pieces = match near {
             true => ((length_m / STEP_M).ceil() as usize).clamp(1, room.max(1)),
