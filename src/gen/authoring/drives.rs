@@ -39,30 +39,48 @@ pub struct DriveFrame {
     pub pose: [f64; 3],
 }
 
-/// A drive: [`FRAMES`] frames.
+/// A drive: in data sets [`FRAMES`] frames.
 pub struct Drive(pub Vec<DriveFrame>);
 
-/// The map of a drive: the window and what a vehicle comes to see within [`FRAMES`], at 15 m/s and around a bend.
-fn map() -> Extent {
-    Extent::new([-150, -180], [440, 360]).unwrap_or(Extent::WINDOW)
+/// Frames of a drive at most.
+const MOST_FRAMES: usize = 32;
+/// Columns that a vehicle comes to see more of with each frame, at 15 m/s.
+const COLUMNS_PER_FRAME: usize = 19;
+
+/// The map of a drive: the window and what a vehicle comes to see, at 15 m/s and around a bend.
+fn map(frames: usize) -> Extent {
+    let more = frames.saturating_sub(FRAMES) * COLUMNS_PER_FRAME;
+    let size = [440 + more, 360 + more];
+    Extent::new([-150, -180 - (more / 2) as i32], size).unwrap_or(Extent::WINDOW)
 }
 
 /// The world of drive `index` of the data set of `seed` as a clip. `roads` as for
 /// [`world_of`](dataset::world_of).
 pub fn drive_scene(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> Scene {
+    drive_scene_of(seed, index, FRAMES, roads)
+}
+
+/// The same of so many frames, 2 to 32; what drives of different lengths show differs.
+pub fn drive_scene_of(
+    seed: u64,
+    index: u64,
+    frames: usize,
+    roads: impl Fn(u64) -> Option<BevLayout>,
+) -> Scene {
+    let frames = frames.clamp(2, MOST_FRAMES);
     let seed = hash(hash(seed ^ 0xd41_7e5) ^ index);
     let mut near = roads(seed).unwrap_or_else(|| template::any_layout(seed));
     near.relief = match near.relief.is_flat() {
         true => Terrain::drawn(seed).relief(&near, seed),
         false => near.relief,
     };
-    let layout = near.crop_continued(map());
+    let layout = near.crop_continued(map(frames));
     let boxes = traffic::place(&layout, seed, &traffic::TrafficSpec::NORMAL);
     let background = scenery_over(&layout, &boxes, Background::default(), seed);
     let occupancy = occupancy_over(&layout, &boxes, &background, seed);
     let frame = Frame::new(layout, boxes, occupancy);
     let mut scene = Scene::single("drive", frame, SensorRig::default().into(), seed);
-    let length_s = (FRAMES - 1) as f64 * STEP_S;
+    let length_s = (frames - 1) as f64 * STEP_S;
     let edits = [Edit::SetLength {
         length_s,
         rate_hz: Some(1.0 / STEP_S),
@@ -176,7 +194,8 @@ pub fn frames_of(scene: &Scene) -> Drive {
             pose: [at_m.x, at_m.y, yaw_rad],
         }
     };
-    Drive((0..FRAMES).map(frame).collect())
+    let frames = (scene.clip().length_s / STEP_S).round() as usize + 1;
+    Drive((0..frames).map(frame).collect())
 }
 
 impl Shard for Drive {

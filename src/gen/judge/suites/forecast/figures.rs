@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use authoring::drives::DriveFrame;
-use metrics::extractor::Extractor;
 use scene::{Class, Extent, Pose, SceneBox, VoxelGrid, Window};
 
 /// Figures of a method by name, one per drive.
@@ -103,21 +102,6 @@ fn voxels_of(grid: &VoxelGrid, b: &SceneBox) -> f64 {
         n += grid.column(x, y).iter().filter(|l| **l == b.class.id()).count();
     });
     n as f64
-}
-
-/// How alike the frames look to the extractor of F3D: mean over the frames after the first of the cosines with the frame before
-/// and with the first (the code of UniScene, 2412.05435).
-pub fn steadiness(extractor: &Extractor, found: &[VoxelGrid]) -> anyhow::Result<f64> {
-    let features: Result<Vec<_>, _> = found.iter().map(|grid| extractor.features(grid)).collect();
-    let features = features?;
-    let cos = |a: &[f64], b: &[f64]| {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        dot(a, b) / (dot(a, a) * dot(b, b)).sqrt().max(1e-12)
-    };
-    let later = features
-        .windows(2)
-        .map(|pair| (cos(&pair[1], &pair[0]) + cos(&pair[1], &features[0])) / 2.0);
-    Ok(later.sum::<f64>() / (features.len().max(2) - 1) as f64)
 }
 
 /// A box that goes on as it moves.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::figures::{column_in, moved_on, moving_columns, pose};
-use authoring::drives::{DriveFrame, STEP_S};
+use authoring::drives::{DriveFrame, FRAMES, STEP_S};
 use job::drive::DriveNetwork;
 use nets::{CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, SIDE, column_heights};
 use nn::weights::{self, WeightFile};
@@ -131,7 +131,7 @@ impl<'a> Drives<'a> {
             How::ConstantVelocity => told
                 .iter()
                 .enumerate()
-                .map(|(i, to)| moved_world(last, to, i).0)
+                .map(|(i, to)| moved_world(&[Seen::of(last)], last, to, i).0)
                 .collect(),
             How::Draft => told
                 .iter()
@@ -147,7 +147,8 @@ impl<'a> Drives<'a> {
         }))
     }
 
-    /// By the networks, the known frames as context.
+    /// By the networks, the known frames as context. More frames than the networks draw at once are drawn one part after
+    /// another, the last frames of a part known to the next.
     fn drawn(
         &self,
         time: Option<&OccDitTime>,
@@ -158,35 +159,57 @@ impl<'a> Drives<'a> {
         let last = &truth[KNOWN - 1];
         let density = Density::of(&last.dense, last.layout.cells());
         let vae = &self.models.vae;
-        let mut conditions = Vec::new();
+        let mut known: Vec<(DitCondition, [f64; 3])> = Vec::new();
         for frame in &truth[..KNOWN] {
-            let mut condition = self.condition(&frame.layout, &frame.boxes, density)?;
-            condition.context = vae.encode(&frame.dense)?;
-            condition.mask = vec![0.0; CELLS];
-            conditions.push(condition);
+            let condition = self.condition(&frame.layout, &frame.boxes, density)?;
+            known.push((self.known(condition, &frame.dense)?, frame.pose));
         }
-        for to in told {
-            conditions.push(self.condition(&to.layout, &to.boxes, density)?);
+        let mut poses = truth[KNOWN..].iter().map(|f| f.pose);
+        let mut out: Vec<VoxelGrid> = Vec::new();
+        for (part, told) in told.chunks(FRAMES - KNOWN).enumerate() {
+            let mut frames = known;
+            for (to, pose) in told.iter().zip(&mut poses) {
+                frames.push((self.condition(&to.layout, &to.boxes, density)?, pose));
+            }
+            let (conditions, poses): (Vec<DitCondition>, Vec<[f64; 3]>) = frames.into_iter().unzip();
+            let network = DriveNetwork {
+                models: self.models,
+                time,
+                steps: STEPS,
+                seed: seed.wrapping_add((part as u64) << 16),
+            };
+            let latents = network.draw(&conditions, &poses, STEP_S)?;
+            let decoded: Result<Vec<_>, _> = latents[KNOWN..].iter().map(|l| vae.decode(l)).collect();
+            out.extend(decoded?);
+            known = Vec::new();
+            if out.len() < KNOWN {
+                break;
+            }
+            let newest = conditions.into_iter().zip(poses).rev().take(KNOWN).rev();
+            for ((condition, pose), grid) in newest.zip(&out[out.len() - KNOWN..]) {
+                known.push((self.known(condition, grid)?, pose));
+            }
         }
-        let poses: Vec<[f64; 3]> = truth.iter().map(|f| f.pose).collect();
-        let network = DriveNetwork {
-            models: self.models,
-            time,
-            steps: STEPS,
-            seed,
-        };
-        let latents = network.draw(&conditions, &poses, STEP_S)?;
-        let decoded: Result<Vec<_>, _> = latents[KNOWN..].iter().map(|l| vae.decode(l)).collect();
-        Ok(decoded?)
+        Ok(out)
     }
 
-    /// On the canvas: what was seen stays, moving objects go on, the networks draw what comes into view.
+    /// A frame whose voxels are known.
+    fn known(&self, condition: DitCondition, grid: &VoxelGrid) -> anyhow::Result<DitCondition> {
+        Ok(DitCondition {
+            context: self.models.vae.encode(grid)?,
+            mask: vec![0.0; CELLS],
+            ..condition
+        })
+    }
+
+    /// On the canvas: what was seen or drawn stays, moving objects go on, the networks draw what comes into view.
     fn on_canvas(&self, last: &DriveFrame, told: &[Told], seed: u64) -> anyhow::Result<Vec<VoxelGrid>> {
         let density = Density::of(&last.dense, last.layout.cells());
         let vae = &self.models.vae;
+        let mut seen_from = vec![Seen::of(last)];
         let mut out = Vec::new();
         for (i, to) in told.iter().enumerate() {
-            let (world, seen) = moved_world(last, to, i);
+            let (world, seen) = moved_world(&seen_from, last, to, i);
             let mut condition = self.condition(&to.layout, &to.boxes, density)?;
             let hidden = |cell: usize| {
                 let (x, y) = (cell / SIDE * 4, cell % SIDE * 4);
@@ -208,6 +231,11 @@ impl<'a> Drives<'a> {
                 let (x, y) = (c / Window::NY, c % Window::NY);
                 *grid.column_mut(x, y) = *world.column(x, y);
             }
+            seen_from.push(Seen {
+                grid: grid.clone(),
+                pose: to.pose,
+                moving: moving_columns(to.boxes.values()),
+            });
             out.push(grid);
         }
         Ok(out)
@@ -298,22 +326,43 @@ fn warped(grid: &VoxelGrid, from: &Pose, to: &Told) -> VoxelGrid {
     out
 }
 
-/// The last frame's world after `i + 1` steps: what stands as it was seen, what moves at its speed, the draft beyond; and which
-/// columns were seen.
-fn moved_world(last: &DriveFrame, to: &Told, i: usize) -> (VoxelGrid, Vec<bool>) {
+/// What was seen of the world from one place.
+struct Seen {
+    grid: VoxelGrid,
+    pose: Pose,
+    /// Columns, `[x][y]`, in which something moves.
+    moving: Vec<bool>,
+}
+
+impl Seen {
+    fn of(frame: &DriveFrame) -> Self {
+        Self {
+            grid: frame.dense.clone(),
+            pose: pose(frame),
+            moving: moving_columns(frame.boxes.values()),
+        }
+    }
+}
+
+/// The world `i + 1` steps after the last known frame: what stands as it was seen first, what moves at its speed, the draft
+/// beyond; and which columns were seen.
+fn moved_world(seen_from: &[Seen], last: &DriveFrame, to: &Told, i: usize) -> (VoxelGrid, Vec<bool>) {
     let from = pose(last);
-    let moving = moving_columns(last.boxes.values());
     let drafted = draft::draft(&to.layout, to.boxes.values());
     let ground = draft::draft(&to.layout, std::iter::empty());
     let (mut out, mut seen) = (drafted, vec![false; Window::COLUMNS]);
     for [x, y] in Extent::WINDOW.all_columns() {
-        let Some([i, j]) = column_in(Window::center(x, y, 0), &to.pose, &from) else {
+        let first = seen_from.iter().find_map(|was| {
+            let [i, j] = column_in(Window::center(x, y, 0), &to.pose, &was.pose)?;
+            Some((was, i, j))
+        });
+        let Some((was, i, j)) = first else {
             continue;
         };
         seen[x * Window::NY + y] = true;
-        *out.column_mut(x, y) = match moving[i * Window::NY + j] {
+        *out.column_mut(x, y) = match was.moving[i * Window::NY + j] {
             true => *ground.column(x, y),
-            false => *last.dense.column(i, j),
+            false => *was.grid.column(i, j),
         };
     }
     let seconds = (i + 1) as f64 * STEP_S;

@@ -3,6 +3,7 @@
 
 mod figures;
 mod methods;
+mod stacks;
 
 use std::collections::BTreeMap;
 
@@ -11,20 +12,59 @@ use serde_json::{Value, json};
 use crate::Progress;
 use crate::held_out::TEST_SEED;
 use crate::suite::{Found, Options, with_interval};
-use authoring::drives::{STEP_S, drive_scene, frames_of};
-use figures::{Rows, flicker, shape_spread, steadiness};
+use authoring::drives::{FRAMES, STEP_S, drive_scene_of, frames_of};
+use figures::{Rows, flicker, shape_spread};
 use job::pipeline::OccPipeline;
 use methods::{Drives, KNOWN, METHODS, Wish};
 use metrics::extractor::Extractor;
 use metrics::iou::Confusion;
+use metrics::local::Windows;
+use scene::VoxelGrid;
+use stacks::Stack;
 
-/// Frames that are compared: one, two and three seconds after the last known one.
-const COMPARED: [(&str, usize); 3] = [("1 s", 3), ("2 s", 5), ("3 s", 7)];
-/// Which layouts the frames to come are drawn from: those that came, or those that the last frame lets expect.
-const LAYOUTS: [(&str, Wish); 2] = [
-    ("layouts that came", Wish::Came),
-    ("layouts expected", Wish::Expected),
+/// One comparison of all methods.
+struct Comparison {
+    name: &'static str,
+    /// Which layouts the frames to come are drawn from: those that came, or those that the last frame lets expect.
+    wish: Wish,
+    /// Frames of a drive.
+    frames: usize,
+    /// Frames that are compared with what came, by their time after the last known one.
+    compared: &'static [(&'static str, usize)],
+    /// Of this many drives one is taken.
+    every: usize,
+}
+
+const COMPARISONS: [Comparison; 3] = [
+    Comparison {
+        name: "layouts that came",
+        wish: Wish::Came,
+        frames: FRAMES,
+        compared: &[("1 s", 3), ("2 s", 5), ("3 s", 7)],
+        every: 1,
+    },
+    Comparison {
+        name: "layouts expected",
+        wish: Wish::Expected,
+        frames: FRAMES,
+        compared: &[("1 s", 3), ("2 s", 5), ("3 s", 7)],
+        every: 1,
+    },
+    Comparison {
+        name: "rollout over 14 frames, layouts that came",
+        wish: Wish::Came,
+        frames: 2 * FRAMES - KNOWN,
+        compared: &[("2 s", 5), ("4 s", 9), ("6 s", 13)],
+        every: 2,
+    },
 ];
+
+/// What came of a method.
+#[derive(Default)]
+struct Made {
+    rows: Rows,
+    places: Vec<Windows>,
+}
 
 impl Options {
     /// Forecasts, side by side.
@@ -32,46 +72,68 @@ impl Options {
         let drives = Drives::new(pipeline.models(), self.weights.as_deref())?;
         let extractor = Extractor::bundled()?;
         let mut report = serde_json::Map::new();
-        let mut rows: BTreeMap<(usize, &str), Rows> = BTreeMap::new();
-        for i in 0..self.frames {
-            progress.at("forecast", i, self.frames);
-            let scene = drive_scene(TEST_SEED, i as u64, |_| None);
-            let truth = frames_of(&scene).0;
-            for (kind, (_, wish)) in LAYOUTS.iter().enumerate() {
-                for method in METHODS {
-                    let Some(found) = drives.forecast(method, &truth, *wish, i as u64)? else {
-                        continue;
-                    };
-                    let row = rows.entry((kind, method.name)).or_default();
-                    for (name, at) in COMPARED {
-                        let mut one = Confusion::default();
-                        one.add(&truth[at].dense, &found[at - KNOWN]);
-                        row.add(&format!("mIoU {name}"), one.mean_iou().0);
-                        row.add(&format!("IoU {name}"), one.occupied_iou());
-                    }
-                    row.add("flicker", flicker(&truth[KNOWN..], &found));
-                    row.add("shape spread", shape_spread(&truth[KNOWN..], &found));
-                    row.add("steadiness", Some(steadiness(&extractor, &found)?));
-                }
-            }
-        }
-        for (kind, (name, _)) in LAYOUTS.iter().enumerate() {
-            let of_kind: serde_json::Map<String, Value> = rows
-                .iter()
-                .filter(|((k, _), _)| *k == kind)
-                .map(|((_, method), row)| ((*method).to_owned(), row.report()))
-                .collect();
-            report.insert((*name).to_owned(), of_kind.into());
+        for comparison in &COMPARISONS {
+            let rows = self.compare(comparison, (&drives, &extractor), progress)?;
+            report.insert(comparison.name.to_owned(), rows);
         }
         report.insert("step_s".into(), json!(STEP_S));
         Ok((report.into(), Vec::new()))
+    }
+
+    fn compare(
+        &self,
+        comparison: &Comparison,
+        (drives, extractor): (&Drives<'_>, &Extractor),
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Value> {
+        let mut made: BTreeMap<&str, Made> = BTreeMap::new();
+        let mut came: Vec<Windows> = Vec::new();
+        let count = self.frames.div_ceil(comparison.every);
+        for i in 0..count {
+            progress.at(comparison.name, i, count);
+            let scene = drive_scene_of(TEST_SEED, i as u64, comparison.frames, |_| None);
+            let truth = frames_of(&scene).0;
+            let later: Vec<VoxelGrid> = truth[KNOWN..].iter().map(|f| f.dense.clone()).collect();
+            came.push(Stack::of(extractor, &later)?.places());
+            for method in METHODS {
+                let Some(found) = drives.forecast(method, &truth, comparison.wish, i as u64)? else {
+                    continue;
+                };
+                let Made { rows, places } = made.entry(method.name).or_default();
+                for (name, at) in comparison.compared {
+                    let mut one = Confusion::default();
+                    one.add(&truth[*at].dense, &found[at - KNOWN]);
+                    rows.add(&format!("mIoU {name}"), one.mean_iou().0);
+                    rows.add(&format!("IoU {name}"), one.occupied_iou());
+                }
+                rows.add("flicker", flicker(&truth[KNOWN..], &found));
+                rows.add("shape spread", shape_spread(&truth[KNOWN..], &found));
+                let stack = Stack::of(extractor, &found)?;
+                rows.add("steadiness", Some(stack.steadiness()));
+                places.push(stack.places());
+            }
+        }
+        let report = |made: &Made| -> anyhow::Result<Value> {
+            let mut row = made.rows.report();
+            if count >= 2 {
+                let [frechet, kernel] = stacks::distances(&came, &made.places)?;
+                row["stack Fréchet"] = json!(frechet);
+                row["stack kernel"] = json!(kernel);
+            }
+            Ok(row)
+        };
+        let rows: anyhow::Result<serde_json::Map<String, Value>> = made
+            .iter()
+            .map(|(name, made)| Ok(((*name).to_owned(), report(made)?)))
+            .collect();
+        Ok(rows?.into())
     }
 }
 
 /// The report as a table.
 pub(crate) fn table(report: &Value) -> String {
     let mut out = String::new();
-    for (kind, _) in LAYOUTS {
+    for Comparison { name: kind, .. } in COMPARISONS {
         out += &format!("{kind}\n");
         let Some(rows) = report[kind].as_object() else {
             continue;
@@ -81,14 +143,14 @@ pub(crate) fn table(report: &Value) -> String {
             .next()
             .and_then(Value::as_object)
             .map_or(Vec::new(), |r| r.keys().collect());
-        out += &format!("{:28}", "");
-        names.iter().for_each(|n| out += &format!("{n:>16}"));
+        out += &format!("{:22}", "");
+        names.iter().for_each(|n| out += &format!("{n:>15}"));
         out.push('\n');
         for method in METHODS {
             let Some(row) = rows.get(method.name) else {
                 continue;
             };
-            out += &format!("{:28}", method.name);
+            out += &format!("{:22}", method.name);
             for name in &names {
                 let (mean, ci) = (&row[*name]["mean"], &row[*name]["ci95"]);
                 let cell = format!(
@@ -96,7 +158,7 @@ pub(crate) fn table(report: &Value) -> String {
                     mean.as_f64().unwrap_or(f64::NAN),
                     ci.as_f64().unwrap_or(f64::NAN)
                 );
-                out += &format!("{cell:>16}");
+                out += &format!("{cell:>15}");
             }
             out.push('\n');
         }
