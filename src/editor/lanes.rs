@@ -17,6 +17,19 @@ pub struct LanePoint {
     segment: usize,
 }
 
+impl LanePoint {
+    /// A place on a piece of a lane's middle: which line of the layout, and which of its segments.
+    pub(crate) fn on(line: usize, segment: usize, at_m: DVec2, yaw_rad: f64) -> Self {
+        Self {
+            at_m,
+            yaw_rad,
+            distance_m: 0.0,
+            line,
+            segment,
+        }
+    }
+}
+
 fn centers(layout: &BevLayout) -> impl Iterator<Item = (usize, &Polyline)> {
     let lines = layout.polylines.iter().enumerate();
     lines.filter(|(_, l)| l.kind == PolylineKind::LaneCenter)

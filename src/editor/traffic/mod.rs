@@ -4,6 +4,7 @@
 pub mod follow;
 pub mod lane_path;
 pub mod template;
+mod turning;
 
 pub use scene::clip::Template;
 pub use template::{Wish, motion_of};

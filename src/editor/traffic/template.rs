@@ -7,6 +7,7 @@ use scene::{BoxId, Class, Clip, Edit, Motion, Moving, Scene, SceneBox};
 
 use super::follow::{self, Driver, Other};
 use super::lane_path::{aside, lane_path, lane_through, smooth};
+use super::turning::{Turning, turning};
 use crate::kerb;
 use crate::lanes::nearest_lane;
 
@@ -18,6 +19,8 @@ const EASY: f64 = 2.0;
 const STRIDE: f64 = 3.0;
 /// Width of a lane where none is known, m.
 const LANE_M: f64 = 3.5;
+/// Farthest that a street to turn into is looked for, m.
+const TURN_WITHIN_M: f64 = 150.0;
 /// Farthest that somebody walks across a road, m.
 const WIDEST_M: f64 = 60.0;
 
@@ -74,7 +77,7 @@ pub fn motion_of(scene: &Scene, id: Option<BoxId>, wish: &Wish) -> Result<Vec<Ed
     if wish.template == Template::CutIn && along < 0.5 {
         return Err("only an object that goes our way can cut in; this one does not".to_owned());
     }
-    let path = path_of(scene, id, &from, half_length_m, wish, length_s);
+    let path = path_of(scene, id, &from, half_length_m, wish, length_s)?;
     let mut edits = Vec::new();
     if clip.length_s == 0.0 {
         edits.push(Edit::SetLength {
@@ -116,7 +119,7 @@ fn path_of(
     half_length_m: f64,
     wish: &Wish,
     length_s: f64,
-) -> Path {
+) -> Result<Path, String> {
     let layout = &scene.frame().layout;
     let reach_m = wish.mps * length_s + 10.0;
     let (mps, at_s) = (wish.mps, wish.at_s.max(0.0));
@@ -128,7 +131,7 @@ fn path_of(
     };
     let steady = vec![speed(0.0, mps)];
     let lane = || lane_path(layout, from, reach_m);
-    match wish.template {
+    Ok(match wish.template {
         Template::Drive => path(lane(), steady),
         Template::Follow => {
             let points_m = lane();
@@ -167,7 +170,36 @@ fn path_of(
             let speeds = easing(&[(0.0, mps), (at_s, mps), (stop_s, 0.0)]);
             path(aside(&points_m, left), speeds)
         }
-    }
+        Template::TurnLeft | Template::TurnRight => {
+            let left = wish.template == Template::TurnLeft;
+            let own_m = lane_path(layout, from, TURN_WITHIN_M);
+            let turning = turning(layout, &own_m, left, reach_m).ok_or_else(|| {
+                let side = if left { "left" } else { "right" };
+                format!("no street leads off to the {side} within {TURN_WITHIN_M} m of its way")
+            })?;
+            let speeds = around_the_corner(&turning, mps);
+            path(turning.points_m, speeds)
+        }
+    })
+}
+
+/// Speeds that slow down before a corner and pick up behind it.
+fn around_the_corner(turning: &Turning, mps: f64) -> Vec<Speed> {
+    let [begin_m, end_m] = turning.corner_m;
+    let slow = turning.mps.min(mps).max(0.1);
+    // Who is too near to brake in comfort is slower from the start.
+    let first = mps.min((slow * slow + 2.0 * EASY * begin_m).sqrt());
+    let braked_m = (first * first - slow * slow) / (2.0 * EASY);
+    let brake_s = (begin_m - braked_m) / first.max(0.1);
+    let corner_s = brake_s + (first - slow) / EASY;
+    let out_s = corner_s + (end_m - begin_m) / slow;
+    easing(&[
+        (0.0, first),
+        (brake_s, first),
+        (corner_s, slow),
+        (out_s, slow),
+        (out_s + (mps - slow) / EASY, mps),
+    ])
 }
 
 fn speed(time_s: f64, mps: f64) -> Speed {

@@ -147,6 +147,8 @@ fn manoeuvre(how: &Manoeuvre) -> String {
         Template::Cross => "cross the road",
         Template::PullOut => "pull out",
         Template::Park => "pull over and park",
+        Template::TurnLeft => "turn left",
+        Template::TurnRight => "turn right",
     }
     .to_owned();
     if let Some(s) = how.from_s {

@@ -23,11 +23,15 @@ pub enum Template {
     PullOut,
     /// From the lane to the side of the road.
     Park,
+    /// Along its lane to the next street on the left, and into it.
+    TurnLeft,
+    /// Along its lane to the next street on the right, and into it.
+    TurnRight,
 }
 
 impl Template {
     /// Every template.
-    pub const ALL: [Template; 7] = [
+    pub const ALL: [Template; 9] = [
         Template::Drive,
         Template::Follow,
         Template::Stop,
@@ -35,6 +39,8 @@ impl Template {
         Template::Cross,
         Template::PullOut,
         Template::Park,
+        Template::TurnLeft,
+        Template::TurnRight,
     ];
 
     /// Its name in files and in the notation of words.
@@ -47,6 +53,8 @@ impl Template {
             Self::Cross => "cross",
             Self::PullOut => "pull_out",
             Self::Park => "park",
+            Self::TurnLeft => "turn_left",
+            Self::TurnRight => "turn_right",
         }
     }
 
@@ -60,12 +68,17 @@ impl Template {
             Self::Cross => "Cross the road",
             Self::PullOut => "Pull out",
             Self::Park => "Park",
+            Self::TurnLeft => "Turn left",
+            Self::TurnRight => "Turn right",
         }
     }
 
     /// True if what it is about begins at a moment of its own.
     pub fn has_a_moment(self) -> bool {
-        !matches!(self, Self::Drive | Self::Follow)
+        !matches!(
+            self,
+            Self::Drive | Self::Follow | Self::TurnLeft | Self::TurnRight
+        )
     }
 
     /// What it does, in a sentence.
@@ -80,6 +93,8 @@ impl Template {
             Self::Cross => "Waits until the chosen time, then goes straight across the road",
             Self::PullOut => "Stands until the chosen time, then drives off into the lane",
             Self::Park => "Along its lane; from the chosen time on it slows down and stops at the side",
+            Self::TurnLeft => "Along its lane; slows down and turns into the next street on the left",
+            Self::TurnRight => "Along its lane; slows down and turns into the next street on the right",
         }
     }
 }
