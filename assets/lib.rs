@@ -86,6 +86,8 @@ pub mod weights {
     pub static SCENERY: &[u8] = include_bytes!("weights/scenery.safetensors");
     /// `text.safetensors`.
     pub static TEXT: &[u8] = include_bytes!("weights/text.safetensors");
+    /// `time_decoder.safetensors`.
+    pub static TIME_DECODER: &[u8] = include_bytes!("weights/time_decoder.safetensors");
 }
 
 /// Files of `assets/words`.

@@ -33,7 +33,7 @@ pub struct Eval {
     /// Number of held-out worlds, or of frames of --data [default: 24, quick: a few].
     #[arg(long, value_name = "N")]
     frames: Option<usize>,
-    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits by instead.
+    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits by instead; of `map` a project file of a map.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
     /// Vehicles of a scene that are removed, moved and changed, one by one, at most (editing) [default: 6, quick: 1].

@@ -6,7 +6,7 @@ use super::app::SceneloomApp;
 use super::live::Running;
 use super::toasts::Level;
 use crate::command::GenerationCommand;
-use scene::Extent;
+use job::pipeline::windows_over;
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -22,7 +22,8 @@ impl SceneloomApp {
                 }
                 if running && self.generation.cancel() {
                     let now_s = self.now_s();
-                    let several = self.document.settled_scene().frame().extent() != Extent::WINDOW;
+                    let map = self.document.settled_scene().frame().extent();
+                    let several = windows_over(map).len() > 1;
                     let text = match several && self.generation.runs_whole() {
                         true => "Generation cancelled. Generate goes on where it stopped",
                         false => "Generation cancelled",

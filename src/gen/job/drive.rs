@@ -2,7 +2,7 @@
 
 use super::contract::GenError;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind};
-use nets::{Between, CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, Prepared};
+use nets::{Between, CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, Prepared, Squares};
 use numeric::philox::{Stream, normal_field};
 
 /// How a drive is drawn.
@@ -33,7 +33,7 @@ impl DriveNetwork<'_> {
         let mut network = Together {
             models: self.models,
             time: self.time,
-            between: Between::of(poses, step_s, same_cell),
+            between: Between::of(poses, step_s, Squares::TOKENS.by_number(same_cell)),
             prepared,
         };
         let sampler = Sampler::standard(SolverKind::Ddim, self.steps, Guidance::NONE)?;

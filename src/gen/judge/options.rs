@@ -9,7 +9,7 @@ use job::GenParams;
 pub struct Options {
     /// Number of held-out worlds, or of frames of `data`.
     pub frames: usize,
-    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits by instead.
+    /// Folder of Occ3D frames (`labels.npz`, at any depth) to judge the VAE or edits by instead; of `map` a project file.
     pub data: Option<PathBuf>,
     /// Vehicles of a scene that are removed, moved and changed, one by one, at most (editing).
     pub vehicles: usize,

@@ -1,12 +1,12 @@
 //! The table of suites.
 
 use crate::suite::{Found, Options, Suite};
-use crate::suites::forecast;
+use crate::suites::{forecast, map};
 use job::pipeline::OccPipeline;
 use nets::OccModels;
 
 /// All suites, in the order of `eval all`.
-pub static SUITES: [Suite; 8] = [
+pub static SUITES: [Suite; 9] = [
     Suite {
         name: "world",
         title: "Procedural worlds beside what is known of real drives",
@@ -95,6 +95,30 @@ pub static SUITES: [Suite; 8] = [
         quick: |options| (options.frames, options.rows_only) = (4, true),
         table: Some(crate::suites::generation::table),
         run: |options, progress| with_pipeline(options, |pipeline| options.generation(pipeline, progress)),
+    },
+    Suite {
+        name: "map",
+        title: "Windows of a map that is generated one by one, the first beside the last",
+        figures: &[
+            (
+                "told from worlds, patches, first half",
+                "/rows/first_half/told_apart/occupancy/window",
+            ),
+            (
+                "the same, last half",
+                "/rows/last_half/told_apart/occupancy/window",
+            ),
+            (
+                "cells Fréchet, first half",
+                "/rows/first_half/distances/cells/frechet",
+            ),
+            ("the same, last half", "/rows/last_half/distances/cells/frechet"),
+            ("findings per window, first half", "/rows/first_half/findings/all"),
+            ("the same, last half", "/rows/last_half/findings/all"),
+        ],
+        quick: |options| options.frames = 4,
+        table: Some(map::table),
+        run: |options, progress| with_pipeline(options, |pipeline| options.map(pipeline, progress)),
     },
     Suite {
         name: "forecast",

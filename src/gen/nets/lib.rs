@@ -1,6 +1,7 @@
 //! The networks, written against [`nn::Ops`]: they run on any backend. Trained by `training/`, whose files have the same names
 //! and the same order of blocks.
 
+mod between;
 pub mod column_heights;
 pub mod encoder;
 mod error;
@@ -13,6 +14,7 @@ pub mod pieces;
 pub mod refiner;
 pub mod scenery;
 pub mod text;
+mod time_decoder;
 
 #[cfg(test)]
 #[path = "../nn/golden.rs"]
@@ -21,16 +23,18 @@ mod golden;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
+pub use between::{Between, Squares};
 pub use column_heights::{ColumnHeights, GROUPS, column_heights};
 pub use error::ModelError;
 pub(crate) use error::{check_finite, check_length};
 pub use latent::{CELLS, CHANNELS, LATENT, SIDE};
 pub use nn::map::CellRect;
 pub use occ_dit::{
-    Between, DitCondition, DitConfig, KeysValues, Middle, OccDit, OccDitTime, Prepared, TimeConfig, tokens_of,
+    DitCondition, DitConfig, KeysValues, Middle, OccDit, OccDitTime, Prepared, TimeConfig, tokens_of,
 };
 pub use occ_vae::{DecoderInput, OccVae, VaeConfig};
 pub use refiner::Refiner;
+pub use time_decoder::{TimeDecoder, TimeDecoderConfig};
 
 use nn::weights::{self, WeightFile, WeightsError};
 

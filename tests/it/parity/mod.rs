@@ -17,7 +17,7 @@ use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::{
     Between, CELLS, CHANNELS, CellRect, ColumnHeights, DecoderInput, DitCondition, KeysValues, LATENT,
-    ModelError, OccDitTime, OccModels, OccVae, fine_vae, tokens_of,
+    ModelError, OccDitTime, OccModels, OccVae, Squares, TimeDecoder, fine_vae, tokens_of,
 };
 use safetensors::{Dtype, SafeTensors};
 use scene::VoxelGrid;
@@ -248,7 +248,7 @@ fn temporal_blocks_agree_with_python() {
     let (models, golden) = (models(), Golden::open("parity_occ_dit_time.safetensors"));
     let time = OccDitTime::bundled().expect("the shipped weights");
     let poses = [[0.0, 0.0, 0.0], [3.1, 0.4, 0.05], [12.9, 1.2, 0.4]];
-    let between = Between::of(&poses, 0.5, time.config().same_cell);
+    let between = Between::of(&poses, 0.5, Squares::TOKENS.by_number(time.config().same_cell));
     let prepared: Vec<_> = poses
         .iter()
         .map(|_| models.dit.prepare(&condition()).expect("a condition"))
@@ -274,6 +274,30 @@ fn temporal_blocks_agree_with_python() {
     }
     let error = time.forward(&models.dit, &x[..2], 1.0, &prepared, &between);
     assert!(error.is_err(), "two states for three frames");
+    let cells = Between::of(&poses, 0.5, Squares::CELLS);
+    let error = time.forward(&models.dit, &x, 1.0, &prepared, &cells);
+    assert!(error.is_err(), "places of cells, not of tokens");
+}
+
+/// `golden` of training/export_time_decoder.py.
+#[test]
+fn the_temporal_decoder_agrees_with_python() {
+    let golden = Golden::open("parity_time_decoder.safetensors");
+    let decoder = TimeDecoder::bundled().expect("the shipped weights");
+    let poses = [[0.0, 0.0, 0.0], [3.1, 0.4, 0.05], [12.9, 1.2, 0.4]];
+    let mut latents: Vec<Vec<f32>> = uniform(3 * LATENT, 9)
+        .chunks_exact(LATENT)
+        .map(<[f32]>::to_vec)
+        .collect();
+    let found = decoder.apply(&latents, &poses, 0.5).expect("finite latents");
+    let truth = golden.f32("every_fiftieth_latent");
+    assert_close("latents", found.concat().into_iter().step_by(50), &truth);
+    assert!(
+        decoder.apply(&latents[..2], &poses, 0.5).is_err(),
+        "two latents of three frames"
+    );
+    latents[1][7] = f32::NAN;
+    assert!(decoder.apply(&latents, &poses, 0.5).is_err(), "not a number");
 }
 
 #[test]

@@ -5,6 +5,7 @@ pub mod forecast;
 pub mod generation;
 pub mod layout;
 pub mod lidar;
+pub mod map;
 pub mod splat;
 pub mod vae;
 pub mod world;

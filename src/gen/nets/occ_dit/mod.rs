@@ -18,7 +18,7 @@ use nn::{Cpu, Precision};
 pub use condition::DitCondition;
 use condition::{CONDITION, NAMED};
 pub use config::DitConfig;
-pub use time::{Between, OccDitTime, TimeConfig};
+pub use time::{OccDitTime, TimeConfig};
 pub(super) use tokens::timestep_embedding;
 use tokens::{PATCH_CELLS, TOKENS_PER_SIDE, patch, positions};
 pub use tokens::{TOKENS, tokens_of};

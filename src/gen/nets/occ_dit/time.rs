@@ -1,12 +1,11 @@
 //! Temporal blocks of the occupancy transformer: between its own blocks each token hears the tokens of all frames of a drive
 //! that lie at its place of the world. Twin of `training/models/occ_dit_time.py`.
 
-use glam::DVec2;
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::tokens::TOKENS_PER_SIDE;
 use super::{OccDit, Prepared, TOKENS};
+use crate::between::{Between, OFFSETS, Pair};
 use crate::{LATENT, ModelError, check_finite, check_length};
 use nn::kernels;
 use nn::layers::{Linear, NORM_EPS};
@@ -14,12 +13,6 @@ use nn::ops::Ops;
 use nn::transformer::piece_of;
 use nn::weights::{WeightFile, WeightsError};
 use nn::{Cpu, Precision};
-
-/// Side of a token, m, and half of the window's side, m.
-const TOKEN_M: f64 = 3.2;
-const HALF_M: f64 = 40.0;
-/// Numbers that tell a pair of tokens apart beside what they hold.
-const OFFSETS: usize = 8;
 
 /// Sizes, as in the file's metadata.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
@@ -35,64 +28,6 @@ pub struct TimeConfig {
     pub every: usize,
     /// Keys come from the same token of each frame, not from the same place of the world.
     pub same_cell: bool,
-}
-
-/// Which token of one frame lies where a token of another does.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Between {
-    frames: usize,
-    /// `[frame][other frame][token]`: the token there, and the offsets; none where the place is out of sight.
-    pairs: Vec<Option<(u16, [f32; OFFSETS])>>,
-}
-
-impl Between {
-    /// Of frames whose vehicles stand at these places (x and y in m, heading in rad) every `step_s` seconds.
-    pub fn of(poses: &[[f64; 3]], step_s: f64, same_cell: bool) -> Self {
-        let frames = poses.len();
-        let turns: Vec<DVec2> = poses.iter().map(|p| DVec2::from_angle(p[2])).collect();
-        let at = |pose: &[f64; 3]| DVec2::new(pose[0], pose[1]);
-        let side = TOKENS_PER_SIDE;
-        let pair = |t: usize, s: usize, token: usize| {
-            let own = DVec2::new((token / side) as f64, (token % side) as f64);
-            let p = (own + 0.5) * TOKEN_M - HALF_M;
-            let world = turns[t].rotate(p) + at(&poses[t]);
-            // (the inverse of a turn by an angle is its conjugate)
-            let back = DVec2::new(turns[s].x, -turns[s].y);
-            let place = (back.rotate(world - at(&poses[s])) + HALF_M) / TOKEN_M;
-            let cell = if same_cell { own } else { place.floor() };
-            // Written so that NaN fails too.
-            let seen = cell.cmpge(DVec2::ZERO).all() && cell.cmplt(DVec2::splat(side as f64)).all();
-            if !seen {
-                return None;
-            }
-            let index = cell.x as usize * side + cell.y as usize;
-            let aside = (place - cell - 0.5).clamp(DVec2::splat(-1.0), DVec2::splat(1.0));
-            let turned = poses[t][2] - poses[s][2];
-            let apart_s = (t as f64 - s as f64) * step_s;
-            let same = if t == s { 1.0 } else { 0.0 };
-            let offsets = [
-                aside.x,
-                aside.y,
-                turned.cos(),
-                turned.sin(),
-                apart_s / 2.0,
-                apart_s.abs() / 2.0,
-                same,
-                1.0,
-            ];
-            Some((index as u16, offsets.map(|v| v as f32)))
-        };
-        let all = (0..frames * frames * TOKENS).into_par_iter();
-        let pairs = all.map(|i| pair(i / (frames * TOKENS), i / TOKENS % frames, i % TOKENS));
-        Self {
-            frames,
-            pairs: pairs.collect(),
-        }
-    }
-
-    fn at(&self, t: usize, s: usize, token: usize) -> Option<&(u16, [f32; OFFSETS])> {
-        self.pairs[(t * self.frames + s) * TOKENS + token].as_ref()
-    }
 }
 
 struct TimeBlock {
@@ -176,7 +111,8 @@ impl OccDitTime {
         between: &Between,
     ) -> Result<Vec<Vec<f32>>, ModelError> {
         check_length("conditions", conditions.len(), x.len())?;
-        check_length("places of frames", between.frames, x.len())?;
+        check_length("places of frames", between.frames(), x.len())?;
+        check_length("places of tokens", between.squares(), TOKENS)?;
         check_length("channels of temporal blocks", self.config.width, dit.config.width)?;
         if !(0.0..1000.0).contains(&t) {
             return Err(ModelError::Timestep(t));
@@ -274,12 +210,8 @@ fn attend(
     let width = out.len();
     let head_width = width / heads;
     let shrink = 1.0 / (head_width as f32).sqrt();
-    let seen: Vec<(usize, usize, &[f32; OFFSETS])> = (0..told.len())
-        .filter_map(|s| {
-            between
-                .at(frame, s, token)
-                .map(|(n, offset)| (s, usize::from(*n), offset))
-        })
+    let seen: Vec<(usize, &Pair)> = (0..told.len())
+        .filter_map(|s| between.at(frame, s, token).map(|pair| (s, pair)))
         .collect();
     let row = |s: usize, n: usize, part: usize| &told[s].0[(n * 3 + part) * width..][..width];
     let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
@@ -287,61 +219,22 @@ fn attend(
         let channels = head * head_width..(head + 1) * head_width;
         let query = &row(frame, token, 0)[channels.clone()];
         let asked = &told[frame].1[(token * heads + head) * OFFSETS..][..OFFSETS];
-        let score = |&(s, n, offset): &(usize, usize, &[f32; OFFSETS])| {
-            dot(query, &row(s, n, 1)[channels.clone()]) * shrink + dot(asked, offset)
+        let score = |&(s, (n, offset)): &(usize, &Pair)| {
+            dot(query, &row(s, usize::from(*n), 1)[channels.clone()]) * shrink + dot(asked, offset)
         };
         let scores: Vec<f32> = seen.iter().map(score).collect();
         let most = scores.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let weights: Vec<f32> = scores.iter().map(|s| (s - most).exp()).collect();
         let sum: f32 = weights.iter().sum();
-        for ((s, n, offset), weight) in seen.iter().zip(&weights) {
+        for ((s, (n, offset)), weight) in seen.iter().zip(&weights) {
             let weight = weight / sum;
-            let values = &row(*s, *n, 2)[channels.clone()];
+            let values = &row(*s, usize::from(*n), 2)[channels.clone()];
             out[channels.clone()]
                 .iter_mut()
                 .zip(values)
                 .for_each(|(o, v)| *o += weight * v);
             let offsets = &mut place[head * OFFSETS..][..OFFSETS];
-            offsets
-                .iter_mut()
-                .zip(*offset)
-                .for_each(|(p, o)| *p += weight * o);
+            offsets.iter_mut().zip(offset).for_each(|(p, o)| *p += weight * o);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_token_of_another_frame_lies_at_the_same_place() {
-        // The second frame stands two tokens farther ahead; the third is turned by a quarter.
-        let quarter = std::f64::consts::FRAC_PI_2;
-        let between = Between::of(
-            &[[0.0; 3], [2.0 * TOKEN_M, 0.0, 0.0], [0.0, 0.0, quarter]],
-            0.5,
-            false,
-        );
-        let token = |x: usize, y: usize| x * TOKENS_PER_SIDE + y;
-        let (index, offset) = between.at(0, 1, token(10, 7)).expect("in sight");
-        assert_eq!(usize::from(*index), token(8, 7));
-        assert_eq!(offset, &[0.0, 0.0, 1.0, 0.0, -0.25, 0.25, 0.0, 1.0]);
-        assert!(between.at(0, 1, token(1, 7)).is_none(), "out of sight");
-        let (index, offset) = between.at(0, 2, token(20, 12)).expect("in sight");
-        assert_eq!(usize::from(*index), token(12, 4));
-        assert!((offset[3] + 1.0).abs() < 1e-6);
-        assert!(
-            between
-                .at(1, 1, 3)
-                .is_some_and(|p| usize::from(p.0) == 3 && p.1[6] == 1.0)
-        );
-        let lost = Between::of(&[[0.0; 3], [f64::NAN; 3]], 0.5, false);
-        assert!(lost.at(0, 1, 0).is_none());
-        let same = Between::of(&[[0.0; 3], [90.0, 0.0, 0.0]], 0.5, true);
-        assert!(
-            same.at(0, 1, 5)
-                .is_some_and(|p| usize::from(p.0) == 5 && p.1[0] == -1.0)
-        );
     }
 }

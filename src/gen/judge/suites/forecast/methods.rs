@@ -6,8 +6,8 @@ use std::path::Path;
 use super::figures::{column_in, moved_on, moving_columns, pose};
 use authoring::drives::{DriveFrame, FRAMES, STEP_S};
 use job::drive::DriveNetwork;
-use nets::{CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, SIDE, column_heights};
-use nn::weights::{self, WeightFile};
+use nets::{CELLS, CHANNELS, DitCondition, LATENT, OccDitTime, OccModels, SIDE, TimeDecoder, column_heights};
+use nn::weights::{self, WeightFile, WeightsError};
 use scene::clip::ObjectVoxels;
 use scene::{
     BevLayout, BoxId, Class, Density, Extent, Pose, SceneBox, VoxelGrid, VoxelPaint, Window, draft, raster,
@@ -42,12 +42,13 @@ enum How {
     Draft,
     Single,
     Together,
+    WithoutDecoder,
     SameCell,
     Canvas,
 }
 
 /// All of them.
-pub const METHODS: [Method; 7] = [
+pub const METHODS: [Method; 8] = [
     Method {
         name: "last frame, warped",
         how: How::Warped,
@@ -67,6 +68,10 @@ pub const METHODS: [Method; 7] = [
     Method {
         name: "temporal, same cell",
         how: How::SameCell,
+    },
+    Method {
+        name: "temporal, old decoder",
+        how: How::WithoutDecoder,
     },
     Method {
         name: "temporal",
@@ -89,6 +94,7 @@ struct Told {
 pub struct Drives<'a> {
     models: &'a OccModels,
     time: OccDitTime,
+    decoder: TimeDecoder,
     /// The ablation; only a folder of weights may hold it.
     same_cell: Option<OccDitTime>,
 }
@@ -99,17 +105,24 @@ const SAME_CELL: &str = "occ_dit_time_same_cell.safetensors";
 impl<'a> Drives<'a> {
     /// Of a folder of weights, or those that ship.
     pub fn new(models: &'a OccModels, folder: Option<&Path>) -> anyhow::Result<Self> {
-        let of = |name: &'static str| -> anyhow::Result<Option<OccDitTime>> {
-            let Some(path) = folder.map(|f| f.join(name)).filter(|p| p.exists()) else {
-                return Ok(None);
-            };
-            let bytes = weights::read(&path)?;
-            Ok(Some(OccDitTime::new(WeightFile::parse(name, &bytes)?)?))
+        let read = |name| -> Result<Option<Vec<u8>>, WeightsError> {
+            let path = folder.map(|f| f.join(name)).filter(|p| p.exists());
+            path.map(|p| weights::read(&p)).transpose()
+        };
+        let time = |name: &'static str| -> Result<Option<OccDitTime>, WeightsError> {
+            let bytes = read(name)?;
+            bytes
+                .map(|b| OccDitTime::new(WeightFile::parse(name, &b)?))
+                .transpose()
         };
         Ok(Self {
             models,
-            time: of(OccDitTime::FILE)?.map_or_else(OccDitTime::bundled, Ok)?,
-            same_cell: of(SAME_CELL)?,
+            time: time(OccDitTime::FILE)?.map_or_else(OccDitTime::bundled, Ok)?,
+            decoder: match read(TimeDecoder::FILE)? {
+                Some(bytes) => TimeDecoder::new(WeightFile::parse(TimeDecoder::FILE, &bytes)?)?,
+                None => TimeDecoder::bundled()?,
+            },
+            same_cell: time(SAME_CELL)?,
         })
     }
 
@@ -137,10 +150,11 @@ impl<'a> Drives<'a> {
                 .iter()
                 .map(|to| draft::draft(&to.layout, to.boxes.values()))
                 .collect(),
-            How::Single => self.drawn(None, truth, &told, seed)?,
-            How::Together => self.drawn(Some(&self.time), truth, &told, seed)?,
+            How::Single => self.drawn((None, None), truth, &told, seed)?,
+            How::Together => self.drawn((Some(&self.time), Some(&self.decoder)), truth, &told, seed)?,
+            How::WithoutDecoder => self.drawn((Some(&self.time), None), truth, &told, seed)?,
             How::SameCell => match &self.same_cell {
-                Some(time) => self.drawn(Some(time), truth, &told, seed)?,
+                Some(time) => self.drawn((Some(time), Some(&self.decoder)), truth, &told, seed)?,
                 None => return Ok(None),
             },
             How::Canvas => self.on_canvas(last, &told, seed)?,
@@ -151,7 +165,7 @@ impl<'a> Drives<'a> {
     /// another, the last frames of a part known to the next.
     fn drawn(
         &self,
-        time: Option<&OccDitTime>,
+        (time, decoder): (Option<&OccDitTime>, Option<&TimeDecoder>),
         truth: &[DriveFrame],
         told: &[Told],
         seed: u64,
@@ -178,7 +192,13 @@ impl<'a> Drives<'a> {
                 steps: STEPS,
                 seed: seed.wrapping_add((part as u64) << 16),
             };
-            let latents = network.draw(&conditions, &poses, STEP_S)?;
+            let mut latents = network.draw(&conditions, &poses, STEP_S)?;
+            for (latent, condition) in latents.iter_mut().zip(&conditions).take(KNOWN) {
+                latent.clone_from(&condition.context);
+            }
+            if let Some(decoder) = decoder {
+                latents = decoder.apply(&latents, &poses, STEP_S)?;
+            }
             let decoded: Result<Vec<_>, _> = latents[KNOWN..].iter().map(|l| vae.decode(l)).collect();
             out.extend(decoded?);
             known = Vec::new();

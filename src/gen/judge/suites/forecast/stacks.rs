@@ -39,7 +39,7 @@ impl Stack {
 
     /// One row for each place: means over the frames, then mean changes from one frame to the next.
     pub fn places(&self) -> Windows {
-        let frames: Vec<Windows> = self.0.iter().map(|cells| pooled(cells)).collect();
+        let frames: Vec<Windows> = self.0.iter().map(pooled).collect();
         let count = (SIDE / PLACE) * (SIDE / PLACE);
         let row = |place: usize| {
             let mut row = mean(frames.iter().map(|f| &f[place]));
@@ -101,7 +101,7 @@ mod tests {
             for x in 0..200 {
                 for y in 0..200 {
                     grid.set(x, y, 0, Class::DriveableSurface.id());
-                    if (x / 9 + y / 7 + shift * t) % 5 == 0 {
+                    if (x / 9 + y / 7 + shift * t).is_multiple_of(5) {
                         (1..6).for_each(|z| grid.set(x, y, z, Class::Manmade.id()));
                     }
                 }

@@ -6,7 +6,7 @@ mod distribution;
 mod follow;
 mod given_background;
 mod inpainted;
-mod row;
+pub(super) mod row;
 mod table;
 mod two_sample;
 
@@ -32,7 +32,7 @@ use nets::fine_vae;
 use numeric::quantile::median;
 use row::{ROWS, Row, Seen};
 use scene::{Scene, VoxelGrid, draft};
-pub(crate) use table::table;
+pub(crate) use table::{rows_table, table};
 use world::World;
 use world::voxelize::{Vertical, complete};
 

@@ -55,19 +55,25 @@ fn cell(value: Option<&Value>) -> String {
     }
 }
 
-/// The report as lines of text; figures beside the rows follow as JSON.
-pub fn table(report: &Value) -> String {
+/// The rows of these names, one column each, as lines of text.
+pub fn rows_table(rows: &[&str], report: &Value) -> String {
     let mut out = format!("{:NAME$}", "");
-    for (name, _) in ROWS {
+    for name in rows {
         let _ = write!(out, " {name:>COLUMN$}");
     }
     for (name, at) in lines() {
         let _ = write!(out, "\n{name:NAME$}");
-        for (row, _) in ROWS {
+        for row in rows {
             let value = report.get("rows").and_then(|r| r.get(row)?.pointer(&at));
             let _ = write!(out, " {:>COLUMN$}", cell(value));
         }
     }
+    out
+}
+
+/// The report as lines of text; figures beside the rows follow as JSON.
+pub fn table(report: &Value) -> String {
+    let mut out = rows_table(&ROWS.map(|(name, _)| name), report);
     for (what, at) in [
         ("same seed, other road", "same_seed_other_road_manmade_iou"),
         ("same road, other seed", "same_road_other_seed_manmade_iou"),
