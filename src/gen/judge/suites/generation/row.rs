@@ -165,7 +165,7 @@ impl Row {
         Value::Object(out)
     }
 
-    /// All figures; `others` are the worlds that it is compared with.
+    /// All figures, distances of two scenes or more; `others` are the worlds that it is compared with.
     pub fn report(&self, others: &Row, seed: u64) -> anyhow::Result<Value> {
         let pair = |of: fn(&Seen) -> &Windows| [others.each(of), self.each(of)];
         let mut out = json!({
@@ -173,7 +173,7 @@ impl Row {
             "shape": self.shape(),
             "findings": self.findings(),
         });
-        if !std::ptr::eq(self, others) {
+        if !std::ptr::eq(self, others) && self.scenes.len() > 1 {
             out["distances"] = distribution::distances(
                 [&others.each(|s| &s.pooled), &self.each(|s| &s.pooled)],
                 &pair(|s| &s.cells),

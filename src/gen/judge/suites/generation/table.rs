@@ -46,7 +46,8 @@ fn number(value: f64) -> String {
 
 fn cell(value: Option<&Value>) -> String {
     let mean = |v: &Value| v.as_f64().or_else(|| v.get("mean")?.as_f64());
-    let Some((value, mean)) = value.and_then(|v| Some((v, mean(v)?))) else {
+    let of_some = |v: &&Value| v.get("n").and_then(Value::as_u64) != Some(0);
+    let Some((value, mean)) = value.filter(of_some).and_then(|v| Some((v, mean(v)?))) else {
         return "-".into();
     };
     match value.get("ci95").and_then(Value::as_f64) {
