@@ -2,13 +2,14 @@
 //! beyond it, seen by the sensors, saved, and worked on by the command line.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use editor::{Document, Edit};
 use formats::loom;
 use glam::{DVec2, DVec3};
 use job::inpaint::InpaintMask;
 use job::pipeline::OccPipeline;
-use job::{GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
+use job::{GenError, GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
 use scene::{
     BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Extent, Frame, Scene, SensorRig, Shape,
     VoxelGrid, draft,
@@ -155,6 +156,7 @@ fn a_map_is_generated_window_by_window() {
     let mut again = OccPipeline::bundled().expect("the shipped weights load");
     let same = again.run(&job, &JobCtx::detached()).expect("a result");
     assert_eq!(same.occupancy, result.occupancy, "whatever came before");
+    goes_on_where_it_was_stopped(&job, &result);
     document
         .adopt(result.rev(), result.occupancy)
         .expect("the current state");
@@ -163,6 +165,24 @@ fn a_map_is_generated_window_by_window() {
         let [_, y] = extent.column_at(0.0, 0.0).expect("on the map");
         assert_eq!(grid.get(x, y, 0), Class::DriveableSurface.id(), "no gap at {x}");
     }
+}
+
+/// Stopped two thirds of the way, a job does the rest alone when it is asked again, and makes the same.
+fn goes_on_where_it_was_stopped(job: &Job, whole: &GenResult) {
+    let mut pipeline = OccPipeline::bundled().expect("the shipped weights load");
+    let asked = |limit: usize, pipeline: &mut OccPipeline| {
+        let count = AtomicUsize::new(0);
+        let stop = || count.fetch_add(1, Ordering::Relaxed) >= limit;
+        let result = pipeline.run(job, &JobCtx::new(&stop, &|_| {}));
+        (result, count.into_inner())
+    };
+    let (all, steps) = asked(usize::MAX, &mut pipeline);
+    assert_eq!(all.expect("a result").occupancy, whole.occupancy);
+    let (stopped, _) = asked(steps * 2 / 3, &mut pipeline);
+    assert!(matches!(stopped, Err(GenError::Superseded)));
+    let (rest, more) = asked(usize::MAX, &mut pipeline);
+    assert_eq!(rest.expect("a result").occupancy, whole.occupancy);
+    assert!(more < steps * 2 / 3, "{more} of {steps} steps again");
 }
 
 /// The frame without the box and the voxels of the far car.

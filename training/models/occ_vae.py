@@ -184,9 +184,11 @@ class OccVae(nn.Module):
 
 def load_vae(path, device):
     """The network of a file of weights, which learns no more."""
+    from models.triplane_vae import TriplaneVae
+
     with safe_open(path, "pt") as f:
-        config = VaeConfig(**json.loads(f.metadata()["config"]))
-    vae = OccVae(config)
+        meta = f.metadata()
+    vae = (TriplaneVae if meta.get("kind") == "triplane_vae" else OccVae)(VaeConfig(**json.loads(meta["config"])))
     vae.load_state_dict({k: v.float() for k, v in load_file(path).items()})
     return vae.to(device, memory_format=torch.channels_last).eval().requires_grad_(False)
 

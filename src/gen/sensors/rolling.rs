@@ -241,6 +241,23 @@ mod tests {
     }
 
     #[test]
+    fn the_learned_sweep_of_what_stands_is_the_same_whatever_moves_elsewhere() {
+        let net = LidarNet::bundled().expect("the shipped weights");
+        let scene = scene(0.0, 0.0);
+        // The car is 10 m and more from the rays that end on the left half of the wall, more than the network sees.
+        let wall_at = |time_s: f64| {
+            let sweep = learned(&net, &scene.at(time_s), Drops::Keep).expect("a sweep");
+            let points = sweep.points.into_iter();
+            points
+                .filter(|p| p.class == Class::Manmade && p.position_in_ego[1] > 0.0)
+                .collect::<Vec<_>>()
+        };
+        let (before, after) = (wall_at(0.0), wall_at(0.4));
+        assert!(before.len() > 500, "{}", before.len());
+        assert_eq!(before, after);
+    }
+
+    #[test]
     fn nothing_moves_and_the_sweep_is_the_plain_one() {
         let mut scene = scene(0.0, 0.0).still();
         scene.rig = Arc::new(SensorRig::default());
