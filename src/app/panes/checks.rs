@@ -42,6 +42,7 @@ impl Pane for Checks {
             stale: cx.checking.is_stale(settled.rev),
             selected: cx.state.selected,
             frame: settled.frame(),
+            lasts: !settled.clip().is_still(),
         };
         let marks = theme::panel_frame()
             .show(ui, |ui| checks_ui(ui, &input, commands))
@@ -64,6 +65,8 @@ pub struct ChecksInput<'a> {
     pub selected: Option<BoxId>,
     /// What the findings are about; it holds the waivers.
     pub frame: &'a Frame,
+    /// Things move in the scene: most findings are of the moment shown alone.
+    pub lasts: bool,
 }
 
 /// What the title of the waived findings takes at the bottom, and what they take unfolded, points.
@@ -210,6 +213,10 @@ fn row(
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 sign(ui, finding.severity);
+                if input.lasts && finding.time_s.is_none() {
+                    ui.weak("now")
+                        .on_hover_text("Found at the moment shown; there may be others at other moments");
+                }
                 let of_box = finding.box_id.is_some() && finding.box_id == input.selected;
                 let chosen = of_box || pointed.clicked.as_ref() == Some(&key(finding));
                 let text = egui::RichText::new(&finding.text);

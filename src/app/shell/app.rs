@@ -300,7 +300,10 @@ impl SceneloomApp {
 
     fn set_title(&mut self, ctx: &egui::Context) {
         let mark = if self.document.is_dirty() { "● " } else { "" };
-        let title = format!("{mark}{} – Sceneloom", self.document.scene().name);
+        let title = format!(
+            "{mark}{} – Sceneloom",
+            self.files.called(&self.document.scene().name)
+        );
         if title != self.frames.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.frames.title = title;

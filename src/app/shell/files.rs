@@ -94,6 +94,12 @@ impl Files {
         }
     }
 
+    /// What the scene is called: as its file, else by its own name.
+    pub(crate) fn called(&self, scene_name: &str) -> String {
+        let stem = self.path.as_ref().and_then(|p| p.file_stem());
+        stem.map_or_else(|| scene_name.to_owned(), |s| s.to_string_lossy().into_owned())
+    }
+
     /// A path beside the scene's file, or in the working folder, named after the scene.
     pub(crate) fn suggested(&self, scene_name: &str, extension: &str) -> PathBuf {
         match &self.path {

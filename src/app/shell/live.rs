@@ -116,6 +116,7 @@ pub struct Live {
     pace: Pace,
     seen: Option<(SceneRev, Touched)>,
     parts: Arc<[Bounds]>, // of what was seen
+    map_m: [f64; 2],      // all of it
     last_edit_s: f64,
     oldest_edit_s: Option<f64>,
     asked: Option<JobKey>,
@@ -140,6 +141,7 @@ impl Live {
             pace: Pace::default(),
             seen: None,
             parts: Arc::default(),
+            map_m: [80.0; 2],
             last_edit_s: f64::NEG_INFINITY,
             oldest_edit_s: None,
             asked: None,
@@ -240,6 +242,7 @@ impl Live {
             share: (count as f64 / COLUMNS as f64).min(1.0),
         };
         self.parts = parts.into();
+        self.map_m = [frame.extent().nx(), frame.extent().ny()].map(|n| n as f64 * Extent::VOXEL_M);
         self.seen = Some((scene.content(), touched));
         self.last_edit_s = now_s;
         touched
@@ -263,7 +266,7 @@ impl Live {
                 let (extent_m, share) = with_inpainted(&touched, &key.params.inpaint);
                 (Purpose::Edit, extent_m, share)
             }
-            _ => (Purpose::Full, [80.0; 2], 1.0),
+            _ => (Purpose::Full, self.map_m, 1.0),
         };
         // A source that was inpainted has to be inverted before it can be edited.
         self.cold = self.warm_up && (purpose == Purpose::Full || key.params.strength > 0.0);

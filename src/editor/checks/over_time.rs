@@ -1,7 +1,7 @@
 //! What moving objects do in the course of a clip: too fast, too sudden, backwards, into each other, through walls, off the
 //! map.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use super::geometry::{area_m2, shared_area_m2, shared_height_m};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
@@ -205,7 +205,8 @@ pub fn collision(context: &Context<'_>, out: &mut Findings) {
     let over_time = context.over_time();
     let standing: Vec<SceneBox> = context.scene.canvas().boxes.values().copied().collect();
     for (i, trace) in over_time.traces.iter().enumerate() {
-        let mut told: BTreeSet<Option<BoxId>> = BTreeSet::new();
+        // When each other one is met first, and the largest share of area while they do.
+        let mut met: BTreeMap<Option<BoxId>, (Finding, f64)> = BTreeMap::new();
         for (at, time_s) in over_time.times_s.iter().enumerate() {
             let Some(b) = &trace.at[at] else { continue };
             let moving = over_time.traces[i + 1..].iter().filter_map(|other| {
@@ -217,9 +218,7 @@ pub fn collision(context: &Context<'_>, out: &mut Findings) {
             for (other_id, other) in others {
                 let reach = (b.size_m.truncate().length() + other.size_m.truncate().length()) / 2.0;
                 let (pa, pb) = (b.center_m.truncate(), other.center_m.truncate());
-                if pa.distance_squared(pb) >= reach * reach
-                    || shared_height_m(b, other) <= TOLERATED_HEIGHT_M
-                    || told.contains(&other_id)
+                if pa.distance_squared(pb) >= reach * reach || shared_height_m(b, other) <= TOLERATED_HEIGHT_M
                 {
                     continue;
                 }
@@ -227,16 +226,20 @@ pub fn collision(context: &Context<'_>, out: &mut Findings) {
                 if share <= TOLERATED_SHARE {
                     continue;
                 }
-                told.insert(other_id);
-                let severity = match share > WRONG_SHARE {
-                    true => Severity::Error,
-                    false => Severity::Warning,
-                };
-                let other_name = other_id.map_or_else(|| "the ego vehicle".to_owned(), |_| name_of(other));
-                let text = format!("{} and {other_name} meet at {time_s:.1} s", called(trace, b));
-                out.push(finding(COLLISION, severity, (trace, *time_s, b), text));
+                let (first, most) = met.entry(other_id).or_insert_with(|| {
+                    let other_name =
+                        other_id.map_or_else(|| "the ego vehicle".to_owned(), |_| name_of(other));
+                    let text = format!("{} and {other_name} meet at {time_s:.1} s", called(trace, b));
+                    let here = (trace, *time_s, b);
+                    (finding(COLLISION, Severity::Warning, here, text), share)
+                });
+                *most = most.max(share);
+                if *most > WRONG_SHARE {
+                    first.severity = Severity::Error;
+                }
             }
         }
+        met.into_values().for_each(|(first, _)| out.push(first));
     }
 }
 

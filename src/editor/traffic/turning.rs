@@ -17,6 +17,8 @@ const GOES_ON_M: f64 = 12.0;
 /// Radius of a turn across the oncoming lanes, and of one to the near side, m.
 const WIDE_M: f64 = 9.0;
 const TIGHT_M: f64 = 6.5;
+/// No vehicle bends sharper between two points of a way, rad.
+const SHARPEST_RAD: f64 = 0.5;
 /// Distance between points, m.
 const STEP_M: f64 = 1.0;
 /// Sideways acceleration that nobody minds, m/s².
@@ -59,8 +61,13 @@ pub fn turning(layout: &BevLayout, own_m: &[DVec2], left: bool, length_m: f64) -
         let here = lanes.iter().filter_map(meet);
         // A corner begins ahead of what turns.
         let possible = here.filter(|m| m.along_m > radius_m + 1.0 && goes_on(layout, &m.lane, radius_m));
-        if let Some(meeting) = possible.min_by(|a, b| a.along_m.total_cmp(&b.along_m)) {
-            return Some(around(layout, own_m, &meeting, radius_m, length_m));
+        let mut possible: Vec<Meeting> = possible.collect();
+        possible.sort_by(|a, b| a.along_m.total_cmp(&b.along_m));
+        let mut ways = possible
+            .iter()
+            .map(|m| around(layout, own_m, m, radius_m, length_m));
+        if let Some(way) = ways.find(|way| can_be_driven(layout, way)) {
+            return Some(way);
         }
         passed_m += length;
     }
@@ -114,6 +121,25 @@ fn goes_on(layout: &BevLayout, lane: &LanePoint, radius_m: f64) -> bool {
         let (at_m, yaw_rad) = along(layout, lane, end_m * share);
         is_roadway(layout, at_m) && DVec2::from_angle(yaw_rad).dot(heading) > 0.3
     })
+}
+
+/// True if a way keeps to the road around its corner, and bends nowhere behind it as no vehicle could.
+fn can_be_driven(layout: &BevLayout, way: &Turning) -> bool {
+    let (mut passed_m, mut before) = (0.0, None);
+    for pair in way.points_m.array_windows::<2>() {
+        let step = pair[1] - pair[0];
+        passed_m += step.length();
+        if passed_m <= way.corner_m[0] || step.length() < 1e-6 {
+            continue;
+        }
+        let bend_rad = before.map_or(0.0, |b: DVec2| b.angle_to(step).abs());
+        let at_corner = passed_m < way.corner_m[1] + GOES_ON_M;
+        if bend_rad > SHARPEST_RAD || at_corner && !is_roadway(layout, pair[1]) {
+            return false;
+        }
+        before = Some(step);
+    }
+    true
 }
 
 /// Along the own way to the corner, around it, and along the lane.

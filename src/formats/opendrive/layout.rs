@@ -167,7 +167,13 @@ impl RoadNetwork {
             let bridges = decks::bridges(self, &window, levels, &relief, file_from_ego_m, &mut skipped);
             bridge_count = bridges.len();
             forms.extend(bridges);
-            canvas.layout.relief = relief;
+            let lowered = (extent != Extent::WINDOW)
+                .then(|| relief::levelled(&relief))
+                .flatten();
+            if lowered.is_some() {
+                count(&mut skipped, "hills that are lowered to what a map can show");
+            }
+            canvas.layout.relief = lowered.unwrap_or(relief);
         }
         let mut background = Background::default();
         forms.into_iter().for_each(|form| {

@@ -40,6 +40,25 @@ pub(super) fn over(extent: Extent, known_m: &[Option<f64>]) -> (Relief, f64) {
     (relief, ego)
 }
 
+/// Lowest and highest ground of a map, m: voxels hold no ground below, and little above has room for what stands on it.
+const SHOWN_M: [f64; 2] = [-0.4, 3.2];
+
+/// The relief of a map with its hills so low that voxels can show them; slopes near the ego vehicle's height stay nearly as they
+/// are. `None` if they can as it is.
+pub(super) fn levelled(relief: &Relief) -> Option<Relief> {
+    let (extent, heights_m) = (relief.extent()?, relief.heights_m()?);
+    let shown = |m: &f32| (SHOWN_M[0]..=SHOWN_M[1]).contains(&f64::from(*m));
+    if heights_m.iter().all(shown) {
+        return None;
+    }
+    let low = |m: &f32| {
+        let m = f64::from(*m);
+        let most_m = SHOWN_M[usize::from(m > 0.0)];
+        (most_m * (m / most_m).tanh()) as f32
+    };
+    Relief::from_heights(extent, heights_m.iter().map(low).collect()).ok()
+}
+
 /// Laplace's equation with the known cells held and free edges, on a pyramid of grids: coarse ones first.
 /// At least one cell is known.
 fn membrane(nx: usize, ny: usize, known: &[Option<f64>]) -> Vec<f64> {
@@ -125,6 +144,20 @@ mod tests {
             (at(y + 0.4) - at(y)).abs() / 0.4
         });
         assert!(steepest.fold(0.0, f64::max) < 0.3);
+    }
+
+    #[test]
+    fn hills_of_a_map_are_lowered_to_what_voxels_show() {
+        let of = |height: fn(DVec2) -> f64| Relief::from_fn(Extent::WINDOW, height);
+        assert!(levelled(&of(|p| 0.01 * p.x.max(0.0))).is_none());
+        assert!(levelled(&Relief::FLAT).is_none());
+        let low = levelled(&of(|p| 0.1 * p.x)).expect("4 m down and up");
+        let at = |x: f64| low.height_m(DVec2::new(x, 0.0));
+        assert!((at(1.0) - 0.1).abs() < 0.01, "{}", at(1.0));
+        assert!((at(39.0) - 3.2 * (3.9f64 / 3.2).tanh()).abs() < 0.01);
+        assert!((at(-39.0) + 0.4).abs() < 0.01, "{}", at(-39.0));
+        let rises = (-39..39).all(|x| at(f64::from(x)) <= at(f64::from(x) + 1.0));
+        assert!(rises);
     }
 
     #[test]

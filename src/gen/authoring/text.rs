@@ -256,7 +256,7 @@ pub fn read_edit(prompt: &str, scene: &Scene, seed: u64) -> anyhow::Result<Edite
 pub fn edited(heard: Heard, scene: &Scene, seed: u64) -> Edited {
     let ego = scene.in_ego();
     let frame = ego.frame();
-    let mut outcome = carry_out(&heard.reading, &open_scene(&ego), seed);
+    let mut outcome = carry_out(&heard.reading, &open_scene(&ego, scene.clip()), seed);
     put_on_ground(&mut outcome.edits, frame);
     let open = OpenBackground {
         things: &ego.background,
@@ -303,16 +303,16 @@ fn put_on_ground(edits: &mut [Edit], frame: &Frame) {
     }
 }
 
-/// The part of a scene that text edits look at.
-pub fn open_scene(scene: &Scene) -> OpenScene<'_> {
+/// The part of a scene that text edits look at: what is there at a moment, and the clip that the moment is of.
+pub fn open_scene<'a>(scene: &'a Scene, clip: &Clip) -> OpenScene<'a> {
     let frame = scene.frame();
     OpenScene {
         boxes: &frame.boxes,
         layout: &frame.layout,
         prompt: &scene.prompt,
         conditions: scene.conditions,
-        ego_moves: scene.clip().ego.is_some(),
-        length_s: scene.clip().length_s,
+        ego_moves: clip.ego.is_some(),
+        length_s: clip.length_s,
     }
 }
 

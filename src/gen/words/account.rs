@@ -105,7 +105,9 @@ pub fn missing(text: &str, tokens: &[Token], reading: &Reading, speller: &Spelle
         let why = if let Some(v) = t.value {
             let there = number_is_said(v, t, &said) || !t.is_length && sums.contains(&v);
             let around = &tokens[i.saturating_sub(NEAR)..tokens.len().min(i + NEAR + 1)];
-            let works_out = around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
+            // ("second 3" is a moment)
+            let is_moment = before == "second";
+            let works_out = !is_moment && around.iter().any(|t| ARITHMETIC.contains(&t.text.as_str()));
             let small = !t.is_length && (v <= 1.0 || works_out);
             (!there && !small && !NOT.contains(&before) && t.text != "hundred").then_some(Why::NotCarriedOut)
         } else if !t.senses.is_empty() {

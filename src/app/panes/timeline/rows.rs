@@ -276,16 +276,20 @@ fn faults(
     commands: &mut Vec<Command>,
 ) {
     let open = waive::open(scene.frame(), findings);
-    for (i, finding) in open.filter(|f| f.severity == Severity::Error).enumerate() {
+    for (i, finding) in open.enumerate() {
         let Some(time_s) = finding.time_s else {
             continue;
         };
         let x = track.x(time_s.clamp(0.0, track.length_s));
-        let stroke = Stroke::new(1.0, theme::bad().gamma_multiply(0.5));
+        let color = match finding.severity {
+            Severity::Error => theme::bad(),
+            _ => theme::warn(),
+        };
+        let stroke = Stroke::new(1.0, color.gamma_multiply(0.5));
         ui.painter()
             .vline(x, area.top() + RULER_POINTS..=area.bottom(), stroke);
         let knob = Rect::from_center_size(pos2(x, area.top() + RULER_POINTS - 4.0), vec2(9.0, 9.0));
-        ui.painter().circle_filled(knob.center(), 3.5, theme::bad());
+        ui.painter().circle_filled(knob.center(), 3.5, color);
         let response = ui.interact(knob, ui.scope_id().with(("fault", i)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &finding.text));
         if response.on_hover_text(&finding.text).clicked() {
