@@ -22,10 +22,19 @@ pub struct Density {
 impl Density {
     /// Of a frame's labels; `bev` are its layout's bits per column, `[x][y]`.
     pub fn of(grid: &VoxelGrid, bev: &[u32]) -> Self {
-        let (extent, columns) = (grid.extent(), grid.extent().columns());
+        Self::of_columns(grid, bev, |_, _| true)
+    }
+
+    /// The same of some columns alone; all 0 if there are none.
+    pub fn of_columns(grid: &VoxelGrid, bev: &[u32], counts: impl Fn(usize, usize) -> bool) -> Self {
+        let (extent, mut columns) = (grid.extent(), 0u32);
         let [mut off_road, mut vegetation, mut building, mut clutter, mut any] = [0u32; 5];
-        for (c, bits) in bev.iter().enumerate().take(columns) {
+        for (c, bits) in bev.iter().enumerate().take(extent.columns()) {
             let [x, y] = extent.column(c);
+            if !counts(x, y) {
+                continue;
+            }
+            columns += 1;
             let column = grid.column(x, y);
             let holds = |class: Class| column.contains(&class.id());
             any += u32::from(column.iter().any(|l| *l != Class::FREE));
@@ -43,7 +52,7 @@ impl Density {
             vegetation: part(2.0, vegetation),
             building: part(1.6, building),
             clutter: part(6.0, clutter),
-            completeness: any as f32 / columns as f32,
+            completeness: any as f32 / columns.max(1) as f32,
         }
     }
 }

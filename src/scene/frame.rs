@@ -3,7 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use crate::{BevLayout, BoxId, Extent, Inferred, Pose, SceneBox, VoxelGrid, VoxelPaint, Waiver, raster};
+use crate::{
+    BevLayout, BoxId, Class, Extent, Inferred, Pose, SceneBox, VoxelGrid, VoxelPaint, Waiver, raster,
+};
 
 /// The state in which a frame's occupancy was last generated, imported or accepted. The next generation inpaints what
 /// differs between it and the frame; all else stays bit-identical.
@@ -74,6 +76,15 @@ impl Frame {
     /// Which part of the ground its layout and its grids cover.
     pub fn extent(&self) -> Extent {
         self.layout.extent()
+    }
+
+    /// True in a column of which the source knows nothing, no mask of labels either, and in which the frame holds a draft of its
+    /// ground: the map was made larger there.
+    pub fn is_new_ground(&self, x: usize, y: usize) -> bool {
+        let holds = |grid: &VoxelGrid| grid.column(x, y).iter().any(|l| *l != Class::FREE);
+        let masks = self.inferred.unobserved.as_ref();
+        let masked = masks.is_some_and(|m| m.words()[self.extent().index(x, y)] != 0);
+        !masked && !holds(&self.source.occupancy) && holds(&self.occupancy)
     }
 
     /// The part of it that lies in another extent. Boxes, lines and waivers stay, wherever they are. Costs pointers alone

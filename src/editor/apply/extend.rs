@@ -9,6 +9,8 @@ use scene::{
 
 /// How far from a lane's middle, along the edge, the ground goes on in its direction, m; elsewhere it goes straight out.
 const BESIDE_LANE_M: f64 = 18.0;
+/// Lanes that leave the map nearer to one another than this are those of one road, m.
+const ONE_ROAD_M: f64 = 8.0;
 /// A line that ends this near to the edge is one that reaches it, m.
 const AT_EDGE_M: f64 = 2.5;
 /// Flatter than this against the edge no line leaves the map.
@@ -162,9 +164,21 @@ impl Side {
             both_ways.filter_map(leaving).collect::<Vec<_>>()
         });
         let corners = [extent.min_m().truncate(), extent.max_m().truncate()].map(|p| self.along_m(p));
-        found
+        let mut found: Vec<Leaving> = found
             .filter(|l| (corners[0]..=corners[1]).contains(&l.along_m))
-            .collect()
+            .collect();
+        found.sort_by(|a, b| a.along_m.total_cmp(&b.along_m));
+        // Lanes of one road, or of a junction that the edge cuts, go on side by side: as the straightest of them does.
+        let mut side_by_side = Vec::new();
+        for road in found.chunk_by(|a, b| b.along_m - a.along_m < ONE_ROAD_M) {
+            let straightest = road
+                .iter()
+                .map(|l| l.slope)
+                .min_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let slope = straightest.unwrap_or_default();
+            side_by_side.extend(road.iter().map(|l| Leaving { slope, ..*l }));
+        }
+        side_by_side
     }
 
     /// The layout with so many columns more on this side.
@@ -186,9 +200,13 @@ impl Side {
                 .iter()
                 .map(|l| (l, (self.along_m(p) - outside_m * l.slope - l.along_m).abs()))
                 .min_by(|a, b| a.1.total_cmp(&b.1));
-            let slope = nearest
-                .filter(|(_, off_m)| *off_m <= BESIDE_LANE_M)
-                .map_or(0.0, |(l, _)| l.slope);
+            let beside = nearest.filter(|(_, off_m)| *off_m <= BESIDE_LANE_M);
+            // Straight out of where a road left to the side there is none.
+            let left = |l: &Leaving| (self.along_m(p) - l.along_m).abs() <= BESIDE_LANE_M;
+            if outside_m > 0.0 && beside.is_none() && leavings.iter().any(left) {
+                return 0;
+            }
+            let slope = beside.map_or(0.0, |(l, _)| l.slope);
             let mut at = p - self.outward() * outside_m.max(0.0);
             at[1 - self.axis] -= outside_m.max(0.0) * slope;
             let column = |axis: usize| {
@@ -201,7 +219,7 @@ impl Side {
         let lines = layout
             .polylines
             .iter()
-            .map(|line| self.line_to(old, new, line))
+            .map(|line| self.line_to([old, new], &leavings, line))
             .collect();
         let mut out = BevLayout::from_cells_over(new, cells, lines)
             .map_err(|found| EditError::BadMap(format!("{found} columns")))?;
@@ -209,8 +227,8 @@ impl Side {
         Ok(out)
     }
 
-    /// A line of the road that ends at the old edge goes on to the new one.
-    fn line_to(self, old: Extent, new: Extent, line: &Polyline) -> Polyline {
+    /// A line of the road that ends at the old edge goes on to the new one, beside the lanes.
+    fn line_to(self, [old, new]: [Extent; 2], leavings: &[Leaving], line: &Polyline) -> Polyline {
         let mut line = line.clone();
         if matches!(line.kind, PolylineKind::StopLine | PolylineKind::PedCrossing) {
             return line;
@@ -223,9 +241,14 @@ impl Side {
             let (end, way) = (*end, *end - *before);
             let reaches = (-AT_EDGE_M..=AT_EDGE_M).contains(&self.outside_m(old, end));
             if reaches && let Some(leaving) = self.leaving(old, end, way) {
+                let off_m = |l: &&Leaving| (l.along_m - leaving.along_m).abs();
+                let lane = leavings.iter().min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
+                let slope = lane
+                    .filter(|l| off_m(l) < ONE_ROAD_M)
+                    .map_or(leaving.slope, |l| l.slope);
                 let outside_m = -self.outside_m(new, end) + 5.0;
                 let mut on = end + self.outward() * outside_m;
-                on[1 - self.axis] += outside_m * leaving.slope;
+                on[1 - self.axis] += outside_m * slope;
                 line.points_m.push(on);
             }
         }

@@ -1,6 +1,7 @@
 //! Cuts a bird's-eye-view layout out of a road network.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -93,6 +94,23 @@ pub struct LayoutImport {
     pub bridge_count: usize,
     /// What the file holds and the import does not, counted by kind.
     pub skipped: Skipped,
+    in_junction: Vec<bool>, // columns
+}
+
+impl LayoutImport {
+    /// The layout without the lanes that lead through junctions: nobody waits there, so traffic is seeded on the others.
+    pub fn without_lanes_of_junctions(&self) -> BevLayout {
+        let extent = self.layout.extent();
+        let stays = |line: &&Polyline| {
+            let middle = line.points_m.get(line.points_m.len() / 2);
+            let column = middle.and_then(|m| extent.column_at(m.x, m.y));
+            let within = column.is_some_and(|[x, y]| self.in_junction[extent.index(x, y)]);
+            line.kind != PolylineKind::LaneCenter || !within
+        };
+        let mut layout = self.layout.clone();
+        layout.polylines = Arc::new(self.layout.polylines.iter().filter(stays).cloned().collect());
+        layout
+    }
 }
 
 /// The grid while it is drawn.
@@ -188,6 +206,7 @@ impl RoadNetwork {
             of_kind(PolylineKind::PedCrossing),
         );
         let drivable_beside_traffic = canvas.beside_traffic();
+        let in_junction = std::mem::take(&mut canvas.in_junction);
         let mut layout = canvas.layout;
         layout.polylines = canvas.lines.into();
         LayoutImport {
@@ -200,6 +219,7 @@ impl RoadNetwork {
             bridge_count,
             skipped,
             layout,
+            in_junction,
         }
     }
 }

@@ -203,7 +203,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         traffic::TrafficSpec::NORMAL
     };
     let seed = placement.seed;
-    let boxes = traffic::place(&import.layout, seed, &spec);
+    let boxes = traffic::place(&import.without_lanes_of_junctions(), seed, &spec);
     let things_of_file = import.background.len() - import.bridge_count;
     let mut scene = if placement.bare {
         let occupancy = draft::draft(&import.layout, boxes.values());

@@ -190,7 +190,9 @@ mod tests {
         frame.source = std::sync::Arc::new(source);
         let region = Region::of_edit(&frame, 2);
         let clean = draft::draft(&frame.layout, frame.boxes.values());
-        let request = Request::of(&frame);
+        let mut masked = frame.clone();
+        masked.inferred.unobserved = Unobserved::from_observed(&vec![false; Window::VOXELS]);
+        let request = Request::of(&masked);
         let none = InpaintMask::default();
         let halo = (0..Window::COLUMNS).filter(|c| region.columns[*c] && !request.edited(*c));
         let halo = halo.count();
@@ -201,9 +203,6 @@ mod tests {
             0,
             "no mask"
         );
-        let mut masked = frame.clone();
-        masked.inferred.unobserved = Unobserved::from_observed(&vec![false; Window::VOXELS]);
-        let request = Request::of(&masked);
         let found = Invented::of_request(&request, &masked, &generated, &region);
         assert_eq!(found.into_unobserved, halo);
         assert_eq!(

@@ -19,7 +19,8 @@ pub struct Request<'a> {
     heights: Vec<[u8; OBJECTS]>,
     /// `[x][y]`: columns in which a box of the source stood that is now gone, moved or of another class.
     left: Vec<bool>,
-    /// `[x][y]`: the same columns, those of new and changed boxes, and those whose ground the layout changed.
+    /// `[x][y]`: the same columns, those of new and changed boxes, those whose ground the layout changed, and new
+    /// ground.
     edited: Vec<bool>,
 }
 
@@ -55,6 +56,9 @@ impl<'a> Request<'a> {
         let layouts = frame.layout.cells().iter().zip(source.layout.cells());
         for (edited, (now, before)) in edited.iter_mut().zip(layouts) {
             *edited |= draft::ground_class(*now) != draft::ground_class(*before);
+        }
+        for (edited, [x, y]) in edited.iter_mut().zip(Extent::WINDOW.all_columns()) {
+            *edited |= frame.is_new_ground(x, y);
         }
         Self {
             frame,

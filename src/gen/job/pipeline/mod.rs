@@ -3,6 +3,7 @@
 //! are copied from the source. After UniScene (occupancy; editing in C.1).
 
 mod network;
+mod new_ground;
 mod plan;
 mod round_trip;
 mod source;
@@ -31,7 +32,8 @@ use diffusion::inversion::Trajectory;
 use diffusion::replay::edit_with_replay;
 use diffusion::solver::Sampler;
 use nets::{DecoderInput, DitCondition, GROUPS, OccModels, tokens_of};
-use network::{Condition, Network, density_of_source};
+use network::{Condition, Network};
+use new_ground::NewGround;
 use numeric::philox::{Stream, normal_field};
 use scene::{BevLayout, BoxId, Extent, Scene, SceneBox, VoxelGrid, Window};
 use source::{Source, stored_for};
@@ -119,15 +121,14 @@ impl OccPipeline {
         &self,
         source: &Source,
         sampler: &Sampler,
-        region: &Region,
+        cells: &[bool],
         params: &GenParams,
     ) -> Option<Vec<usize>> {
         let kept = source.keys_values.as_ref().filter(|_| params.local)?;
         let first = sampler.states_of_noise() - 1;
         let mut asked = sampler.levels[first..sampler.steps()].iter();
         let known = asked.all(|level| kept.contains_key(&level.t.to_bits()));
-        (known && sampler.guidance.weight == 1.0)
-            .then(|| tokens_of(&region.cells, params.halo_tokens as usize))
+        (known && sampler.guidance.weight == 1.0).then(|| tokens_of(cells, params.halo_tokens as usize))
     }
 
     /// Encodes a draft. Cells that see only columns that are as in the last draft keep their latents.
@@ -359,7 +360,13 @@ impl OccPipeline {
         mut report: GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<GenResult, GenError> {
-        let (frame, params) = (job.scene.frame(), &job.params);
+        let frame = job.scene.frame();
+        let ground = NewGround::of(frame);
+        let is_new = ground.is_most_of(&region);
+        let params = &match is_new {
+            true => NewGround::params(&job.params),
+            false => job.params.clone(),
+        };
         let before = &frame.source.occupancy;
         if region.is_empty() {
             // Nothing to inpaint: no network is asked.
@@ -371,17 +378,21 @@ impl OccPipeline {
             true => self.noised(&job.scene, &condition_before, params, &mut report, ctx)?,
             false => self.inverted(&job.scene, &condition_before, params, &mut report, ctx)?,
         };
-        let named = params.named.or(&density_of_source(frame));
+        let named = params.named.or_else(&ground.density());
         let condition = self.condition(&job.scene, &frame.layout, &frame.boxes, named);
         let latent = source.trajectory.latent_f32();
-        let mask: Vec<f32> = region.cells.iter().map(|c| f32::from(u8::from(*c))).collect();
+        let drawn = match is_new {
+            true => ground.drawn_with(&region),
+            false => region.cells.clone(),
+        };
+        let mask: Vec<f32> = drawn.iter().map(|c| f32::from(u8::from(*c))).collect();
         let context = latent
             .iter()
             .enumerate()
             .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
             .collect();
         let models = self.models.clone();
-        let local = self.local_tokens(&source, &sampler, &region, params);
+        let local = self.local_tokens(&source, &sampler, &drawn, params);
         // Tokens that are not computed take part with their keys and values from the source.
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
         let keys_values = match kept {
@@ -402,7 +413,7 @@ impl OccPipeline {
             edit_with_replay(
                 &sampler,
                 &source.trajectory,
-                &region.cells,
+                &drawn,
                 CHANNELS,
                 &mut network,
                 |view| {
@@ -453,6 +464,9 @@ impl OccPipeline {
             report.ground_kept = keep_ground(frame, &region, &mut generated);
             report.unobserved_kept = keep_unobserved(frame, &region, inpainted, &request, &mut generated);
             report.invented_cleared = keep_clear(frame, &region, inpainted, &request, &mut generated);
+            if is_new && named.completeness.is_some_and(|share| share >= COMPLETE) {
+                report.holes_closed = close_holes(&frame.layout, &mut generated);
+            }
             report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
         }
         let result = self.finish(job, before, &generated, &region, &mut report);

@@ -92,7 +92,7 @@ impl Condition {
     }
 }
 
-/// The densities of a frame's source. An edit keeps them unless the user names others.
+/// The densities of a frame's source.
 pub fn density_of_source(frame: &Frame) -> Density {
     Density::of(&frame.source.occupancy, frame.source.layout.cells())
 }

@@ -1,0 +1,90 @@
+//! Ground that is new to a map. There is nothing to invert: it is drawn from noise, against what is around it on the map.
+
+use crate::contract::{GenParams, Named};
+use crate::region::{COLUMNS_PER_CELL, Region};
+use scene::{Density, Extent, Frame, Window};
+
+/// What the source of a frame knows.
+pub(super) struct NewGround<'a> {
+    frame: &'a Frame,
+    /// `[x][y]`: columns of the map that are not new to it.
+    known: Vec<bool>,
+    is_new: Vec<bool>,
+}
+
+impl<'a> NewGround<'a> {
+    /// Of a frame of the window.
+    pub(super) fn of(frame: &'a Frame) -> Self {
+        // What the window shows beyond the map is free, and the map is a rectangle.
+        let map = frame
+            .occupancy
+            .iter_set()
+            .fold(None, |map: Option<[usize; 4]>, (x, y, _, _)| {
+                let [x0, x1, y0, y1] = map.unwrap_or([x, x, y, y]);
+                Some([x0.min(x), x1.max(x), y0.min(y), y1.max(y)])
+            });
+        let on_map = |[x, y]: [usize; 2]| {
+            map.is_some_and(|[x0, x1, y0, y1]| (x0..=x1).contains(&x) && (y0..=y1).contains(&y))
+        };
+        let columns = || Extent::WINDOW.all_columns();
+        let is_new: Vec<bool> = columns().map(|[x, y]| frame.is_new_ground(x, y)).collect();
+        let known = columns().zip(&is_new).map(|(c, new)| on_map(c) && !new);
+        Self {
+            frame,
+            known: known.collect(),
+            is_new,
+        }
+    }
+
+    /// True if at least half of a region is new.
+    pub(super) fn is_most_of(&self, region: &Region) -> bool {
+        let held = self.is_new.iter().zip(&region.columns).filter(|(_, held)| **held);
+        let new = held.filter(|(new, _)| **new).count();
+        new > 0 && 2 * new >= region.column_count()
+    }
+
+    /// Parameters with which a region is drawn that is new for the most part.
+    pub(super) fn params(params: &GenParams) -> GenParams {
+        GenParams {
+            strength: 1.0,
+            guidance: params.guidance.max(GenParams::whole_scene().guidance),
+            ..params.clone()
+        }
+    }
+
+    /// Cells of a region, and those in which no column is known: nothing is shown of them, and what is drawn is thrown away.
+    pub(super) fn drawn_with(&self, region: &Region) -> Vec<bool> {
+        let side = Window::NX / COLUMNS_PER_CELL;
+        let cell = |cell: usize| {
+            let (x, y) = (cell / side * COLUMNS_PER_CELL, cell % side * COLUMNS_PER_CELL);
+            let mut columns = (0..COLUMNS_PER_CELL * COLUMNS_PER_CELL)
+                .map(|i| (x + i / COLUMNS_PER_CELL) * Window::NY + y + i % COLUMNS_PER_CELL);
+            !columns.any(|c| self.known[c])
+        };
+        let unknown = (0..side * side).map(cell);
+        region
+            .cells
+            .iter()
+            .zip(unknown)
+            .map(|(held, u)| *held || u)
+            .collect()
+    }
+
+    /// What an edit keeps unless the user names others: the densities of what is known. New ground is generated like the rest, and
+    /// completely if there is no rest.
+    pub(super) fn density(&self) -> Named {
+        if !self.known.contains(&true) {
+            return Named {
+                completeness: Some(1.0),
+                ..Named::default()
+            };
+        }
+        let source = &self.frame.source;
+        let known = |x: usize, y: usize| self.known[x * Window::NY + y];
+        Named::default().or(&Density::of_columns(
+            &source.occupancy,
+            source.layout.cells(),
+            known,
+        ))
+    }
+}
