@@ -41,6 +41,21 @@ fn extend(scene: &mut Scene, ahead_m: f64, right_m: f64) -> Result<(), EditError
 }
 
 #[test]
+fn no_second_road_comes_of_one_that_leaves_to_the_side() {
+    let mut scene = scene(0.9);
+    extend(&mut scene, 100.0, 0.0).expect("a map");
+    let (extent, layout) = (scene.canvas().extent(), &scene.canvas().layout);
+    for [x, y] in extent.all_columns() {
+        let p = extent.center(x, y, 0);
+        let off_m = (p.y - 0.9 * p.x).abs();
+        assert!(
+            off_m < 5.0 || layout.cell(x, y) & BevLayer::DrivableArea.bit() == 0,
+            "{p}"
+        );
+    }
+}
+
+#[test]
 fn a_road_goes_on_as_it_leaves_the_map() {
     for slope in [0.0, 0.3, -0.3] {
         let mut scene = scene(slope);

@@ -262,8 +262,17 @@ mod tests {
         let right = turning(&layout, &own(), false, 30.0).expect("the side street");
         assert!((right.points_m.last().expect("points").x - 28.0).abs() < 1e-6);
         assert_eq!(turning(&layout, &own(), true, 30.0), None);
-        // Too near to turn.
+        // Too near to turn; and a lane that no vehicle could follow.
         assert_eq!(turning(&layout, &own()[24..], false, 30.0), None);
+        let mut bent = layout.clone();
+        let lane = Polyline {
+            kind: PolylineKind::LaneCenter,
+            points_m: [[28.0, -5.0], [28.0, -16.0], [32.0, -18.0], [32.0, -60.0]]
+                .map(DVec2::from)
+                .into(),
+        };
+        bent.polylines = Arc::new(vec![layout.polylines[0].clone(), lane]);
+        assert_eq!(turning(&bent, &own(), false, 30.0), None);
         assert_eq!(turning(&layout, &[], false, 30.0), None);
         assert_eq!(turning(&BevLayout::default(), &own(), false, 30.0), None);
     }

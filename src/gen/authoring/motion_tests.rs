@@ -1,7 +1,8 @@
 //! Readings with motion become clips; the reader network has tests of its own.
 
-use scene::{BoxId, Class, Scene};
+use scene::{BoxId, Class, Edit, Key, Motion, Scene};
 use words::describe::describe;
+use words::hear::{By, Heard};
 use words::notation::parse;
 
 use super::*;
@@ -42,6 +43,42 @@ fn a_car_from_the_right_lane_ends_in_ours() {
         );
         assert!(scene.clip().ego.is_some());
     }
+}
+
+#[test]
+fn a_motion_of_ours_is_kept() {
+    let (scene, _) = made_of("road straight ; add 1 bus ( ahead ego 20m )", 2);
+    let say = |scene: &Scene| {
+        let line = "go the bus pull_out gap 10m";
+        let heard = Heard {
+            reading: parse(line).expect("notation"),
+            by: By::Hand,
+            other: None,
+            unsure: Vec::new(),
+            missing: Vec::new(),
+            mended: Vec::new(),
+        };
+        edited(heard, scene, 1).edits()
+    };
+    let of_us = |edits: &[Edit]| edits.iter().any(|e| matches!(e, Edit::LetMove { id: None, .. }));
+    assert!(of_us(&say(&scene)), "nobody comes nearer while we stand");
+    let mut driven = scene;
+    driven.change_clip(|clip| {
+        clip.length_s = 8.0;
+        clip.ego = Some(Motion::Keys(vec![
+            Key {
+                time_s: 0.0,
+                at_m: glam::DVec2::ZERO,
+                yaw_deg: 0.0,
+            },
+            Key {
+                time_s: 8.0,
+                at_m: glam::DVec2::new(40.0, 0.0),
+                yaw_deg: 0.0,
+            },
+        ]));
+    });
+    assert!(!of_us(&say(&driven)));
 }
 
 #[test]

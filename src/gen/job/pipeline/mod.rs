@@ -362,7 +362,7 @@ impl OccPipeline {
     ) -> Result<GenResult, GenError> {
         let frame = job.scene.frame();
         let ground = NewGround::of(frame);
-        let is_new = ground.is_most_of(&region);
+        let is_new = ground.is_in(&region);
         let params = &match is_new {
             true => NewGround::params(&job.params),
             false => job.params.clone(),

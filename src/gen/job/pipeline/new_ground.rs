@@ -36,14 +36,14 @@ impl<'a> NewGround<'a> {
         }
     }
 
-    /// True if at least half of a region is new.
-    pub(super) fn is_most_of(&self, region: &Region) -> bool {
+    /// True if an eighth of a region is new, or more: what lies around new ground is in it too.
+    pub(super) fn is_in(&self, region: &Region) -> bool {
         let held = self.is_new.iter().zip(&region.columns).filter(|(_, held)| **held);
         let new = held.filter(|(new, _)| **new).count();
-        new > 0 && 2 * new >= region.column_count()
+        new > 0 && 8 * new >= region.column_count()
     }
 
-    /// Parameters with which a region is drawn that is new for the most part.
+    /// Parameters with which a region that holds new ground is drawn.
     pub(super) fn params(params: &GenParams) -> GenParams {
         GenParams {
             strength: 1.0,
