@@ -97,7 +97,7 @@ impl SceneloomApp {
 
     pub(crate) fn bars(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let input = ToolbarInput {
-            name: &scene.name,
+            name: &self.files.called(&scene.name),
             dirty: self.document.is_dirty(),
             recent: &self.preferences.settings.recent,
             undo: self.document.undo_label(),

@@ -82,6 +82,38 @@ fn a_motion_of_ours_is_kept() {
 }
 
 #[test]
+fn somebody_who_is_not_there_comes_in() {
+    let (scene, _) = made_of("road straight ; add 2 person ( ahead ego )", 2);
+    let said = read_edit("a child runs across 15 m ahead at second 3", &scene, 1).expect("the reader");
+    let edits = said.edits();
+    assert!(said.outcome.questions.is_empty(), "{:?}", said.outcome.questions);
+    let adds = |e: &Edit| {
+        matches!(
+            e,
+            Edit::AddBox {
+                class: Class::Pedestrian,
+                ..
+            }
+        )
+    };
+    assert_eq!(edits.iter().filter(|e| adds(e)).count(), 1, "{edits:?}");
+    let crosses = |e: &Edit| {
+        matches!(
+            e,
+            Edit::LetMove {
+                id: Some(_),
+                from_s: Some(3.0),
+                ..
+            }
+        )
+    };
+    assert!(edits.iter().any(crosses), "{edits:?}");
+    // One that is there moves.
+    let said = read_edit("a pedestrian crosses the road after 2 s", &scene, 1).expect("the reader");
+    assert!(!said.edits().iter().any(adds) && said.outcome.questions.is_empty());
+}
+
+#[test]
 fn a_child_waits_at_the_side_and_runs_across() {
     for seed in 0..6 {
         let (scene, missing) = made_of(

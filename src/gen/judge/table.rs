@@ -105,16 +105,19 @@ pub static SUITES: [Suite; 9] = [
                 "/rows/first_half/told_apart/occupancy/window",
             ),
             (
-                "the same, last half",
+                "told from worlds, patches, last half",
                 "/rows/last_half/told_apart/occupancy/window",
             ),
             (
                 "cells Fréchet, first half",
                 "/rows/first_half/distances/cells/frechet",
             ),
-            ("the same, last half", "/rows/last_half/distances/cells/frechet"),
+            (
+                "cells Fréchet, last half",
+                "/rows/last_half/distances/cells/frechet",
+            ),
             ("findings per window, first half", "/rows/first_half/findings/all"),
-            ("the same, last half", "/rows/last_half/findings/all"),
+            ("findings per window, last half", "/rows/last_half/findings/all"),
         ],
         quick: |options| options.frames = 4,
         table: Some(map::table),

@@ -111,6 +111,11 @@ fn fits(symbol: &str, noun: Noun) -> bool {
     of.is_some_and(|n| n.classes().iter().any(|c| noun.classes().contains(c)))
 }
 
+/// True if a token names the kind of a noun.
+pub(super) fn names_noun(token: &Token, noun: Noun) -> bool {
+    names(token, &|symbol: &str| fits(symbol, noun))
+}
+
 /// True if a token names what fits.
 fn names(token: &Token, fits: &dyn Fn(&str) -> bool) -> bool {
     // (alone, too: "a bus stands" is no bus stand)

@@ -8,6 +8,7 @@ use super::canonical::canonical;
 use super::conditions;
 use super::grammar;
 use super::guess::take_out_guesses;
+use super::indefinite;
 use super::notation;
 use super::reader::{LearnedReader, Mode};
 use super::reading::Reading;
@@ -116,6 +117,9 @@ pub fn hear_objects(text: &str, mode: Mode) -> Result<Heard, WeightsError> {
         _ => Vec::new(),
     };
     conditions::set_right(&mut reading, &said.tokens);
+    if mode == Mode::Edit {
+        indefinite::set_right(&mut reading, &said.tokens);
+    }
     let unsure = match by {
         By::Learned => (0..reading.acts.len())
             .filter(|i| reading.acts[*i].confidence < UNSURE)

@@ -13,6 +13,7 @@ pub mod describe;
 pub mod grammar;
 mod guess;
 pub mod hear;
+mod indefinite;
 pub mod lexicon;
 mod mode;
 mod named;

@@ -112,6 +112,11 @@ pub enum Remark {
     },
     /// The ego vehicle drives, though nobody said so: what was asked for needs it.
     EgoDrives,
+    /// Somebody moves who was not there before.
+    IsNew {
+        /// Who.
+        what: String,
+    },
     /// More than is carried out.
     TooMuch,
 }
@@ -151,6 +156,7 @@ impl fmt::Display for Remark {
             }
             Self::NoMotion { why } => write!(f, "{why}"),
             Self::EgoDrives => write!(f, "we drive along our lane at 36 km/h"),
+            Self::IsNew { what } => write!(f, "the {what} is new"),
             Self::TooMuch => write!(f, "more was asked for than is carried out at once"),
         }
     }

@@ -1,14 +1,18 @@
 //! What moves in the course of time.
 
-use super::super::reading::Thing;
+use std::collections::BTreeSet;
+
+use super::super::reading::{Anchor, Place, Quantity, Relation, Thing};
 use super::super::remark::Remark;
 use super::super::resolve::{Spare, words_of};
 use super::super::stage::Stage;
 use scene::clip::{Manoeuvre, Template};
-use scene::{Clip, Edit};
+use scene::{BoxId, Clip, Edit};
 
 /// Something that begins later than this makes the scene longer, s.
 const USUAL_LENGTH_S: f64 = 8.0;
+/// Where somebody new appears if no place is named, m ahead of us.
+const AHEAD_M: f64 = 15.0;
 /// What begins is seen for so long, s.
 const SEEN_S: f64 = 5.0;
 
@@ -30,7 +34,7 @@ impl Stage<'_> {
             self.done().scene = true;
             return;
         }
-        let Some(ids) = self.those(who, Spare::Farthest) else {
+        let Some(ids) = self.movers(who) else {
             return;
         };
         // Nobody cuts in before a vehicle that stands, or comes nearer to one.
@@ -56,6 +60,44 @@ impl Stage<'_> {
             self.out.edits.push(Edit::let_move(&how, Some(id), class));
             self.done().changed.push(id);
         }
+    }
+
+    /// Who moves. Any one of a kind of which none is there is added first: ahead of us, if no place is named.
+    fn movers(&mut self, who: &[Thing]) -> Option<Vec<BoxId>> {
+        let [thing] = who else {
+            return self.those(who, Spare::Nearest);
+        };
+        let named = |stage: &Self, id: &BoxId| {
+            thing.noun.is_plain() || stage.boxes[id].label.name == thing.noun.label()
+        };
+        let is_there = self.fitting(thing).iter().any(|id| named(self, id));
+        if thing.quantity != Quantity::N(1) || is_there {
+            return self.those(who, Spare::Nearest);
+        }
+        let mut new = thing.clone();
+        if new.places.is_empty() {
+            new.places.push(Place {
+                relation: Relation::Ahead,
+                to: Some(Anchor::Ego),
+                and: None,
+                metres: Some(AHEAD_M),
+            });
+        }
+        let before: BTreeSet<BoxId> = self.boxes.keys().copied().collect();
+        self.add(&[new]);
+        let ids: Vec<BoxId> = self
+            .boxes
+            .keys()
+            .copied()
+            .filter(|id| !before.contains(id))
+            .collect();
+        if ids.is_empty() {
+            return None;
+        }
+        self.remark(Remark::IsNew {
+            what: words_of(thing),
+        });
+        Some(ids)
     }
 
     /// The scene lasts so long.

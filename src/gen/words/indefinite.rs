@@ -1,0 +1,48 @@
+//! "A car cuts in" means any car that fits, or a new one; the reader says "the car" for both.
+
+use super::guess::names_noun;
+use super::nouns::Noun;
+use super::reading::{Quantity, Reading, Thing, What};
+use super::tokens::Token;
+
+/// Words before a thing that is not a certain one.
+const ARTICLES: [&str; 3] = ["a", "an", "another"];
+/// An article stands so many words before its noun at most: "a small red car".
+const APART: usize = 3;
+
+/// Whoever moves, and is named by an indefinite article and in no act before, is one of whichever fit.
+pub(super) fn set_right(reading: &mut Reading, tokens: &[Token]) {
+    let mut spoken_of: Vec<Noun> = Vec::new();
+    for act in &mut reading.acts {
+        match &mut act.what {
+            What::Add { things } => spoken_of.extend(things.iter().map(|t| t.noun)),
+            What::Replace { things, .. } => spoken_of.extend(things.iter().map(|t| t.noun)),
+            What::Go { who, .. } => {
+                for thing in who {
+                    if is_any(thing) && !spoken_of.contains(&thing.noun) && is_indefinite(thing.noun, tokens)
+                    {
+                        thing.quantity = Quantity::N(1);
+                    }
+                    spoken_of.push(thing.noun);
+                }
+            }
+            _ => (),
+        }
+    }
+}
+
+fn is_any(thing: &Thing) -> bool {
+    let told = thing.id.is_some() || thing.nth.is_some() || thing.pick.is_some() || thing.other;
+    !told && matches!(thing.quantity, Quantity::The | Quantity::Unsaid)
+}
+
+fn is_indefinite(noun: Noun, tokens: &[Token]) -> bool {
+    let Some(first) = tokens.iter().position(|t| names_noun(t, noun)) else {
+        return false;
+    };
+    let before = tokens[..first].iter().rev().take(APART);
+    // (the article of another noun is not its own)
+    before
+        .take_while(|t| !t.senses.iter().any(|s| s.kind == "noun"))
+        .any(|t| ARTICLES.contains(&t.text.as_str()))
+}
