@@ -21,7 +21,7 @@ use super::generation::Generation;
 use super::live::Live;
 use super::perf::Perf;
 use super::preferences::Preferences;
-use super::settings::Settings;
+use super::settings::{QUALITY, Settings};
 use super::toasts::{Level, Toasts};
 use super::tuning::Tuning;
 use super::versions::Versions;
@@ -163,6 +163,7 @@ impl SceneloomApp {
         let quality = tuning
             .presets
             .named(&settings.quality)
+            .or_else(|| tuning.presets.named(QUALITY)) // (settings of before may name one that is gone)
             .filter(|_| config.settings_file.is_some());
         let params = quality.map_or(config.params.clone(), |preset| {
             preset.knobs.on(config.params.clone())

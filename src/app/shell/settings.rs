@@ -52,6 +52,9 @@ pub struct Settings {
     pub recent: Vec<PathBuf>,
 }
 
+/// The preset that the window begins with: the fastest one whose inverted noise is like a draw.
+pub const QUALITY: &str = "accurate";
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -62,7 +65,7 @@ impl Default for Settings {
             key_preset: "Default".into(),
             keys: Chords::new(),
             workspace: Workspace::default(),
-            quality: "careful".into(), // the fastest preset whose inverted noise is like a draw
+            quality: QUALITY.into(),
             dock: None,
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
