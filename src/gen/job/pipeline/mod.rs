@@ -361,17 +361,17 @@ impl OccPipeline {
         ctx: &JobCtx<'_>,
     ) -> Result<GenResult, GenError> {
         let frame = job.scene.frame();
+        let before = &frame.source.occupancy;
+        if region.is_empty() {
+            // Nothing to inpaint: no network is asked.
+            return Ok(self.finish(job, before, before, &region, &mut report));
+        }
         let ground = NewGround::of(frame);
         let is_new = ground.is_in(&region);
         let params = &match is_new {
             true => NewGround::params(&job.params),
             false => job.params.clone(),
         };
-        let before = &frame.source.occupancy;
-        if region.is_empty() {
-            // Nothing to inpaint: no network is asked.
-            return Ok(self.finish(job, before, before, &region, &mut report));
-        }
         let fresh = params.strength > 0.0;
         let condition_before = self.condition_of_source(&job.scene);
         let (sampler, source) = match fresh {

@@ -2,12 +2,12 @@
 
 use crate::contract::{GenParams, Named};
 use crate::region::{COLUMNS_PER_CELL, Region};
-use scene::{Density, Extent, Frame, Window};
+use scene::{Class, Density, Extent, Frame, Window};
 
 /// What the source of a frame knows.
 pub(super) struct NewGround<'a> {
     frame: &'a Frame,
-    /// `[x][y]`: columns of the map that are not new to it.
+    /// `[x][y]`: columns of the map that are not new to it; all of the window if none is.
     known: Vec<bool>,
     is_new: Vec<bool>,
 }
@@ -15,19 +15,23 @@ pub(super) struct NewGround<'a> {
 impl<'a> NewGround<'a> {
     /// Of a frame of the window.
     pub(super) fn of(frame: &'a Frame) -> Self {
+        let columns = || Extent::WINDOW.all_columns();
+        let is_new: Vec<bool> = columns().map(|[x, y]| frame.is_new_ground(x, y)).collect();
+        if !is_new.contains(&true) {
+            let known = vec![true; is_new.len()];
+            return Self { frame, known, is_new };
+        }
         // What the window shows beyond the map is free, and the map is a rectangle.
-        let map = frame
-            .occupancy
-            .iter_set()
-            .fold(None, |map: Option<[usize; 4]>, (x, y, _, _)| {
+        let shown = |[x, y]: &[usize; 2]| frame.occupancy.column(*x, *y).iter().any(|l| *l != Class::FREE);
+        let map = columns()
+            .filter(shown)
+            .fold(None, |map: Option<[usize; 4]>, [x, y]| {
                 let [x0, x1, y0, y1] = map.unwrap_or([x, x, y, y]);
                 Some([x0.min(x), x1.max(x), y0.min(y), y1.max(y)])
             });
         let on_map = |[x, y]: [usize; 2]| {
             map.is_some_and(|[x0, x1, y0, y1]| (x0..=x1).contains(&x) && (y0..=y1).contains(&y))
         };
-        let columns = || Extent::WINDOW.all_columns();
-        let is_new: Vec<bool> = columns().map(|[x, y]| frame.is_new_ground(x, y)).collect();
         let known = columns().zip(&is_new).map(|(c, new)| on_map(c) && !new);
         Self {
             frame,
