@@ -136,7 +136,11 @@ pub fn occ3d_file(bytes: &[u8]) {
 
 /// A point cloud; what was read is a sound scene.
 pub fn point_cloud(bytes: &[u8]) {
-    match (pcd::IMPORTER.read)(&Source { bytes, name: "cloud" }) {
+    match (pcd::IMPORTER.read)(&Source {
+        bytes,
+        name: "cloud",
+        path: None,
+    }) {
         Err(error) => one_line(error),
         Ok(Content::Scene(loaded)) => frame_is_sound(loaded.scene.frame()),
         Ok(Content::Roads(_)) => panic!("a cloud is no road"),

@@ -1,6 +1,7 @@
 //! Takes a scene to files of other programs: what the command line and the window share. Which formats there are, and what
 //! they write, is in `formats::export`; here is what has to be made of the scene for them.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -10,7 +11,7 @@ use super::camera_views::LidarModel;
 use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
 use crate::shell::checking;
-use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen};
+use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen, Span};
 use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
 use scene::{CameraMaps, LidarSweep, Scene, SensorRig};
@@ -173,17 +174,19 @@ pub fn export_all(
     let fills_a_folder = formats.len() > 1;
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
-    // Files speak of the ego frame; sensors see the scene where it is.
-    let (ego, scene) = (scene.in_ego(), scene.with_rig_in_world());
+    // Files of a moment speak of the ego frame; sensors see the scene where it is.
     for format in formats {
-        let files = (format.write)(
-            &ego,
-            &mut Making {
-                scene: &scene,
-                options,
-                progress,
-            },
-        )?;
+        let of_file = match format.span {
+            Span::Moment => scene.in_ego(),
+            Span::Clip => Cow::Borrowed(scene),
+        };
+        let mut making = Making {
+            whole: scene,
+            scene: scene.with_rig_in_world(),
+            options,
+            progress,
+        };
+        let files = (format.write)(&of_file, &mut making)?;
         progress.go_on()?;
         let place = |file: OutFile| (place_of(format, &file, path, fills_a_folder), file.bytes);
         ready.extend(files.into_iter().map(place));
@@ -208,8 +211,9 @@ fn place_of(format: Format, file: &OutFile, path: &Path, fills_a_folder: bool) -
 fn write(named: &Path, ready: Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<Vec<(PathBuf, u64)>> {
     let mut written = Vec::new();
     for (path, bytes) in ready {
-        if path != named {
-            std::fs::create_dir_all(named).with_context(|| format!("create {}", named.display()))?;
+        let folder = path.parent().filter(|_| path != named);
+        if let Some(folder) = folder {
+            std::fs::create_dir_all(folder).with_context(|| format!("create {}", folder.display()))?;
         }
         atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
         written.push((path, bytes.len() as u64));
@@ -219,14 +223,26 @@ fn write(named: &Path, ready: Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<Vec<(Pa
 
 /// Makes the products of a scene for the formats that ask for them.
 struct Making<'a> {
-    scene: &'a Scene,
+    /// The clip.
+    whole: &'a Scene,
+    /// The moment that products are made of, with the sensors where the ego vehicle is.
+    scene: Cow<'a, Scene>,
     options: &'a ExportOptions,
     progress: &'a ExportProgress,
 }
 
 impl Products for Making<'_> {
+    fn show(&mut self, time_s: f64) -> Result<(), FormatError> {
+        self.progress.go_on().map_err(FormatError::new)?;
+        if time_s != self.scene.time_s() {
+            let moment = self.whole.at(time_s);
+            self.scene = Cow::Owned(moment.with_rig_in_world().into_owned());
+        }
+        Ok(())
+    }
+
     fn seen(&mut self) -> Result<Seen, FormatError> {
-        let seen = checking::seen(self.scene);
+        let seen = checking::seen(&self.scene);
         Ok(Seen {
             lidar_returns: seen.lidar_returns,
             camera_pixels: seen.camera_pixels,
@@ -234,7 +250,7 @@ impl Products for Making<'_> {
     }
 
     fn sweep(&mut self) -> Result<LidarSweep, FormatError> {
-        let mut sweep = sweep(self.scene, self.options.lidar).map_err(FormatError::new)?;
+        let mut sweep = sweep(&self.scene, self.options.lidar).map_err(FormatError::new)?;
         sweep.place(&self.scene.rig.vehicle.inverse());
         Ok(sweep)
     }
@@ -246,7 +262,7 @@ impl Products for Making<'_> {
         let view = (ViewId::SEMANTIC, self.options);
         let each = self
             .progress
-            .each_camera(self.scene, view, |picture| match picture {
+            .each_camera(&self.scene, view, |picture| match picture {
                 CameraPicture::Maps(maps) => Ok(take(maps)?),
                 _ => bail!("the source of classes and depths gives something else"),
             });
@@ -260,7 +276,7 @@ impl Products for Making<'_> {
         let view = (pictures::VIEW.id, self.options);
         let each = self
             .progress
-            .each_camera(self.scene, view, |picture| match picture {
+            .each_camera(&self.scene, view, |picture| match picture {
                 CameraPicture::Picture(image) => Ok(take(Picture {
                     camera: image.camera,
                     width: image.width,
@@ -273,7 +289,7 @@ impl Products for Making<'_> {
     }
 
     fn view(&mut self) -> Result<Picture, FormatError> {
-        let shot = View3d::new().and_then(|mut view| view.shot(self.scene, &self.options.shot));
+        let shot = View3d::new().and_then(|mut view| view.shot(&self.scene, &self.options.shot));
         let shot = shot.map_err(FormatError::new)?;
         Ok(Picture {
             camera: String::new(),

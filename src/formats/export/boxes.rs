@@ -1,6 +1,6 @@
 //! Boxes with their numbers.
 
-use super::{Exporter, OutFile, Product};
+use super::{Exporter, OutFile, Product, Span};
 use crate::{FormatError, Holds, box_list};
 
 /// See [`box_list`].
@@ -9,6 +9,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Boxes: JSON with centre, size, heading, velocity, LiDAR points",
     file_name: Some("boxes.json"),
     holds: &[Holds::Boxes],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::Seen],
     write: |scene, products| {
         let seen = products.seen()?;

@@ -2,7 +2,7 @@
 
 use scene::sensor_data::depth_mm;
 
-use super::{Exporter, OutFile, Product, with_text};
+use super::{Exporter, OutFile, Product, Span, with_text};
 use crate::{FormatError, Holds, png};
 
 /// `CAMERA_depth_mm.png` for each camera: millimetres along the optical axis, 0 where there is no depth.
@@ -11,6 +11,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Cameras: depth in millimetres, 16-bit PNG",
     file_name: None,
     holds: &[Holds::Pictures],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
         let mut files = Vec::new();

@@ -1,6 +1,6 @@
 //! The program's own scenes.
 
-use super::{Exporter, OutFile};
+use super::{Exporter, OutFile, Span};
 use crate::{FormatError, Holds, loom};
 
 /// See [`loom`].
@@ -9,6 +9,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Scene: everything, as sceneloom keeps it",
     file_name: Some("scene.loom"),
     holds: &[Holds::Scene],
+    lost: "",
+    span: Span::Clip,
     needs: &[],
     write: |scene, _| {
         let bytes = loom::to_bytes(scene).map_err(FormatError::new)?;

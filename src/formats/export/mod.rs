@@ -40,9 +40,14 @@ pub struct Exporter {
     pub file_name: Option<&'static str>,
     /// What a file holds.
     pub holds: &'static [Holds],
+    /// What of that does not come back when the format is read again, for a person; empty if all of it does.
+    pub lost: &'static str,
+    /// How much of time it holds.
+    pub span: Span,
     /// What must be made of the scene first; the dialog shows the options for it.
     pub needs: &'static [Product],
-    /// The files of the scene's current frame. Errors in one line; nothing is written by then.
+    /// The files. Of a moment: the scene stands still and is in the ego frame. Of a clip: the scene is whole and in the world
+    /// frame. Errors in one line; nothing is written by then.
     pub write: fn(&Scene, &mut dyn Products) -> Result<Vec<OutFile>, FormatError>,
 }
 
@@ -68,6 +73,15 @@ pub fn from_id(id: &str) -> Option<&'static Exporter> {
     all().iter().find(|e| e.id == id).copied()
 }
 
+/// How much of time a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Span {
+    /// The moment that is shown.
+    Moment,
+    /// The whole clip; a scene that stands still is a clip of one moment.
+    Clip,
+}
+
 /// What sensors, networks or the graphics card make of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Product {
@@ -86,6 +100,9 @@ pub enum Product {
 /// Makes the products of one scene when a format asks for them. Errors in one line: the rig lacks the sensor, a network or a
 /// device is missing, or the export was cancelled.
 pub trait Products {
+    /// Another moment of the clip: what is made from now on is of that one, in its ego frame. Errors once the export was
+    /// cancelled.
+    fn show(&mut self, time_s: f64) -> Result<(), FormatError>;
     /// How often sensors see each box.
     fn seen(&mut self) -> Result<Seen, FormatError>;
     /// A sweep of the rig's first LiDAR.
@@ -129,7 +146,7 @@ pub struct Picture {
 /// A file that is ready to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutFile {
-    /// Its name in a folder: letters, digits and `-_.` only.
+    /// Its path in a folder: names of letters, digits and `-_.` with `/` between them.
     pub name: String,
     /// What goes into it.
     pub bytes: Vec<u8>,
@@ -148,6 +165,21 @@ impl OutFile {
         Self {
             name: name.chars().map(tidy).collect(),
             bytes,
+        }
+    }
+
+    /// The same in a folder of the export's folder.
+    #[allow(dead_code)] // until the first format with folders
+    fn within(self, folder: &str) -> Self {
+        let tidy = |part: &str| match part {
+            "." | ".." => "_".to_owned(),
+            part => Self::new(part, Vec::new()).name,
+        };
+        let parts = folder.split('/').filter(|part| !part.is_empty()).map(tidy);
+        let path: Vec<String> = parts.chain([self.name]).collect();
+        Self {
+            name: path.join("/"),
+            bytes: self.bytes,
         }
     }
 }
@@ -173,6 +205,8 @@ mod tests {
             OutFile::new("../CAM FRONT_ä.png", Vec::new()).name,
             ".._CAM_FRONT_ä.png"
         );
+        let deep = OutFile::new("a b", Vec::new()).within("/sweeps/../LIDAR TOP/");
+        assert_eq!(deep.name, "sweeps/_/LIDAR_TOP/a_b");
         assert_eq!(from_id("ply").map(|e| e.file_name), Some(Some("lidar.ply")));
         assert!(from_id("loom").is_none() && from_id("fbx").is_none());
     }

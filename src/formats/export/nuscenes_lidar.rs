@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use scene::{LidarPattern, LidarSweep};
 
-use super::{Exporter, OutFile, Product};
+use super::{Exporter, OutFile, Product, Span};
 use crate::{FormatError, Holds};
 
 /// See [`to_bytes`].
@@ -13,6 +13,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "LiDAR: nuScenes .pcd.bin, sensor frame (x, y, z, intensity, ring)",
     file_name: Some("LIDAR_TOP.pcd.bin"),
     holds: &[Holds::Points],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::Sweep],
     write: |scene, products| {
         let sweep = products.sweep()?;

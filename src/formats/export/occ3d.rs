@@ -2,7 +2,7 @@
 
 use scene::{Class, Extent};
 
-use super::{Exporter, OutFile};
+use super::{Exporter, OutFile, Span};
 use crate::{FormatError, Holds, occ3d};
 
 /// See [`occ3d`].
@@ -11,6 +11,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Occupancy: Occ3D labels.npz, 200 x 200 x 16 class labels",
     file_name: Some("labels.npz"),
     holds: &[Holds::Occupancy],
+    lost: "",
+    span: Span::Moment,
     needs: &[],
     write: |scene, _| {
         // A map of another extent is cut to what the format holds.

@@ -1,6 +1,6 @@
 //! Pictures that the cameras take.
 
-use super::{Exporter, OutFile, Product, with_text};
+use super::{Exporter, OutFile, Product, Span, with_text};
 use crate::{FormatError, Holds, png};
 
 /// `CAMERA.png` for each camera.
@@ -9,6 +9,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Cameras: pictures in the prompt's weather, PNG",
     file_name: None,
     holds: &[Holds::Pictures],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::Pictures],
     write: |scene, products| {
         let mut files = Vec::new();

@@ -2,7 +2,7 @@
 
 use scene::{Class, LidarSweep};
 
-use super::{Exporter, OutFile, Product};
+use super::{Exporter, OutFile, Product, Span};
 use crate::Holds;
 
 /// See [`to_bytes`].
@@ -11,6 +11,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "LiDAR: PLY for viewers, ego frame, with class, intensity, ring",
     file_name: Some("lidar.ply"),
     holds: &[Holds::Points],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::Sweep],
     write: |_, products| Ok(vec![OutFile::new("lidar.ply", to_bytes(&products.sweep()?))]),
 };

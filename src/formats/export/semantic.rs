@@ -4,7 +4,7 @@ use scene::sensor_data::{RENDER_IDS, RenderId, render_id_color};
 use scene::{CameraMaps, Class};
 use serde_json::json;
 
-use super::{Exporter, OutFile, Product, with_text};
+use super::{Exporter, OutFile, Product, Span, with_text};
 use crate::{FormatError, Holds, png};
 
 /// `CAMERA_semantic.png` for each camera, and `classes.json`.
@@ -13,6 +13,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Cameras: class maps, PNG with palette, and classes.json",
     file_name: None,
     holds: &[Holds::Pictures],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
         let mut files = Vec::new();

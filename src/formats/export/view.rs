@@ -1,6 +1,6 @@
 //! A picture of the 3D view.
 
-use super::{Exporter, OutFile, Product, with_text};
+use super::{Exporter, OutFile, Product, Span, with_text};
 use crate::{FormatError, Holds, png};
 
 /// One picture.
@@ -9,6 +9,8 @@ pub const EXPORTER: Exporter = Exporter {
     title: "3D view: PNG of any size, supersampled",
     file_name: Some("view.png"),
     holds: &[Holds::Pictures],
+    lost: "",
+    span: Span::Moment,
     needs: &[Product::View],
     write: |scene, products| {
         let p = products.view()?;

@@ -19,6 +19,7 @@ pub const IMPORTER: Importer = Importer {
         let text = String::from_utf8_lossy(head);
         text.contains("\"sceneloom_boxes\"")
     },
+    in_folder: None,
     read: |source| {
         let list = box_list::read(source.bytes).map_err(FormatError::new)?;
         let found = list.len();

@@ -13,6 +13,7 @@ pub const IMPORTER: Importer = Importer {
     holds: &[Holds::Scene],
     largest: loom::LARGEST_FILE,
     recognises: |head| first_entry_ends(head, "manifest.json"),
+    in_folder: None,
     read: |source| {
         let scene = loom::from_bytes(source.bytes).map_err(FormatError::new)?;
         Ok(Content::Scene(Box::new(Loaded {

@@ -9,7 +9,7 @@ pub mod opendrive;
 pub mod pcd;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
@@ -43,6 +43,8 @@ pub struct Importer {
     pub largest: u64,
     /// True for the first bytes of such a file.
     pub recognises: fn(head: &[u8]) -> bool,
+    /// The file to begin with in a folder of several, where the format keeps its files in one.
+    pub in_folder: Option<fn(&Path) -> Option<PathBuf>>,
     /// Reads the bytes of a file. Errors in one line, without the file's name.
     pub read: fn(&Source<'_>) -> Result<Content, FormatError>,
     /// A small file, for the tests of the table.
@@ -56,6 +58,30 @@ pub struct Source<'a> {
     pub bytes: &'a [u8],
     /// Name of the scene to be made.
     pub name: &'a str,
+    /// Where the file is, for formats of several files; `None` for bytes alone.
+    pub path: Option<&'a Path>,
+}
+
+impl Source<'_> {
+    /// Everything in a file beside this one: `relative` is a path from this file's folder, with `/` between names. Errors if
+    /// it has more than `limit` bytes, is not there or cannot be read.
+    pub fn beside(&self, relative: &str, limit: u64) -> Result<Vec<u8>, FormatError> {
+        let path = self.place(relative)?;
+        input::read(&path, limit).map_err(FormatError::new)
+    }
+
+    /// Where a file beside this one would be. Errors for bytes alone, and for an absolute path.
+    pub fn place(&self, relative: &str) -> Result<PathBuf, FormatError> {
+        let folder = self.path.and_then(Path::parent);
+        let folder = folder
+            .ok_or_else(|| FormatError::new(format!("{relative}: read from memory, not from a folder")))?;
+        match Path::new(relative).is_absolute() {
+            true => Err(FormatError::new(format!(
+                "{relative}: an absolute path, expected one beside the file"
+            ))),
+            false => Ok(folder.join(relative)),
+        }
+    }
 }
 
 /// What a file held.
@@ -114,8 +140,23 @@ fn recognised(path: &Path, head: &[u8]) -> &'static Importer {
 
 /// Reads a file of any format.
 pub fn read(path: &Path) -> Result<(&'static Importer, Content), FormatError> {
+    if path.is_dir() {
+        let (importer, path) = of_folder(path)?;
+        return Ok((importer, read_as(importer, &path)?));
+    }
     let importer = format_of(path)?;
     Ok((importer, read_as(importer, path)?))
+}
+
+/// The format of a folder of files, and the file that is read first.
+fn of_folder(folder: &Path) -> Result<(&'static Importer, PathBuf), FormatError> {
+    let first = |i: &&'static Importer| Some((*i, (i.in_folder?)(folder)?));
+    let known = || all().iter().filter(|i| i.in_folder.is_some()).map(|i| i.title);
+    all().iter().find_map(first).ok_or_else(|| {
+        let known = known().collect::<Vec<_>>().join(", ");
+        let known = if known.is_empty() { "a file" } else { &known };
+        FormatError::new(format!("{}: a folder, expected {known}", folder.display()))
+    })
 }
 
 /// Reads a file of a format.
@@ -124,6 +165,7 @@ pub fn read_as(importer: &Importer, path: &Path) -> Result<Content, FormatError>
     let source = Source {
         bytes: &bytes,
         name: &scene_name(path),
+        path: Some(path),
     };
     (importer.read)(&source).map_err(|e| e.at(&path.display()))
 }

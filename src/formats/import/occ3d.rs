@@ -15,6 +15,7 @@ pub const IMPORTER: Importer = Importer {
     holds: &[Holds::Occupancy],
     largest: occ3d::LARGEST_FILE,
     recognises: |head| first_entry_ends(head, ".npy"),
+    in_folder: None,
     read: |source| {
         let frame = occ3d::read(source.bytes).map_err(FormatError::new)?;
         // A voxel was seen if any sensor that the file tells of saw it.

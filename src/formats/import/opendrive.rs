@@ -14,6 +14,7 @@ pub const IMPORTER: Importer = Importer {
         let text = String::from_utf8_lossy(head);
         text.contains("<OpenDRIVE")
     },
+    in_folder: None,
     read: |source| match opendrive::read(source.bytes) {
         Ok(network) => Ok(Content::Roads(Box::new(network))),
         Err(error) => Err(FormatError::new(error)),

@@ -35,6 +35,7 @@ pub const IMPORTER: Importer = Importer {
         let text = String::from_utf8_lossy(head);
         text.starts_with("# .PCD") || (text.contains("FIELDS ") && text.contains("SIZE "))
     },
+    in_folder: None,
     read: |source| read(source).map_err(FormatError::new),
     #[cfg(test)]
     sample: tests::sample,

@@ -28,7 +28,11 @@ fn binary(points: &[([f64; 3], u16)], promised: usize) -> Vec<u8> {
 }
 
 fn loaded(bytes: &[u8]) -> Result<Loaded, PcdError> {
-    match read(&Source { bytes, name: "cloud" })? {
+    match read(&Source {
+        bytes,
+        name: "cloud",
+        path: None,
+    })? {
         Content::Scene(loaded) => Ok(*loaded),
         Content::Roads(_) => panic!("a cloud is no road"),
     }
