@@ -11,10 +11,11 @@ use super::camera_views::LidarModel;
 use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
 use crate::shell::checking;
+use crate::truth;
 use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen, Span};
 use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
-use scene::{CameraMaps, LidarSweep, Scene, SensorRig};
+use scene::{CameraMaps, CameraTruth, LidarSweep, Pose, Scene, SensorRig};
 use sensors::appearance::Quality;
 use sensors::cameras::{
     self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
@@ -43,7 +44,7 @@ impl Default for ExportOptions {
     fn default() -> Self {
         Self {
             camera_size: [800, 450],
-            source: SourceId::default(),
+            source: cameras::told::ID,
             lidar: LidarModel::default(),
             shot: ShotOptions::default(),
         }
@@ -62,7 +63,7 @@ impl ExportProgress {
     /// Begins to count what these formats take.
     fn begin(&self, formats: &[Format], rig: &SensorRig) {
         let of_cameras = |f: &&Format| {
-            let pictures = [Product::CameraMaps, Product::Pictures];
+            let pictures = [Product::CameraMaps, Product::Pictures, Product::Truth];
             f.needs.iter().any(|product| pictures.contains(product))
         };
         let pictures = formats.iter().filter(of_cameras).count() * rig.cameras.len();
@@ -288,6 +289,37 @@ impl Products for Making<'_> {
         each.map_err(FormatError::new)
     }
 
+    fn truth(
+        &mut self,
+        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        let (progress, ego_from_world) = (self.progress, self.world_from_ego().inverse());
+        let told = truth::each_camera(
+            &self.scene,
+            &camera_input(&self.scene, Detail::Full),
+            self.options.camera_size,
+            Quality::Full,
+            |image, mut truth| {
+                progress.go_on()?;
+                truth::place(&mut truth, &ego_from_world);
+                let picture = Picture {
+                    camera: image.camera,
+                    width: image.width,
+                    height: image.height,
+                    rgba: image.rgba,
+                };
+                take(picture, truth)?;
+                progress.done.fetch_add(1, Ordering::Relaxed);
+                Ok(())
+            },
+        );
+        told.map_err(FormatError::new)
+    }
+
+    fn world_from_ego(&self) -> Pose {
+        self.scene.frame().world_from_ego
+    }
+
     fn view(&mut self) -> Result<Picture, FormatError> {
         let shot = View3d::new().and_then(|mut view| view.shot(&self.scene, &self.options.shot));
         let shot = shot.map_err(FormatError::new)?;
@@ -336,7 +368,7 @@ mod tests {
         };
         let written = std::thread::scope(|threads| {
             threads.spawn(|| {
-                // The first pictures are ready: of three formats, all counted.
+                // The first pictures are ready: of four formats, all counted.
                 while progress.pictures().is_none_or(|(done, _)| done == 0) {
                     std::thread::yield_now();
                 }
@@ -347,7 +379,7 @@ mod tests {
         assert!(written.is_err() && !path.exists(), "{written:?}");
         assert_eq!(
             progress.pictures().map(|p| p.1),
-            Some(3 * scene.rig.cameras.len())
+            Some(4 * scene.rig.cameras.len())
         );
     }
 }

@@ -6,6 +6,7 @@ use scene::{Camera, CameraMaps};
 use sensors::appearance::{Appearance, CameraImage, Quality};
 use sensors::cameras::Card;
 use sensors::cloud::GaussianCloud;
+use sensors::rays::CameraRays;
 use sensors::splat::SplatOptions;
 use viewport::{AppearanceRenderer, SplatRenderer, headless_device};
 
@@ -71,6 +72,10 @@ impl Card for Graphics {
     }
 
     fn maps(&mut self, camera: &Camera, [width, height]: [u32; 2]) -> Option<CameraMaps> {
+        // The shaders know straight lines alone.
+        if !is_plain(camera) {
+            return None;
+        }
         let options = SplatOptions::default();
         let drawn = self
             .splats
@@ -100,6 +105,9 @@ impl Card for Graphics {
         [width, height]: [u32; 2],
         quality: Quality,
     ) -> Option<CameraImage> {
+        if !is_plain(camera) {
+            return None;
+        }
         let edges = quality == Quality::Full;
         match self.appearance.as_mut()?.light(camera, [width, height], edges) {
             Ok(light) => Some(appearance.picture(camera, width, height, &light)),
@@ -109,6 +117,11 @@ impl Card for Graphics {
             }
         }
     }
+}
+
+/// True for a pinhole whose picture is read at one instant.
+fn is_plain(camera: &Camera) -> bool {
+    CameraRays::new(camera, camera.width, camera.height).is_plain()
 }
 
 #[cfg(test)]

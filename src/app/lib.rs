@@ -28,6 +28,7 @@ mod thing_outlines;
 pub mod tools;
 mod track_marks;
 pub mod trade_plot;
+pub mod truth;
 mod unsettled_marks;
 pub mod view3d;
 pub mod views_shown;

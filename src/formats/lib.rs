@@ -3,6 +3,7 @@
 
 pub mod atomic;
 pub mod box_list;
+pub mod calibration;
 pub mod error;
 pub mod export;
 pub mod import;

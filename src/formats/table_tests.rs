@@ -7,8 +7,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::message::LONGEST;
 use scene::{
-    BevLayer, BevLayout, BoxId, CameraMaps, Class, Frame, LidarPoint, LidarSweep, Scene, SceneBox, SensorRig,
-    VoxelGrid,
+    BevLayer, BevLayout, BoxId, CameraMaps, CameraTruth, Class, Frame, LidarPoint, LidarSweep, Pose, Scene,
+    SceneBox, SensorRig, TruthPixel, VoxelGrid,
 };
 
 use crate::export::{self, Exporter, Picture, Products, Seen};
@@ -134,6 +134,40 @@ impl Products for Small {
         take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError> {
         take(self.view()?)
+    }
+
+    fn truth(
+        &mut self,
+        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        let pixel = TruthPixel {
+            class: Class::Car.id(),
+            instance: 4,
+            depth_m: 12.5,
+            normal_in_camera: [0.0, 0.0, -1.0],
+            flow_px: [0.5, f32::NAN],
+        };
+        let mut camera = SensorRig::default().cameras[1].resized(2, 1);
+        camera.name = "FRONT".into();
+        let truth = CameraTruth {
+            camera,
+            width: 2,
+            height: 1,
+            pixels: vec![pixel, TruthPixel::default()],
+            flow_s: Some(0.1),
+            boxes: Vec::new(),
+        };
+        let picture = Picture {
+            camera: "FRONT".into(),
+            width: 2,
+            height: 1,
+            rgba: vec![255; 8],
+        };
+        take(picture, truth)
+    }
+
+    fn world_from_ego(&self) -> Pose {
+        Pose::from_wxyz([1.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0])
     }
 
     fn view(&mut self) -> Result<Picture, FormatError> {

@@ -54,15 +54,33 @@ impl Scene {
     pub fn with_rig_in_world(&self) -> Cow<'_, Scene> {
         let pose = self.frame().world_from_ego;
         let moving = self.clip().ego_moving(self.time_s());
-        if pose == Pose::IDENTITY && moving.is_none() {
+        let rolls = self.rig.ego_speed_mps != 0.0 && self.rig.cameras.iter().any(|c| c.shutter.is_some());
+        if pose == Pose::IDENTITY && moving.is_none() && !rolls {
             return Cow::Borrowed(self);
         }
         let mut scene = self.clone();
-        scene.rig = Arc::new(self.rig.placed(&pose));
+        let mut rig = self.rig.placed(&pose);
         if let Some(moving) = moving {
-            Arc::make_mut(&mut scene.rig).ego_speed_mps = moving.velocity_mps.length();
+            rig.ego_speed_mps = moving.velocity_mps.length();
         }
+        scene.rig = Arc::new(rig.carried(self.yaw_rate_rps()));
         Cow::Owned(scene)
+    }
+}
+
+impl Scene {
+    /// How fast the ego vehicle turns to the left at the moment that is shown, rad/s; 0 if it does not move.
+    fn yaw_rate_rps(&self) -> f64 {
+        const STEP_S: f64 = 0.05;
+        let at = |time_s: f64| self.clip().ego_moving(time_s).map(|m| m.yaw_rad);
+        let (now, length) = (self.time_s(), self.clip().length_s);
+        let (from, to) = ((now - STEP_S).max(0.0), (now + STEP_S).min(length));
+        let turned = at(to).zip(at(from)).map(|(b, a)| b - a);
+        let turn =
+            |d: f64| (d + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+        turned
+            .filter(|_| to > from)
+            .map_or(0.0, |d| turn(d) / (to - from))
     }
 }
 

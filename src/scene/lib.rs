@@ -19,6 +19,7 @@ pub mod grid;
 pub mod infer;
 pub mod inferred;
 pub mod layout;
+pub mod lens;
 pub mod message;
 pub mod moved;
 pub mod pose;
@@ -34,6 +35,7 @@ pub mod shape;
 pub mod solid;
 pub mod splats;
 pub mod support;
+pub mod truth;
 pub mod variants;
 pub mod waiver;
 
@@ -54,12 +56,14 @@ pub use frame::{Frame, SourceFrame};
 pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
 pub use layout::{BevLayout, Polyline, PolylineKind};
+pub use lens::{Lens, Optics, ReadOut, Shutter};
 pub use numeric::splitmix as draw;
 pub use pose::Pose;
 pub use relief::Relief;
 pub use rig::{Camera, LidarPattern, SensorRig};
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
 pub use shape::Shape;
+pub use truth::{CameraTruth, SeenBox, TruthPixel};
 pub use waiver::Waiver;
 
 /// Identifies one state of a scene: two scenes with the same `SceneRev` are equal. It is part of the scene, so undo brings

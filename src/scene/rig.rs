@@ -1,11 +1,11 @@
 //! Sensors as data: cameras with intrinsics and mount, LiDARs as lists of elevations.
 
-use glam::{DQuat, EulerRot};
+use glam::{DQuat, DVec3, EulerRot};
 use serde::{Deserialize, Serialize};
 
-use super::Pose;
+use super::{Lens, Optics, Pose, Shutter};
 
-/// A pinhole camera without distortion; optical axes x right, y down, z forward.
+/// A camera; optical axes x right, y down, z forward.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
@@ -23,6 +23,26 @@ pub struct Camera {
     pub rotation_wxyz: [f64; 4],
     /// Optical centre in the ego frame, m.
     pub translation_m: [f64; 3],
+    /// How the lens bends rays.
+    #[serde(default, skip_serializing_if = "is_pinhole")]
+    pub lens: Lens,
+    /// How the picture is read; all at one instant if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shutter: Option<Shutter>,
+    /// How the vehicle carries it while the picture is read. Not in files.
+    #[serde(skip)]
+    pub carried: Carried,
+}
+
+/// How a vehicle moves while a picture is read, in the frame of the sensors' poses.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Carried {
+    /// Velocity of the vehicle's origin, m/s.
+    pub velocity_mps: DVec3,
+    /// Turn about the vertical through the vehicle's origin, rad/s.
+    pub yaw_rate_rps: f64,
+    /// The vehicle's origin, m.
+    pub origin_m: DVec3,
 }
 
 impl Camera {
@@ -41,6 +61,9 @@ impl Camera {
             center_px: [800.0, 450.0],
             rotation_wxyz: [0.5, -0.5, 0.5, -0.5],
             translation_m: [0.0; 3],
+            lens: Lens::Pinhole,
+            shutter: None,
+            carried: Carried::default(),
         };
         camera.set_fov_deg(fov_deg);
         camera
@@ -48,16 +71,32 @@ impl Camera {
 
     /// Horizontal field of view, degrees, as if the principal point were in the middle.
     pub fn fov_deg(&self) -> f64 {
-        2.0 * (f64::from(self.width) / 2.0 / self.focal_px[0])
-            .atan()
-            .to_degrees()
+        let middle = Camera {
+            center_px: [f64::from(self.width) / 2.0, f64::from(self.height) / 2.0],
+            ..self.clone()
+        };
+        let d = Optics::new(&middle).direction(f64::from(self.width), middle.center_px[1]);
+        match self.lens {
+            Lens::Fisheye { max_angle_deg, .. } | Lens::FTheta { max_angle_deg, .. } if d == DVec3::ZERO => {
+                2.0 * max_angle_deg
+            }
+            _ => 2.0 * d.x.atan2(d.z).to_degrees(),
+        }
     }
 
-    /// Sets the horizontal field of view (held to 1 to 179 degrees); pixels keep their aspect.
+    /// Sets the horizontal field of view (held to 1 to 179 degrees, of wide lenses to 340 or twice the lens's largest angle);
+    /// pixels keep their aspect.
     pub fn set_fov_deg(&mut self, fov_deg: f64) {
         let aspect = self.focal_px[1] / self.focal_px[0];
-        let half = (fov_deg.clamp(1.0, 179.0) / 2.0).to_radians();
-        let focal = f64::from(self.width) / 2.0 / half.tan();
+        let most = match self.lens {
+            Lens::Fisheye { max_angle_deg, .. } | Lens::FTheta { max_angle_deg, .. } => {
+                (2.0 * max_angle_deg).min(340.0)
+            }
+            Lens::Pinhole | Lens::Distorted { .. } => 179.0,
+        };
+        let half = (fov_deg.clamp(1.0, most) / 2.0).to_radians();
+        let radius = Optics::new(self).radius_at(half);
+        let focal = f64::from(self.width) / 2.0 / if radius > 1e-6 { radius } else { half.tan() };
         self.focal_px = [focal, focal * if aspect.is_finite() { aspect } else { 1.0 }];
     }
 
@@ -225,6 +264,10 @@ impl LidarPattern {
     }
 }
 
+fn is_pinhole(lens: &Lens) -> bool {
+    *lens == Lens::Pinhole
+}
+
 fn is_zero(v: &f64) -> bool {
     *v == 0.0
 }
@@ -287,6 +330,20 @@ impl SensorRig {
         out
     }
 
+    /// The same rig, with cameras that know how the vehicle carries them while their shutters read; `yaw_rate_rps` is its turn
+    /// to the left, rad/s.
+    pub fn carried(mut self, yaw_rate_rps: f64) -> SensorRig {
+        let carried = Carried {
+            velocity_mps: self.velocity_mps(),
+            yaw_rate_rps,
+            origin_m: self.vehicle.translation_m,
+        };
+        for camera in self.cameras.iter_mut().filter(|c| c.shutter.is_some()) {
+            camera.carried = carried;
+        }
+        self
+    }
+
     /// Velocity of the vehicle while a LiDAR spins, in the frame of the sensors' poses, m/s.
     pub fn velocity_mps(&self) -> glam::DVec3 {
         match self.vehicle == Pose::IDENTITY {
@@ -319,6 +376,19 @@ impl SensorRig {
                 return Some(format!(
                     "camera {}: size is {}x{}, expected 1 to 16384",
                     c.name, c.width, c.height
+                ));
+            }
+            if let Some(problem) = c.lens.problem() {
+                return Some(format!("camera {}: {problem}", c.name));
+            }
+            if let Some(shutter) = c.shutter
+                && !(0.0..=Shutter::MAX_READOUT_S).contains(&shutter.readout_s)
+            {
+                return Some(format!(
+                    "camera {}: readout_s is {}, expected 0 to {}",
+                    c.name,
+                    shutter.readout_s,
+                    Shutter::MAX_READOUT_S
                 ));
             }
             if c.focal_px.iter().any(|f| *f <= 0.0) {

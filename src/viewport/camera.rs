@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-use scene::{Camera, Extent, Pose};
+use scene::{Camera, Extent, Lens, Optics, Pose};
 
 /// A viewpoint that orbits a target; perspective or orthographic.
 ///
@@ -130,7 +130,7 @@ impl ViewCamera {
     }
 
     /// Looks through a camera of the rig: its position, direction and vertical field of view.
-    /// The principal point and roll are not reproduced.
+    /// The principal point, roll and what the lens bends are not reproduced.
     pub fn through(camera: &Camera) -> Self {
         let pose = camera.ego_from_camera();
         let forward = pose.rotation * DVec3::Z;
@@ -140,7 +140,7 @@ impl ViewCamera {
             distance_m,
             yaw_rad: forward.y.atan2(forward.x),
             pitch_rad: forward.z.clamp(-1.0, 1.0).asin(),
-            fov_y_rad: 2.0 * (f64::from(camera.height) / 2.0 / camera.focal_px[1]).atan(),
+            fov_y_rad: tall_rad(camera),
             ortho: false,
         }
         .sane()
@@ -332,6 +332,17 @@ impl ViewCamera {
 
 fn aspect(size_px: [u32; 2]) -> f64 {
     f64::from(size_px[0].max(1)) / f64::from(size_px[1].max(1))
+}
+
+/// Vertical field of view, rad; what of it a flat picture can show.
+fn tall_rad(camera: &Camera) -> f64 {
+    let pinhole = 2.0 * (f64::from(camera.height) / 2.0 / camera.focal_px[1]).atan();
+    if camera.lens == Lens::Pinhole {
+        return pinhole;
+    }
+    let d = Optics::new(camera).direction(camera.center_px[0], f64::from(camera.height));
+    let half = if d == DVec3::ZERO { 1.2 } else { d.y.atan2(d.z) };
+    (2.0 * half).clamp(0.05, 2.4)
 }
 
 #[cfg(test)]

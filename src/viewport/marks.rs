@@ -10,7 +10,7 @@ use super::lines::LineList;
 use super::meshing::NORMALS;
 use super::options::drop_m;
 use super::{GROUND_TOP_M, ViewScene, ego};
-use scene::{Camera, Extent, SceneBox, SensorRig};
+use scene::{Camera, Extent, Optics, SceneBox, SensorRig};
 
 /// All marks of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -125,10 +125,14 @@ impl Marks {
         const DEPTH_M: f64 = 2.2;
         let pose = camera.ego_from_camera();
         let [w, h] = [f64::from(camera.width), f64::from(camera.height)];
+        let optics = Optics::new(camera);
+        let [cx, cy] = camera.center_px;
         let at = |u: f64, v: f64| {
-            let x = (u - camera.center_px[0]) / camera.focal_px[0];
-            let y = (v - camera.center_px[1]) / camera.focal_px[1];
-            pose.apply(DVec3::new(x, y, 1.0) * DEPTH_M) - down
+            // Where the lens sees nothing, the frustum ends nearer to its middle.
+            let towards = |share: f64| optics.direction(cx + (u - cx) * share, cy + (v - cy) * share);
+            let ways = (0..20).map(|i| towards(1.0 - f64::from(i) / 20.0));
+            let way = ways.into_iter().find(|d| *d != DVec3::ZERO).unwrap_or(DVec3::Z);
+            pose.apply(way * DEPTH_M) - down
         };
         let apex = pose.translation_m - down;
         let corners = [at(0.0, 0.0), at(w, 0.0), at(w, h), at(0.0, h)];

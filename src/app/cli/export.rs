@@ -28,7 +28,7 @@ pub struct Export {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
     /// What classes and depths are rendered from.
-    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "shapes")]
+    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "truth")]
     source: SourceId,
     /// How the LiDAR sweep comes about.
     #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]

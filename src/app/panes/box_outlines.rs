@@ -7,7 +7,8 @@ use crate::camera_views::CamerasShown;
 use crate::state::UiState;
 use scene::{Camera, Scene, SceneBox};
 use sensors::march::GroundHeight;
-use sensors::perspective::{EDGES, clip_near};
+use sensors::perspective::{EDGES, bent_line, clip_near};
+use sensors::rays::CameraRays;
 use viewport::GROUND_TOP_M;
 use widgets::theme;
 
@@ -26,9 +27,18 @@ pub fn edges(camera: &Camera, b: &SceneBox, drop_m: f64) -> Vec<[[f64; 2]; 2]> {
     let corner = |i: usize| {
         let sign = |bit: usize| if i >> bit & 1 == 1 { 0.5 } else { -0.5 };
         let local = DVec3::new(sign(0), sign(1), sign(2)) * b.size_m;
-        let p_in_ego = b.to_ego(local) - DVec3::Z * drop_m;
-        pose.rotation.inverse() * (p_in_ego - pose.translation_m)
+        b.to_ego(local) - DVec3::Z * drop_m
     };
+    let rays = CameraRays::new(camera, camera.width, camera.height);
+    if !rays.is_plain() {
+        // A lens bends edges: short pieces of them.
+        let velocity = b.velocity_mps.extend(0.0);
+        let pieces = EDGES
+            .iter()
+            .flat_map(|edge| bent_line(&rays, edge.map(corner), velocity));
+        return pieces.map(|ends| ends.map(|p| p.to_array())).collect();
+    }
+    let corner = |i: usize| pose.rotation.inverse() * (corner(i) - pose.translation_m);
     let pixel = |p: DVec3| {
         let at = |axis: usize| camera.focal_px[axis] * p[axis] / p.z + camera.center_px[axis];
         [at(0), at(1)]

@@ -18,6 +18,7 @@ use crate::state::UiState;
 use scene::{Camera, Class, Scene, SceneRev};
 use sensors::cameras::ViewId;
 use sensors::march::{MarchHit, MarchScene};
+use sensors::rays::CameraRays;
 use widgets::theme;
 
 /// Textures of the pictures.
@@ -198,7 +199,8 @@ impl CameraStrip {
     fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
         let label = camera_label(&camera.name);
         let Some(hit) = self.hit(scene, camera, part) else {
-            return format!("{label}  ·  sky");
+            let blind = ray_of(camera, part) == DVec3::ZERO;
+            return format!("{label}  ·  {}", if blind { "outside the lens" } else { "sky" });
         };
         let pose = camera.ego_from_camera();
         let ray = ray_of(camera, part);
@@ -346,12 +348,14 @@ impl CameraStrip {
     }
 }
 
-/// The way a place of a picture looks, ego frame; `part` runs from 0 to 1 across it.
+/// The way a place of a picture looks, ego frame, zero where the lens sees nothing; `part` runs from 0 to 1 across it.
 fn ray_of(camera: &Camera, part: egui::Vec2) -> DVec3 {
-    let size = [camera.width, camera.height].map(f64::from);
-    let at = |i: usize, part: f32| (f64::from(part) * size[i] - camera.center_px[i]) / camera.focal_px[i];
-    let ray = DVec3::new(at(0, part.x), at(1, part.y), 1.0);
-    (camera.ego_from_camera().rotation * ray).normalize_or(DVec3::X)
+    let at = |size: u32, part: f32| f64::from(part) * f64::from(size);
+    let (u, v) = (at(camera.width, part.x), at(camera.height, part.y));
+    CameraRays::new(camera, camera.width, camera.height)
+        .at(u, v)
+        .direction
+        .normalize_or_zero()
 }
 
 fn unit() -> Rect {

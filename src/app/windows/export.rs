@@ -214,7 +214,7 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                     }
                 });
             }
-            Product::Pictures => {
+            Product::Pictures | Product::Truth => {
                 size(ui, &mut options.camera_size);
                 ui.weak("Some twenty seconds for six pictures of 800 x 450.");
             }

@@ -1,6 +1,7 @@
 //! Windows and dialogs that lie over the panes.
 
 pub mod export;
+mod lens;
 pub mod open;
 pub mod palette;
 pub mod performance;

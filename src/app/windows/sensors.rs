@@ -3,6 +3,7 @@
 use egui::Ui;
 use glam::DVec3;
 
+use super::lens;
 use super::open::{OpenWindows, SensorChoice};
 use crate::camera_views::CamerasShown;
 use crate::command::{Command, FileCommand};
@@ -224,11 +225,13 @@ fn camera_fields(ui: &mut Ui, rig: &SensorRig, index: usize, camera: &Camera, co
     }
     field(&turned, "Aim sensor", set(new.clone()), commands);
     let mut fov_deg = new.fov_deg();
-    let zoomed = number(ui, "View", "Field of view", &mut fov_deg, 5.0..=170.0, "°", 1);
+    let widest = if new.lens.is_wide() { 340.0 } else { 170.0 };
+    let zoomed = number(ui, "View", "Field of view", &mut fov_deg, 5.0..=widest, "°", 1);
     if zoomed.changed() {
         new.set_fov_deg(fov_deg);
     }
     field(&zoomed, "Change field of view", set(new.clone()), commands);
+    lens::rows(ui, &new, &set, commands);
     let text = format!(
         "{} x {} px, f {:.0} px",
         camera.width, camera.height, camera.focal_px[0]

@@ -3,7 +3,7 @@
 use scene::sensor_data::depth_mm;
 
 use super::{Exporter, OutFile, Product, Span, with_text};
-use crate::{FormatError, Holds, png};
+use crate::{FormatError, Holds, calibration, png};
 
 /// `CAMERA_depth_mm.png` for each camera: millimetres along the optical axis, 0 where there is no depth.
 pub const EXPORTER: Exporter = Exporter {
@@ -15,14 +15,17 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
-        let mut files = Vec::new();
+        let (mut files, mut size) = (Vec::new(), None);
         products.camera_maps(&mut |m| {
+            size = Some([m.width as u32, m.height as u32]);
             let mm = depth_mm(&m.depth_m);
             let bytes = with_text(scene, |text| png::grey16(m.width, m.height, &mm, text));
             let name = format!("{}_depth_mm.png", m.camera);
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())
         })?;
+        let calibration = calibration::to_bytes(scene, &products.world_from_ego(), size);
+        files.push(OutFile::new(calibration::FILE, calibration));
         Ok(files)
     },
 };

@@ -9,17 +9,18 @@ pub mod occ3d;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
+pub mod truth;
 pub mod view;
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use scene::{BoxId, CameraMaps, LidarSweep, Scene};
+use scene::{BoxId, CameraMaps, CameraTruth, LidarSweep, Pose, Scene};
 
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 8] = [
+const TABLE: [&Exporter; 9] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
@@ -27,6 +28,7 @@ const TABLE: [&Exporter; 8] = [
     &semantic::EXPORTER,
     &depth::EXPORTER,
     &pictures::EXPORTER,
+    &truth::EXPORTER,
     &view::EXPORTER,
 ];
 
@@ -93,6 +95,8 @@ pub enum Product {
     CameraMaps,
     /// A picture of every camera.
     Pictures,
+    /// A picture of every camera with the truth about it.
+    Truth,
     /// A picture of the 3D view.
     View,
 }
@@ -117,6 +121,14 @@ pub trait Products {
         &mut self,
         take: &mut dyn FnMut(Picture) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
+    /// A picture of every camera and the truth about it, made of the same hits, in the order of the rig; each is taken before the
+    /// next is made. Poses and boxes are in the ego frame. Flow leads to the clip's next frame, if there is one.
+    fn truth(
+        &mut self,
+        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError>;
+    /// Where the ego vehicle is at the moment that products are made of, in the world frame.
+    fn world_from_ego(&self) -> Pose;
     /// A picture of the 3D view.
     fn view(&mut self) -> Result<Picture, FormatError>;
 }

@@ -1,7 +1,7 @@
 //! Pictures that the cameras take.
 
 use super::{Exporter, OutFile, Product, Span, with_text};
-use crate::{FormatError, Holds, png};
+use crate::{FormatError, Holds, calibration, png};
 
 /// `CAMERA.png` for each camera.
 pub const EXPORTER: Exporter = Exporter {
@@ -13,13 +13,16 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::Pictures],
     write: |scene, products| {
-        let mut files = Vec::new();
+        let (mut files, mut size) = (Vec::new(), None);
         products.pictures(&mut |p| {
+            size = Some([p.width as u32, p.height as u32]);
             let bytes = with_text(scene, |text| png::rgba(p.width, p.height, &p.rgba, text));
             let name = format!("{}.png", p.camera);
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())
         })?;
+        let calibration = calibration::to_bytes(scene, &products.world_from_ego(), size);
+        files.push(OutFile::new(calibration::FILE, calibration));
         Ok(files)
     },
 };

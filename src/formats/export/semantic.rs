@@ -5,7 +5,7 @@ use scene::{CameraMaps, Class};
 use serde_json::json;
 
 use super::{Exporter, OutFile, Product, Span, with_text};
-use crate::{FormatError, Holds, png};
+use crate::{FormatError, Holds, calibration, png};
 
 /// `CAMERA_semantic.png` for each camera, and `classes.json`.
 pub const EXPORTER: Exporter = Exporter {
@@ -17,8 +17,9 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
-        let mut files = Vec::new();
+        let (mut files, mut size) = (Vec::new(), None);
         products.camera_maps(&mut |m| {
+            size = Some([m.width as u32, m.height as u32]);
             let labels = labels(&m);
             let bytes = with_text(scene, |text| {
                 png::indexed(m.width, m.height, &labels, &palette(), text)
@@ -32,6 +33,8 @@ pub const EXPORTER: Exporter = Exporter {
             .collect();
         let text = serde_json::to_string_pretty(&json!({ "classes": classes })).map_err(FormatError::new)?;
         files.push(OutFile::new("classes.json", text.into_bytes()));
+        let calibration = calibration::to_bytes(scene, &products.world_from_ego(), size);
+        files.push(OutFile::new(calibration::FILE, calibration));
         Ok(files)
     },
 };

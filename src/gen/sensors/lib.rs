@@ -22,6 +22,7 @@ pub mod perspective;
 mod plots;
 pub mod project;
 pub mod raycast;
+pub mod rays;
 pub mod road_exits;
 pub mod rolling;
 pub mod splat;

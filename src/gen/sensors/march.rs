@@ -9,10 +9,11 @@ pub mod solids;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::raycast::ColumnMasks;
+pub use super::rays::CameraRays;
 use super::units::Units;
 use ground::Ground;
 pub use ground::GroundHeight;
@@ -150,7 +151,7 @@ impl MarchScene {
         if let Some(s) = solids(unit, best * Extent::VOXEL_M) {
             best = s.t_m / Extent::VOXEL_M;
             let id = s.solid.class.id();
-            hit = Some((id, s.solid.normal_at(origin_in_ego + unit * s.t_m), s.box_id));
+            hit = Some((id, s.solid.normal_at(s.origin + unit * s.t_m), s.box_id));
         }
         // Last, since it is the dearest and ends at what was found. A voxel at the very distance of that
         // lies in front of nothing.
@@ -200,7 +201,7 @@ impl MarchScene {
         let mut hits = vec![None; w * rows.len()];
         if !hits.is_empty() {
             let rays = CameraRays::new(camera, size[0], size[1]);
-            let boxes = self.solids.in_view(|p| rays.project(p));
+            let boxes = self.solids.in_view(&rays);
             hits.par_chunks_mut(w).enumerate().for_each(|(i, row)| {
                 let v = (rows.start + i) as f64 + 0.5;
                 let boxes = boxes.row(v);
@@ -208,9 +209,10 @@ impl MarchScene {
                     let first = i * PIECE;
                     let boxes = boxes.piece(first as f64, (first + PIECE) as f64);
                     for (u, out) in piece.iter_mut().enumerate() {
-                        let direction = rays.direction((first + u) as f64 + 0.5, v);
-                        *out = self.cast_among(rays.origin, direction, |unit, limit_m| {
-                            self.solids.cast_pixel(&boxes, rays.origin, unit, limit_m)
+                        let ray = rays.at((first + u) as f64 + 0.5, v);
+                        *out = self.cast_among(ray.origin, ray.direction, |unit, limit_m| {
+                            self.solids
+                                .cast_pixel(&boxes, (ray.origin, unit), ray.after_s, limit_m)
                         });
                     }
                 }
@@ -284,43 +286,6 @@ impl MarchMaps {
             median_m: depth_m.clone(),
             depth_m,
         }
-    }
-}
-
-/// The rays of a camera at an image size; `direction` advances 1 m along the optical axis.
-#[derive(Clone, Copy, Debug)]
-pub struct CameraRays {
-    /// Optical centre in the ego frame, m.
-    pub origin: DVec3,
-    rotation: DQuat,
-    focal_px: DVec2,
-    center_px: DVec2,
-}
-
-impl CameraRays {
-    /// For pictures of `width` x `height` pixels.
-    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
-        let camera = camera.resized(width, height);
-        let pose = camera.ego_from_camera();
-        Self {
-            origin: pose.translation_m,
-            rotation: pose.rotation,
-            focal_px: DVec2::from_array(camera.focal_px),
-            center_px: DVec2::from_array(camera.center_px),
-        }
-    }
-
-    /// Through the image point (u, v) in px; pixel i has its middle at i + 1/2.
-    #[inline]
-    pub fn direction(&self, u: f64, v: f64) -> DVec3 {
-        let at = (DVec2::new(u, v) - self.center_px) / self.focal_px;
-        self.rotation * at.extend(1.0)
-    }
-
-    /// Image point in px and depth in m of a point of the ego frame.
-    pub fn project(&self, p: DVec3) -> DVec3 {
-        let q = self.rotation.conjugate() * (p - self.origin);
-        (q.truncate() / q.z * self.focal_px + self.center_px).extend(q.z)
     }
 }
 

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::cloud::{render_id, road_id};
 use super::raycast::grid_span;
+use super::rays::CameraRays;
 use scene::sensor_data::{PlaneRun, Planes, RenderId};
 use scene::{Camera, Class, Extent, MultiPlaneImage, VoxelGrid};
 
@@ -63,17 +64,20 @@ impl RenderIds {
 
 /// The planes of one camera at `width` x `height` pixels (0 gives an empty image).
 pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes: Planes) -> MultiPlaneImage {
-    let camera = camera.resized(width.max(1), height.max(1));
-    let pose = camera.ego_from_camera();
-    let origin = ids.extent.to_voxel_units(pose.translation_m);
+    let rays = CameraRays::new(camera, width, height);
     let row = |y: u32| {
         let (mut counts, mut runs) = (Vec::with_capacity(width as usize), Vec::new());
         for x in 0..width {
             let before = runs.len();
-            let at = |i: usize, v: u32| (f64::from(v) + 0.5 - camera.center_px[i]) / camera.focal_px[i];
-            // Unit depth along the optical axis, so that a multiple of it is a depth.
-            let ray = pose.rotation * DVec3::new(at(0, x), at(1, y), 1.0) / Extent::VOXEL_M;
-            trace(ids, origin, ray, planes, &mut runs);
+            let ray = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            // Unit depth, so that a multiple of it is a depth.
+            let (origin, step) = (
+                ids.extent.to_voxel_units(ray.origin),
+                ray.direction / Extent::VOXEL_M,
+            );
+            if step != DVec3::ZERO {
+                trace(ids, origin, step, planes, &mut runs);
+            }
             counts.push((runs.len() - before) as u32);
         }
         (counts, runs)
@@ -91,7 +95,7 @@ pub fn render(ids: &RenderIds, camera: &Camera, width: u32, height: u32, planes:
         runs.extend(row);
     }
     MultiPlaneImage {
-        camera: camera.name,
+        camera: camera.name.clone(),
         width: width as usize,
         height: height as usize,
         planes,

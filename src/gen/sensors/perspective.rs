@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::rays::CameraRays;
 use scene::{BevLayer, BevLayout, Camera, Class, PerspectiveMap, PolylineKind, Pose, Relief, SceneBox};
 
 /// Width of a painted line on the ground, m.
@@ -11,9 +12,12 @@ const LINE_M: f64 = 0.2;
 const NEAR_M: f64 = 0.1;
 /// Farther ground is left out, m along the optical axis.
 const FAR_M: f64 = 120.0;
-/// Longest piece of a line that is drawn as one quad, m: lines bend with the lens of no camera here, but clipping a
-/// short piece keeps its width.
+/// Longest piece of a line that is drawn as one quad, m: clipping a short piece keeps its width.
 const PIECE_M: f64 = 4.0;
+/// How often a piece is halved along both sides where a lens bends it.
+const SPLITS: u32 = 5;
+/// A side is straight if its middle is no farther from where it would be, px.
+const STRAIGHT_PX: f64 = 0.3;
 /// Bit of the drivable area and of the first object class.
 const DRIVABLE: u32 = 3;
 const FIRST_OBJECT: u32 = 4;
@@ -73,6 +77,7 @@ pub fn render<'a>(
     let mut boxes: Vec<(f64, &SceneBox)> = boxes.map(|b| (canvas.in_camera(b.center_m).z, b)).collect();
     boxes.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.id.cmp(&b.1.id)));
     for (_, b) in boxes {
+        canvas.velocity = b.velocity_mps.extend(0.0);
         canvas.scene_box(b);
     }
     PerspectiveMap {
@@ -86,8 +91,10 @@ pub fn render<'a>(
 
 struct Canvas {
     camera: Camera,
-    ego_from_camera: Pose,
     camera_from_ego: Pose,
+    rays: CameraRays,
+    /// Velocity of what is drawn, for shutters that roll, m/s.
+    velocity: DVec3,
     width: usize,
     height: usize,
     channels: Vec<u16>,
@@ -97,11 +104,11 @@ struct Canvas {
 impl Canvas {
     fn new(camera: &Camera, width: u32, height: u32) -> Self {
         let camera = camera.resized(width.max(1), height.max(1));
-        let ego_from_camera = camera.ego_from_camera();
         let n = width as usize * height as usize;
         Self {
-            camera_from_ego: ego_from_camera.inverse(),
-            ego_from_camera,
+            camera_from_ego: camera.ego_from_camera().inverse(),
+            rays: CameraRays::new(&camera, width, height),
+            velocity: DVec3::ZERO,
             camera,
             width: width as usize,
             height: height as usize,
@@ -122,17 +129,18 @@ impl Canvas {
 
     /// Looks up the layout where each pixel's ray meets the ground.
     fn ground(&mut self, layout: &BevLayout) {
-        let (extent, origin) = (layout.extent(), self.ego_from_camera.translation_m);
-        let [fx, fy] = self.camera.focal_px;
-        let [cx, cy] = self.camera.center_px;
+        let extent = layout.extent();
         for i in 0..self.channels.len() {
             let (u, v) = ((i % self.width) as f64 + 0.5, (i / self.width) as f64 + 0.5);
-            let ray = self.ego_from_camera.rotation * DVec3::new((u - cx) / fx, (v - cy) / fy, 1.0);
-            let met = layout.relief.met_by(origin, ray, FAR_M);
+            let ray = self.rays.at(u, v);
+            if ray.direction == DVec3::ZERO {
+                continue;
+            }
+            let met = layout.relief.met_by(ray.origin, ray.direction, FAR_M);
             let Some(depth_m) = met.filter(|depth_m| *depth_m > NEAR_M) else {
                 continue;
             };
-            let p = origin + ray * depth_m;
+            let p = ray.origin + ray.direction * depth_m;
             let Some([x, y]) = extent.column_at(p.x, p.y) else {
                 continue;
             };
@@ -182,9 +190,44 @@ impl Canvas {
     }
 
     /// Sets a channel in the picture of a flat convex polygon of the ego frame.
-    fn polygon(&mut self, corners: &[DVec3], channel: u32) {
+    fn polygon(&mut self, corners: &[DVec3; 4], channel: u32) {
+        if !self.rays.is_plain() {
+            return self.bent_quad(*corners, channel, SPLITS);
+        }
         let corners: Vec<DVec3> = corners.iter().map(|p| self.in_camera(*p)).collect();
         let outline: Vec<DVec2> = clip_near(&corners).into_iter().map(|p| self.pixel(p)).collect();
+        self.fill(&outline, channel);
+    }
+
+    /// A quad whose sides a lens bends: in pieces whose sides are straight to a third of a pixel.
+    fn bent_quad(&mut self, quad: [DVec3; 4], channel: u32, splits: u32) {
+        let [a, b, c, d] = quad;
+        let middle = |p: DVec3, q: DVec3| (p + q) / 2.0;
+        let sides = [middle(a, b), middle(b, c), middle(c, d), middle(d, a)];
+        let at = |p: DVec3| self.rays.seen_at(p, self.velocity);
+        let (corners, middles) = (quad.map(at), sides.map(at));
+        let bends = |i: usize| match (corners[i], corners[(i + 1) % 4], middles[i]) {
+            (Some(p), Some(q), Some(m)) => ((p + q) / 2.0).distance(m) > STRAIGHT_PX,
+            (None, None, None) => false,
+            _ => true,
+        };
+        let seen = corners.iter().chain(&middles).filter(|p| p.is_some()).count();
+        // A large piece may be seen although no corner is.
+        let is_large = quad.iter().any(|p| p.distance(a) > PIECE_M);
+        if splits > 0 && ((0..4).any(bends) || is_large) {
+            let m = (a + b + c + d) / 4.0;
+            let [ab, bc, cd, da] = sides;
+            for piece in [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]] {
+                self.bent_quad(piece, channel, splits - 1);
+            }
+        } else if seen == 8 {
+            let outline: Vec<DVec2> = corners.into_iter().flatten().collect();
+            self.fill(&outline, channel);
+        }
+    }
+
+    /// Sets a channel inside a convex outline, px.
+    fn fill(&mut self, outline: &[DVec2], channel: u32) {
         if outline.len() < 3 || outline.iter().any(|p| !p.is_finite()) {
             return;
         }
@@ -214,11 +257,21 @@ impl Canvas {
 
     /// Draws a line one pixel wide.
     fn edge(&mut self, ends: [DVec3; 2], value: u8) {
+        if !self.rays.is_plain() {
+            for line in bent_line(&self.rays, ends, self.velocity) {
+                self.stroke(line, value);
+            }
+            return;
+        }
         let ends = clip_near(&ends.map(|p| self.in_camera(p)));
         let [a, b] = match ends[..] {
             [a, b] | [a, b, _] => [self.pixel(a), self.pixel(b)],
             _ => return,
         };
+        self.stroke([a, b], value);
+    }
+
+    fn stroke(&mut self, [a, b]: [DVec2; 2], value: u8) {
         let Some((a, b)) = clip_to_image(a, b, DVec2::new(self.width as f64, self.height as f64)) else {
             return;
         };
@@ -231,6 +284,31 @@ impl Canvas {
             }
         }
     }
+}
+
+/// The picture of a straight line of the frame of the sensors' poses as pieces that are straight to a third of a pixel, px;
+/// parts that the lens does not see are left out. `velocity_mps` is that of the line, for shutters that roll.
+pub fn bent_line(rays: &CameraRays, ends: [DVec3; 2], velocity_mps: DVec3) -> Vec<[DVec2; 2]> {
+    fn part(rays: &CameraRays, [a, b]: [DVec3; 2], velocity: DVec3, splits: u32, out: &mut Vec<[DVec2; 2]>) {
+        let m = (a + b) / 2.0;
+        let seen = [a, m, b].map(|p| rays.seen_at(p, velocity));
+        match seen {
+            [Some(p), Some(q), Some(r)] if splits == 0 || ((p + r) / 2.0).distance(q) <= STRAIGHT_PX => {
+                out.push([p, r]);
+            }
+            [None, None, None] if a.distance(b) <= PIECE_M => {}
+            _ if splits == 0 => {}
+            _ => {
+                part(rays, [a, m], velocity, splits - 1, out);
+                part(rays, [m, b], velocity, splits - 1, out);
+            }
+        }
+    }
+    let mut out = Vec::new();
+    if ends.iter().all(|p| p.is_finite()) {
+        part(rays, ends, velocity_mps, 2 * SPLITS, &mut out);
+    }
+    out
 }
 
 /// The part of a polygon (or of a line of two points) of the optical frame, m, that lies more than 0.1 m in front of the

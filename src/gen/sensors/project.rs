@@ -1,7 +1,8 @@
 //! EWA projection of isotropic Gaussians: UniScene (arXiv 2412.05435) equations 13 to 15, in f64.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
+use super::rays::CameraRays;
 use scene::Camera;
 
 /// A camera at one image size, ready to project points of the ego frame.
@@ -13,6 +14,10 @@ pub struct View {
     center_px: [f64; 2],
     /// Where x/z and y/z are held for the Jacobian.
     limit: [f64; 2],
+    /// What bends rays or reads them one after another; none for a plain pinhole.
+    bent: Option<CameraRays>,
+    /// For such a lens: the picture and a rim around it, where the derivative is taken; lower and upper corner, px.
+    rim_px: [DVec2; 2],
 }
 
 /// A Gaussian on the image.
@@ -62,6 +67,8 @@ impl View {
                 limit(width, camera.focal_px[0]),
                 limit(height, camera.focal_px[1]),
             ],
+            bent: Some(CameraRays::new(&camera, width, height)).filter(|rays| !rays.is_plain()),
+            rim_px: rim(width, height, jacobian_clamp),
         }
     }
 
@@ -70,9 +77,45 @@ impl View {
         self.camera_from_ego * p_in_ego + self.ego_in_camera
     }
 
+    /// The same by a lens of any kind: the covariance by the lens's own derivative (EWA to first order), taken at the border of
+    /// the picture's rim for what lies beyond.
+    fn bent(
+        &self,
+        rays: &CameraRays,
+        p_in_ego: DVec3,
+        std_m: f64,
+        [near_m, far_m]: [f64; 2],
+    ) -> Option<Footprint> {
+        let p = rays.to_camera(p_in_ego, DVec3::ZERO);
+        let depth_m = rays.optics().depth_m(p);
+        // Written so that NaN fails too.
+        if !(depth_m > near_m.max(0.0) && depth_m <= far_m && p.is_finite() && std_m.is_finite()) {
+            return None;
+        }
+        let mean = rays.optics().project(p)?;
+        let held = mean.clamp(self.rim_px[0], self.rim_px[1]);
+        let at = match held == mean {
+            true => p,
+            false => rays.optics().direction(held.x, held.y) * depth_m,
+        };
+        if at == DVec3::ZERO {
+            return None;
+        }
+        let [u, v] = rays.optics().jacobian(at).map(|row| row * std_m);
+        let covariance_px2 = [u.length_squared(), u.dot(v), v.length_squared()];
+        covariance_px2.iter().all(|c| c.is_finite()).then_some(Footprint {
+            depth_m,
+            mean_px: mean.to_array(),
+            covariance_px2,
+        })
+    }
+
     /// Projects a Gaussian of standard deviation `std_m`. `None` unless `near_m < depth <= far_m`
     /// and near_m is at least 0, so nothing at or behind the camera is ever divided by its depth.
     pub fn project(&self, p_in_ego: DVec3, std_m: f64, near_m: f64, far_m: f64) -> Option<Footprint> {
+        if let Some(rays) = &self.bent {
+            return self.bent(rays, p_in_ego, std_m, [near_m, far_m]);
+        }
         let p = self.to_camera(p_in_ego);
         let z = p.z;
         // Written so that NaN fails too.
@@ -97,6 +140,14 @@ impl View {
             ],
         })
     }
+}
+
+/// The picture with a rim, as many times as large as `clamp` says.
+fn rim(width: u32, height: u32, clamp: f64) -> [DVec2; 2] {
+    let half = DVec2::new(f64::from(width), f64::from(height)) / 2.0;
+    // Not below the picture, nor NaN.
+    let reach = half * clamp.max(1.0);
+    [half - reach, half + reach]
 }
 
 impl Conic {

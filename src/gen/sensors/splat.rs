@@ -8,10 +8,11 @@ pub use scene::splats::{RawMaps, SplatOptions};
 
 use super::order::depth_order;
 use super::project::{Conic, View};
+use super::rays::CameraRays;
 use super::tile::{Limits, Splat, SplatPixels, TILE, Tile};
 use scene::sensor_data::RENDER_IDS;
 use scene::splats::MIN_DEPTH_COVERAGE;
-use scene::{Camera, CameraMaps, SensorRig};
+use scene::{Camera, CameraMaps, Lens, SensorRig};
 
 /// Size at which the editor shows a camera: a quarter of the nuScenes images.
 pub const VIEW_SIZE: [u32; 2] = [400, 225];
@@ -106,7 +107,29 @@ pub fn render_raw(
             }
         },
     );
+    blind(&mut maps, camera, [width, height]);
     maps
+}
+
+/// Takes out what splats spread to where the lens sees nothing.
+fn blind(maps: &mut RawMaps, camera: &Camera, [width, height]: [u32; 2]) {
+    if camera.lens == Lens::Pinhole {
+        return;
+    }
+    let (rays, w) = (CameraRays::new(camera, width, height), width as usize);
+    let nothing = RawMaps::empty(1, 1);
+    for i in 0..w * height as usize {
+        let at = [i % w, i / w].map(|v| v as f64 + 0.5);
+        if rays.at(at[0], at[1]).direction == glam::DVec3::ZERO {
+            maps.coverage[i] = nothing.coverage[0];
+            maps.expected_m[i] = nothing.expected_m[0];
+            maps.normalised_m[i] = nothing.normalised_m[0];
+            maps.median_m[i] = nothing.median_m[0];
+            maps.label[i] = nothing.label[0];
+            maps.margin[i] = nothing.margin[0];
+            maps.transmittance[i] = nothing.transmittance[0];
+        }
+    }
 }
 
 /// Splats that may touch the image, near to far, equal depths in the cloud's order.

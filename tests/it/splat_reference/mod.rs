@@ -40,6 +40,7 @@ pub fn camera_of(v: &Value) -> Camera {
         center_px: [number("cx"), number("cy")],
         rotation_wxyz: [q.w, q.x, q.y, q.z],
         translation_m: (-(world_from_camera * DVec3::new(m[0][3], m[1][3], m[2][3]))).to_array(),
+        ..Camera::new("", 60.0)
     }
 }
 

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use sensors::cameras::{self, SourceId, ViewId};
 
 /// What can be rendered besides the views of cameras.
-const OTHERS: [&str; 3] = ["lidar", "bev", "view"];
+const OTHERS: [&str; 4] = ["truth", "lidar", "bev", "view"];
 
 /// Names of everything that can be rendered.
 fn kinds() -> String {

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod plan;
+mod truth;
 mod write;
 
 use std::collections::BTreeMap;
@@ -37,8 +38,9 @@ pub struct Render {
     /// Size of camera pictures in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "800x450")]
     size: [u32; 2],
-    /// What classes and depths are rendered from: Gaussians, exact rays to the voxels, or those with boxes as shapes.
-    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "splats")]
+    /// What classes and depths are rendered from: Gaussians, exact rays to the voxels, those with boxes as shapes, or the
+    /// very surfaces of the pictures.
+    #[arg(long, value_name = "NAME", value_parser = source(), default_value = "truth")]
     source: SourceId,
     /// Weather of appearance: clear, overcast, rain, snow, fog, sandstorm; else the scene's.
     #[arg(long, value_name = "NAME")]
@@ -130,6 +132,7 @@ impl Render {
         if let Some(path) = &self.rig {
             scene.rig = open::rig(path)?.into();
         }
+        let of_file = scene.clone();
         let scene = scene.with_rig_in_world().into_owned();
         // Whatever cannot be had is told before anything is written.
         let plan = Plan::new(&self, &scene)?;
@@ -139,6 +142,13 @@ impl Render {
         let frame = scene.frame();
         for cameras in &plan.cameras {
             self.cameras(&scene, cameras, (&mut writer, &mut wall_s))?;
+        }
+        if plan.truth {
+            let time_s = self.truth(&scene, &of_file, &mut writer)?;
+            wall_s.insert("truth", time_s);
+        }
+        if plan.truth || !plan.cameras.is_empty() || plan.lidar.is_some() {
+            writer.calibration(&of_file, &frame.world_from_ego, self.size)?;
         }
         if let Some(model) = &plan.lidar {
             let start = Instant::now();

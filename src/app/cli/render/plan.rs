@@ -35,6 +35,8 @@ pub struct Plan {
     pub cameras: Vec<Cameras>,
     /// The sweep.
     pub lidar: Option<LidarModel>,
+    /// Pictures with the truth about them.
+    pub truth: bool,
     /// Pictures from above.
     pub bev: bool,
     /// The 3D view, on its device.
@@ -58,12 +60,16 @@ impl Plan {
             }
         }
         let count = scene.rig.cameras.len();
-        if !cameras.is_empty() && count == 0 {
+        let truth = wants("truth");
+        if (truth || !cameras.is_empty()) && count == 0 {
             bail!("the rig {:?} has no camera", scene.rig.name);
         }
         for of in &cameras {
             let sheet = sheet_bytes(render.size, count);
             bounds::check(render.size, of.source.bytes_per_pixel(), sheet).context("--size")?;
+        }
+        if truth {
+            bounds::check(render.size, app::truth::BYTES_PER_PIXEL, 0).context("--size")?;
         }
         let lidar = wants("lidar")
             .then(|| LidarModel::of(render, scene))
@@ -71,6 +77,7 @@ impl Plan {
         Ok(Self {
             cameras,
             lidar,
+            truth,
             bev: wants("bev"),
             view: wants("view").then(View3d::new).transpose()?,
         })

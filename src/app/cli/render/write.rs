@@ -6,10 +6,11 @@ use anyhow::Context;
 
 use crate::output;
 use app::picture::{self, Picture, SHEET_COLOR};
-use formats::export::ply;
+use formats::calibration;
+use formats::export::{OutFile, ply};
 use formats::multi_plane;
 use formats::npz::{self, Array, Values};
-use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap};
+use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, Scene};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
 use sensors::color;
@@ -57,6 +58,22 @@ impl Writer {
         output::write_file(&path, bytes)?;
         self.files.push(path);
         Ok(())
+    }
+
+    /// Files that are ready.
+    pub fn out_files(&mut self, files: Vec<OutFile>) -> anyhow::Result<()> {
+        files.into_iter().try_for_each(|f| self.bytes(&f.name, &f.bytes))
+    }
+
+    /// Where the sensors look, and when.
+    pub fn calibration(
+        &mut self,
+        scene: &Scene,
+        world_from_ego: &Pose,
+        size: [u32; 2],
+    ) -> anyhow::Result<()> {
+        let bytes = calibration::to_bytes(scene, world_from_ego, Some(size));
+        self.bytes(calibration::FILE, &bytes)
     }
 
     fn png(&mut self, name: &str, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {

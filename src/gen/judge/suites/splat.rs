@@ -67,7 +67,7 @@ fn truth(world: &World, camera: &Camera) -> LabelledDepth {
         .into_par_iter()
         .map(|i| {
             let (u, v) = (i % width as usize, i / width as usize);
-            let along = rays.direction(u as f64 + 0.5, v as f64 + 0.5);
+            let along = rays.at(u as f64 + 0.5, v as f64 + 0.5).direction;
             let dir = along.normalize();
             let hit = world.cast(rays.origin, dir, 200.0);
             // Of higher things the grid knows nothing.

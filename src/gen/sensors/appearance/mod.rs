@@ -12,8 +12,10 @@ mod render;
 mod shade;
 mod sky;
 mod things;
+mod truth;
 
 pub use prepared::Appearance;
+pub use truth::NextMoment;
 
 use rayon::prelude::*;
 
@@ -111,3 +113,5 @@ impl ViewSynthesizer for RayMarched {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truth_tests;

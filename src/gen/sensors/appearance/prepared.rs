@@ -8,6 +8,7 @@ use super::sky::Air;
 use super::things::{Material, Thing};
 use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
+use crate::rays::Ray;
 use scene::appearance::{BLOCK_M, FAR_M};
 use scene::{Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
 
@@ -64,6 +65,8 @@ pub struct Hit {
     pub normal: Vec3,
     /// What it is.
     pub what: What,
+    /// When it is seen, s after the moment of the picture: a rolling shutter reads row by row.
+    pub after_s: f32,
 }
 
 /// A frame under certain conditions, ready for any camera.
@@ -104,6 +107,9 @@ impl Appearance {
             .collect();
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);
         let mut lists = vec![Vec::new(); blocks_x * blocks_y];
+        // How far from the moment of the picture any of its rows is read.
+        let rolls = rig.cameras.iter().filter_map(|c| c.shutter);
+        let rolls_s = rolls.map(|s| s.readout_s / 2.0).fold(0.0, f64::max) as f32;
         for (i, thing) in things.iter_mut().enumerate() {
             // Nobody stands in the pavement.
             let p = thing.foot.truncate();
@@ -111,7 +117,8 @@ impl Appearance {
             if thing.foot.z > -0.3 {
                 thing.foot.z = thing.foot.z.max(height);
             }
-            let reach = thing.reach().truncate() + NEAR_M;
+            let drift = thing.velocity.truncate().length() * rolls_s;
+            let reach = thing.reach().truncate() + NEAR_M + drift;
             let (lo, hi) = ((p - reach - from) / BLOCK_M, (p + reach - from) / BLOCK_M);
             for x in within(lo.x, hi.x, blocks_x) {
                 for y in within(lo.y, hi.y, blocks_y) {
@@ -181,9 +188,10 @@ impl Appearance {
         }
     }
 
-    /// The first surface along a ray; `dir` is a unit vector. The normal of voxels and ground is left for
+    /// The first surface along a ray whose direction is a unit vector, `after_s` after the moment of the frame: boxes that move
+    /// are where they are by then. The normal of voxels and ground is left for
     /// [`Self::normal`].
-    pub(super) fn trace(&self, o: Vec3, d: Vec3, limit: f32, coarse: bool) -> Option<Hit> {
+    pub(super) fn trace(&self, (o, d): (Vec3, Vec3), after_s: f32, limit: f32, coarse: bool) -> Option<Hit> {
         if !(o.is_finite() && d.is_finite()) {
             return None;
         }
@@ -194,7 +202,7 @@ impl Appearance {
         self.walk(o, d, best, |index, t_in, t_out| {
             for &i in &self.lists[index] {
                 let thing = &self.things[usize::from(i)];
-                if let Some(h) = thing.cast(o, d, best) {
+                if let Some(h) = thing.cast(thing.seen_from(o, after_s), d, best) {
                     best = h.t;
                     let what = What::Thing(u32::from(i), h.local, h.material);
                     hit = Some((thing.turn_back(h.normal), what, h.t));
@@ -224,6 +232,7 @@ impl Appearance {
             p: o + d * t,
             normal,
             what,
+            after_s,
         })
     }
 
@@ -281,18 +290,18 @@ impl Appearance {
     }
 
     /// True if something stands between a point and the light `d`, looked for in voxels every `step` m.
-    pub(super) fn occluded(&self, o: Vec3, d: Vec3, limit: f32, step: f32) -> bool {
+    pub(super) fn occluded(&self, (o, d): (Vec3, Vec3), after_s: f32, limit: f32, step: f32) -> bool {
         let anchor = |p: Vec3| self.anchor(p);
         let mut dark = false;
         self.walk(o, d, limit, |index, t_in, t_out| {
-            dark = self.lists[index]
-                .iter()
-                .any(|i| self.things[usize::from(*i)].cast(o, d, limit).is_some())
-                || self.field.block(index)
-                    && self
-                        .field
-                        .cast_block(index, (o, d), (t_in.max(0.05), t_out), step, true, &anchor)
-                        .is_some();
+            dark = self.lists[index].iter().any(|i| {
+                let thing = &self.things[usize::from(*i)];
+                thing.cast(thing.seen_from(o, after_s), d, limit).is_some()
+            }) || self.field.block(index)
+                && self
+                    .field
+                    .cast_block(index, (o, d), (t_in.max(0.05), t_out), step, true, &anchor)
+                    .is_some();
             dark
         });
         dark
@@ -300,9 +309,9 @@ impl Appearance {
 
     /// The outward normal of the first surface along a ray of the ego frame, a unit vector of that frame. `None` for the
     /// sky, for a zero direction and for what is not finite.
-    pub fn surface_normal(&self, origin_in_ego: Vec3, direction: Vec3) -> Option<Vec3> {
-        let d = direction.try_normalize()?;
-        let hit = self.trace(origin_in_ego, d, FAR_M, false)?;
+    pub fn surface_normal(&self, ray: &Ray) -> Option<Vec3> {
+        let d = ray.direction.as_vec3().try_normalize()?;
+        let hit = self.trace((ray.origin.as_vec3(), d), ray.after_s as f32, FAR_M, false)?;
         Some(self.normal(&hit)).filter(|n| n.is_finite())
     }
 

@@ -1,47 +1,85 @@
 //! From rays to a picture: samples, more of them at edges, rain and flakes in the air, glare of lamps,
 //! exposure and tone.
 
+use std::collections::BTreeMap;
+
 use glam::{IVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::noise::{hash3, ramp, unit, unit3};
 use super::prepared::Appearance;
-use super::shade::Sample;
+use super::shade::{Sample, Seen};
+use super::truth::{NextMoment, Teller, usable};
 use super::{CameraImage, Quality};
-use crate::march::CameraRays;
-use scene::Camera;
+use crate::rays::{CameraRays, Ray};
 use scene::appearance::CONTRAST;
+use scene::{BoxId, Camera, CameraTruth, SceneBox, TruthPixel};
 
 impl Appearance {
     /// The picture of one camera at `width` x `height` px.
     pub fn render(&self, camera: &Camera, width: u32, height: u32, quality: Quality) -> CameraImage {
+        self.draw(camera, [width, height], quality, None)
+    }
+
+    /// The same picture, and the truth about it: each pixel is told by a hit that made its colour. Where four samples make a
+    /// pixel, by the nearest of those that show the same as most. `boxes` are those of the frame; flow leads to `next`.
+    pub fn render_truth(
+        &self,
+        camera: &Camera,
+        size: [u32; 2],
+        quality: Quality,
+        boxes: &BTreeMap<BoxId, SceneBox>,
+        next: Option<&NextMoment<'_>>,
+    ) -> (CameraImage, CameraTruth) {
+        let teller = Teller::new(self, camera, size, next);
+        let mut pixels = vec![TruthPixel::default(); size[0] as usize * size[1] as usize];
+        let image = self.draw(camera, size, quality, Some((&teller, &mut pixels)));
+        let truth = self.finish_truth(&teller, camera, size, boxes, pixels, next);
+        (image, truth)
+    }
+
+    fn draw(
+        &self,
+        camera: &Camera,
+        [width, height]: [u32; 2],
+        quality: Quality,
+        truth: Option<(&Teller<'_>, &mut [TruthPixel])>,
+    ) -> CameraImage {
         let (w, h) = (width as usize, height as usize);
         let rays = CameraRays::new(camera, width, height);
-        let focal = camera.resized(width.max(1), height.max(1)).focal_px;
-        let pixel = (1.0 / focal[0].max(1e-3)) as f32;
+        let pixel = rays.optics().pixel_rad() as f32;
         let at = |u: f64, v: f64| {
-            let d = rays.direction(u, v).as_vec3().normalize_or_zero();
-            let o = rays.origin.as_vec3();
-            if d == Vec3::ZERO || !d.is_finite() || !o.is_finite() {
-                return Sample::default();
-            }
-            let mut sample = self.light_along(o, d, pixel);
+            let ray = rays.at(u, v);
+            let (o, d) = usable(&ray)?;
+            let (mut sample, seen) = self.light_along((o, d), ray.after_s as f32, pixel);
             sample.color = self.falling(o, d, sample.t, pixel, sample.color);
             if !sample.color.is_finite() {
                 sample.color = Vec3::ZERO;
             }
-            sample
+            Some((sample, seen, ray))
         };
+        let (teller, told) = truth.unzip();
+        let told = told.unwrap_or_default();
         let mut samples = vec![Sample::default(); w * h];
-        if !samples.is_empty() {
-            samples.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
-                for (x, out) in row.iter_mut().enumerate() {
-                    *out = at(x as f64 + 0.5, y as f64 + 0.5);
+        let row_of = |y: usize, row: &mut [Sample], mut told: Option<&mut [TruthPixel]>| {
+            for (x, out) in row.iter_mut().enumerate() {
+                let uv = (x as f64 + 0.5, y as f64 + 0.5);
+                let Some((sample, seen, ray)) = at(uv.0, uv.1) else {
+                    continue;
+                };
+                *out = sample;
+                if let (Some(teller), Some(told)) = (teller, &mut told) {
+                    told[x] = teller.pixel(&seen, &ray, uv);
                 }
-            });
+            }
+        };
+        if !samples.is_empty() {
+            each_row(w, &mut samples, &mut *told, row_of);
         }
         let mut light: Vec<Vec3> = samples.iter().map(|s| s.color).collect();
         if quality == Quality::Full && w > 1 && h > 1 {
+            // Clamped, so that a single spark does not fill a pixel with steps.
+            let limit = Vec3::splat(5.0 / self.air.exposure);
             let rough = |x: usize, y: usize| {
                 let s = &samples[y * w + x];
                 let tone = |c: Vec3| (c.element_sum() * self.air.exposure).sqrt();
@@ -59,21 +97,27 @@ impl Appearance {
                     }
                 })
             };
-            light.par_chunks_mut(w).enumerate().for_each(|(y, row)| {
+            let row_of = |y: usize, row: &mut [Vec3], mut told: Option<&mut [TruthPixel]>| {
                 for (x, out) in row.iter_mut().enumerate() {
-                    if rough(x, y) {
-                        // Four places turned against the pixel's sides. Clamped, so that a single
-                        // spark does not fill a pixel with steps.
-                        let places = [(0.375, 0.125), (0.875, 0.375), (0.625, 0.875), (0.125, 0.625)];
-                        let limit = 5.0 / self.air.exposure;
-                        let sum: Vec3 = places
-                            .iter()
-                            .map(|(u, v)| at(x as f64 + u, y as f64 + v).color.min(Vec3::splat(limit)))
-                            .sum();
-                        *out = sum / 4.0;
+                    if !rough(x, y) {
+                        continue;
+                    }
+                    // Four places turned against the pixel's sides.
+                    let places = [(0.375, 0.125), (0.875, 0.375), (0.625, 0.875), (0.125, 0.625)];
+                    let four = places.map(|(u, v)| at(x as f64 + u, y as f64 + v));
+                    let color = |s: &Option<(Sample, Seen, Ray)>| {
+                        s.as_ref().map_or(Vec3::ZERO, |s| s.0.color.min(limit))
+                    };
+                    *out = four.iter().map(color).sum::<Vec3>() / 4.0;
+                    if let (Some(teller), Some(told)) = (teller, &mut told)
+                        && let Some(i) = foremost(&four)
+                        && let Some((_, seen, ray)) = &four[i]
+                    {
+                        told[x] = teller.pixel(seen, ray, (x as f64 + places[i].0, y as f64 + places[i].1));
                     }
                 }
-            });
+            };
+            each_row(w, &mut light, &mut *told, row_of);
         }
         self.finish(camera, [w, h], light)
     }
@@ -189,6 +233,38 @@ impl Appearance {
         };
         [byte(c.x), byte(c.y), byte(c.z), 255]
     }
+}
+
+/// Calls `one` for each row of `values`, with its row of `told` where there is one.
+fn each_row<T: Send>(
+    w: usize,
+    values: &mut [T],
+    told: &mut [TruthPixel],
+    one: impl Fn(usize, &mut [T], Option<&mut [TruthPixel]>) + Sync,
+) {
+    match told.is_empty() {
+        true => {
+            let rows = values.par_chunks_mut(w).enumerate();
+            rows.for_each(|(y, row)| one(y, row, None));
+        }
+        false => {
+            let rows = values.par_chunks_mut(w).zip(told.par_chunks_mut(w)).enumerate();
+            rows.for_each(|(y, (row, told))| one(y, row, Some(told)));
+        }
+    }
+}
+
+/// Of the samples of a pixel the nearest of those that show the same thing as most do; of equally many, the nearer.
+fn foremost(samples: &[Option<(Sample, Seen, Ray)>; 4]) -> Option<usize> {
+    let thing = |i: usize| samples[i].as_ref().map(|(sample, ..)| sample.key >> 8);
+    let like = |i: usize| (0..4).filter(|j| thing(*j) == thing(i)).count();
+    let rank = |i: &usize| {
+        let t = samples[*i]
+            .as_ref()
+            .map_or(f32::INFINITY, |(sample, ..)| sample.t);
+        (std::cmp::Reverse(like(*i)), t.to_bits())
+    };
+    (0..4).filter(|i| samples[*i].is_some()).min_by_key(rank)
 }
 
 /// The filmic curve of K. Narkowicz (2015), an approximation of ACES, with colours drawn a little

@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::material::Surface;
 use super::noise::ramp;
 use super::prepared::{Appearance, Beam, Hit, What};
+use scene::Class;
 use scene::appearance::{
     FAR_M, HEAD_NEAR_M2, LAMP_CLEAR_M, LAMP_SHADOW_LIGHT, LAMP_STEP_M, MIRROR_M, SHADOW_M, SKYLINE_M,
 };
@@ -20,32 +21,64 @@ pub struct Sample {
     pub key: u32,
 }
 
+/// What a sample shows: what made its light.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Seen {
+    /// Nothing at all.
+    #[default]
+    Sky,
+    /// A class of the skyline that stands around the map, and its distance, m.
+    Skyline(Class, f32),
+    /// A surface, and the width of a pixel on it, m.
+    Surface(Hit, f32),
+}
+
+/// No skyline stands nearer, m.
+const SKYLINE_FROM_M: f32 = 55.0;
+
+/// Width of a pixel on a surface, m.
+fn footprint(hit: &Hit, d: Vec3, pixel: f32) -> f32 {
+    let slant = match hit.what {
+        What::Ground => (-d.z).max(0.03),
+        _ => 0.6,
+    };
+    hit.t * pixel / slant.sqrt()
+}
+
+/// A place of the skyline.
+struct Beyond {
+    /// Linear light, hazed.
+    color: Vec3,
+    class: Class,
+    /// Distance, m.
+    t: f32,
+}
+
 impl Appearance {
     /// Light along a ray; `pixel` is the angle between neighbouring pixels.
-    pub(super) fn light_along(&self, o: Vec3, d: Vec3, pixel: f32) -> Sample {
-        let Some(hit) = self.trace(o, d, FAR_M, false) else {
-            return Sample {
-                color: self
-                    .beyond(o, d, f32::INFINITY)
-                    .unwrap_or_else(|| self.air.sky(self.anchor_dir(d))),
+    pub(super) fn light_along(&self, (o, d): (Vec3, Vec3), after_s: f32, pixel: f32) -> (Sample, Seen) {
+        let Some(hit) = self.trace((o, d), after_s, FAR_M, false) else {
+            let sample = |color| Sample {
+                color,
                 t: f32::INFINITY,
                 key: 0,
             };
+            return match self.beyond(o, d, f32::INFINITY) {
+                Some(b) => (sample(b.color), Seen::Skyline(b.class, b.t)),
+                None => (sample(self.air.sky(self.anchor_dir(d))), Seen::Sky),
+            };
         };
-        if hit.t > 55.0
-            && let Some(color) = self.beyond(o, d, hit.t)
+        if hit.t > SKYLINE_FROM_M
+            && let Some(b) = self.beyond(o, d, hit.t)
         {
-            return Sample {
-                color,
+            let sample = Sample {
+                color: b.color,
                 t: hit.t,
                 key: 1,
             };
+            return (sample, Seen::Skyline(b.class, b.t));
         }
-        let slant = match hit.what {
-            What::Ground => (-d.z).max(0.03),
-            _ => 0.6,
-        };
-        let footprint = hit.t * pixel / slant.sqrt();
+        let footprint = footprint(&hit, d, pixel);
         let s = self.surface(&hit, d, footprint);
         let color = self.lit(&hit, &s, d, true);
         let key = match hit.what {
@@ -53,15 +86,30 @@ impl Appearance {
             What::Voxel(l) => 8 + u32::from(l),
             What::Thing(i, ..) => 64 + i,
         };
-        Sample {
+        let sample = Sample {
             color: self.air.through(color, hit.t, self.anchor_dir(d)),
             t: hit.t,
             key: key << 8 | ((s.normal * 3.0 + 4.0).as_uvec3().dot(glam::UVec3::new(1, 8, 32)) & 0xff),
+        };
+        (sample, Seen::Surface(hit, footprint))
+    }
+
+    /// What [`Self::light_along`] shows along a ray, without its light.
+    pub(super) fn seen_along(&self, (o, d): (Vec3, Vec3), after_s: f32, pixel: f32) -> Seen {
+        let hit = self.trace((o, d), after_s, FAR_M, false);
+        let limit = hit.map_or(f32::INFINITY, |hit| hit.t);
+        let beyond = (limit > SKYLINE_FROM_M)
+            .then(|| self.beyond(o, d, limit))
+            .flatten();
+        match (beyond, hit) {
+            (Some(b), _) => Seen::Skyline(b.class, b.t),
+            (None, Some(hit)) => Seen::Surface(hit, footprint(&hit, d, pixel)),
+            (None, None) => Seen::Sky,
         }
     }
 
     /// What stands outside the grid in front of `limit`, hazed.
-    fn beyond(&self, o: Vec3, d: Vec3, limit: f32) -> Option<Vec3> {
+    fn beyond(&self, o: Vec3, d: Vec3, limit: f32) -> Option<Beyond> {
         let flat = d.truncate().length_squared();
         let shape = self.field.shape();
         let eye = o.truncate() - shape.middle_m;
@@ -92,8 +140,9 @@ impl Appearance {
                 open = f32::min(open, 1.0);
             }
             let around = self.anchor_dir(from_middle);
-            if let Some(color) = self.air.skyline(around, radius, open) {
-                return Some(self.air.through(color, t, self.anchor_dir(d)));
+            if let Some((color, class)) = self.air.skyline(around, radius, open) {
+                let color = self.air.through(color, t, self.anchor_dir(d));
+                return Some(Beyond { color, class, t });
             }
         }
         None
@@ -111,7 +160,7 @@ impl Appearance {
         let lit_through = s.through * (-facing).max(0.0);
         if strength > 0.05 && (facing > 0.0 || lit_through > 0.02) {
             let shadow = if follow {
-                self.occluded(lift, to_sun, SHADOW_M, 0.16)
+                self.occluded((lift, to_sun), hit.after_s, SHADOW_M, 0.16)
             } else {
                 false
             };
@@ -132,7 +181,7 @@ impl Appearance {
         let below = air.bounce.lerp(air.ambient * 0.75, air.snow * 0.6);
         out += s.albedo * (air.ambient * sky + below * (1.0 - sky) + air.horizon * 0.08) * open;
         if !self.lamps.is_empty() {
-            out += self.lamp_light(hit.p, lift, n, view, s, follow);
+            out += self.lamp_light(hit, lift, view, s, follow);
         }
         if s.mirror > 0.008 {
             let grazing = (1.0 - n.dot(view).clamp(0.0, 1.0)).powi(5);
@@ -145,7 +194,7 @@ impl Appearance {
                     r
                 };
                 let mut seen = if follow && s.gloss > 0.55 {
-                    self.mirrored(lift, r)
+                    self.mirrored(lift, r, hit.after_s)
                 } else {
                     air.horizon.lerp(air.zenith, r.z.max(0.0)) * open
                 };
@@ -168,10 +217,11 @@ impl Appearance {
         }
     }
 
-    fn mirrored(&self, o: Vec3, r: Vec3) -> Vec3 {
+    fn mirrored(&self, o: Vec3, r: Vec3, after_s: f32) -> Vec3 {
         let there = self.anchor_dir(r);
-        let sky = |limit: f32| self.beyond(o, r, limit).unwrap_or_else(|| self.air.sky(there));
-        match self.trace(o, r, MIRROR_M, true) {
+        let beyond = |limit: f32| self.beyond(o, r, limit).map(|b| b.color);
+        let sky = |limit: f32| beyond(limit).unwrap_or_else(|| self.air.sky(there));
+        match self.trace((o, r), after_s, MIRROR_M, true) {
             Some(hit) if hit.t > 0.02 => {
                 let s = self.surface(&hit, r, 0.05 + hit.t * 0.004);
                 self.air.through(self.lit(&hit, &s, r, false), hit.t, there)
@@ -199,7 +249,7 @@ impl Appearance {
         if p.z < 2.5 {
             for &i in self.things_near(p.truncate()) {
                 let thing = &self.things[usize::from(i)];
-                let q = thing.to_local(p);
+                let q = thing.to_local(thing.seen_from(p, hit.after_s));
                 let out = (q.truncate().abs() - thing.size.truncate() / 2.0).max(glam::Vec2::ZERO);
                 let over = (q.z / thing.size.z).clamp(0.0, 1.0);
                 match hit.what {
@@ -216,7 +266,8 @@ impl Appearance {
     }
 
     /// `lift` is a point a little above the surface, from which shadows are looked for if there are to be any.
-    fn lamp_light(&self, p: Vec3, lift: Vec3, n: Vec3, view: Vec3, s: &Surface, shadows: bool) -> Vec3 {
+    fn lamp_light(&self, hit: &Hit, lift: Vec3, view: Vec3, s: &Surface, shadows: bool) -> Vec3 {
+        let (p, n) = (hit.p, s.normal);
         let mut out = Vec3::ZERO;
         for lamp in &self.lamps {
             let to = lamp.at - p;
@@ -265,7 +316,7 @@ impl Appearance {
                     Beam::Street => LAMP_CLEAR_M * far / way.truncate().length().max(1e-3),
                     _ => LAMP_CLEAR_M,
                 };
-                if far > clear && self.occluded(lift, way / far, far - clear, LAMP_STEP_M) {
+                if far > clear && self.occluded((lift, way / far), hit.after_s, far - clear, LAMP_STEP_M) {
                     continue;
                 }
             }

@@ -4,7 +4,7 @@
 use glam::{IVec3, Vec2, Vec3};
 
 use super::noise::{fbm2, hash1, ramp, unit, unit3, value2};
-use scene::{Conditions, TimeOfDay, Weather};
+use scene::{Class, Conditions, TimeOfDay, Weather};
 
 /// Light and air.
 #[derive(Clone, Debug)]
@@ -222,8 +222,8 @@ impl Air {
     }
 
     /// What stands on the circle of radius `radius_m` around the grid in the direction of `p` (anchored
-    /// frame, relative to the grid's middle, z up from the ground): its colour, or `None` above it.
-    pub fn skyline(&self, p: Vec3, radius_m: f32, open: f32) -> Option<Vec3> {
+    /// frame, relative to the grid's middle, z up from the ground): its colour and class, or `None` above it.
+    pub fn skyline(&self, p: Vec3, radius_m: f32, open: f32) -> Option<(Vec3, Class)> {
         let layer = self.seed.wrapping_add(radius_m as u32);
         let around = p.truncate() / p.truncate().length().max(1e-3);
         // Arc length, so that widths are in m.
@@ -255,7 +255,7 @@ impl Air {
             let leaf = value2(Vec2::new(s, p.z) * 1.4, layer ^ 9) * 0.6
                 + value2(Vec2::new(s, p.z) * 0.5, layer ^ 10) * 0.4;
             let albedo = v(0.055, 0.085, 0.032) * (0.55 + 0.9 * leaf);
-            return Some(self.whitened(lit(albedo, 0.34), 0.4));
+            return Some((self.whitened(lit(albedo, 0.34), 0.4), Class::Vegetation));
         }
         if built && p.z < height * free {
             let tone = unit(hash1(h, 2));
@@ -273,7 +273,7 @@ impl Air {
                     emit = v(1.0, 0.72, 0.40) * (0.30 * self.lamps * (0.4 + on));
                 }
             }
-            return Some(lit(albedo, 0.3) + emit);
+            return Some((lit(albedo, 0.3) + emit, Class::Manmade));
         }
         None
     }

@@ -160,7 +160,9 @@ fn places_look_the_same_from_everywhere() {
     // The light of a place seen from an eye.
     let light = |appearance: &Appearance, place: DVec3, eye: DVec3| {
         let d = place - eye;
-        let sample = appearance.light_along(eye.as_vec3(), d.normalize().as_vec3(), 0.0015);
+        let sample = appearance
+            .light_along((eye.as_vec3(), d.normalize().as_vec3()), 0.0, 0.0015)
+            .0;
         assert!(
             (f64::from(sample.t) - d.length()).abs() < 0.02,
             "{place}: {} {}",
@@ -211,7 +213,8 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
     let eye = glam::Vec3::new(beside.x, beside.y, 9.0);
     let down = |appearance: &Appearance| {
         appearance
-            .light_along(eye, -glam::Vec3::Z, 0.001)
+            .light_along((eye, -glam::Vec3::Z), 0.0, 0.001)
+            .0
             .color
             .element_sum()
     };
@@ -223,7 +226,9 @@ fn things_cast_shadows_and_keep_their_colour_by_id() {
     );
     let roof = |id| {
         let appearance = Appearance::new(&with(&[car(id)]), &rig, &conditions);
-        appearance.light_along(glam::Vec3::new(9.6, 0.0, 9.0), -glam::Vec3::Z, 0.001)
+        appearance
+            .light_along((glam::Vec3::new(9.6, 0.0, 9.0), -glam::Vec3::Z), 0.0, 0.001)
+            .0
     };
     assert!((roof(1).t - 7.3).abs() < 0.1, "{}", roof(1).t);
     assert_eq!(roof(1).color, roof(1).color);
@@ -319,7 +324,7 @@ fn bears_anything() {
             let d = glam::Vec3::new(*x, *y, pick[(i + 2 * k) % 6]).normalize_or_zero();
             let o = glam::Vec3::new(-40.2 + 3.2 * i as f32, 0.2 * k as f32, 0.1 * k as f32);
             if d != glam::Vec3::ZERO {
-                let sample = appearance.light_along(o, d, 0.001);
+                let sample = appearance.light_along((o, d), 0.0, 0.001).0;
                 assert!(!sample.color.is_nan(), "{o} {d} {:?}", sample);
             }
         }
@@ -345,7 +350,7 @@ fn a_map_is_seen_as_far_as_it_reaches() {
     let (with, without) = (of_frame(&frame), of_frame(&bare));
     let cropped = of_frame(&frame.crop(Extent::WINDOW));
     let eye = glam::Vec3::new(1.7, 0.0, 1.6);
-    let ahead = |appearance: &Appearance| appearance.light_along(eye, glam::Vec3::X, 0.001);
+    let ahead = |appearance: &Appearance| appearance.light_along((eye, glam::Vec3::X), 0.0, 0.001).0;
     let met = ahead(&with).t;
     assert!((met - 98.3).abs() < 0.4, "{met}");
     assert_eq!(
@@ -354,7 +359,7 @@ fn a_map_is_seen_as_far_as_it_reaches() {
     );
     // Down to the road, beyond the window and 5 m in front of the wall.
     let road = (glam::Vec3::new(95.0, 3.0, 0.0) - eye).normalize();
-    assert!((with.light_along(eye, road, 0.001).t - 93.36).abs() < 0.1);
+    assert!((with.light_along((eye, road), 0.0, 0.001).0.t - 93.36).abs() < 0.1);
     let camera = rig.cameras.iter().find(|c| {
         let ahead = c.ego_from_camera().rotation * DVec3::Z;
         ahead.x > 0.99

@@ -12,7 +12,7 @@ pub use part::Part;
 use super::noise::hash1;
 use build::Builder;
 use part::rounded;
-use scene::{Class, Paint, SceneBox};
+use scene::{BoxId, Class, Paint, SceneBox};
 use shapes::shape;
 
 /// What a part is made of.
@@ -55,6 +55,10 @@ pub struct Thing {
     pub paint: Vec3,
     /// Hash that varies details.
     pub id: u32,
+    /// Whose it is.
+    pub box_id: BoxId,
+    /// Velocity over ground in the ego frame's axes, m/s.
+    pub velocity: Vec3,
     /// Moving or in traffic: lamps are on at night.
     pub lamps: bool,
     /// Square of the radius of a circle on the ground that holds it, m^2.
@@ -154,6 +158,8 @@ impl Thing {
             size,
             paint,
             id,
+            box_id: b.id,
+            velocity: b.velocity_mps.as_vec2().extend(0.0),
             lamps: b.class.is_vehicle() && (b.velocity_mps.length() > 0.3 || id.is_multiple_of(3)),
             circle_m2: (size.truncate() / 2.0 + 0.05).length_squared(),
             parts: build.parts,
@@ -169,6 +175,16 @@ impl Thing {
     pub fn reach(&self) -> Vec3 {
         let r = self.size.truncate().length() / 2.0;
         Vec3::new(r, r, self.size.z)
+    }
+
+    /// Where a ray begins for the thing as it stands at the moment of the frame, if the ray is seen `after_s` later: as much
+    /// farther back as the thing moves meanwhile. The same takes any point of that time to the frame's moment.
+    #[inline]
+    pub fn seen_from(&self, p: Vec3, after_s: f32) -> Vec3 {
+        match after_s == 0.0 {
+            true => p,
+            false => p - self.velocity * after_s,
+        }
     }
 
     /// A point of the ego frame in box coordinates.

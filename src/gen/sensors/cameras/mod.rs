@@ -11,6 +11,7 @@ pub mod pictures;
 pub mod planes;
 pub mod shapes;
 pub mod splats;
+pub mod told;
 mod view;
 pub mod voxels;
 
@@ -33,6 +34,7 @@ pub fn all() -> &'static [&'static dyn CameraSource] {
         &splats::Splats,
         &voxels::Voxels,
         &shapes::Shapes,
+        &told::Told,
         &pictures::Pictures,
         &planes::PlaneStacks,
         &layout::LayoutMaps,

@@ -11,7 +11,7 @@ use super::{
     ViewId,
 };
 use crate::appearance::{Appearance, CameraImage};
-use crate::march::CameraRays;
+use crate::rays::CameraRays;
 use scene::Camera;
 use scene::Conditions;
 
@@ -91,8 +91,8 @@ impl PreparedCameras for Ready {
         if !rgba.is_empty() {
             rgba.par_chunks_mut(row).enumerate().for_each(|(y, row)| {
                 for (x, out) in row.chunks_exact_mut(4).enumerate() {
-                    let direction = rays.direction(x as f64 + 0.5, y as f64 + 0.5).as_vec3();
-                    let normal = self.0.surface_normal(rays.origin.as_vec3(), direction);
+                    let ray = rays.at(x as f64 + 0.5, y as f64 + 0.5);
+                    let normal = self.0.surface_normal(&ray);
                     out[..3].copy_from_slice(&normal.map_or(SKY, |n| color(rotation, n)));
                 }
             });

@@ -1,6 +1,7 @@
 //! Tests of the table: what holds for every source in it.
 
 mod heading;
+mod lenses;
 mod normal_maps;
 
 use std::collections::BTreeSet;

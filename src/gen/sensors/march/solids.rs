@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::CameraRays;
 use scene::solid::Solid;
 use scene::{BoxId, Extent, SceneBox};
 use world::objects;
@@ -30,6 +31,8 @@ struct Group {
     high: DVec3,
     middle: DVec2,
     radius_m2: f64,
+    /// Velocity of the box, m/s.
+    velocity: DVec3,
 }
 
 /// The boxes that a camera may see, each with the pixels that it may cover.
@@ -48,6 +51,8 @@ pub struct SolidHit<'a> {
     pub solid: &'a Solid,
     /// Whose it is.
     pub box_id: Option<BoxId>,
+    /// Where the ray began, as the solid sees it: moved back where a box moved while a shutter read, m.
+    pub origin: DVec3,
 }
 
 impl Group {
@@ -99,6 +104,7 @@ impl SolidIndex {
                     high,
                     middle: (low + high).truncate() / 2.0,
                     radius_m2: ((high - low).truncate() / 2.0 + 1e-3).length_squared(),
+                    velocity: b.velocity_mps.extend(0.0),
                 });
             }
         }
@@ -127,10 +133,16 @@ impl SolidIndex {
         }
     }
 
-    /// Boxes that may cover a pixel of a camera; `project` gives u, v in px and the depth in m.
-    pub fn in_view(&self, project: impl Fn(DVec3) -> DVec3) -> InView {
+    /// Boxes that may cover a pixel of a camera.
+    pub fn in_view(&self, rays: &CameraRays) -> InView {
         let mut groups = Vec::new();
         for (i, group) in self.groups.iter().enumerate() {
+            if !rays.is_plain() {
+                let radius = (group.high - group.low).length() / 2.0;
+                let bounds = rays.bounds((group.low + group.high) / 2.0, radius, group.velocity.length());
+                groups.extend(bounds.map(|[low, high]| (i as u32, [low.x, high.x], [low.y, high.y])));
+                continue;
+            }
             let corners: [DVec3; 8] = std::array::from_fn(|corner| {
                 let pick = |axis: usize| {
                     if corner >> axis & 1 == 0 {
@@ -139,7 +151,7 @@ impl SolidIndex {
                         group.high[axis]
                     }
                 };
-                project(DVec3::new(pick(0), pick(1), pick(2)))
+                rays.project(DVec3::new(pick(0), pick(1), pick(2)))
             });
             if corners.iter().all(|c| c.z < -1e-6) {
                 continue;
@@ -159,12 +171,23 @@ impl SolidIndex {
     }
 
     /// The first solid along the ray through the pixel (u, v) of the camera that `view` was made for.
-    /// Unlike [`Self::cast`] it sees solids beyond the grid's border too.
+    /// `after_s` is when the pixel is read. Unlike [`Self::cast`] it sees solids beyond the grid's border too.
     #[inline]
-    pub fn cast_pixel(&self, view: &InView, origin: DVec3, dir: DVec3, limit_m: f64) -> Option<SolidHit<'_>> {
+    pub fn cast_pixel(
+        &self,
+        view: &InView,
+        (origin, dir): (DVec3, DVec3),
+        after_s: f64,
+        limit_m: f64,
+    ) -> Option<SolidHit<'_>> {
         let (mut best, mut hit) = (limit_m, None);
         for (i, _, _) in &view.groups {
             let group = &self.groups[*i as usize];
+            // A box that moved on is met where it was by a ray that began as much farther back.
+            let origin = match after_s == 0.0 {
+                true => origin,
+                false => origin - group.velocity * after_s,
+            };
             if group.beside(origin, dir) {
                 continue;
             }
@@ -191,6 +214,7 @@ impl SolidIndex {
                     t_m: t,
                     solid,
                     box_id: Some(*id),
+                    origin,
                 });
             }
         }

@@ -41,7 +41,7 @@ fn plain_march_is_the_exact_ray_cast() {
     let rays = CameraRays::new(&rig.cameras[1], 80, 45);
     let mut hits = 0;
     for (i, found) in maps.hits.iter().enumerate() {
-        let dir = rays.direction((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5);
+        let dir = rays.at((i % 80) as f64 + 0.5, (i / 80) as f64 + 0.5).direction;
         let truth = masks.cast(rays.origin, dir.normalize(), 1e9);
         assert_eq!(found.is_some(), truth.is_some());
         if let (Some(f), Some(t)) = (found, truth) {
@@ -62,7 +62,8 @@ fn physical_ground_lies_where_the_world_has_it() {
         let (mut n, mut near) = (0, 0);
         for i in 0..80 * 45 {
             let dir = rays
-                .direction(f64::from(i % 80) + 0.5, f64::from(i / 80) + 0.5)
+                .at(f64::from(i % 80) + 0.5, f64::from(i / 80) + 0.5)
+                .direction
                 .normalize();
             let truth = world.cast(rays.origin, dir, 1e3);
             if let (Some(truth), Some(found)) = (truth, scene.cast(rays.origin, dir))
@@ -110,7 +111,7 @@ fn pictures_equal_single_rays() {
         let maps = scene.render(camera, 101, 57);
         let rays = CameraRays::new(camera, 101, 57);
         for (i, found) in maps.hits.iter().enumerate() {
-            let dir = rays.direction((i % 101) as f64 + 0.5, (i / 101) as f64 + 0.5);
+            let dir = rays.at((i % 101) as f64 + 0.5, (i / 101) as f64 + 0.5).direction;
             assert_eq!(*found, scene.cast(rays.origin, dir));
             on_boxes += usize::from(found.is_some_and(|h| h.box_id.is_some()));
         }

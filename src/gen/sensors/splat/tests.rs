@@ -16,6 +16,7 @@ fn camera(width: u32, height: u32, fov_deg: f64) -> Camera {
         center_px: [f64::from(width) / 2.0, f64::from(height) / 2.0],
         rotation_wxyz: [0.5, -0.5, 0.5, -0.5],
         translation_m: [0.0; 3],
+        ..Camera::new("TEST", fov_deg)
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use scene::{Camera, Class, Pose, SensorRig, VoxelGrid, Window};
+use scene::{Camera, Class, Optics, Pose, SensorRig, VoxelGrid, Window};
 
 /// Voxels that rays went through before they ended; one bit each.
 #[derive(Clone, Default)]
@@ -122,6 +122,7 @@ pub(super) fn seen_by_cameras(grid: &VoxelGrid, by_lidar: &[bool], rig: &SensorR
 /// A camera where it is mounted.
 struct View<'a> {
     camera: &'a Camera,
+    optics: Optics,
     camera_from_ego: Pose,
     at: DVec3,
 }
@@ -131,6 +132,7 @@ impl<'a> View<'a> {
         let ego_from_camera = camera.ego_from_camera();
         Self {
             camera,
+            optics: Optics::new(camera),
             camera_from_ego: ego_from_camera.inverse(),
             at: ego_from_camera.translation_m,
         }
@@ -139,10 +141,9 @@ impl<'a> View<'a> {
     /// True if a point of the ego frame lies in the picture.
     fn holds(&self, p: DVec3) -> bool {
         let q = self.camera_from_ego.apply(p);
-        let u = self.camera.focal_px[0] * q.x / q.z + self.camera.center_px[0];
-        let v = self.camera.focal_px[1] * q.y / q.z + self.camera.center_px[1];
         let (width, height) = (f64::from(self.camera.width), f64::from(self.camera.height));
-        q.z > 0.0 && (0.0..width).contains(&u) && (0.0..height).contains(&v)
+        let inside = |p: glam::DVec2| (0.0..width).contains(&p.x) && (0.0..height).contains(&p.y);
+        self.optics.project(q).is_some_and(inside)
     }
 }
 

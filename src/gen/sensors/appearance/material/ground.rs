@@ -6,7 +6,8 @@ use super::super::noise::{fbm2, ramp, unit3, value2};
 use super::super::prepared::Appearance;
 use super::{Surface, band, gray, visible};
 use scene::appearance::{KERB_EDGE_M, KERB_SEEN_M};
-use scene::{BevLayer, PolylineKind};
+use scene::truth::{self, TruthClass};
+use scene::{BevLayer, Class, PolylineKind};
 
 impl Appearance {
     pub(super) fn ground_surface(&self, p: Vec3, normal: Vec3, fp: f32) -> Surface {
@@ -26,8 +27,7 @@ impl Appearance {
         if road < 1.0 {
             let rest = (1.0 - g.share[0]).max(1e-3);
             let (walk, flat) = (g.share[1] / rest, g.share[2] / rest);
-            let fray = 0.22 * (value2(a * 2.2, 41) - 0.5) + 0.12 * (value2(a * 9.0, 42) - 0.5);
-            let green = ramp(0.46, 0.54, g.share[3] / rest + fray);
+            let green = green(a, g.share[3] / rest);
             let mut c = Vec3::ZERO;
             if green < 1.0 {
                 let paved = if walk >= flat { slabs(a, fp) } else { pavers(a, fp) };
@@ -74,11 +74,11 @@ impl Appearance {
         let age = fbm2(a * 0.11, 3, 51);
         let mut tone = 0.088 + 0.035 * (age - 0.5) + 0.012 * (value2(a * 0.9, 52) - 0.5);
         let lane = self.paint.nearest(PolylineKind::LaneCenter, p.as_dvec2());
-        let mut track = 0.0;
+        let mut on_track = 0.0;
         if let Some(lane) = lane {
             let d = lane.distance_m as f32;
-            track = ramp(0.42, 0.1, (d - 0.82).abs());
-            tone *= 1.0 - 0.10 * track;
+            on_track = track(d);
+            tone *= 1.0 - 0.10 * on_track;
             tone *= 1.0 - 0.10 * ramp(0.45, 0.0, d) * value2(a * 0.6, 53);
         }
         let grain = visible(fp, 0.03);
@@ -104,7 +104,7 @@ impl Appearance {
         let air = &self.air;
         if air.wet > 0.0 {
             // A film of water everywhere, standing water in the hollows.
-            let hollow = fbm2(a * 0.32 + 7.0, 3, 61) + 0.10 * track;
+            let hollow = fbm2(a * 0.32 + 7.0, 3, 61) + 0.10 * on_track;
             let puddle = ramp(0.50, 0.60, hollow) * ramp(0.5, 1.0, air.wet);
             s.albedo *= 1.0 - (0.42 + 0.2 * puddle) * air.wet;
             s.mirror = air.wet * (0.018 + 0.012 * puddle);
@@ -114,15 +114,7 @@ impl Appearance {
             s.normal = Vec3::new(w(62) * ripple * 2.0, w(63) * ripple * 2.0, 1.0).normalize();
         }
         if air.snow > 0.0 {
-            let clear = if lane.is_some() { 0.75 * track + 0.14 } else { 0.06 };
-            let lies = ramp(
-                0.30,
-                0.62,
-                0.62 + 0.55 * (fbm2(a * 0.9, 3, 64) - 0.5)
-                    + 0.30 * (value2(a * 6.0, 65) - 0.5)
-                    + 0.26 * visible(fp, 0.12) * (value2(a * 17.0, 70) - 0.5)
-                    - clear,
-            );
+            let lies = self.snow_on_road(a, fp, lane.map(|_| on_track));
             let slush = Vec3::new(0.50, 0.52, 0.56)
                 * (0.80 + 0.34 * value2(a * 2.4, 66) + 0.2 * (value2(a * 9.0, 69) - 0.5) * visible(fp, 0.1));
             s.albedo = (s.albedo * 0.75).lerp(slush, lies * 0.93 * air.snow);
@@ -137,11 +129,57 @@ impl Appearance {
         s
     }
 
-    /// Colour and cover of what is painted on the road.
-    fn road_paint(&self, p: Vec2, a: Vec2, fp: f32) -> (Vec3, f32) {
+    /// The class of the ground as it is drawn: of the surface that covers more than half of a pixel `fp` m wide.
+    pub(in crate::appearance) fn ground_label(&self, p: Vec3, fp: f32) -> TruthClass {
+        let (p2, a) = (p.truncate(), self.anchor(p).truncate());
+        let g = self.ground.at(p2, a);
+        if g.inside_road_m > -0.014 {
+            let (_, cover, id) = self.road_paint(p2, a, fp);
+            let lane = || self.paint.nearest(PolylineKind::LaneCenter, p2.as_dvec2());
+            let snow = match self.air.snow > 0.0 {
+                true => {
+                    0.93 * self.air.snow
+                        * self.snow_on_road(a, fp, lane().map(|l| track(l.distance_m as f32)))
+                }
+                false => 0.0,
+            };
+            return match cover * (1.0 - snow) > 0.5 {
+                true => id,
+                false => Class::DriveableSurface.id(),
+            };
+        }
+        let rest = (1.0 - g.share[0]).max(1e-3);
+        let class = match green(a, g.share[3] / rest) > 0.5 {
+            true => Class::Terrain,
+            false if g.share[1] >= g.share[2] => Class::Sidewalk,
+            false => Class::OtherFlat,
+        };
+        class.id()
+    }
+
+    /// How much snow lies on the road, 0 to 1; `track` is how much tyres cleared it, none off the lanes.
+    fn snow_on_road(&self, a: Vec2, fp: f32, track: Option<f32>) -> f32 {
+        let clear = track.map_or(0.06, |track| 0.75 * track + 0.14);
+        ramp(
+            0.30,
+            0.62,
+            0.62 + 0.55 * (fbm2(a * 0.9, 3, 64) - 0.5)
+                + 0.30 * (value2(a * 6.0, 65) - 0.5)
+                + 0.26 * visible(fp, 0.12) * (value2(a * 17.0, 70) - 0.5)
+                - clear,
+        )
+    }
+
+    /// Colour, cover and class of what is painted on the road.
+    fn road_paint(&self, p: Vec2, a: Vec2, fp: f32) -> (Vec3, f32, TruthClass) {
         let paint = &self.paint;
         let (q, white) = (p.as_dvec2(), Vec3::new(0.66, 0.66, 0.63));
-        let mut out = (white, 0.0f32);
+        let mut out = (white, 0.0f32, Class::DriveableSurface.id());
+        let mut more = |cover: f32, color: Vec3, id: TruthClass| {
+            if cover > out.1 {
+                out = (color, cover, id);
+            }
+        };
         let wavy = 0.012 * (value2(a * 3.0, 68) - 0.5);
         let dash = |along: f64| {
             let s = along.rem_euclid(9.0) as f32;
@@ -160,32 +198,47 @@ impl Appearance {
             let along = crossing.map(|c| c.along.as_vec2());
             if along.is_some() || paint.is_orphan(BevLayer::PedCrossing, q) {
                 let s = p.dot(along.unwrap_or(Vec2::Y)).rem_euclid(1.0);
-                out.1 = out.1.max(band((s - 0.5).abs(), 0.25, fp));
+                more(band((s - 0.5).abs(), 0.25, fp), white, CROSSING);
             }
         }
         if let Some((d, along)) = line(PolylineKind::LaneDivider, BevLayer::LaneDivider) {
-            out.1 = out.1.max(band(d, 0.075, fp) * dash(along));
+            more(band(d, 0.075, fp) * dash(along), white, LANE_DIVIDER);
         }
         if let Some((d, _)) = line(PolylineKind::StopLine, BevLayer::StopLine) {
-            out.1 = out.1.max(band(d, 0.2, fp));
+            more(band(d, 0.2, fp), white, truth::STOP_LINE);
         }
         if let Some((d, _)) = line(PolylineKind::RoadDivider, BevLayer::RoadDivider) {
-            let double = band((d - 0.11).abs(), 0.055, fp);
-            if double > out.1 {
-                out = (Vec3::new(0.62, 0.40, 0.045), double);
-            }
+            more(band((d - 0.11).abs(), 0.055, fp), YELLOW, ROAD_DIVIDER);
         }
-        for (layer, color) in [
-            (BevLayer::LaneDivider, white),
-            (BevLayer::StopLine, white),
-            (BevLayer::RoadDivider, Vec3::new(0.62, 0.40, 0.045)),
+        for (layer, color, id) in [
+            (BevLayer::LaneDivider, white, LANE_DIVIDER),
+            (BevLayer::StopLine, white, truth::STOP_LINE),
+            (BevLayer::RoadDivider, YELLOW, ROAD_DIVIDER),
         ] {
             if paint.is_orphan(layer, q) {
-                out = (color, 1.0);
+                out = (color, 1.0, id);
             }
         }
         out
     }
+}
+
+/// Classes of paint.
+const CROSSING: TruthClass = 17;
+const ROAD_DIVIDER: TruthClass = 18;
+const LANE_DIVIDER: TruthClass = 19;
+/// Paint between opposite directions.
+const YELLOW: Vec3 = Vec3::new(0.62, 0.40, 0.045);
+
+/// How much tyres run here, 0 to 1, at a distance from the middle of the lane, m.
+fn track(from_middle_m: f32) -> f32 {
+    ramp(0.42, 0.1, (from_middle_m - 0.82).abs())
+}
+
+/// How green the ground beside the road is, 0 to 1, for a share of terrain of what is no road.
+fn green(a: Vec2, terrain: f32) -> f32 {
+    let fray = 0.22 * (value2(a * 2.2, 41) - 0.5) + 0.12 * (value2(a * 9.0, 42) - 0.5);
+    ramp(0.46, 0.54, terrain + fray)
 }
 
 /// Concrete slabs with joints.

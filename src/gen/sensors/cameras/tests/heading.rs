@@ -44,6 +44,7 @@ fn camera() -> Camera {
         center_px: SIZE.map(|v| f64::from(v) / 2.0),
         rotation_wxyz: [c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w],
         translation_m: CAMERA_M.to_array(),
+        ..Camera::new("CAM", 60.0)
     }
 }
 

@@ -1,0 +1,49 @@
+//! Pictures with the truth about them.
+
+use std::time::Instant;
+
+use super::Render;
+use super::write::Writer;
+use app::truth;
+use formats::export::truth as files;
+use formats::export::{OutFile, Picture};
+use scene::Scene;
+use sensors::appearance::Quality;
+
+impl Render {
+    /// Renders and writes every camera of a scene whose sensors are in the world; `of_file` is the scene in the ego frame, of
+    /// which the files speak. Returns the seconds that rendering took.
+    pub fn truth(&self, scene: &Scene, of_file: &Scene, writer: &mut Writer) -> anyhow::Result<f64> {
+        let quality = if self.preview {
+            Quality::Preview
+        } else {
+            Quality::Full
+        };
+        let ego_from_world = scene.frame().world_from_ego.inverse();
+        let (mut time_s, mut boxes) = (0.0, Vec::new());
+        let mut start = Instant::now();
+        truth::each_camera(
+            scene,
+            &self.input(scene),
+            self.size,
+            quality,
+            |image, mut truth| {
+                time_s += start.elapsed().as_secs_f64();
+                truth::place(&mut truth, &ego_from_world);
+                let picture = Picture {
+                    camera: image.camera,
+                    width: image.width,
+                    height: image.height,
+                    rgba: image.rgba,
+                };
+                writer.out_files(files::of_camera(of_file, &picture, &truth)?)?;
+                boxes.push(files::boxes(&truth));
+                start = Instant::now();
+                Ok(())
+            },
+        )?;
+        let summary: OutFile = files::summary(boxes)?;
+        writer.out_files(vec![summary])?;
+        Ok(time_s)
+    }
+}

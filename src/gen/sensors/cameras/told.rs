@@ -1,0 +1,92 @@
+//! Classes and depths of the very surfaces that the pictures show.
+
+use super::view::MAP_VIEWS;
+use super::{
+    CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+};
+use crate::appearance::Appearance;
+use scene::truth::{OUTSIDE, STOP_LINE};
+use scene::{Camera, CameraMaps, CameraTruth, Class, Frame};
+
+/// Name of the source.
+pub const ID: SourceId = SourceId::new("truth");
+
+/// The source.
+pub struct Told;
+
+impl CameraSource for Told {
+    fn id(&self) -> SourceId {
+        ID
+    }
+
+    fn title(&self) -> &'static str {
+        "As pictures"
+    }
+
+    fn hint(&self) -> &'static str {
+        "what the pictures show, pixel by pixel: paint, crowns and the skyline too"
+    }
+
+    fn views(&self) -> &'static [View] {
+        MAP_VIEWS
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            occupancy: true,
+            layout: true,
+            boxes: true,
+            conditions: true,
+            ..Needs::default()
+        }
+    }
+
+    fn report_key(&self) -> &'static str {
+        "truth"
+    }
+
+    fn bytes_per_pixel(&self) -> u64 {
+        80
+    }
+
+    fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
+        Box::new(Ready {
+            appearance: Appearance::new(input.frame, input.rig, &input.conditions),
+            frame: input.frame,
+        })
+    }
+}
+
+struct Ready<'a> {
+    appearance: Appearance,
+    frame: &'a Frame,
+}
+
+impl PreparedCameras for Ready<'_> {
+    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+        let truth = self
+            .appearance
+            .truth(camera, options.size, &self.frame.boxes, None);
+        CameraPicture::Maps(maps(&truth))
+    }
+}
+
+/// Classes and depths as maps; a stop line is road there.
+pub fn maps(truth: &CameraTruth) -> CameraMaps {
+    let class = |class: u8| match class {
+        STOP_LINE => Class::DriveableSurface.id(),
+        OUTSIDE => 0,
+        class => class,
+    };
+    let depth_m = truth.plane(|p| p.depth_m);
+    CameraMaps {
+        camera: truth.camera.name.clone(),
+        width: truth.width,
+        height: truth.height,
+        semantic: truth.plane(|p| class(p.class)),
+        coverage: depth_m.iter().map(|d| f32::from(*d >= 0.0)).collect(),
+        expected_m: depth_m.iter().map(|d| d.max(0.0)).collect(),
+        median_m: depth_m.clone(),
+        depth_m,
+    }
+}
