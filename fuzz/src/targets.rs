@@ -143,7 +143,7 @@ pub fn point_cloud(bytes: &[u8]) {
     }) {
         Err(error) => one_line(error),
         Ok(Content::Scene(loaded)) => frame_is_sound(loaded.scene.frame()),
-        Ok(Content::Roads(_)) => panic!("a cloud is no road"),
+        Ok(_) => panic!("a cloud is a scene"),
     }
 }
 

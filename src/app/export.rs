@@ -13,6 +13,7 @@ use super::picture::{ShotOptions, View3d};
 use crate::shell::checking;
 use crate::truth;
 use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen, Span};
+use formats::recipe::Recipe;
 use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
 use scene::{CameraMaps, CameraTruth, LidarSweep, Pose, Scene, SensorRig};
@@ -175,6 +176,7 @@ pub fn export_all(
     let fills_a_folder = formats.len() > 1;
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
+    let recipe = Recipe::of(scene);
     // Files of a moment speak of the ego frame; sensors see the scene where it is.
     for format in formats {
         let of_file = match format.span {
@@ -183,6 +185,7 @@ pub fn export_all(
         };
         let mut making = Making {
             whole: scene,
+            recipe: &recipe,
             scene: scene.with_rig_in_world(),
             options,
             progress,
@@ -226,6 +229,7 @@ fn write(named: &Path, ready: Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<Vec<(Pa
 struct Making<'a> {
     /// The clip.
     whole: &'a Scene,
+    recipe: &'a Recipe,
     /// The moment that products are made of, with the sensors where the ego vehicle is.
     scene: Cow<'a, Scene>,
     options: &'a ExportOptions,
@@ -314,6 +318,10 @@ impl Products for Making<'_> {
             },
         );
         told.map_err(FormatError::new)
+    }
+
+    fn recipe(&self) -> &Recipe {
+        self.recipe
     }
 
     fn world_from_ego(&self) -> Pose {

@@ -34,6 +34,7 @@ pub mod view3d;
 pub mod views_shown;
 pub mod windows;
 
+pub use authoring::again::again;
 pub use authoring::{memory, open, prompting, scenery, text};
 
 pub use command::Command;

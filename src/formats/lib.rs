@@ -14,6 +14,7 @@ pub mod npz;
 pub mod occ3d;
 pub mod opendrive;
 pub mod png;
+pub mod recipe;
 #[cfg(test)]
 mod table_tests;
 pub mod video;

@@ -13,6 +13,7 @@ use scene::{
 
 use crate::export::{self, Exporter, Picture, Products, Seen};
 use crate::import::{self, Content, Importer, Source};
+use crate::recipe::Recipe;
 use crate::{FormatError, Holds, box_list, loom, occ3d};
 
 /// A small scene: a road, a car and its voxels, some paint.
@@ -78,7 +79,7 @@ pub(crate) fn random_scene(seed: u64) -> Scene {
 }
 
 /// Products of two cameras of four pixels and a sweep of one point.
-struct Small;
+struct Small(Recipe);
 
 impl Products for Small {
     fn show(&mut self, _time_s: f64) -> Result<(), FormatError> {
@@ -166,6 +167,10 @@ impl Products for Small {
         take(picture, truth)
     }
 
+    fn recipe(&self) -> &Recipe {
+        &self.0
+    }
+
     fn world_from_ego(&self) -> Pose {
         Pose::from_wxyz([1.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0])
     }
@@ -212,7 +217,7 @@ fn assert_holds(holds: Holds, a: &Scene, b: &Scene) {
 
 /// A scene written in a format and read again, if the format is read at all.
 pub(crate) fn round_trip(exporter: &Exporter, scene: &Scene) -> Option<Content> {
-    let files = (exporter.write)(scene, &mut Small).expect(exporter.id);
+    let files = (exporter.write)(scene, &mut Small(Recipe::of(scene))).expect(exporter.id);
     let names: BTreeSet<&str> = files.iter().map(|f| f.name.as_str()).collect();
     assert_eq!(names.len(), files.len(), "{}: a name twice", exporter.id);
     assert!(names.iter().all(|name| is_tidy(name)), "{names:?}");

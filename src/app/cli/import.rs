@@ -91,6 +91,14 @@ impl Import {
         let (importer, content) = import::read(&self.file)?;
         match content {
             Content::Scene(loaded) => self.whole(importer, &loaded),
+            Content::Recipe(recipe) => {
+                let loaded = Loaded {
+                    scene: app::again(&recipe)?,
+                    inferred: &[],
+                    skipped: Default::default(),
+                };
+                self.whole(importer, &loaded)
+            }
             Content::Roads(network) => {
                 let placement = Placement {
                     at_m: self.at,

@@ -2,7 +2,7 @@
 
 use scene::sensor_data::depth_mm;
 
-use super::{Exporter, OutFile, Product, Span, with_text};
+use super::{Exporter, OutFile, Product, Span};
 use crate::{FormatError, Holds, calibration, png};
 
 /// `CAMERA_depth_mm.png` for each camera: millimetres along the optical axis, 0 where there is no depth.
@@ -15,11 +15,12 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
+        let recipe = products.recipe().clone();
         let (mut files, mut size) = (Vec::new(), None);
         products.camera_maps(&mut |m| {
             size = Some([m.width as u32, m.height as u32]);
             let mm = depth_mm(&m.depth_m);
-            let bytes = with_text(scene, |text| png::grey16(m.width, m.height, &mm, text));
+            let bytes = recipe.in_png(false, |text| png::grey16(m.width, m.height, &mm, text));
             let name = format!("{}_depth_mm.png", m.camera);
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())

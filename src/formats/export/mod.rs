@@ -17,7 +17,8 @@ use std::fmt;
 
 use scene::{BoxId, CameraMaps, CameraTruth, LidarSweep, Pose, Scene};
 
-use super::{FormatError, Holds, png};
+use super::recipe::Recipe;
+use super::{FormatError, Holds};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
 const TABLE: [&Exporter; 9] = [
@@ -127,6 +128,8 @@ pub trait Products {
         &mut self,
         take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
+    /// How the files come to be.
+    fn recipe(&self) -> &Recipe;
     /// Where the ego vehicle is at the moment that products are made of, in the world frame.
     fn world_from_ego(&self) -> Pose;
     /// A picture of the 3D view.
@@ -194,17 +197,6 @@ impl OutFile {
             bytes: self.bytes,
         }
     }
-}
-
-/// What a picture shows goes into the picture as text.
-fn with_text<T>(scene: &Scene, encode: impl FnOnce(&png::Text<'_>) -> T) -> T {
-    let seed = scene.seed.to_string();
-    encode(&[
-        ("Prompt", &scene.prompt),
-        ("Seed", &seed),
-        ("Scene", &scene.name),
-        ("Software", concat!("sceneloom ", env!("CARGO_PKG_VERSION"))),
-    ])
 }
 
 #[cfg(test)]

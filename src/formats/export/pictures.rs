@@ -1,6 +1,6 @@
 //! Pictures that the cameras take.
 
-use super::{Exporter, OutFile, Product, Span, with_text};
+use super::{Exporter, OutFile, Product, Span};
 use crate::{FormatError, Holds, calibration, png};
 
 /// `CAMERA.png` for each camera.
@@ -13,10 +13,11 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::Pictures],
     write: |scene, products| {
+        let recipe = products.recipe().clone();
         let (mut files, mut size) = (Vec::new(), None);
         products.pictures(&mut |p| {
             size = Some([p.width as u32, p.height as u32]);
-            let bytes = with_text(scene, |text| png::rgba(p.width, p.height, &p.rgba, text));
+            let bytes = recipe.in_png(true, |text| png::rgba(p.width, p.height, &p.rgba, text));
             let name = format!("{}.png", p.camera);
             files.push(OutFile::new(&name, bytes.map_err(FormatError::new)?));
             Ok(())

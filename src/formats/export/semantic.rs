@@ -4,7 +4,7 @@ use scene::sensor_data::{RENDER_IDS, RenderId, render_id_color};
 use scene::{CameraMaps, Class};
 use serde_json::json;
 
-use super::{Exporter, OutFile, Product, Span, with_text};
+use super::{Exporter, OutFile, Product, Span};
 use crate::{FormatError, Holds, calibration, png};
 
 /// `CAMERA_semantic.png` for each camera, and `classes.json`.
@@ -17,11 +17,12 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::CameraMaps],
     write: |scene, products| {
+        let recipe = products.recipe().clone();
         let (mut files, mut size) = (Vec::new(), None);
         products.camera_maps(&mut |m| {
             size = Some([m.width as u32, m.height as u32]);
             let labels = labels(&m);
-            let bytes = with_text(scene, |text| {
+            let bytes = recipe.in_png(false, |text| {
                 png::indexed(m.width, m.height, &labels, &palette(), text)
             });
             let name = format!("{}_semantic.png", m.camera);

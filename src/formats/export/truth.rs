@@ -1,12 +1,12 @@
 //! Pictures with the truth about them, from the same hits: classes, instances, depths, normals, flow, boxes.
 
-use scene::Scene;
 use scene::sensor_data::depth_mm;
 use scene::truth::{self, CameraTruth, SeenBox};
 use serde_json::{Value, json};
 
-use super::{Exporter, OutFile, Picture, Product, Span, with_text};
+use super::{Exporter, OutFile, Picture, Product, Span};
 use crate::npz::{self, Array, Values};
+use crate::recipe::{self, Recipe};
 use crate::{FormatError, Holds, calibration, png};
 
 /// For each camera `CAMERA.png`, `CAMERA_class.png`, `CAMERA_instance.png`, `CAMERA_depth_mm.png`, `CAMERA_normal.png` and
@@ -20,14 +20,15 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Moment,
     needs: &[Product::Truth],
     write: |scene, products| {
+        let recipe = products.recipe().clone();
         let (mut files, mut cameras, mut size) = (Vec::new(), Vec::new(), None);
         products.truth(&mut |picture, truth| {
             size = Some([truth.width as u32, truth.height as u32]);
-            files.extend(of_camera(scene, &picture, &truth)?);
+            files.extend(of_camera(&recipe, &picture, &truth)?);
             cameras.push(boxes(&truth));
             Ok(())
         })?;
-        files.push(summary(cameras)?);
+        files.push(summary(&recipe, cameras)?);
         let world_from_ego = products.world_from_ego();
         let calibration = calibration::to_bytes(scene, &world_from_ego, size);
         files.push(OutFile::new(calibration::FILE, calibration));
@@ -36,7 +37,11 @@ pub const EXPORTER: Exporter = Exporter {
 };
 
 /// The files of one camera. Errors if a picture has no pixel.
-pub fn of_camera(scene: &Scene, picture: &Picture, truth: &CameraTruth) -> Result<Vec<OutFile>, FormatError> {
+pub fn of_camera(
+    recipe: &Recipe,
+    picture: &Picture,
+    truth: &CameraTruth,
+) -> Result<Vec<OutFile>, FormatError> {
     let (name, w, h) = (&truth.camera.name, truth.width, truth.height);
     let mut files = Vec::new();
     let mut add = |ending: &str, bytes: Result<Vec<u8>, png::PngError>| -> Result<(), FormatError> {
@@ -44,11 +49,11 @@ pub fn of_camera(scene: &Scene, picture: &Picture, truth: &CameraTruth) -> Resul
         files.push(OutFile::new(&format!("{name}{ending}"), bytes));
         Ok(())
     };
-    with_text(scene, |text| {
-        add(
-            ".png",
-            png::rgba(picture.width, picture.height, &picture.rgba, text),
-        )?;
+    let own = recipe.in_png(true, |text| {
+        png::rgba(picture.width, picture.height, &picture.rgba, text)
+    });
+    add(".png", own)?;
+    recipe.in_png(false, |text| {
         // Outside the lens is one past the last class, so that the palette stays short.
         let labels = truth.plane(|p| p.class.min(truth::STOP_LINE + 1));
         add("_class.png", png::indexed(w, h, &labels, &palette(), text))?;
@@ -134,7 +139,7 @@ fn seen(b: &SeenBox) -> Value {
 }
 
 /// `truth.json`: the boxes of all cameras and the names of the classes.
-pub fn summary(cameras: Vec<Value>) -> Result<OutFile, FormatError> {
+pub fn summary(recipe: &Recipe, cameras: Vec<Value>) -> Result<OutFile, FormatError> {
     let names = truth::class_names();
     let class =
         |(i, name): (usize, String)| json!({ "index": i, "name": name, "rgb": truth::color(i as u8) });
@@ -148,6 +153,7 @@ pub fn summary(cameras: Vec<Value>) -> Result<OutFile, FormatError> {
         "frame": "boxes: ego, x forward, y left, z up, m; sizes length, width, height; corners by the signs along x, y, z",
         "classes": classes,
         "cameras": cameras,
+        recipe::NAME: recipe,
     });
     let text = serde_json::to_string_pretty(&value).map_err(FormatError::new)?;
     Ok(OutFile::new("truth.json", text.into_bytes()))

@@ -1,6 +1,6 @@
 //! A picture of the 3D view.
 
-use super::{Exporter, OutFile, Product, Span, with_text};
+use super::{Exporter, OutFile, Product, Span};
 use crate::{FormatError, Holds, png};
 
 /// One picture.
@@ -12,9 +12,10 @@ pub const EXPORTER: Exporter = Exporter {
     lost: "",
     span: Span::Moment,
     needs: &[Product::View],
-    write: |scene, products| {
+    write: |_, products| {
+        let recipe = products.recipe().clone();
         let p = products.view()?;
-        let bytes = with_text(scene, |text| png::rgba(p.width, p.height, &p.rgba, text));
+        let bytes = recipe.in_png(true, |text| png::rgba(p.width, p.height, &p.rgba, text));
         Ok(vec![OutFile::new("view.png", bytes.map_err(FormatError::new)?)])
     },
 };

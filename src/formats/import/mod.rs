@@ -7,6 +7,7 @@ pub mod loom;
 pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
+pub mod picture;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,14 +16,16 @@ use std::sync::Arc;
 use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
 
 use super::opendrive::RoadNetwork;
+use super::recipe::Recipe;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 5] = [
+const TABLE: [&Importer; 6] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
+    &picture::IMPORTER,
     &opendrive::IMPORTER,
 ];
 
@@ -91,6 +94,8 @@ pub enum Content {
     Scene(Box<Loaded>),
     /// Roads: a scene lies somewhere on them, and the user says where.
     Roads(Box<RoadNetwork>),
+    /// Words and parameters that a scene can be made of again.
+    Recipe(Box<Recipe>),
 }
 
 /// A scene, and what was left out of it.

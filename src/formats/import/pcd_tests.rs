@@ -34,7 +34,7 @@ fn loaded(bytes: &[u8]) -> Result<Loaded, PcdError> {
         path: None,
     })? {
         Content::Scene(loaded) => Ok(*loaded),
-        Content::Roads(_) => panic!("a cloud is no road"),
+        other => panic!("a cloud is a scene, not {other:?}"),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Makes scenes: from a file, a template or words, and with scenery beside the roads. The window, the command line and the
 //! judge use it.
 
+pub mod again;
 pub mod drives;
 pub mod large;
 pub mod memory;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
+use super::again::again;
 use super::{large, scenery_around};
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
@@ -50,6 +51,7 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
         Content::Roads(network) => {
             Ok(on_roads(*network, &import::scene_name(path), &Placement::default()).scene)
         }
+        Content::Recipe(recipe) => again(&recipe).with_context(|| path.display().to_string()),
     }
 }
 
@@ -57,7 +59,7 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
 pub fn labels(path: &Path) -> anyhow::Result<Scene> {
     match import::read_as(&import::occ3d::IMPORTER, path)? {
         Content::Scene(loaded) => Ok(loaded.scene),
-        Content::Roads(_) => bail!("{}: roads, expected labels", path.display()),
+        _ => bail!("{}: roads or words, expected labels", path.display()),
     }
 }
 
@@ -171,7 +173,7 @@ pub struct Imported {
 pub fn road_network(path: &Path) -> anyhow::Result<RoadNetwork> {
     match import::read_as(&import::opendrive::IMPORTER, path)? {
         Content::Roads(network) => Ok(*network),
-        Content::Scene(_) => bail!("{}: a scene, expected roads", path.display()),
+        _ => bail!("{}: a scene, expected roads", path.display()),
     }
 }
 

@@ -15,6 +15,7 @@ use super::{Common, Moment, Outcome, output};
 use app::camera_views::camera_input;
 use app::graphics::Graphics;
 use app::{open, picture};
+use formats::recipe::Recipe;
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
 use sensors::cameras::{CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
@@ -87,6 +88,14 @@ impl Render {
         }
     }
 
+    /// How the pictures come to be: under the weather and time that were asked for.
+    fn recipe(&self, scene: &Scene) -> Recipe {
+        Recipe {
+            conditions: self.input(scene).conditions,
+            ..Recipe::of(scene)
+        }
+    }
+
     /// Renders and writes the pictures of one source, a few cameras at a time if they are small, else one.
     fn cameras(
         &self,
@@ -136,7 +145,7 @@ impl Render {
         let scene = scene.with_rig_in_world().into_owned();
         // Whatever cannot be had is told before anything is written.
         let plan = Plan::new(&self, &scene)?;
-        let mut writer = Writer::new(&self.output)?;
+        let mut writer = Writer::new(&self.output, self.recipe(&of_file))?;
         let mut wall_s = Times::new();
         let mut lidar_report = serde_json::Value::Null;
         let frame = scene.frame();
@@ -144,7 +153,7 @@ impl Render {
             self.cameras(&scene, cameras, (&mut writer, &mut wall_s))?;
         }
         if plan.truth {
-            let time_s = self.truth(&scene, &of_file, &mut writer)?;
+            let time_s = self.truth(&scene, &mut writer)?;
             wall_s.insert("truth", time_s);
         }
         if plan.truth || !plan.cameras.is_empty() || plan.lidar.is_some() {

@@ -11,9 +11,8 @@ use scene::Scene;
 use sensors::appearance::Quality;
 
 impl Render {
-    /// Renders and writes every camera of a scene whose sensors are in the world; `of_file` is the scene in the ego frame, of
-    /// which the files speak. Returns the seconds that rendering took.
-    pub fn truth(&self, scene: &Scene, of_file: &Scene, writer: &mut Writer) -> anyhow::Result<f64> {
+    /// Renders and writes every camera of a scene whose sensors are in the world. Returns the seconds that rendering took.
+    pub fn truth(&self, scene: &Scene, writer: &mut Writer) -> anyhow::Result<f64> {
         let quality = if self.preview {
             Quality::Preview
         } else {
@@ -36,13 +35,13 @@ impl Render {
                     height: image.height,
                     rgba: image.rgba,
                 };
-                writer.out_files(files::of_camera(of_file, &picture, &truth)?)?;
+                writer.out_files(files::of_camera(writer.recipe(), &picture, &truth)?)?;
                 boxes.push(files::boxes(&truth));
                 start = Instant::now();
                 Ok(())
             },
         )?;
-        let summary: OutFile = files::summary(boxes)?;
+        let summary: OutFile = files::summary(writer.recipe(), boxes)?;
         writer.out_files(vec![summary])?;
         Ok(time_s)
     }

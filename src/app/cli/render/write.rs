@@ -10,6 +10,7 @@ use formats::calibration;
 use formats::export::{OutFile, ply};
 use formats::multi_plane;
 use formats::npz::{self, Array, Values};
+use formats::recipe::Recipe;
 use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, Scene};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
@@ -18,6 +19,7 @@ use sensors::color;
 /// A folder, and what was written into it.
 pub struct Writer {
     dir: PathBuf,
+    recipe: Recipe,
     /// Paths of the files.
     pub files: Vec<PathBuf>,
     /// Pictures in colours of the cameras so far.
@@ -43,11 +45,12 @@ pub fn sheet_bytes(size: [u32; 2], count: usize) -> u64 {
 }
 
 impl Writer {
-    /// Makes the folder.
-    pub fn new(dir: &Path) -> anyhow::Result<Self> {
+    /// Makes the folder; `recipe` goes into the pictures.
+    pub fn new(dir: &Path, recipe: Recipe) -> anyhow::Result<Self> {
         std::fs::create_dir_all(dir).with_context(|| format!("create {}", dir.display()))?;
         Ok(Self {
             dir: dir.into(),
+            recipe,
             files: Vec::new(),
             sheet: None,
         })
@@ -65,6 +68,11 @@ impl Writer {
         files.into_iter().try_for_each(|f| self.bytes(&f.name, &f.bytes))
     }
 
+    /// How the pictures come to be.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
     /// Where the sensors look, and when.
     pub fn calibration(
         &mut self,
@@ -78,7 +86,7 @@ impl Writer {
 
     fn png(&mut self, name: &str, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {
         let path = self.dir.join(name);
-        output::write_png(&path, width, height, rgba)?;
+        output::write_png_of(&path, [width, height], rgba, Some(&self.recipe))?;
         self.files.push(path);
         Ok(())
     }

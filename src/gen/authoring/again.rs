@@ -1,0 +1,51 @@
+//! A scene made again from the recipe of a file.
+
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+
+use super::prompting::How;
+use super::text;
+use editor::{Edit, apply_all};
+use formats::recipe::Recipe;
+use scene::Scene;
+
+/// The scene that the words of a recipe make, in the same order and from the same seed, under its light and air. What was
+/// changed by hand is not in a recipe. Errors if there are no words, or they cannot be carried out.
+pub fn again(recipe: &Recipe) -> anyhow::Result<Scene> {
+    let Some((first, rest)) = recipe.words.split_first() else {
+        bail!("the recipe has no words");
+    };
+    let read = text::read(first)?;
+    let mut scene = text::make(first, &read.described.description, recipe.seed, &How::default()).scene;
+    scene.words = Arc::new(vec![first.clone()]);
+    for words in rest {
+        let mut edits = text::read_edit(words, &scene, recipe.seed)?.edits();
+        edits.push(Edit::KeepWords { words: words.clone() });
+        apply_all(&edits, &mut scene).with_context(|| format!("{words:?}"))?;
+    }
+    scene.conditions = recipe.conditions;
+    scene.name = recipe.scene.as_str().into();
+    scene.touch();
+    Ok(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_seed_make_the_same_scene_again() {
+        let recipe = Recipe {
+            words: vec!["two parked cars and a bus ahead".into(), "remove the bus".into()],
+            seed: 5,
+            scene: "a street".into(),
+            ..Recipe::default()
+        };
+        let (a, b) = (again(&recipe).expect("made"), again(&recipe).expect("made"));
+        assert!(a.canvas() == b.canvas() && a.words.len() == 2);
+        assert_eq!((a.frame().boxes.len(), &*a.name), (2, "a street"));
+        let line = again(&Recipe::default()).expect_err("no words").to_string();
+        assert!(line.contains("no words"), "{line}");
+    }
+}
