@@ -1,0 +1,59 @@
+//! A small picture of a variant: the map from above and the front camera.
+
+use std::path::Path;
+
+use anyhow::Context;
+
+use crate::camera_views::camera_input;
+use crate::picture::{self, Picture};
+use formats::{atomic, png};
+use scene::Scene;
+use sensors::appearance::{Appearance, Quality};
+use sensors::cameras::Detail;
+
+/// Its name in the variant's folder.
+pub const FILE: &str = "thumb.png";
+/// Size of the camera's part, pixels; the map is a square of the same height.
+const SIZE: [u32; 2] = [213, 120];
+
+/// Draws and writes it.
+pub fn write(scene: &Scene, path: &Path) -> anyhow::Result<()> {
+    let picture = draw(scene);
+    let bytes = png::rgba(picture.width, picture.height, &picture.rgba, &png::Notes::default())?;
+    atomic::write(path, &bytes).with_context(|| format!("write {}", path.display()))
+}
+
+/// The map from above, and beside it what the front camera sees, if the rig has a camera.
+fn draw(scene: &Scene) -> Picture {
+    let scene = scene.with_rig_in_world();
+    let map = fitted(picture::layout_top(scene.frame(), 1), SIZE[1]);
+    let front = scene.rig.cameras.iter().find(|c| c.name.ends_with("FRONT"));
+    let Some(camera) = front.or(scene.rig.cameras.first()) else {
+        return map;
+    };
+    let input = camera_input(&scene, Detail::Full);
+    let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+    let image = appearance.render(camera, SIZE[0], SIZE[1], Quality::Preview);
+    let seen = Picture {
+        width: image.width,
+        height: image.height,
+        rgba: image.rgba,
+    };
+    Picture::sheet(&[vec![map, seen]], 2)
+}
+
+/// A picture made so small that neither side is longer.
+fn fitted(picture: Picture, side: u32) -> Picture {
+    let (width, height) = (picture.width as u32, picture.height as u32);
+    let Some(image) = image::RgbaImage::from_raw(width, height, picture.rgba.clone()) else {
+        return picture;
+    };
+    let share = f64::from(side) / f64::from(width.max(height).max(1));
+    let [w, h] = [width, height].map(|v| ((f64::from(v) * share).round() as u32).max(1));
+    let small = image::imageops::thumbnail(&image, w, h);
+    Picture {
+        width: w as usize,
+        height: h as usize,
+        rgba: small.into_raw(),
+    }
+}
