@@ -5,6 +5,7 @@ pub mod atomic;
 pub mod box_list;
 pub mod error;
 pub mod export;
+mod glb;
 pub mod import;
 pub mod input;
 pub mod loom;

@@ -3,6 +3,7 @@
 
 pub mod boxes;
 pub mod depth;
+pub mod glb;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
@@ -19,9 +20,10 @@ use scene::{BoxId, CameraMaps, LidarSweep, Scene};
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 8] = [
+const TABLE: [&Exporter; 9] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
+    &glb::EXPORTER,
     &nuscenes_lidar::EXPORTER,
     &ply::EXPORTER,
     &semantic::EXPORTER,

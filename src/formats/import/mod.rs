@@ -3,6 +3,7 @@
 
 pub mod boxes;
 mod cloud;
+pub mod glb;
 pub mod loom;
 pub mod occ3d;
 pub mod opendrive;
@@ -18,11 +19,12 @@ use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 5] = [
+const TABLE: [&Importer; 6] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
+    &glb::IMPORTER,
     &opendrive::IMPORTER,
 ];
 
