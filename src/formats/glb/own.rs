@@ -1,5 +1,6 @@
 //! Scenes of ours: voxels from their meshes as these lie now, so that what was moved or cut elsewhere comes back as it is seen.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -210,10 +211,13 @@ fn boxes(
         let b = as_it_lies(extras, &node.world_from_node);
         if b.problem().is_some() {
             left_out.add("boxes that are upright or finite no more", 1);
-        } else if out.contains_key(&b.id) {
-            copies.push(b);
-        } else {
-            out.insert(b.id, b);
+            continue;
+        }
+        match out.entry(b.id) {
+            Entry::Occupied(_) => copies.push(b),
+            Entry::Vacant(place) => {
+                place.insert(b);
+            }
         }
     }
     let taken: BTreeSet<u32> = out.keys().map(|id| id.0).collect();
