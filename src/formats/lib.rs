@@ -17,6 +17,7 @@ pub mod png;
 #[cfg(test)]
 mod table_tests;
 pub mod video;
+pub mod world_scenario;
 
 pub use error::FormatError;
 

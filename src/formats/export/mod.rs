@@ -2,6 +2,7 @@
 //! use this table.
 
 pub mod boxes;
+pub mod control_video;
 pub mod depth;
 pub mod glb;
 pub mod loom;
@@ -11,6 +12,7 @@ pub mod pictures;
 pub mod ply;
 pub mod semantic;
 pub mod view;
+pub mod world_scenario;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,7 +22,7 @@ use scene::{BoxId, CameraMaps, LidarSweep, Scene};
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 9] = [
+const TABLE: [&Exporter; 11] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &glb::EXPORTER,
@@ -30,6 +32,8 @@ const TABLE: [&Exporter; 9] = [
     &depth::EXPORTER,
     &pictures::EXPORTER,
     &view::EXPORTER,
+    &world_scenario::EXPORTER,
+    &control_video::EXPORTER,
 ];
 
 /// A format that is written.

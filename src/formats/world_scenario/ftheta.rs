@@ -1,6 +1,7 @@
 //! The f-theta camera: how far a ray's angle from the optical axis lies from the principal point is a polynomial.
 //!
-//! World scenarios know this model alone. A pinhole is brought to it by a fit of the angle over the distance in pixels.
+//! World scenarios know this model alone. A pinhole is brought to it by a fit of the angle over the distance in pixels: within a
+//! tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), .45 pixels at 120 degrees.
 
 use glam::{DVec2, DVec3};
 use scene::Camera;
@@ -87,6 +88,11 @@ impl FTheta {
         self.angle_of_px.iter().rev().fold(0.0, |sum, k| sum * r_px + k)
     }
 
+    /// Angle from the optical axis beyond which nothing is projected, rad.
+    pub fn widest_rad(&self) -> f64 {
+        self.angle(self.farthest_px) + BEYOND_RAD
+    }
+
     fn slope(&self, r_px: f64) -> f64 {
         let powers = self.angle_of_px.iter().enumerate().skip(1).rev();
         powers.fold(0.0, |sum, (power, k)| sum * r_px + power as f64 * k)
@@ -102,10 +108,18 @@ impl FTheta {
         let mut r_px = self.farthest_px * angle_rad / last_rad;
         for _ in 0..60 {
             let off = self.angle(r_px) - angle_rad;
-            if off > 0.0 { high = r_px } else { low = r_px }
+            if off > 0.0 {
+                high = r_px
+            } else {
+                low = r_px
+            }
             let next = r_px - off / self.slope(r_px);
             // Newton, and halving where it leaves the bracket.
-            let next = if next > low && next < high { next } else { (low + high) / 2.0 };
+            let next = if next > low && next < high {
+                next
+            } else {
+                (low + high) / 2.0
+            };
             if (next - r_px).abs() < 1e-9 {
                 return next;
             }
@@ -118,12 +132,11 @@ impl FTheta {
     pub fn project(&self, point_m: DVec3) -> Option<DVec2> {
         let aside = point_m.truncate();
         let (aside_m, distance_m) = (aside.length(), point_m.length());
-        // Written so that NaN fails too.
-        if !(distance_m > 1e-9) {
+        if distance_m.is_nan() || distance_m <= 1e-9 {
             return None;
         }
         let angle_rad = aside_m.atan2(point_m.z);
-        if angle_rad > self.angle(self.farthest_px) + BEYOND_RAD {
+        if angle_rad > self.widest_rad() {
             return None;
         }
         let direction = aside.try_normalize().unwrap_or_default();
@@ -194,7 +207,10 @@ fn solved(mut rows: [[f64; TERMS + 1]; TERMS]) -> Option<[f64; TERMS]> {
         }
         for other in rows.iter_mut().skip(k + 1) {
             let share = other[k] / row[k];
-            other.iter_mut().zip(row).for_each(|(cell, value)| *cell -= share * value);
+            other
+                .iter_mut()
+                .zip(row)
+                .for_each(|(cell, value)| *cell -= share * value);
         }
     }
     let mut out = [0.0; TERMS];
@@ -225,10 +241,14 @@ mod tests {
                 let found = model.project(at.extend(1.0) * 7.0).expect("in the picture");
                 worst_px = worst_px.max(found.distance(pixel));
             }
-            assert!(worst_px < 0.1 && worst_px <= model.error_px + 1e-6, "{}: {worst_px} px", camera.name);
+            assert!(
+                worst_px < 0.1 && worst_px <= model.error_px + 1e-6,
+                "{}: {worst_px} px",
+                camera.name
+            );
         }
         // How wide a pinhole may be: the error grows quickly beyond.
-        for (fov_deg, most_px) in [(30.0, 0.01), (90.0, 0.04), (115.0, 0.1), (120.0, 0.5)] {
+        for (fov_deg, most_px) in [(30.0, 0.001), (90.0, 0.04), (105.0, 0.1), (120.0, 0.5)] {
             let found = FTheta::of(&Camera::new("CAM", fov_deg)).error_px;
             assert!(found < most_px, "{fov_deg} degrees: {found} px");
         }

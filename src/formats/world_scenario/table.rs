@@ -46,7 +46,11 @@ pub(crate) enum Values {
 pub(crate) fn vectors(name: &'static str, of: &[DVec3]) -> Field {
     let axis = |i: usize| Values::Number(of.iter().map(|v| v[i]).collect());
     let axes = ["x", "y", "z"].into_iter().enumerate();
-    Field::Group(name, axes.map(|(i, axis_name)| Field::Values(axis_name, axis(i))).collect())
+    Field::Group(
+        name,
+        axes.map(|(i, axis_name)| Field::Values(axis_name, axis(i)))
+            .collect(),
+    )
 }
 
 /// A file of `rows` rows with these columns.
@@ -84,10 +88,7 @@ fn schema_of(field: &Field) -> Result<TypePtr> {
             Values::Flag(_) => plain(name, Physical::BOOLEAN, Repetition::REQUIRED)?,
             Values::Unsigned(_) => Type::primitive_type_builder(name, Physical::INT64)
                 .with_repetition(Repetition::REQUIRED)
-                .with_logical_type(Some(LogicalType::Integer {
-                    bit_width: 64,
-                    is_signed: false,
-                }))
+                .with_logical_type(Some(LogicalType::integer(64, false)))
                 .build()?,
             Values::Texts(_) => list(name, text("element", Repetition::REQUIRED)?)?,
             Values::Points(_) => {
@@ -105,7 +106,9 @@ fn group(name: &str, fields: Vec<TypePtr>) -> Result<Type> {
 }
 
 fn plain(name: &str, kind: Physical, repetition: Repetition) -> Result<Type> {
-    Type::primitive_type_builder(name, kind).with_repetition(repetition).build()
+    Type::primitive_type_builder(name, kind)
+        .with_repetition(repetition)
+        .build()
 }
 
 fn text(name: &str, repetition: Repetition) -> Result<Type> {
@@ -141,7 +144,11 @@ fn write_field(group: &mut Group<'_>, field: &Field) -> Result<()> {
         Values::Integer(all) => column::<Int64Type>(group, all, None),
         Values::Unsigned(all) => {
             // The same bits; the type says that there is no sign.
-            column::<Int64Type>(group, &all.iter().map(|v| v.cast_signed()).collect::<Vec<_>>(), None)
+            column::<Int64Type>(
+                group,
+                &all.iter().map(|v| v.cast_signed()).collect::<Vec<_>>(),
+                None,
+            )
         }
         Values::Number(all) => column::<DoubleType>(group, all, None),
         Values::Flag(all) => column::<BoolType>(group, all, None),
@@ -200,7 +207,9 @@ fn column<T: parquet::data_type::DataType>(
     levels: Option<Levels>,
 ) -> Result<()> {
     let Some(mut column) = group.next_column()? else {
-        return Err(parquet::errors::ParquetError::General("more columns than the schema has".into()));
+        return Err(parquet::errors::ParquetError::General(
+            "more columns than the schema has".into(),
+        ));
     };
     let (definition, repetition) = match &levels {
         Some(levels) => (Some(&levels.definition[..]), levels.repetition.as_deref()),
@@ -228,8 +237,14 @@ mod tests {
                 ],
             ),
             vectors("center", &[point(1.0), point(3.0)]),
-            Field::Values("rail", Values::Points(vec![vec![point(1.0), point(2.0), point(9.0)], vec![]])),
-            Field::Values("styles", Values::Texts(vec![vec![], vec!["X".into(), "Y".into()]])),
+            Field::Values(
+                "rail",
+                Values::Points(vec![vec![point(1.0), point(2.0), point(9.0)], vec![]]),
+            ),
+            Field::Values(
+                "styles",
+                Values::Texts(vec![vec![], vec!["X".into(), "Y".into()]]),
+            ),
             Field::Values("limit", Values::UnknownNumber(2)),
             Field::Values("implicit", Values::Flag(vec![true, false])),
             Field::Values("version", Values::Unsigned(vec![1, u64::MAX])),
@@ -237,17 +252,32 @@ mod tests {
         let file = to_bytes(2, &fields).expect("sound");
         assert_eq!(file, to_bytes(2, &fields).expect("sound"));
         let reader = SerializedFileReader::new(bytes_of(file)).expect("parquet");
-        let rows: Vec<_> = reader.get_row_iter(None).expect("rows").map(|r| r.expect("a row")).collect();
+        let rows: Vec<_> = reader
+            .get_row_iter(None)
+            .expect("rows")
+            .map(|r| r.expect("a row"))
+            .collect();
         let text = rows.iter().map(|r| format!("{r}\n")).collect::<String>();
         let column = |row: usize, name: &str| {
             let mut all = rows[row].get_column_iter();
-            all.find(|(n, _)| *n == name).map(|(_, cell)| cell.clone()).expect(name)
+            all.find(|(n, _)| *n == name)
+                .map(|(_, cell)| cell.clone())
+                .expect(name)
         };
         assert_eq!(column(1, "version"), Cell::ULong(u64::MAX));
         assert_eq!(column(0, "limit"), Cell::Null);
-        assert!(matches!(column(0, "rail"), Cell::ListInternal(list) if list.len() == 3), "{text}");
-        assert!(matches!(column(1, "rail"), Cell::ListInternal(list) if list.len() == 0), "{text}");
-        assert!(text.contains("{x: 9.0, y: -9.0, z: 4.5}") && text.contains("[\"X\", \"Y\"]"), "{text}");
+        assert!(
+            matches!(column(0, "rail"), Cell::ListInternal(list) if list.len() == 3),
+            "{text}"
+        );
+        assert!(
+            matches!(column(1, "rail"), Cell::ListInternal(list) if list.len() == 0),
+            "{text}"
+        );
+        assert!(
+            text.contains("{x: 9.0, y: -9E0, z: 4.5}") && text.contains("[\"X\", \"Y\"]"),
+            "{text}"
+        );
     }
 
     #[test]
