@@ -6,6 +6,7 @@ pub mod box_list;
 pub mod calibration;
 pub mod error;
 pub mod export;
+mod glb;
 pub mod import;
 pub mod input;
 pub mod loom;
@@ -15,9 +16,11 @@ pub mod occ3d;
 pub mod opendrive;
 pub mod png;
 pub mod recipe;
+pub mod table;
 #[cfg(test)]
 mod table_tests;
 pub mod video;
+pub mod world_scenario;
 
 pub use error::FormatError;
 

@@ -79,7 +79,7 @@ pub(crate) fn random_scene(seed: u64) -> Scene {
 }
 
 /// Products of two cameras of four pixels and a sweep of one point.
-struct Small(Recipe);
+pub(crate) struct Small(pub(crate) Recipe);
 
 impl Products for Small {
     fn show(&mut self, _time_s: f64) -> Result<(), FormatError> {

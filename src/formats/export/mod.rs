@@ -2,7 +2,9 @@
 //! use this table.
 
 pub mod boxes;
+pub mod control_video;
 pub mod depth;
+pub mod glb;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
@@ -11,6 +13,7 @@ pub mod ply;
 pub mod semantic;
 pub mod truth;
 pub mod view;
+pub mod world_scenario;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -21,9 +24,10 @@ use super::recipe::Recipe;
 use super::{FormatError, Holds};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 9] = [
+const TABLE: &[&Exporter] = &[
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
+    &glb::EXPORTER,
     &nuscenes_lidar::EXPORTER,
     &ply::EXPORTER,
     &semantic::EXPORTER,
@@ -31,6 +35,8 @@ const TABLE: [&Exporter; 9] = [
     &pictures::EXPORTER,
     &truth::EXPORTER,
     &view::EXPORTER,
+    &world_scenario::EXPORTER,
+    &control_video::EXPORTER,
 ];
 
 /// A format that is written.
@@ -68,7 +74,7 @@ impl fmt::Debug for Exporter {
 
 /// Every format for other programs, in the order of lists.
 pub fn all() -> &'static [&'static Exporter] {
-    &TABLE
+    TABLE
 }
 
 /// The format of that name.

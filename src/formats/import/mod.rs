@@ -3,6 +3,7 @@
 
 pub mod boxes;
 mod cloud;
+pub mod glb;
 pub mod loom;
 pub mod occ3d;
 pub mod opendrive;
@@ -20,12 +21,13 @@ use super::recipe::Recipe;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 6] = [
+const TABLE: &[&Importer] = &[
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
     &picture::IMPORTER,
+    &glb::IMPORTER,
     &opendrive::IMPORTER,
 ];
 
@@ -111,7 +113,7 @@ pub struct Loaded {
 
 /// Every format that is read.
 pub fn all() -> &'static [&'static Importer] {
-    &TABLE
+    TABLE
 }
 
 /// Every extension, for a dialog.

@@ -44,7 +44,7 @@ impl VideoKind {
 }
 
 /// Takes frames one after the other.
-trait Encoder {
+trait Encoder: Send {
     /// The next frame, RGBA8 of the size that was named.
     fn frame(&mut self, rgba: &[u8]) -> Result<(), FormatError>;
     /// The whole file.

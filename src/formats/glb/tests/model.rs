@@ -1,0 +1,103 @@
+//! Single models, made here and by other programs.
+
+use std::path::PathBuf;
+
+use glam::DVec3;
+use scene::{BoxId, Class, Extent};
+
+use super::{Blocks, read, read_at, text};
+
+#[test]
+fn a_single_model_is_one_box_ahead_of_the_vehicle() {
+    let car = Blocks::of(&[("body", DVec3::new(0.0, 0.3, 0.0), DVec3::new(1.9, 1.5, 4.4))]);
+    let loaded = read_at(&text(&car), "my_sedan", None).expect("a car");
+    let b = loaded.scene.frame().boxes[&BoxId(1)];
+    assert_eq!((b.class, b.label.name.as_str()), (Class::Car, "my_sedan"));
+    assert!(
+        (b.center_m - DVec3::new(10.2, 0.0, 0.75)).length() < 1e-5 && b.yaw_rad == 0.0,
+        "{}",
+        b.center_m
+    );
+    assert!((b.size_m - DVec3::new(4.4, 1.9, 1.5)).length() < 1e-6);
+    let voxels = loaded
+        .scene
+        .frame()
+        .occupancy
+        .iter_set()
+        .filter(|v| v.3 == 4)
+        .count();
+    assert!((44 * 6..60 * 8).contains(&voxels), "{voxels} voxels");
+    assert!(loaded.inferred.is_empty());
+    // By its size, where no name tells: a guess.
+    let loaded = read_at(&text(&car), "untitled", None).expect("a car");
+    assert_eq!(loaded.scene.frame().boxes[&BoxId(1)].class, Class::Car);
+    assert_eq!(
+        (loaded.inferred, loaded.scene.frame().inferred.boxes.len()),
+        (&["boxes"][..], 1)
+    );
+    // Where it stands elsewhere on the map it stays, on the ground.
+    let aside = Blocks::of(&[("bench", DVec3::new(6.0, 7.0, 9.0), DVec3::new(2.0, 1.0, 1.0))]);
+    let loaded = read(&text(&aside));
+    let frame = loaded.scene.frame();
+    assert!(frame.boxes.is_empty());
+    let bench: Vec<_> = frame
+        .occupancy
+        .iter_set()
+        .filter(|v| v.3 == Class::Manmade.id())
+        .collect();
+    let [x, y] = Extent::WINDOW.column_at(6.0, -9.0).expect("on the map");
+    assert!(
+        !bench.is_empty()
+            && bench
+                .iter()
+                .all(|v| v.0.abs_diff(x) < 4 && v.1.abs_diff(y) < 4 && v.2 < 6)
+    );
+}
+
+/// The sample models, where they are: real files of another program.
+#[test]
+fn sample_models_are_read() {
+    let folder =
+        std::env::var_os("SCENELOOM_DATA").map_or_else(|| PathBuf::from("/work/shared/data"), PathBuf::from);
+    let folder = folder.join("gltf");
+    if !folder.is_dir() {
+        return println!("{}: no sample models there", folder.display());
+    }
+    let read = |name: &str| {
+        let path = folder.join(name);
+        let bytes = std::fs::read(&path).expect(name);
+        let stem = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        read_at(&bytes, &stem, Some(path)).expect(name).scene
+    };
+    for (name, class, size_m) in [
+        ("racing/vehicle-truck-yellow.glb", Class::Truck, [2.8, 1.5, 1.55]),
+        (
+            "racing/vehicle-motorcycle.glb",
+            Class::Motorcycle,
+            [2.44, 1.09, 1.27],
+        ),
+        ("platformer/character.glb", Class::Pedestrian, [0.64, 1.2, 1.1]),
+    ] {
+        let scene = read(name);
+        let b = scene.frame().boxes[&BoxId(1)];
+        assert_eq!(b.class, class, "{name}");
+        assert!(
+            (b.size_m - DVec3::from_array(size_m)).abs().max_element() < 0.02,
+            "{name}: {}",
+            b.size_m
+        );
+        assert!(b.yaw_rad == 0.0 && (b.center_m.z - b.size_m.z / 2.0).abs() < 1e-6);
+        let own = scene.frame().occupancy.iter_set().filter(|v| v.3 == class.id());
+        assert!(own.count() >= 6, "{name}");
+    }
+    for (name, class) in [
+        ("city/building-small-c.glb", Class::Manmade),
+        ("city/building-garage.glb", Class::Manmade),
+        ("city/grass-trees-tall.glb", Class::Vegetation),
+    ] {
+        let scene = read(name);
+        assert!(scene.frame().boxes.is_empty(), "{name}");
+        let voxels = scene.frame().occupancy.iter_set().filter(|v| v.3 == class.id());
+        assert!(voxels.count() >= 6, "{name}");
+    }
+}

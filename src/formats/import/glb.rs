@@ -1,0 +1,41 @@
+//! Meshes as glTF 2.0: scenes of ours, foreign scenes and single models; see [`crate::glb`].
+
+use super::{Content, Importer, Loaded, Source};
+use crate::glb::document::Document;
+use crate::glb::{container, foreign, own};
+use crate::{FormatError, Holds};
+
+/// See the module.
+pub const IMPORTER: Importer = Importer {
+    id: "glb",
+    title: "glTF meshes",
+    extensions: &["glb", "gltf"],
+    holds: &[Holds::Occupancy, Holds::Boxes],
+    largest: 512 << 20,
+    recognises: |head| {
+        let text = String::from_utf8_lossy(head);
+        let has = |key: &str| text.contains(key);
+        let lists = [
+            "\"accessors\"",
+            "\"nodes\"",
+            "\"scenes\"",
+            "\"meshes\"",
+            "\"extensionsUsed\"",
+        ];
+        container::is_glb(head)
+            || (text.trim_start().starts_with('{') && has("\"asset\"") && lists.iter().any(|key| has(key)))
+    },
+    in_folder: None,
+    read: |source| Ok(Content::Scene(Box::new(read(source)?))),
+    #[cfg(test)]
+    sample: || crate::export::glb::to_bytes(&crate::table_tests::scene()).expect("a small scene"),
+};
+
+fn read(source: &Source<'_>) -> Result<Loaded, FormatError> {
+    let document = Document::read(source)?;
+    document.check_size()?;
+    match own::recipe(&document)? {
+        Some(recipe) => own::scene(&document, &recipe),
+        None => foreign::scene(&document, source.name),
+    }
+}

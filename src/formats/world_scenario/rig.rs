@@ -1,0 +1,216 @@
+//! The cameras of a rig as the calibration of a world scenario: f-theta models under the names that readers look for.
+
+use glam::EulerRot;
+use scene::rig::Aim;
+use scene::{Camera, SensorRig};
+use serde_json::{Value, json};
+
+use super::ftheta::FTheta;
+
+/// The cameras that the models were trained with: name, heading and width of view in degrees.
+const KNOWN: [(&str, f64, f64); 7] = [
+    ("camera:front:wide:120fov", 0.0, 120.0),
+    ("camera:cross:left:120fov", 66.0, 120.0),
+    ("camera:cross:right:120fov", -67.0, 120.0),
+    ("camera:rear:left:70fov", 151.0, 70.0),
+    ("camera:rear:right:70fov", -155.0, 70.0),
+    ("camera:rear:tele:30fov", 180.0, 30.0),
+    ("camera:front:tele:sat:30fov", 0.0, 30.0),
+];
+/// A camera gets one of those names only if it looks that way, degrees.
+const AWAY_DEG: f64 = 50.0;
+
+/// A camera under its name in the scenario.
+pub(crate) struct Named<'a> {
+    pub(crate) name: String,
+    pub(crate) camera: &'a Camera,
+    pub(crate) model: FTheta,
+}
+
+impl Named<'_> {
+    /// The name as it is in names of files.
+    pub(crate) fn file_name(&self) -> String {
+        self.name.replace(':', "_")
+    }
+}
+
+/// The cameras of a rig, in its order. Each of the known names goes to the camera that looks most nearly that way; others keep
+/// their own.
+pub(crate) fn named(rig: &SensorRig) -> Vec<Named<'_>> {
+    let mut names: Vec<Option<String>> = vec![None; rig.cameras.len()];
+    let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+    for (i, camera) in rig.cameras.iter().enumerate() {
+        for (k, (_, yaw_deg, fov_deg)) in KNOWN.iter().enumerate() {
+            let away_deg = (camera.aim().yaw_deg - yaw_deg + 180.0).rem_euclid(360.0) - 180.0;
+            // Between two that look the same way, the width of the view decides.
+            let unlike = (camera.fov_deg() / fov_deg).ln().abs();
+            if away_deg.abs() <= AWAY_DEG {
+                pairs.push((away_deg.abs() + 10.0 * unlike, i, k));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut taken = [false; KNOWN.len()];
+    for (_, i, k) in pairs {
+        if names[i].is_none() && !taken[k] {
+            names[i] = Some(KNOWN[k].0.to_owned());
+            taken[k] = true;
+        }
+    }
+    let mut out: Vec<Named<'_>> = Vec::new();
+    for (camera, name) in rig.cameras.iter().zip(names) {
+        let name = name.unwrap_or_else(|| own_name(&camera.name));
+        let is_new = |name: &str| out.iter().all(|n| n.name != name);
+        let name = match is_new(&name) {
+            true => name,
+            false => (2..)
+                .map(|i| format!("{name}:{i}"))
+                .find(|n| is_new(n))
+                .unwrap_or(name),
+        };
+        out.push(Named {
+            name,
+            camera,
+            model: FTheta::of(camera),
+        });
+    }
+    out
+}
+
+/// `CAM_FRONT` as `camera:cam:front`.
+fn own_name(name: &str) -> String {
+    let tidy = |c: char| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_lowercase()
+        } else {
+            ':'
+        }
+    };
+    let name: String = name.chars().map(tidy).collect();
+    let parts: Vec<&str> = name.split(':').filter(|part| !part.is_empty()).collect();
+    format!("camera:{}", parts.join(":"))
+}
+
+/// The text of `rig_json`. Errors never: every number of a sound rig is finite.
+pub(crate) fn to_json(rig: &SensorRig) -> String {
+    let sensors: Vec<Value> = named(rig).iter().map(sensor).collect();
+    json!({"rig": {"sensors": sensors, "vehicle": {}}, "version": 8}).to_string()
+}
+
+fn sensor(named: &Named<'_>) -> Value {
+    let (camera, model) = (named.camera, &named.model);
+    let polynomial: Vec<String> = model.angle_of_px.iter().map(|k| format!("{k:e}")).collect();
+    json!({
+        "name": named.name,
+        "protocol": "camera.virtual",
+        "parameter": format!("sceneloom={},fit_error_px={:.4}", camera.name, model.error_px),
+        "properties": {
+            "Model": "ftheta",
+            "cx": model.center_px[0].to_string(),
+            "cy": model.center_px[1].to_string(),
+            "width": model.width.to_string(),
+            "height": model.height.to_string(),
+            "polynomial": polynomial.join(" "),
+            "polynomial-type": "pixeldistance-to-angle",
+            "linear-c": model.linear_c.to_string(),
+            "linear-d": "0",
+            "linear-e": "0",
+        },
+        "nominalSensor2Rig_FLU": {
+            "t": camera.translation_m,
+            "roll-pitch-yaw": roll_pitch_yaw_deg(camera),
+        },
+        "correction_sensor_R_FLU": {"roll-pitch-yaw": [0.0, 0.0, 0.0]},
+        "correction_rig_T": [0.0, 0.0, 0.0],
+    })
+}
+
+/// How the camera's body (x along the view, y left, z up) is turned in the ego frame: about x, then y, then z, degrees. A
+/// positive pitch looks down.
+fn roll_pitch_yaw_deg(camera: &Camera) -> [f64; 3] {
+    let ahead = Aim {
+        yaw_deg: 0.0,
+        pitch_deg: 0.0,
+        roll_deg: 0.0,
+    };
+    let mut level = camera.clone();
+    level.set_aim(ahead);
+    let optical = level.ego_from_camera().rotation;
+    let body = camera.ego_from_camera().rotation * optical.inverse();
+    let (yaw, pitch, roll) = body.normalize().to_euler(EulerRot::ZYX);
+    // Adding 0 turns -0 into 0.
+    [roll, pitch, yaw].map(|angle| angle.to_degrees() + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat3, DQuat, DVec3};
+
+    #[test]
+    fn cameras_get_the_names_of_those_that_look_their_way() {
+        let rig = SensorRig::default();
+        let names: Vec<String> = named(&rig)
+            .into_iter()
+            .map(|n| format!("{} {}", n.camera.name, n.name))
+            .collect();
+        assert_eq!(
+            names,
+            [
+                "CAM_FRONT_LEFT camera:cross:left:120fov",
+                "CAM_FRONT camera:front:wide:120fov",
+                "CAM_FRONT_RIGHT camera:cross:right:120fov",
+                "CAM_BACK_RIGHT camera:rear:right:70fov",
+                "CAM_BACK camera:rear:tele:30fov",
+                "CAM_BACK_LEFT camera:rear:left:70fov",
+            ]
+        );
+        // Two that look ahead, and one more that keeps its own name.
+        let mut rig = SensorRig {
+            cameras: vec![
+                Camera::new("A tele", 30.0),
+                Camera::new("wide", 110.0),
+                Camera::new("wide", 100.0),
+            ],
+            ..rig
+        };
+        rig.cameras.push(Camera::new("WIDE", 100.0));
+        let names: Vec<String> = named(&rig).into_iter().map(|n| n.name).collect();
+        let expected = [
+            "camera:front:tele:sat:30fov",
+            "camera:front:wide:120fov",
+            "camera:wide",
+            "camera:wide:2",
+        ];
+        assert_eq!(names, expected);
+    }
+
+    /// The pose as a reader puts it together: scipy's `from_euler("xyz")`, then optical axes.
+    #[test]
+    fn angles_are_those_that_readers_turn_by() {
+        let rig = SensorRig::default();
+        for camera in &rig.cameras {
+            let [roll, pitch, yaw] = roll_pitch_yaw_deg(camera).map(f64::to_radians);
+            let body =
+                DQuat::from_rotation_z(yaw) * DQuat::from_rotation_y(pitch) * DQuat::from_rotation_x(roll);
+            let body = DMat3::from_quat(body);
+            let optical = DMat3::from_cols(-body.y_axis, -body.z_axis, body.x_axis);
+            let expected = DMat3::from_quat(camera.ego_from_camera().rotation);
+            for (a, b) in [
+                (optical.x_axis, expected.x_axis),
+                (optical.y_axis, expected.y_axis),
+                (optical.z_axis, expected.z_axis),
+            ] {
+                assert!((a - b).length() < 1e-9, "{}", camera.name);
+            }
+        }
+        let mut down = Camera::new("CAM", 90.0);
+        down.set_aim(Aim {
+            yaw_deg: 0.0,
+            pitch_deg: -20.0,
+            roll_deg: 0.0,
+        });
+        assert!((roll_pitch_yaw_deg(&down)[1] - 20.0).abs() < 1e-9);
+        assert!((down.ego_from_camera().rotation * DVec3::Z).z < 0.0);
+    }
+}
