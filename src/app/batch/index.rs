@@ -32,8 +32,12 @@ pub fn write(output: &Path, plan: &Plan, records: &[Record]) -> anyhow::Result<P
 fn fields(plan: &Plan, records: &[Record]) -> Vec<Field> {
     let texts = |of: &dyn Fn(&Record) -> String| Values::Text(records.iter().map(of).collect());
     let numbers = |of: &dyn Fn(&Record) -> i64| Values::Integer(records.iter().map(of).collect());
-    let json = |value: &dyn Fn(&Record) -> serde_json::Result<String>| texts(&|r| value(r).unwrap_or_default());
-    let shard = |r: &Record| plan.pack.map_or_else(String::new, |size| format!("shard-{:06}.tar", r.variant / size));
+    let json =
+        |value: &dyn Fn(&Record) -> serde_json::Result<String>| texts(&|r| value(r).unwrap_or_default());
+    let shard = |r: &Record| {
+        plan.pack
+            .map_or_else(String::new, |size| format!("shard-{:06}.tar", r.variant / size))
+    };
     let found = |r: &Record, errors: bool| {
         let count = |f: &super::record::Findings| if errors { f.errors } else { f.warnings };
         r.findings.as_ref().map_or(0, |f| count(f) as i64)
@@ -52,11 +56,25 @@ fn fields(plan: &Plan, records: &[Record]) -> Vec<Field> {
         ("errors", numbers(&|r| found(r, true))),
         ("warnings", numbers(&|r| found(r, false))),
         ("checks", json(&|r| serde_json::to_string(&r.findings))),
-        ("files", Values::Texts(records.iter().map(|r| r.files.iter().map(|f| f.path.clone()).collect()).collect())),
-        ("bytes", numbers(&|r| r.files.iter().map(|f| f.bytes as i64).sum())),
+        (
+            "files",
+            Values::Texts(
+                records
+                    .iter()
+                    .map(|r| r.files.iter().map(|f| f.path.clone()).collect())
+                    .collect(),
+            ),
+        ),
+        (
+            "bytes",
+            numbers(&|r| r.files.iter().map(|f| f.bytes as i64).sum()),
+        ),
         ("failed", texts(&|r| r.failed.clone().unwrap_or_default())),
     ];
-    columns.into_iter().map(|(name, values)| Field::Values(name, values)).collect()
+    columns
+        .into_iter()
+        .map(|(name, values)| Field::Values(name, values))
+        .collect()
 }
 
 /// The small pictures of the first variants, in the order of their numbers.

@@ -20,7 +20,7 @@ use formats::export::Span;
 use formats::recipe::{Recipe, hex_of};
 use formats::{atomic, loom};
 use job::pipeline::OccPipeline;
-use job::{Ctx, GenParams, Job, Pipeline, RegionMode};
+use job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
 use nets::OccModels;
 use scene::draw::hash;
 use scene::{Class, Scene};
@@ -76,7 +76,11 @@ impl Maker {
         for (i, time_s) in times.iter().enumerate() {
             let moment = scene.at(*time_s);
             let named = format!("f{i:04}");
-            let folder = if times.len() > 1 { into.join(&named) } else { into.into() };
+            let folder = if times.len() > 1 {
+                into.join(&named)
+            } else {
+                into.into()
+            };
             for output in &self.plan.write {
                 self.write(output, &moment, &folder, i == 0)?;
             }
@@ -125,7 +129,7 @@ impl Maker {
                 params: params_of(generate, seed)?,
             };
             // One for each variant: nothing of another one is kept.
-            let result = OccPipeline::new(models.clone()).run(&job, &Ctx::detached())?;
+            let result = OccPipeline::new(models.clone()).run(&job, &JobCtx::detached())?;
             document.adopt(result.rev(), result.occupancy.clone())?;
         }
         Ok(Scene::clone(document.scene()))
@@ -135,7 +139,10 @@ impl Maker {
         match base {
             Base::Template(name) => open::from_template(name, seed).with_context(|| {
                 let named = scene::message::quoted(name, 60);
-                format!("template is {named:?}, expected one of {}", world::template::TEMPLATES.join(", "))
+                format!(
+                    "template is {named:?}, expected one of {}",
+                    world::template::TEMPLATES.join(", ")
+                )
             }),
             Base::Scene(file) => open::scene(&self.folder.join(file)),
             Base::Road(road) => {
@@ -215,7 +222,10 @@ fn params_of(generate: &Generate, seed: u64) -> anyhow::Result<GenParams> {
     let Some(preset) = presets.named(&generate.quality) else {
         let names: Vec<&str> = presets.all.iter().map(|s| s.name.as_str()).collect();
         let found = scene::message::quoted(&generate.quality, 60);
-        bail!("generate: quality is {found:?}, expected one of {}", names.join(", "));
+        bail!(
+            "generate: quality is {found:?}, expected one of {}",
+            names.join(", ")
+        );
     };
     let whole = match generate.whole {
         true => GenParams::whole_scene(),
@@ -264,7 +274,11 @@ fn edits_of(change: &Change, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edi
 fn by_words(words: &str, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> {
     let edited = text::read_edit(words, scene, seed)?;
     if edited.asks() || edited.edits().is_empty() {
-        bail!("words {:?}: {}", scene::message::quoted(words, 80), edited.answer());
+        bail!(
+            "words {:?}: {}",
+            scene::message::quoted(words, 80),
+            edited.answer()
+        );
     }
     let mut edits = edited.edits();
     edits.push(Edit::KeepWords { words: words.into() });
@@ -273,7 +287,13 @@ fn by_words(words: &str, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> 
 
 /// As many boxes of a class: those that go are drawn by the seed, those that come stand where words would put them.
 fn counted(class: Class, n: usize, scene: &Scene, seed: u64) -> anyhow::Result<Vec<Edit>> {
-    let mut there: Vec<_> = scene.frame().boxes.values().filter(|b| b.class == class).map(|b| b.id).collect();
+    let mut there: Vec<_> = scene
+        .frame()
+        .boxes
+        .values()
+        .filter(|b| b.class == class)
+        .map(|b| b.id)
+        .collect();
     if there.len() > n {
         there.sort_by_key(|id| hash(seed ^ hash(u64::from(id.0))));
         return Ok(there[n..].iter().map(|id| Edit::RemoveBox { id: *id }).collect());
@@ -321,7 +341,9 @@ fn files_of(folder: &Path) -> anyhow::Result<Vec<FileRecord>> {
             }
             let bytes = std::fs::read(&path).with_context(|| path.display().to_string())?;
             let relative = path.strip_prefix(folder).unwrap_or(&path);
-            let parts = relative.components().map(|c| c.as_os_str().to_string_lossy().into_owned());
+            let parts = relative
+                .components()
+                .map(|c| c.as_os_str().to_string_lossy().into_owned());
             files.push(FileRecord {
                 path: parts.collect::<Vec<_>>().join("/"),
                 bytes: bytes.len() as u64,

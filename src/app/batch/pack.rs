@@ -58,7 +58,10 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
         names.sort_by_key(|path| (frame_of(path), *path));
         names.into_iter().try_for_each(&mut add)?;
     }
-    tar.into_inner()?.into_inner().map_err(|e| e.into_error())?.sync_all()?;
+    tar.into_inner()?
+        .into_inner()
+        .map_err(|e| e.into_error())?
+        .sync_all()?;
     std::fs::rename(&half, tar_of(output, pack)).with_context(|| format!("rename {}", half.display()))?;
     for record in records {
         let folder = output.join(format!("{:06}", record.variant));
@@ -76,7 +79,9 @@ pub fn write(output: &Path, pack: usize, records: &[Record]) -> anyhow::Result<(
 /// The frame of a clip that a file belongs to: `f0003/occ3d/labels.npz` to the third.
 fn frame_of(path: &str) -> usize {
     let first = path.split('/').next().unwrap_or("");
-    let number = first.strip_prefix('f').filter(|n| n.len() >= 4 && path.contains('/'));
+    let number = first
+        .strip_prefix('f')
+        .filter(|n| n.len() >= 4 && path.contains('/'));
     number.and_then(|n| n.parse().ok()).unwrap_or(0)
 }
 
@@ -99,8 +104,14 @@ mod tests {
     #[test]
     fn files_of_a_sample_share_their_name_up_to_the_dot() {
         assert_eq!(name_of(7, "occ3d/labels.npz"), "000007.occ3d.labels.npz");
-        assert_eq!(name_of(7, "f0000/truth/CAM_FRONT.png"), "000007.truth.CAM_FRONT.png");
-        assert_eq!(name_of(7, "f0012/truth/CAM_FRONT.png"), "000007_f0012.truth.CAM_FRONT.png");
+        assert_eq!(
+            name_of(7, "f0000/truth/CAM_FRONT.png"),
+            "000007.truth.CAM_FRONT.png"
+        );
+        assert_eq!(
+            name_of(7, "f0012/truth/CAM_FRONT.png"),
+            "000007_f0012.truth.CAM_FRONT.png"
+        );
         assert_eq!(name_of(7, "variant.json"), "000007.variant.json");
     }
 }

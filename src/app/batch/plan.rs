@@ -239,10 +239,15 @@ impl Plan {
                 return Some(format!("sweep {name:?}: expected a name that no other has"));
             }
             if axis.is_empty() || (axis.seeds.is_some() && !axis.values.is_empty()) {
-                return Some(format!("sweep {name:?}: expected either values or seeds, at least one"));
+                return Some(format!(
+                    "sweep {name:?}: expected either values or seeds, at least one"
+                ));
             }
         }
-        if self.count_all().is_none_or(|n| n > MOST_VARIANTS && self.sample.is_none()) {
+        if self
+            .count_all()
+            .is_none_or(|n| n > MOST_VARIANTS && self.sample.is_none())
+        {
             return Some(format!("the sweep has more than {MOST_VARIANTS} combinations"));
         }
         if let Some(n) = self.sample
@@ -257,7 +262,10 @@ impl Plan {
         if let Some(output) = self.write.iter().find(unknown) {
             let known: Vec<&str> = formats::export::all().iter().map(|f| f.id).collect();
             let found = scene::message::quoted(&output.format, 60);
-            return Some(format!("write: format is {found:?}, expected loom, {}", known.join(", ")));
+            return Some(format!(
+                "write: format is {found:?}, expected loom, {}",
+                known.join(", ")
+            ));
         }
         if self.frames_hz.is_some_and(|hz| !(hz > 0.0 && hz <= 100.0)) {
             return Some("frames_hz is not above 0 and at most 100".into());
@@ -267,7 +275,9 @@ impl Plan {
 
     /// Combinations of all axes; none beyond what a number holds.
     fn count_all(&self) -> Option<usize> {
-        self.sweep.iter().try_fold(1usize, |n, axis| n.checked_mul(axis.len()))
+        self.sweep
+            .iter()
+            .try_fold(1usize, |n, axis| n.checked_mul(axis.len()))
     }
 
     /// How many variants there are.
@@ -341,10 +351,14 @@ mod tests {
             sample: Some(7),
             ..plan.clone()
         };
-        let drawn: std::collections::BTreeSet<Vec<usize>> = (0..some.count()).map(|i| some.values_of(i)).collect();
+        let drawn: std::collections::BTreeSet<Vec<usize>> =
+            (0..some.count()).map(|i| some.values_of(i)).collect();
         assert_eq!((some.count(), drawn.len()), (7, 7));
         let other = Plan { seed: 1, ..some };
-        assert!((0..7).any(|i| !drawn.contains(&other.values_of(i))), "another seed draws others");
+        assert!(
+            (0..7).any(|i| !drawn.contains(&other.values_of(i))),
+            "another seed draws others"
+        );
         for n in [1, 2, 3, 100, 1000] {
             let mut places: Vec<usize> = (0..n).map(|i| shuffled(i, n, 9)).collect();
             places.sort_unstable();
@@ -356,8 +370,14 @@ mod tests {
     fn bad_plans_are_told_in_a_line() {
         for (json, word) in [
             (r#","sweep":[{"name":"a"}]"#, "values or seeds"),
-            (r#","sweep":[{"name":"a","seeds":{"from":0,"count":2}},{"name":"a","seeds":{"from":0,"count":2}}]"#, "no other"),
-            (r#","sweep":[{"name":"a","seeds":{"from":0,"count":99999999}}]"#, "combinations"),
+            (
+                r#","sweep":[{"name":"a","seeds":{"from":0,"count":2}},{"name":"a","seeds":{"from":0,"count":2}}]"#,
+                "no other",
+            ),
+            (
+                r#","sweep":[{"name":"a","seeds":{"from":0,"count":99999999}}]"#,
+                "combinations",
+            ),
             (r#","frames_hz":0"#, "frames_hz"),
             (r#","pack":0"#, "pack"),
             (r#","sample":0"#, "sample"),
@@ -366,10 +386,11 @@ mod tests {
             let line = plan(json).expect_err(json);
             assert!(line.contains(word), "{line}");
         }
-        let line = serde_json::from_str::<Plan>(r#"{"format":"x","version":1,"base":{"template":"a"},"write":[]}"#)
-            .expect("it can be read")
-            .problem()
-            .expect("foreign");
+        let line =
+            serde_json::from_str::<Plan>(r#"{"format":"x","version":1,"base":{"template":"a"},"write":[]}"#)
+                .expect("it can be read")
+                .problem()
+                .expect("foreign");
         assert!(line.contains("sceneloom_batch"), "{line}");
     }
 }

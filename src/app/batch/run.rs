@@ -36,7 +36,9 @@ impl std::str::FromStr for Shard {
 
     /// `I/N`, I from 0.
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').map(|(i, n)| (i.parse().ok(), n.parse().ok()));
+        let parts = text
+            .split_once('/')
+            .map(|(i, n)| (i.parse().ok(), n.parse().ok()));
         match parts {
             Some((Some(number), Some(of))) if number < of => Ok(Self { number, of }),
             _ => Err("expected I/N with I from 0 below N, such as 0/4".into()),
@@ -91,7 +93,10 @@ impl Batch {
         if copy.exists() {
             let there = input::read_text(&copy, input::LARGEST_TEXT)?;
             if there != text {
-                bail!("{}: the folder belongs to another plan, expected an empty one", output.display());
+                bail!(
+                    "{}: the folder belongs to another plan, expected an empty one",
+                    output.display()
+                );
             }
         } else {
             atomic::write(&copy, text.as_bytes()).with_context(|| format!("write {}", copy.display()))?;
@@ -165,7 +170,10 @@ impl Batch {
 
     /// Makes one variant; the reason if it cannot be made. Errors if files cannot be written.
     fn variant(&self, variant: usize) -> anyhow::Result<Option<String>> {
-        let (folder, half) = (self.folder_of(variant), self.output.join(format!(".making-{variant:06}")));
+        let (folder, half) = (
+            self.folder_of(variant),
+            self.output.join(format!(".making-{variant:06}")),
+        );
         for left in [&half, &folder] {
             if left.exists() {
                 std::fs::remove_dir_all(left).with_context(|| format!("remove {}", left.display()))?;
@@ -201,7 +209,11 @@ impl Batch {
     fn records(&self, variants: std::ops::Range<usize>) -> anyhow::Result<Vec<Record>> {
         let read = |variant| {
             let own = self.folder_of(variant).join(FILE);
-            let path = if own.exists() { own } else { self.failed_file(variant) };
+            let path = if own.exists() {
+                own
+            } else {
+                self.failed_file(variant)
+            };
             let text = input::read_text(&path, input::LARGEST_TEXT)?;
             serde_json::from_str(&text).with_context(|| path.display().to_string())
         };
@@ -222,7 +234,8 @@ impl Batch {
         let records = match plan.pack {
             Some(size) => {
                 let packs = 0..plan.count().div_ceil(size);
-                let all: anyhow::Result<Vec<Vec<Record>>> = packs.map(|p| pack::records(&self.output, p)).collect();
+                let all: anyhow::Result<Vec<Vec<Record>>> =
+                    packs.map(|p| pack::records(&self.output, p)).collect();
                 all?.concat()
             }
             None => self.records(0..plan.count())?,
@@ -235,6 +248,8 @@ impl Batch {
 /// What a panic said.
 fn said(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
-    let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("no reason");
+    let text = text
+        .or(panic.downcast_ref::<&str>().copied())
+        .unwrap_or("no reason");
     scene::message::one_line(&text)
 }

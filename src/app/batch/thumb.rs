@@ -19,7 +19,12 @@ const SIZE: [u32; 2] = [213, 120];
 /// Draws and writes it.
 pub fn write(scene: &Scene, path: &Path) -> anyhow::Result<()> {
     let picture = draw(scene);
-    let bytes = png::rgba(picture.width, picture.height, &picture.rgba, &png::Notes::default())?;
+    let bytes = png::rgba(
+        picture.width,
+        picture.height,
+        &picture.rgba,
+        &png::Notes::default(),
+    )?;
     atomic::write(path, &bytes).with_context(|| format!("write {}", path.display()))
 }
 

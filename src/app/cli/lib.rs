@@ -1,6 +1,7 @@
 //! The command line: one subcommand per file. docs/command_line.md has the rules that all of them follow.
 
 mod argument_errors;
+mod batch;
 mod check;
 mod clip;
 mod common;
@@ -72,6 +73,8 @@ enum Command {
     Clip(clip::ClipCommand),
     /// The quality checks; exit 1 if one of severity error fires.
     Check(check::Check),
+    /// Many variants of a scene by a plan: resumable, in shards, with an index.
+    Batch(batch::Batch),
     /// What differs between two scenes.
     Diff(diff::Diff),
     /// Files for other programs.
@@ -130,6 +133,7 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(c)) => c.run(),
         Some(Command::Clip(c)) => c.run(),
         Some(Command::Check(c)) => c.run(),
+        Some(Command::Batch(c)) => c.run(),
         Some(Command::Diff(c)) => c.run(),
         Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),
