@@ -9,6 +9,7 @@ pub mod import;
 pub mod input;
 pub mod loom;
 pub mod multi_plane;
+mod npy;
 pub mod npz;
 pub mod occ3d;
 pub mod opendrive;

@@ -11,7 +11,7 @@ use scene::{
     VoxelGrid,
 };
 
-use crate::export::{self, Exporter, Picture, Products, Seen};
+use crate::export::{self, Exporter, Observed, Picture, Products, Seen};
 use crate::import::{self, Content, Importer, Source};
 use crate::{FormatError, Holds, box_list, loom, occ3d};
 
@@ -77,8 +77,9 @@ pub(crate) fn random_scene(seed: u64) -> Scene {
     Scene::single("random", frame, Arc::new(SensorRig::default()), seed)
 }
 
-/// Products of two cameras of four pixels and a sweep of one point.
-struct Small;
+/// Products of two cameras of four pixels and a sweep of one point. Observed are: by the LiDAR the lower half of the columns
+/// ahead, by the cameras all but the lowest voxel of the columns to the left.
+pub(crate) struct Small;
 
 impl Products for Small {
     fn show(&mut self, _time_s: f64) -> Result<(), FormatError> {
@@ -89,6 +90,14 @@ impl Products for Small {
         Ok(Seen {
             lidar_returns: Some([(BoxId(4), 12)].into()),
             camera_pixels: None,
+        })
+    }
+
+    fn observed(&mut self) -> Result<Observed, FormatError> {
+        let words = |word: fn([usize; 2]) -> u16| Observed::EXTENT.all_columns().map(word).collect();
+        Ok(Observed {
+            lidar: words(|[x, _]| if x >= 100 { 0x00ff } else { 0 }),
+            camera: words(|[_, y]| if y >= 100 { 0xfffe } else { 0 }),
         })
     }
 

@@ -14,7 +14,7 @@ pub mod view;
 use std::collections::BTreeMap;
 use std::fmt;
 
-use scene::{BoxId, CameraMaps, LidarSweep, Scene};
+use scene::{BoxId, CameraMaps, Extent, LidarSweep, Scene};
 
 use super::{FormatError, Holds, png};
 
@@ -87,6 +87,8 @@ pub enum Span {
 pub enum Product {
     /// How often sensors see each box.
     Seen,
+    /// Which voxels the sensors observed.
+    Observed,
     /// A sweep of the first LiDAR.
     Sweep,
     /// Classes and depths of every camera.
@@ -105,6 +107,8 @@ pub trait Products {
     fn show(&mut self, time_s: f64) -> Result<(), FormatError>;
     /// How often sensors see each box.
     fn seen(&mut self) -> Result<Seen, FormatError>;
+    /// Which voxels the sensors observed.
+    fn observed(&mut self) -> Result<Observed, FormatError>;
     /// A sweep of the rig's first LiDAR.
     fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
     /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.
@@ -128,6 +132,21 @@ pub struct Seen {
     pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
     /// Pixels of all cameras.
     pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
+}
+
+/// Which voxels the rays of sensors passed or ended in, in the ego frame of the moment: per column `[x][y]` of
+/// [`Observed::EXTENT`] one bit per bin, the lowest bin in bit 0. No bit is set where the rig has no sensor of that kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observed {
+    /// Rays of all LiDARs, one turn each.
+    pub lidar: Vec<u16>,
+    /// Rays through the pixels of all cameras.
+    pub camera: Vec<u16>,
+}
+
+impl Observed {
+    /// The columns that are told of.
+    pub const EXTENT: Extent = Extent::WINDOW;
 }
 
 /// A picture to be written.
