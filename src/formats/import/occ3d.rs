@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use scene::message::quoted;
 use scene::Unobserved;
+use scene::message::quoted;
 
 use super::{Content, GUESSED, Importer, Loaded, Source, first_entry_ends, labelled};
 use crate::{FormatError, Holds, occ3d};
