@@ -14,9 +14,12 @@ pub mod npz;
 pub mod occ3d;
 pub mod opendrive;
 pub mod png;
+mod semantic_kitti;
+mod sparse_npy;
 #[cfg(test)]
 mod table_tests;
 pub mod video;
+mod voxels;
 
 pub use error::FormatError;
 

@@ -6,9 +6,12 @@ pub mod depth;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod openoccupancy;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
+pub mod semantic_kitti;
+pub mod surroundocc;
 pub mod view;
 
 use std::collections::BTreeMap;
@@ -19,8 +22,11 @@ use scene::{BoxId, CameraMaps, Extent, LidarSweep, Scene};
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 8] = [
+const TABLE: [&Exporter; 11] = [
     &occ3d::EXPORTER,
+    &openoccupancy::EXPORTER,
+    &surroundocc::EXPORTER,
+    &semantic_kitti::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
     &ply::EXPORTER,
@@ -188,7 +194,6 @@ impl OutFile {
     }
 
     /// The same in a folder of the export's folder.
-    #[allow(dead_code)] // until the first format with folders
     fn within(self, folder: &str) -> Self {
         let tidy = |part: &str| match part {
             "." | ".." => "_".to_owned(),

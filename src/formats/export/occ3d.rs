@@ -4,7 +4,7 @@ use scene::{Class, Extent, Frame};
 
 use super::{Exporter, Observed, OutFile, Product, Span};
 use crate::occ3d::{self, Occ3dFrame};
-use crate::{FormatError, Holds};
+use crate::{Holds, voxels};
 
 /// See [`occ3d`].
 pub const EXPORTER: Exporter = Exporter {
@@ -18,13 +18,8 @@ pub const EXPORTER: Exporter = Exporter {
     write: |scene, products| {
         // A map of another extent is cut to what the format holds.
         let frame = scene.frame();
+        voxels::check(frame)?;
         let labels = frame.occupancy.crop(Extent::WINDOW);
-        if let Some((x, y, z, label)) = labels.iter_set().find(|(.., label)| *label > Class::FREE) {
-            let free = Class::FREE;
-            return Err(FormatError::new(format!(
-                "voxel {x}, {y}, {z} holds label {label}, expected 0 to {free}"
-            )));
-        }
         let Observed { lidar, camera } = products.observed()?;
         let known = known(frame);
         let [lidar_observed, camera_observed] = [lidar, camera].map(|words| Some(mask(&words, &known)));

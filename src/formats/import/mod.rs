@@ -7,20 +7,24 @@ pub mod loom;
 pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
+pub mod semantic_kitti;
+pub mod sparse_npy;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
+use scene::{Extent, Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
 
 use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 5] = [
+const TABLE: [&Importer; 7] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
+    &sparse_npy::IMPORTER,
+    &semantic_kitti::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
     &opendrive::IMPORTER,
@@ -185,10 +189,13 @@ pub fn scene_name(path: &Path) -> String {
     }
 }
 
-/// A scene from labels: their voxels as they are; layout, boxes and background are inferred.
+/// A scene from labels: their voxels as they are; layout, boxes and background are inferred, of a larger map in the networks'
+/// window.
 fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
-    let (layout, boxes) = (infer::layout(&labels), infer::boxes(&labels));
-    let background = infer::background(&labels, &layout);
+    let window = labels.crop(Extent::WINDOW);
+    let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));
+    let background = infer::background(&window, &layout);
+    let layout = layout.crop(labels.extent());
     let inferred = Inferred {
         layout: true,
         boxes: boxes.keys().copied().collect(),
