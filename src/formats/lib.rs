@@ -19,6 +19,7 @@ mod sparse_npy;
 #[cfg(test)]
 mod table_tests;
 pub mod video;
+mod vox;
 mod voxels;
 
 pub use error::FormatError;

@@ -13,6 +13,7 @@ pub mod semantic;
 pub mod semantic_kitti;
 pub mod surroundocc;
 pub mod view;
+pub mod vox;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,11 +23,12 @@ use scene::{BoxId, CameraMaps, Extent, LidarSweep, Scene};
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 11] = [
+const TABLE: [&Exporter; 12] = [
     &occ3d::EXPORTER,
     &openoccupancy::EXPORTER,
     &surroundocc::EXPORTER,
     &semantic_kitti::EXPORTER,
+    &vox::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
     &ply::EXPORTER,

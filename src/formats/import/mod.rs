@@ -9,6 +9,7 @@ pub mod opendrive;
 pub mod pcd;
 pub mod semantic_kitti;
 pub mod sparse_npy;
+pub mod vox;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,11 +21,12 @@ use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 7] = [
+const TABLE: [&Importer; 8] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &sparse_npy::IMPORTER,
     &semantic_kitti::IMPORTER,
+    &vox::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
     &opendrive::IMPORTER,
