@@ -12,7 +12,7 @@ use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
 use crate::shell::checking;
 use crate::truth;
-use formats::export::{Exporter, OutFile, Picture, Product, Products, Seen, Span};
+use formats::export::{Exporter, Observed, OutFile, Picture, Product, Products, Seen, Span};
 use formats::recipe::Recipe;
 use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
@@ -22,6 +22,7 @@ use sensors::cameras::{
     self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
 };
 use sensors::learned::Drops;
+use sensors::observed;
 use sensors::rolling;
 use viewport::{ViewCamera, ViewPreset};
 
@@ -251,6 +252,20 @@ impl Products for Making<'_> {
         Ok(Seen {
             lidar_returns: seen.lidar_returns,
             camera_pixels: seen.camera_pixels,
+        })
+    }
+
+    fn observed(&mut self) -> Result<Observed, FormatError> {
+        let moment = self.whole.at(self.scene.time_s());
+        let ego = moment.in_ego();
+        if let Some(problem) = ego.rig.problem() {
+            return Err(FormatError::new(problem));
+        }
+        let grid = ego.frame().occupancy.crop(Observed::EXTENT);
+        let seen = observed::observed(&grid, &ego.rig);
+        Ok(Observed {
+            lidar: seen.lidar,
+            camera: seen.camera,
         })
     }
 

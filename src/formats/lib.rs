@@ -11,15 +11,20 @@ pub mod import;
 pub mod input;
 pub mod loom;
 pub mod multi_plane;
+mod npy;
 pub mod npz;
 pub mod occ3d;
 pub mod opendrive;
 pub mod png;
 pub mod recipe;
+mod semantic_kitti;
+mod sparse_npy;
 pub mod table;
 #[cfg(test)]
 mod table_tests;
 pub mod video;
+mod vox;
+mod voxels;
 pub mod world_scenario;
 
 pub use error::FormatError;

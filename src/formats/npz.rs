@@ -46,6 +46,13 @@ pub fn to_bytes(arrays: &[Array<'_>]) -> io::Result<Vec<u8>> {
     Ok(zip.finish()?.into_inner())
 }
 
+/// One array of whole numbers (`<i4`) as an `.npy` file. Errors if it has not as many values as its shape says.
+pub fn npy(shape: &[usize], values: &[i32]) -> io::Result<Vec<u8>> {
+    let mut out = header::<i32>(shape, values.len())?;
+    out.extend_from_slice(cast_slice(values));
+    Ok(out)
+}
+
 /// What comes before so many values as they lie in memory.
 fn header<T: AutoSerialize>(shape: &[usize], values: usize) -> io::Result<Vec<u8>> {
     if shape.iter().product::<usize>() != values {

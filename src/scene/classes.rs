@@ -191,6 +191,11 @@ impl Class {
     /// sRGB colour on screen. The hues keep the field's convention (palette of OccWorld and
     /// Occ3D); lightness is tuned so that large surfaces stay calm and objects stand out.
     pub fn color(self) -> [u8; 3] {
+        self.color_in(Palette::current())
+    }
+
+    /// sRGB colour in a palette; no two classes have the same.
+    pub fn color_in(self, palette: Palette) -> [u8; 3] {
         const COLORS: [[u8; 3]; 18] = [
             [128, 128, 128],
             [255, 120, 50],
@@ -211,7 +216,7 @@ impl Class {
             [62, 140, 66],
             [0, 0, 0],
         ];
-        match Palette::current() {
+        match palette {
             Palette::Standard => COLORS[self as usize],
             Palette::ColorBlindSafe => SAFE_COLORS[self as usize],
         }
@@ -371,5 +376,15 @@ mod tests {
             assert_eq!(layer.color(), class.color());
         }
         assert_eq!(Class::from_id(18), None);
+    }
+
+    #[test]
+    fn colors_tell_classes_apart() {
+        for palette in [Palette::Standard, Palette::ColorBlindSafe] {
+            let mut colors = Class::ALL.map(|class| class.color_in(palette)).to_vec();
+            colors.sort_unstable();
+            colors.dedup();
+            assert_eq!(colors.len(), Class::COUNT, "{palette:?}");
+        }
     }
 }

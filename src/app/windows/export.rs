@@ -241,7 +241,7 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                 });
                 ui.weak("Seen as the 3D view shows it now.");
             }
-            Product::Seen => {}
+            Product::Observed | Product::Seen => {}
         }
     }
 }

@@ -8,17 +8,21 @@ pub mod glb;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod openoccupancy;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
+pub mod semantic_kitti;
+pub mod surroundocc;
 pub mod truth;
 pub mod view;
+pub mod vox;
 pub mod world_scenario;
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use scene::{BoxId, CameraMaps, CameraTruth, LidarSweep, Pose, Scene};
+use scene::{BoxId, CameraMaps, CameraTruth, Extent, LidarSweep, Pose, Scene};
 
 use super::recipe::Recipe;
 use super::{FormatError, Holds};
@@ -26,6 +30,10 @@ use super::{FormatError, Holds};
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
 const TABLE: &[&Exporter] = &[
     &occ3d::EXPORTER,
+    &openoccupancy::EXPORTER,
+    &surroundocc::EXPORTER,
+    &semantic_kitti::EXPORTER,
+    &vox::EXPORTER,
     &boxes::EXPORTER,
     &glb::EXPORTER,
     &nuscenes_lidar::EXPORTER,
@@ -96,6 +104,8 @@ pub enum Span {
 pub enum Product {
     /// How often sensors see each box.
     Seen,
+    /// Which voxels the sensors observed.
+    Observed,
     /// A sweep of the first LiDAR.
     Sweep,
     /// Classes and depths of every camera.
@@ -116,6 +126,8 @@ pub trait Products {
     fn show(&mut self, time_s: f64) -> Result<(), FormatError>;
     /// How often sensors see each box.
     fn seen(&mut self) -> Result<Seen, FormatError>;
+    /// Which voxels the sensors observed.
+    fn observed(&mut self) -> Result<Observed, FormatError>;
     /// A sweep of the rig's first LiDAR.
     fn sweep(&mut self) -> Result<LidarSweep, FormatError>;
     /// Classes and depths of every camera, in the order of the rig; each is taken before the next is made.
@@ -149,6 +161,21 @@ pub struct Seen {
     pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
     /// Pixels of all cameras.
     pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
+}
+
+/// Which voxels the rays of sensors passed or ended in, in the ego frame of the moment: per column `[x][y]` of
+/// [`Observed::EXTENT`] one bit per bin, the lowest bin in bit 0. No bit is set where the rig has no sensor of that kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observed {
+    /// Rays of all LiDARs, one turn each.
+    pub lidar: Vec<u16>,
+    /// Rays through the pixels of all cameras.
+    pub camera: Vec<u16>,
+}
+
+impl Observed {
+    /// The columns that are told of.
+    pub const EXTENT: Extent = Extent::WINDOW;
 }
 
 /// A picture to be written.
@@ -190,7 +217,6 @@ impl OutFile {
     }
 
     /// The same in a folder of the export's folder.
-    #[allow(dead_code)] // until the first format with folders
     fn within(self, folder: &str) -> Self {
         let tidy = |part: &str| match part {
             "." | ".." => "_".to_owned(),

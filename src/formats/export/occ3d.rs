@@ -1,28 +1,132 @@
-//! Occupancy as Occ3D labels.
+//! Occupancy as Occ3D labels, with the masks of what the sensors observed.
 
-use scene::{Class, Extent};
+use scene::{Class, Extent, Frame};
 
-use super::{Exporter, OutFile, Span};
-use crate::{FormatError, Holds, occ3d};
+use super::{Exporter, Observed, OutFile, Product, Span};
+use crate::occ3d::{self, Occ3dFrame};
+use crate::{Holds, voxels};
 
 /// See [`occ3d`].
 pub const EXPORTER: Exporter = Exporter {
     id: "occ3d",
-    title: "Occupancy: Occ3D labels.npz, 200 x 200 x 16 class labels",
+    title: "Occupancy: Occ3D labels.npz, 200 x 200 x 16 class labels, masks of LiDAR and cameras",
     file_name: Some("labels.npz"),
     holds: &[Holds::Occupancy],
-    lost: "",
+    lost: "which sensor observed a voxel: what any of them observed comes back as observed",
     span: Span::Moment,
-    needs: &[],
-    write: |scene, _| {
+    needs: &[Product::Observed],
+    write: |scene, products| {
         // A map of another extent is cut to what the format holds.
-        let occupancy = &scene.frame().occupancy.crop(Extent::WINDOW);
-        if let Some((x, y, z, label)) = occupancy.iter_set().find(|(.., label)| *label > Class::FREE) {
-            let free = Class::FREE;
-            return Err(FormatError::new(format!(
-                "voxel {x}, {y}, {z} holds label {label}, expected 0 to {free}"
-            )));
-        }
-        Ok(vec![OutFile::new("labels.npz", occ3d::to_bytes(occupancy))])
+        let frame = scene.frame();
+        voxels::check(frame)?;
+        let labels = frame.occupancy.crop(Extent::WINDOW);
+        let Observed { lidar, camera } = products.observed()?;
+        let known = known(frame);
+        let [lidar_observed, camera_observed] = [lidar, camera].map(|words| Some(mask(&words, &known)));
+        let found = Occ3dFrame {
+            labels,
+            lidar_observed,
+            camera_observed,
+        };
+        Ok(vec![OutFile::new("labels.npz", occ3d::frame_to_bytes(&found))])
     },
 };
+
+/// Per column of the window a bit for each voxel that holds something, or of which the data set that the frame is from does
+/// not say that nothing observed it: free means unknown there, whatever rays pass it now.
+fn known(frame: &Frame) -> Vec<u16> {
+    let unobserved = frame.inferred.unobserved.as_ref();
+    let unobserved = unobserved.map(|u| u.crop(Extent::WINDOW));
+    let occupancy = frame.occupancy.crop(Extent::WINDOW);
+    let word = |[x, y]: [usize; 2]| {
+        let unknown = unobserved
+            .as_ref()
+            .map_or(0, |u| u.words()[Extent::WINDOW.index(x, y)]);
+        let bits = occupancy.column(x, y).iter().enumerate();
+        bits.fold(!unknown, |word, (z, label)| {
+            word | u16::from(*label != Class::FREE) << z
+        })
+    };
+    Extent::WINDOW.all_columns().map(word).collect()
+}
+
+/// A flag per voxel `[x][y][z]` from a word per column; only what is known counts.
+fn mask(words: &[u16], known: &[u16]) -> Vec<bool> {
+    let both = words.iter().zip(known).map(|(word, known)| word & known);
+    both.flat_map(|word| (0..Extent::NZ).map(move |z| word >> z & 1 == 1))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use scene::{Unobserved, Window};
+
+    use super::*;
+    use crate::import::Content;
+    use crate::table_tests::{Small, random_scene, round_trip, scene};
+
+    /// What comes back: all labels, and as observed what the LiDAR or a camera observed.
+    #[test]
+    fn labels_and_the_union_of_the_masks_come_back() {
+        for seed in 0..100 {
+            let scene = random_scene(seed);
+            let Some(Content::Scene(back)) = round_trip(&EXPORTER, &scene) else {
+                panic!("read as a scene");
+            };
+            let frame = back.scene.frame();
+            assert!(frame.occupancy == scene.frame().occupancy, "seed {seed}");
+            assert!(back.skipped.is_empty(), "{:?}", back.skipped);
+            let unobserved = frame.inferred.unobserved.as_ref().expect("masks");
+            for [x, y] in Extent::WINDOW.all_columns() {
+                let expected = match (x >= 100, y >= 100) {
+                    (true, true) => 0,
+                    (true, false) => 0xff00,
+                    (false, true) => 0x0001,
+                    (false, false) => 0xffff,
+                };
+                let word = unobserved.words()[Extent::WINDOW.index(x, y)];
+                assert_eq!(word, expected, "seed {seed}, column {x}, {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn each_mask_is_its_own_array_and_the_bytes_are_the_same_each_time() {
+        let write = || {
+            (EXPORTER.write)(&scene(), &mut Small)
+                .expect("written")
+                .remove(0)
+                .bytes
+        };
+        assert_eq!(write(), write());
+        let frame = occ3d::read(&write()).expect("a frame");
+        let at = |x: usize, y: usize, z: usize| (x * Window::NY + y) * Window::NZ + z;
+        let (lidar, camera) = (
+            frame.lidar_observed.expect("a mask"),
+            frame.camera_observed.expect("a mask"),
+        );
+        assert!(lidar[at(100, 0, 7)] && !lidar[at(100, 0, 8)] && !lidar[at(99, 199, 0)]);
+        assert!(camera[at(0, 100, 1)] && !camera[at(0, 100, 0)] && !camera[at(199, 99, 5)]);
+    }
+
+    /// Free voxels that a data set's masks leave open stay open, however many rays pass them.
+    #[test]
+    fn what_a_data_set_does_not_know_stays_unknown() {
+        let mut scene = scene();
+        let [x, y, z] = [150, 120, 4];
+        let mut observed = vec![true; Window::VOXELS];
+        for z in [z, z + 1] {
+            observed[(x * Window::NY + y) * Window::NZ + z] = false;
+        }
+        scene.change_canvas(|frame| {
+            frame.inferred.unobserved = Unobserved::from_observed(&observed);
+            frame.occupancy.set(x, y, z + 1, Class::Car.id());
+        });
+        let Some(Content::Scene(back)) = round_trip(&EXPORTER, &scene) else {
+            panic!("read as a scene");
+        };
+        let unobserved = back.scene.frame().inferred.unobserved.clone().expect("masks");
+        let word = unobserved.words()[Extent::WINDOW.index(x, y)];
+        assert_eq!(word, 1 << z, "the car beside it was seen");
+    }
+}

@@ -9,12 +9,15 @@ pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
 pub mod picture;
+pub mod semantic_kitti;
+pub mod sparse_npy;
+pub mod vox;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use scene::{Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
+use scene::{Extent, Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
 
 use super::opendrive::RoadNetwork;
 use super::recipe::Recipe;
@@ -24,6 +27,9 @@ use super::{FormatError, Holds, input};
 const TABLE: &[&Importer] = &[
     &loom::IMPORTER,
     &occ3d::IMPORTER,
+    &sparse_npy::IMPORTER,
+    &semantic_kitti::IMPORTER,
+    &vox::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
     &picture::IMPORTER,
@@ -192,10 +198,13 @@ pub fn scene_name(path: &Path) -> String {
     }
 }
 
-/// A scene from labels: their voxels as they are; layout, boxes and background are inferred.
+/// A scene from labels: their voxels as they are; layout, boxes and background are inferred, of a larger map in the networks'
+/// window.
 fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
-    let (layout, boxes) = (infer::layout(&labels), infer::boxes(&labels));
-    let background = infer::background(&labels, &layout);
+    let window = labels.crop(Extent::WINDOW);
+    let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));
+    let background = infer::background(&window, &layout);
+    let layout = layout.crop(labels.extent());
     let inferred = Inferred {
         layout: true,
         boxes: boxes.keys().copied().collect(),

@@ -420,11 +420,7 @@ fn the_video_has_thirty_pictures_a_second_for_each_camera() {
     Arc::make_mut(&mut scene.rig).cameras = vec![small, aside];
     let write = || {
         let exporter = crate::export::from_id("control-video").expect("in the table");
-        (exporter.write)(
-            &scene,
-            &mut crate::table_tests::Small(crate::recipe::Recipe::of(&scene)),
-        )
-        .expect("sound")
+        (exporter.write)(&scene, &mut crate::table_tests::Small).expect("sound")
     };
     let files = write();
     let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
@@ -445,10 +441,6 @@ fn the_video_has_thirty_pictures_a_second_for_each_camera() {
     }
     Arc::make_mut(&mut scene.rig).cameras.clear();
     let exporter = crate::export::from_id("control-video").expect("in the table");
-    let error = (exporter.write)(
-        &scene,
-        &mut crate::table_tests::Small(crate::recipe::Recipe::of(&scene)),
-    )
-    .expect_err("no cameras");
+    let error = (exporter.write)(&scene, &mut crate::table_tests::Small).expect_err("no cameras");
     assert!(error.to_string().contains("no cameras"));
 }

@@ -16,6 +16,7 @@ pub mod lidar;
 pub mod march;
 pub mod material;
 pub mod mpi;
+pub mod observed;
 pub mod order;
 pub mod own_body;
 pub mod perspective;

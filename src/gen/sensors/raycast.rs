@@ -185,6 +185,18 @@ impl ColumnMasks {
         }
         None
     }
+
+    /// The same, voxel by voxel: `visit` sees every voxel on the way, in order, and the one that is met.
+    pub fn walk_in_voxels(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        max_t: f64,
+        visit: impl FnMut([usize; 3]),
+    ) -> Option<(f64, [usize; 3])> {
+        let start = Start::new(self.shape, origin, direction, max_t)?;
+        walk(self, start.state(), start.t_end, visit)
+    }
 }
 
 /// Bits of the voxels that are not free.

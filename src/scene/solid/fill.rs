@@ -8,8 +8,9 @@ use crate::{Class, Extent};
 /// Labels are extended downward by so many bins in the Occ3D convention.
 pub const SMEAR: usize = 2;
 
-/// Extends what stands in a column downward by [`SMEAR`] bins, as far as there is free space: the Occ3D convention.
-pub fn smear_down(column: &mut [u8; Extent::NZ]) {
+/// Extends what stands in a column of any height downward by [`SMEAR`] bins, as far as there is free space: the Occ3D
+/// convention.
+pub fn smear_down<const BINS: usize>(column: &mut [u8; BINS]) {
     let solid = *column;
     for (z, class) in solid.iter().enumerate().filter(|(_, c)| **c != Class::FREE) {
         for down in 1..=SMEAR.min(z) {

@@ -1,0 +1,23 @@
+//! Occupancy for MagicaVoxel.
+
+use super::{Exporter, OutFile, Span};
+use crate::{Holds, vox, voxels};
+
+/// See [`vox`].
+pub const EXPORTER: Exporter = Exporter {
+    id: "vox",
+    title: "Occupancy: MagicaVoxel .vox, a voxel each, coloured by class",
+    file_name: Some("occupancy.vox"),
+    holds: &[Holds::Occupancy],
+    lost: "",
+    span: Span::Moment,
+    needs: &[],
+    write: |scene, _| {
+        let frame = scene.frame();
+        voxels::check(frame)?;
+        Ok(vec![OutFile::new(
+            "occupancy.vox",
+            vox::to_bytes(&frame.occupancy),
+        )])
+    },
+};

@@ -1,0 +1,132 @@
+//! Lists of voxels: OpenOccupancy, SurroundOcc and UniScene. Which of them a file is, its columns tell; the file says neither
+//! that nor where the LiDAR is, so both are assumed and told.
+
+use std::collections::BTreeMap;
+
+use scene::message::quoted;
+use scene::{Class, SensorRig, VoxelGrid};
+
+use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
+use crate::npy::Table;
+use crate::sparse_npy::{Kind, OPEN_OCCUPANCY, ego_from_lidar};
+use crate::voxels::Cells;
+use crate::{FormatError, Holds};
+
+/// Classes that readers of these files ignore: noise, and the number that they replace it by.
+const IGNORED: [f64; 2] = [0.0, 255.0];
+
+/// See [`crate::sparse_npy`].
+pub const IMPORTER: Importer = Importer {
+    id: "sparse-npy",
+    title: "lists of voxels of OpenOccupancy, SurroundOcc and UniScene",
+    extensions: &["npy"],
+    holds: &[Holds::Occupancy],
+    largest: 256 << 20,
+    recognises: |head| head.starts_with(b"\x93NUMPY"),
+    in_folder: None,
+    read: |source| read(source).map_err(FormatError::new),
+    #[cfg(test)]
+    sample: tests::sample,
+};
+
+fn read(source: &Source<'_>) -> Result<Content, String> {
+    let (labels, skipped) = labels(source.bytes)?;
+    Ok(Content::Scene(Box::new(Loaded {
+        scene: labelled(source.name, labels, None),
+        inferred: &GUESSED,
+        skipped,
+    })))
+}
+
+/// The labels that a file holds, and what was assumed and left out.
+fn labels(bytes: &[u8]) -> Result<(VoxelGrid, BTreeMap<String, usize>), String> {
+    let table = Table::read(bytes)?;
+    let (rows, columns) = (table.rows, table.columns);
+    if rows == 0 || !matches!(columns, 4 | 7) {
+        return Err(format!(
+            "{rows} rows of {columns}, expected rows of 4 (three indices and a class) or of 7 (and a velocity)"
+        ));
+    }
+    let not_finite = |row: usize| (0..columns).any(|column| !table.get(row, column).is_finite());
+    let kind = kind_of(&table, not_finite)?;
+    let rig = SensorRig::default();
+    let lidar = rig.lidars.first().ok_or("the usual rig has no LiDAR")?;
+    let pose = ego_from_lidar(lidar);
+    let mut cells = Cells::new(&kind.lattice, &pose)?;
+    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
+    let mut count = |what: &str, n: usize| {
+        if n > 0 {
+            *skipped.entry(what.to_owned()).or_default() += n;
+        }
+    };
+    for row in 0..rows {
+        if not_finite(row) {
+            count("rows that are not finite", 1);
+            continue;
+        }
+        let cell = kind.cell([0, 1, 2].map(|column| table.get(row, column) as usize));
+        let label = table.get(row, columns - 1);
+        if IGNORED.contains(&label) {
+            count("rows of class 0 or 255, noise", 1);
+            continue;
+        }
+        let known = (1.0..f64::from(Class::FREE)).contains(&label) && label.fract() == 0.0;
+        match known {
+            true => cells.add(cell, label as u8),
+            false if label == f64::from(Class::FREE) => count("rows of class 17, free", 1),
+            false => {
+                count("classes above 17, taken as others", 1);
+                cells.add(cell, Class::Others.id());
+            }
+        }
+    }
+    let (voxels, elsewhere) = cells.voxels();
+    if voxels.iter_set().next().is_none() {
+        return Err(format!(
+            "none of {rows} rows is a voxel of the map, expected some from -1 to 6.2 m of the ego frame"
+        ));
+    }
+    count("cells above or below the map", elsewhere);
+    if columns == 7 {
+        count("velocities of voxels", rows);
+    }
+    count(kind.assumed, rows);
+    let labels = match voxels.is_lowered() {
+        true => {
+            count("ground below -0.6 m, taken as Occ3D has it", 1);
+            voxels.as_it_is()
+        }
+        false => voxels.lowered(),
+    };
+    Ok((labels, skipped))
+}
+
+/// Which data set a table is of. Errors if its first three columns are no indices of any of them.
+fn kind_of(table: &Table<'_>, not_finite: impl Fn(usize) -> bool) -> Result<Kind, String> {
+    let mut maxima = [0.0; 3];
+    for row in (0..table.rows).filter(|row| !not_finite(*row)) {
+        for (column, most) in maxima.iter_mut().enumerate() {
+            let value = table.get(row, column);
+            if value < 0.0 || value.fract() != 0.0 {
+                let found = quoted(&value.to_string(), 40);
+                return Err(format!(
+                    "row {row}, column {column}: {found}, expected the index of a voxel (points are read from .pcd files)"
+                ));
+            }
+            *most = value.max(*most);
+        }
+    }
+    let kind = Kind::of_maxima(maxima.map(|v: f64| v as usize));
+    let kind = kind.filter(|kind| table.columns == 4 || *kind == OPEN_OCCUPANCY);
+    kind.ok_or_else(|| {
+        let [a, b, c] = maxima;
+        format!(
+            "indices up to {a}, {b}, {c}, expected those of OpenOccupancy (z, y, x below 40, 512, 512), SurroundOcc (x, y, z \
+             below 200, 200, 16 or 500, 500, 40) or UniScene (800, 800, 64)"
+        )
+    })
+}
+
+#[cfg(test)]
+#[path = "sparse_npy_tests.rs"]
+mod tests;

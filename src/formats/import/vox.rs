@@ -1,0 +1,32 @@
+//! MagicaVoxel models: the colours of classes become those classes.
+
+use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
+use crate::vox::{File, Placed, place};
+use crate::{FormatError, Holds};
+
+/// See [`crate::vox`].
+pub const IMPORTER: Importer = Importer {
+    id: "vox",
+    title: "MagicaVoxel models",
+    extensions: &["vox"],
+    holds: &[Holds::Occupancy],
+    largest: 256 << 20,
+    recognises: |head| head.starts_with(b"VOX "),
+    in_folder: None,
+    read: |source| read(source).map_err(FormatError::new),
+    #[cfg(test)]
+    sample: tests::sample,
+};
+
+fn read(source: &Source<'_>) -> Result<Content, String> {
+    let Placed { grid, skipped } = place(&File::read(source.bytes)?)?;
+    Ok(Content::Scene(Box::new(Loaded {
+        scene: labelled(source.name, grid, None),
+        inferred: &GUESSED,
+        skipped,
+    })))
+}
+
+#[cfg(test)]
+#[path = "vox_tests.rs"]
+mod tests;
