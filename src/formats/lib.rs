@@ -8,6 +8,7 @@ pub mod export;
 pub mod import;
 pub mod input;
 pub mod loom;
+mod lzf;
 pub mod multi_plane;
 pub mod npz;
 pub mod occ3d;

@@ -7,6 +7,7 @@ pub mod loom;
 pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
+pub mod ply;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,10 +19,11 @@ use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 5] = [
+const TABLE: [&Importer; 6] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
+    &ply::IMPORTER,
     &boxes::IMPORTER,
     &opendrive::IMPORTER,
 ];
