@@ -7,13 +7,19 @@ pub mod error;
 pub mod export;
 pub mod import;
 pub mod input;
+pub mod kitti;
+pub mod las;
 pub mod loom;
 mod lzf;
 pub mod multi_plane;
 pub mod npz;
 pub mod occ3d;
 pub mod opendrive;
+mod physical;
 pub mod png;
+#[cfg(test)]
+mod points_tests;
+pub mod semantic_kitti;
 #[cfg(test)]
 mod table_tests;
 pub mod video;

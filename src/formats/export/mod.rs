@@ -3,9 +3,12 @@
 
 pub mod boxes;
 pub mod depth;
+pub mod kitti;
+pub mod las;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod pcd;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
@@ -19,11 +22,15 @@ use scene::{BoxId, CameraMaps, LidarSweep, Scene};
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 8] = [
+const TABLE: [&Exporter; 12] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
     &ply::EXPORTER,
+    &pcd::EXPORTER,
+    &las::EXPORTER,
+    &las::PACKED,
+    &kitti::EXPORTER,
     &semantic::EXPORTER,
     &depth::EXPORTER,
     &pictures::EXPORTER,
@@ -169,7 +176,6 @@ impl OutFile {
     }
 
     /// The same in a folder of the export's folder.
-    #[allow(dead_code)] // until the first format with folders
     fn within(self, folder: &str) -> Self {
         let tidy = |part: &str| match part {
             "." | ".." => "_".to_owned(),

@@ -3,11 +3,15 @@
 
 pub mod boxes;
 mod cloud;
+pub mod kitti;
+pub mod las;
 pub mod loom;
+pub mod nuscenes_lidar;
 pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
 pub mod ply;
+mod scan;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,11 +23,14 @@ use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 6] = [
+const TABLE: [&Importer; 9] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
     &ply::IMPORTER,
+    &las::IMPORTER,
+    &nuscenes_lidar::IMPORTER,
+    &kitti::IMPORTER,
     &boxes::IMPORTER,
     &opendrive::IMPORTER,
 ];

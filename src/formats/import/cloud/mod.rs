@@ -40,9 +40,9 @@ const GROUND_LAYER: usize = FINE / 2;
 /// The level of the ground is looked for within this distance of the vehicle, m, from at least so many points.
 const LEVEL_REACH_M: f64 = 20.0;
 const LEAST_FOR_LEVEL: u64 = 20;
-/// Ground below this layer is where labels have it; ground from this layer on (0.35 m) is a hill and stays.
+/// Ground below the first layer is where labels have it; ground above the last one (0.3 m) is a hill and stays.
 const LOWEST_LEVEL: usize = FINE - 1;
-const HIGHEST_LEVEL: usize = 27;
+const HIGHEST_LEVEL: usize = 25;
 /// Nothing of the own vehicle is above the ground by less, or beyond its box by more, m.
 const OWN_FROM_M: f64 = 0.3;
 const OWN_MARGIN_M: f64 = 0.2;
@@ -286,7 +286,7 @@ fn summed(mut all: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
 }
 
 /// The layer that the road around the vehicle lies in, or the ground if there is no road; `None` if it is where labels have
-/// it, above 0.35 m, or not known.
+/// it, above 0.3 m, or not known.
 fn ground_level(counted: &[(u32, u32)]) -> Option<usize> {
     let near = |place: usize| {
         let column = place / LAYERS;

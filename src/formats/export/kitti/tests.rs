@@ -1,0 +1,1 @@
+//! Tests of sequences of KITTI.
