@@ -67,7 +67,7 @@ impl FrontCamera {
     }
 
     /// The rectangle (lower and upper corner, px) around an upright box of eight corners in the level frame, not cut to the
-    /// picture; `None` if all of it is behind the camera. Corners are those of [`super::objects::corners`].
+    /// picture; `None` if all of it is behind the camera. Corners are those of `objects::corners_in_ego`.
     pub(super) fn rectangle(&self, corners: &[DVec3; 8]) -> Option<[DVec2; 2]> {
         // Bits of a corner's number are its sides, so an edge joins numbers that differ in one bit.
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);

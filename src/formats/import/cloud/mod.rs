@@ -88,25 +88,26 @@ pub(super) struct Cloud {
 
 /// A point of which the shape of its surroundings is looked at: without label, or labelled as ground.
 struct Loose {
-    /// Place in the window along x, y and z, in 65,536ths of its size.
+    /// Place in the window along x, y and z, in [`Loose::PARTS`] of a voxel.
     at: [u16; 3],
     labelled: bool,
 }
 
 impl Loose {
+    /// Parts of a voxel along x, y and z: 1.25 mm and 0.1 mm. A whole number, so that a point stays in its voxel.
+    const PARTS: DVec3 = DVec3::new(320.0, 320.0, 4096.0);
+
     fn new(at: DVec3, labelled: bool) -> Self {
-        let shape = [Window::NX, Window::NY, Window::NZ].map(|n| n as f64);
-        let units = Window::to_voxel_units(at) / DVec3::from_array(shape) * 65536.0;
+        let parts = Window::to_voxel_units(at) * Self::PARTS;
         Self {
-            at: units.to_array().map(|v| v as u16),
+            at: parts.to_array().map(|v| v as u16),
             labelled,
         }
     }
 
     fn position_m(&self) -> DVec3 {
-        let shape = [Window::NX, Window::NY, Window::NZ].map(|n| n as f64);
-        let share = DVec3::from_array(self.at.map(|v| (f64::from(v) + 0.5) / 65536.0));
-        Window::from_voxel_units(share * DVec3::from_array(shape))
+        let parts = DVec3::from_array(self.at.map(|v| f64::from(v) + 0.5));
+        Window::from_voxel_units(parts / Self::PARTS)
     }
 }
 
