@@ -90,6 +90,31 @@ pub(crate) fn class_of(raw: u16) -> Option<Option<Class>> {
     Some(RAW[at].2)
 }
 
+/// Points of nothing: reflections and dust.
+pub(crate) const OUTLIER: u16 = 1;
+
+/// The class of a point with that label; `None` for numbers that no label has, and for [`OUTLIER`]. A point without a label is
+/// of the class others.
+pub(crate) fn class_of_point(label: u16) -> Option<Class> {
+    let known = class_of(label).filter(|_| label != OUTLIER);
+    known.map(|class| class.unwrap_or(Class::Others))
+}
+
+/// The label of a point of a class, on an object that moves or does not.
+pub(crate) fn label_of(class: Class, moves: bool) -> u16 {
+    let moving = match class {
+        Class::Car => 252,
+        Class::Bicycle => 253,
+        Class::Pedestrian => 254,
+        Class::Motorcycle => 255,
+        Class::Bus => 257,
+        Class::Truck => 258,
+        Class::ConstructionVehicle | Class::Trailer => 259,
+        _ => return raw_id(class),
+    };
+    if moves { moving } else { raw_id(class) }
+}
+
 /// Where the cells' frame is: at the place of the LiDAR, along the axes of the ego frame.
 pub(crate) fn ego_from_cells(lidar: &LidarPattern) -> Pose {
     Pose {

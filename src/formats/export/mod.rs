@@ -5,10 +5,13 @@ pub mod boxes;
 pub mod control_video;
 pub mod depth;
 pub mod glb;
+pub mod kitti;
+pub mod las;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
 pub mod openoccupancy;
+pub mod pcd;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
@@ -38,6 +41,10 @@ const TABLE: &[&Exporter] = &[
     &glb::EXPORTER,
     &nuscenes_lidar::EXPORTER,
     &ply::EXPORTER,
+    &pcd::EXPORTER,
+    &las::EXPORTER,
+    &las::PACKED,
+    &kitti::EXPORTER,
     &semantic::EXPORTER,
     &depth::EXPORTER,
     &pictures::EXPORTER,

@@ -11,7 +11,7 @@ pub const EXPORTER: Exporter = Exporter {
     title: "LiDAR: PLY for viewers, ego frame, with class, intensity, ring",
     file_name: Some("lidar.ply"),
     holds: &[Holds::Points],
-    lost: "",
+    lost: "single points: they come back as voxels with the class of most of them",
     span: Span::Moment,
     needs: &[Product::Sweep],
     write: |_, products| Ok(vec![OutFile::new("lidar.ply", to_bytes(&products.sweep()?))]),

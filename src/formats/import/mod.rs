@@ -4,11 +4,16 @@
 pub mod boxes;
 mod cloud;
 pub mod glb;
+pub mod kitti;
+pub mod las;
 pub mod loom;
+pub mod nuscenes_lidar;
 pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
 pub mod picture;
+pub mod ply;
+mod scan;
 pub mod semantic_kitti;
 pub mod sparse_npy;
 pub mod vox;
@@ -31,6 +36,10 @@ const TABLE: &[&Importer] = &[
     &semantic_kitti::IMPORTER,
     &vox::IMPORTER,
     &pcd::IMPORTER,
+    &ply::IMPORTER,
+    &las::IMPORTER,
+    &nuscenes_lidar::IMPORTER,
+    &kitti::IMPORTER,
     &boxes::IMPORTER,
     &picture::IMPORTER,
     &glb::IMPORTER,

@@ -1,28 +1,27 @@
-//! Point clouds (PCL's PCD, ascii and binary): a cloud becomes the occupancy of a scene, with classes if it has labels.
+//! Point clouds (PCL's PCD, ascii, binary and compressed): a cloud becomes the occupancy of a scene.
 //!
 //! Read are `x`, `y`, `z` in metres, taken as the ego frame (x forward, y left, z up, ground near z = 0), and a field `label`,
-//! `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). A voxel gets the class that most of its points
-//! have; without labels all are "others". Other fields, a viewpoint, points that are not finite or lie beside the map are
-//! left out and counted. `DATA binary_compressed` is refused.
+//! `labels`, `class` or `semantic` with the classes' numbers (Occ3D, 0 to 16). See [`super::cloud`] for what becomes of points
+//! with and without labels. Other fields, a viewpoint, points that are not finite or lie beside the map are left out and
+//! counted.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use glam::DVec3;
 use scene::message::quoted;
-use scene::{BevLayout, Frame, Scene, SensorRig};
 
-use super::cloud::Cloud;
-use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
-use crate::{FormatError, Holds};
+use super::cloud::{Cloud, LABELS, NothingOnTheMap};
+use super::{Content, Importer, Source};
+use crate::{FormatError, Holds, lzf};
 
-/// Fields whose numbers are classes.
-const LABELS: [&str; 4] = ["label", "labels", "class", "semantic"];
 /// Longest header, bytes, and most fields in it.
 const LONGEST_HEADER: usize = 16_384;
 const MOST_FIELDS: usize = 64;
 /// Most values of one field.
 const MOST_VALUES: usize = 4096;
+/// Largest file, and most bytes of points that a compressed one is unpacked to.
+const LARGEST: u64 = 512 << 20;
 
 /// See the module.
 pub const IMPORTER: Importer = Importer {
@@ -30,7 +29,7 @@ pub const IMPORTER: Importer = Importer {
     title: "point clouds",
     extensions: &["pcd"],
     holds: &[Holds::Points],
-    largest: 512 << 20,
+    largest: LARGEST,
     recognises: |head| {
         let text = String::from_utf8_lossy(head);
         text.starts_with("# .PCD") || (text.contains("FIELDS ") && text.contains("SIZE "))
@@ -72,14 +71,17 @@ pub enum PcdError {
         /// What is there.
         found: String,
     },
-    /// Nothing would be left.
-    #[error(
-        "none of {points} points lies on the map, expected x and y within 40 m of the ego and z from -1 to 5.4 m (ego frame)"
-    )]
-    Elsewhere {
-        /// Points in the file.
-        points: usize,
+    /// Compressed points that cannot be unpacked.
+    #[error("binary_compressed: {found}, expected {expected}")]
+    Packed {
+        /// What is there.
+        found: String,
+        /// What would do.
+        expected: String,
     },
+    /// Nothing would be left.
+    #[error(transparent)]
+    Nothing(#[from] NothingOnTheMap),
 }
 
 fn wrong(key: &'static str, found: impl Into<String>, expected: impl Into<String>) -> PcdError {
@@ -104,36 +106,17 @@ fn read(source: &Source<'_>) -> Result<Content, PcdError> {
     header.each_point(body, &wanted, |v| {
         cloud.add(DVec3::new(v[0], v[1], v[2]), v.get(3).copied())
     })?;
-    if cloud.is_empty() {
-        return Err(PcdError::Elsewhere {
-            points: header.points,
-        });
-    }
-    let mut skipped = cloud.skipped();
+    let mut left_out = BTreeMap::new();
     for (at, field) in header.fields.iter().enumerate() {
         if !wanted.contains(&at) {
-            skipped.insert(format!("field {}", quoted(&field.name, 40)), 1);
+            left_out.insert(format!("field {}", quoted(&field.name, 40)), 1);
         }
     }
     if header.has_viewpoint {
-        skipped.insert("viewpoint".into(), 1);
+        left_out.insert("viewpoint".into(), 1);
     }
-    let labels = cloud.grid();
-    let (scene, inferred): (Scene, &'static [&'static str]) = match label {
-        Some(_) => (labelled(source.name, labels, None), &GUESSED),
-        None => {
-            let frame = Frame::new(BevLayout::default(), BTreeMap::new(), labels);
-            (
-                Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0),
-                &[],
-            )
-        }
-    };
-    Ok(Content::Scene(Box::new(Loaded {
-        scene,
-        inferred,
-        skipped,
-    })))
+    let loaded = cloud.scene(source.name, left_out)?;
+    Ok(Content::Scene(Box::new(loaded)))
 }
 
 /// One field of a point.
@@ -149,8 +132,8 @@ struct Field {
 }
 
 impl Field {
-    fn value(&self, point: &[u8]) -> f64 {
-        let at = &point[self.bytes_before..];
+    /// Its first value, `at` being where the field begins.
+    fn value(&self, at: &[u8]) -> f64 {
         macro_rules! number {
             ($type:ty) => {
                 at.first_chunk()
@@ -172,10 +155,19 @@ impl Field {
     }
 }
 
+/// How the points are written.
+#[derive(Clone, Copy, PartialEq)]
+enum Data {
+    Ascii,
+    Binary,
+    /// One field after the other, packed by LZF.
+    Compressed,
+}
+
 struct Header {
     fields: Vec<Field>,
     points: usize,
-    binary: bool,
+    data: Data,
     has_viewpoint: bool,
     /// Where the points begin.
     body: usize,
@@ -188,7 +180,11 @@ impl Header {
         while !lines.contains_key("DATA") {
             let rest = &bytes[at..bytes.len().min(LONGEST_HEADER)];
             let Some(length) = rest.iter().position(|b| *b == b'\n') else {
-                return Err(wrong("DATA", "no such line", "ascii or binary"));
+                return Err(wrong(
+                    "DATA",
+                    "no such line",
+                    "ascii, binary or binary_compressed",
+                ));
             };
             let line = String::from_utf8_lossy(&rest[..length]);
             let mut words = line.split_whitespace().map(str::to_owned);
@@ -198,16 +194,13 @@ impl Header {
             at += length + 1;
         }
         let line = |key: &'static str| lines.get(key).map(Vec::as_slice);
-        let binary = match line("DATA").and_then(<[String]>::first).map(String::as_str) {
-            Some("ascii") => false,
-            Some("binary") => true,
+        let data = match line("DATA").and_then(<[String]>::first).map(String::as_str) {
+            Some("ascii") => Data::Ascii,
+            Some("binary") => Data::Binary,
+            Some("binary_compressed") => Data::Compressed,
             other => {
                 let found = quoted(other.unwrap_or("nothing"), 40);
-                return Err(wrong(
-                    "DATA",
-                    found,
-                    "ascii or binary (binary_compressed is not read)",
-                ));
+                return Err(wrong("DATA", found, "ascii, binary or binary_compressed"));
             }
         };
         let fields = fields(&lines)?;
@@ -223,7 +216,7 @@ impl Header {
         Ok(Self {
             fields,
             points,
-            binary,
+            data,
             has_viewpoint: line("VIEWPOINT").is_some_and(|v| {
                 let number = |s: &str| s.parse::<f64>().ok();
                 !v.iter().map(|s| number(s)).eq(origin.iter().map(|s| number(s)))
@@ -250,15 +243,23 @@ impl Header {
         };
         let wanted: Vec<&Field> = wanted.iter().filter_map(|at| self.fields.get(*at)).collect();
         let mut values = vec![0.0; wanted.len()];
-        if self.binary {
+        if self.data != Data::Ascii {
             let stride: usize = self.fields.iter().map(|f| f.kind.1 * f.count).sum();
+            let (body, by_field) = match self.data {
+                Data::Compressed => (Cow::Owned(self.unpacked(body, stride)?), true),
+                _ => (Cow::Borrowed(body), false),
+            };
             let found = body.len() / stride.max(1);
             if found < self.points {
                 return Err(short(found));
             }
-            for point in body.chunks_exact(stride).take(self.points) {
+            for point in 0..self.points {
                 for (value, field) in values.iter_mut().zip(&wanted) {
-                    *value = field.value(point);
+                    let at = match by_field {
+                        true => self.points * field.bytes_before + point * field.kind.1 * field.count,
+                        false => point * stride + field.bytes_before,
+                    };
+                    *value = field.value(&body[at..]);
                 }
                 take(&values);
             }
@@ -280,6 +281,38 @@ impl Header {
             take(&values);
         }
         Ok(())
+    }
+
+    /// What `DATA binary_compressed` holds: two sizes, then the fields packed together.
+    fn unpacked(&self, body: &[u8], stride: usize) -> Result<Vec<u8>, PcdError> {
+        let packed = |found: String, expected: String| PcdError::Packed { found, expected };
+        let size = |at: usize| {
+            body.get(at..at + 4)?
+                .first_chunk()
+                .map(|b| u32::from_le_bytes(*b))
+        };
+        let (Some(small), Some(large)) = (size(0), size(4)) else {
+            return Err(packed(
+                format!("{} bytes", body.len()),
+                "two sizes of 4 bytes each".into(),
+            ));
+        };
+        let (small, large) = (small as usize, large as usize);
+        let most = small.saturating_mul(lzf::MOST_PER_BYTE).min(LARGEST as usize);
+        if small > body.len() - 8 || large > most {
+            return Err(packed(
+                format!("{} bytes for {small} that unpack to {large}", body.len() - 8),
+                format!("as many, and at most {most}"),
+            ));
+        }
+        if self.points.checked_mul(stride) != Some(large) {
+            return Err(packed(
+                format!("{large} bytes unpacked"),
+                format!("{} points of {stride} bytes", self.points),
+            ));
+        }
+        let unpacked = lzf::decompress(&body[8..8 + small], large);
+        unpacked.ok_or_else(|| packed("damaged data".into(), format!("{large} bytes packed by LZF")))
     }
 }
 

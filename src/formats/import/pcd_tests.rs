@@ -1,6 +1,7 @@
 //! Tests of the reader of point clouds.
 
 use super::*;
+use crate::import::{GUESSED, Loaded};
 use scene::{Class, Window};
 
 /// Three points in two voxels and one beside the map, with labels.
@@ -56,7 +57,7 @@ fn a_cloud_becomes_voxels_with_the_class_of_most_points() {
         skipped,
         [
             ("field intensity", 1),
-            ("labels above 16, taken as others", 1),
+            ("labels without a class, taken as others", 1),
             ("points beside the map", 1)
         ]
     );
@@ -82,25 +83,26 @@ fn fields_come_in_any_order_and_type() {
 }
 
 #[test]
-fn without_labels_all_is_others_and_nothing_is_guessed() {
+fn without_labels_the_shape_tells() {
     let text = String::from_utf8(sample())
         .expect("text")
         .replace(" label\n", " ring\n");
     let found = loaded(text.as_bytes()).expect("sound");
+    // One low thing.
     let counts = found.scene.frame().occupancy.class_counts();
-    assert_eq!((counts[usize::from(Class::Others.id())], counts[4]), (2, 0));
-    assert!(found.inferred.is_empty() && found.scene.frame().inferred == Default::default());
+    assert_eq!((counts[usize::from(Class::Others.id())], counts[4]), (1, 0));
+    assert_eq!(found.inferred, ["classes", "layout", "boxes", "background"]);
 }
 
 #[test]
 fn what_is_wrong_is_named() {
     let text = String::from_utf8(sample()).expect("text");
-    let line = |bytes: &[u8]| loaded(bytes).expect_err("refused").to_string();
+    let line = |bytes: &[u8]| loaded(bytes).map(drop).expect_err("refused").to_string();
     for (from, to, expected) in [
         (
             "DATA ascii",
-            "DATA binary_compressed",
-            "header, DATA: binary_compressed, expected ascii or binary",
+            "DATA zipped",
+            "header, DATA: zipped, expected ascii, binary or binary_compressed",
         ),
         ("DATA ascii\n", "", "header, DATA: no such line"),
         ("POINTS 5", "POINTS 9", "5 points, expected 9 as in the header"),

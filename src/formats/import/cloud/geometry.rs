@@ -1,0 +1,278 @@
+//! Classes of points without labels, told by where they lie.
+//!
+//! - **Ground** is grown from the vehicle outward: the lowest point of a column is ground if it lies near the height of the
+//!   ground found around it, and so is every point less than 0.15 m above.
+//! - Ground that is reached from the vehicle without a step is taken as driveable surface, other ground as other flat. Grass at
+//!   the height of the road cannot be told from it.
+//! - What stands on the ground, is lower than 4.2 m and shorter than 14 m on its own is "others": a vehicle, a person, a bush.
+//! - All else is vegetation where it is thick seen from above, and manmade where it is thin as a wall is.
+//!
+//! Measured on the program's own sweeps; docs/formats/points.md has the figures.
+
+use std::collections::VecDeque;
+
+use glam::{DVec2, DVec3};
+use scene::{Class, Window};
+
+/// Points so much above the ground belong to it, m.
+const GROUND_BAND_M: f64 = 0.15;
+/// How far ground may lie above what is around it, m, and so much more per m to the nearest of it.
+const RISE_M: f64 = 0.12;
+const RISE_PER_M: f64 = 0.10;
+/// How far it may lie below, m (what is lower is an echo from elsewhere), and more per m as above.
+const FALL_M: f64 = 0.5;
+/// The same for ground that is driven on, up and down.
+const STEP_M: f64 = 0.06;
+const STEP_PER_M: f64 = 0.02;
+/// Ground farther away than this counts as being there, m.
+const FARTHEST_M: f64 = 6.0;
+/// Radii in which ground is looked for, columns, and how many columns are enough.
+const REACH: [usize; 3] = [5, 15, 30];
+const ENOUGH: usize = 3;
+/// The level at the vehicle: this share of the lowest points within so many m lies below it.
+const LEVEL_SHARE: f64 = 0.25;
+const LEVEL_REACH_M: f64 = 15.0;
+/// A thing is lower and shorter than this, m.
+const THING_TOP_M: f64 = 4.2;
+const THING_LENGTH_M: f64 = 14.0;
+/// Columns so near each other belong to one thing.
+const TOUCH: usize = 2;
+/// Vegetation is thicker than this, m: the standard deviation of points of 3 x 3 columns across their main direction.
+const WALL_M: f64 = 0.13;
+/// Fewest points that have a thickness.
+const LEAST_POINTS: f64 = 5.0;
+/// Radius in which thickness is averaged, columns.
+const SMOOTH: usize = 4;
+
+/// A class for each point on the map, of m in the ego frame: driveable surface, other flat, manmade, vegetation or others.
+pub(super) fn classes(points: &[DVec3]) -> Vec<Class> {
+    let columns: Vec<usize> = points.iter().map(|p| column(*p)).collect();
+    let ground = Ground::grow(points, &columns);
+    let stands = |i: usize| points[i].z - ground.height_m[columns[i]] >= GROUND_BAND_M;
+    let standing: Vec<usize> = (0..points.len()).filter(|i| stands(*i)).collect();
+    let mut above = vec![Above::default(); Window::COLUMNS];
+    for &i in &standing {
+        let height_m = points[i].z - ground.height_m[columns[i]];
+        above[columns[i]].add(points[i].truncate(), height_m);
+    }
+    let things = things(&above);
+    let thickness_m = thickness(&above);
+    let class = |i: usize| {
+        let c = columns[i];
+        match (stands(i), things[c]) {
+            (false, _) if ground.is_driven[c] => Class::DriveableSurface,
+            (false, _) => Class::OtherFlat,
+            (true, true) => Class::Others,
+            (true, false) if thickness_m[c] > WALL_M => Class::Vegetation,
+            (true, false) => Class::Manmade,
+        }
+    };
+    (0..points.len()).map(class).collect()
+}
+
+fn column(p: DVec3) -> usize {
+    let u = Window::to_voxel_units(p);
+    (u.x as usize).min(Window::NX - 1) * Window::NY + (u.y as usize).min(Window::NY - 1)
+}
+
+/// The columns within a radius.
+fn around(c: usize, reach: usize) -> impl Iterator<Item = usize> {
+    let (x, y) = (c / Window::NY, c % Window::NY);
+    let xs = x.saturating_sub(reach)..=(x + reach).min(Window::NX - 1);
+    xs.flat_map(move |x| {
+        let ys = y.saturating_sub(reach)..=(y + reach).min(Window::NY - 1);
+        ys.map(move |y| x * Window::NY + y)
+    })
+}
+
+fn distance_m(a: usize, b: usize) -> f64 {
+    let d = [
+        (a / Window::NY).abs_diff(b / Window::NY),
+        (a % Window::NY).abs_diff(b % Window::NY),
+    ];
+    DVec2::from_array(d.map(|n| n as f64)).length() * Window::VOXEL_M
+}
+
+/// Heights of the ground per column.
+struct Ground {
+    /// Of ground that was found or is near, m.
+    height_m: Vec<f64>,
+    /// Reached from the vehicle without a step.
+    is_driven: Vec<bool>,
+}
+
+impl Ground {
+    fn grow(points: &[DVec3], columns: &[usize]) -> Self {
+        let mut lowest = vec![f64::INFINITY; Window::COLUMNS];
+        for (p, c) in points.iter().zip(columns) {
+            lowest[*c] = lowest[*c].min(p.z);
+        }
+        let from_vehicle_m = |c: usize| {
+            Window::center(c / Window::NY, c % Window::NY, 0)
+                .truncate()
+                .length()
+        };
+        let mut order: Vec<usize> = (0..Window::COLUMNS).filter(|c| lowest[*c].is_finite()).collect();
+        order.sort_by(|a, b| from_vehicle_m(*a).total_cmp(&from_vehicle_m(*b)));
+        let near: Vec<f64> = order
+            .iter()
+            .take_while(|c| from_vehicle_m(**c) < LEVEL_REACH_M)
+            .map(|c| lowest[*c])
+            .collect();
+        let all = || order.iter().map(|c| lowest[*c]).collect();
+        let level_m = quantile(if near.is_empty() { all() } else { near });
+        let mut found = vec![f64::NAN; Window::COLUMNS];
+        let mut driven = vec![f64::NAN; Window::COLUMNS];
+        let mut height_m = vec![level_m; Window::COLUMNS];
+        for c in order {
+            let (around_m, gap_m) = mean_around(&found, c).unwrap_or((level_m, from_vehicle_m(c)));
+            let gap_m = gap_m.min(FARTHEST_M);
+            let rise_m = lowest[c] - around_m;
+            let more_m = RISE_PER_M * gap_m;
+            if rise_m >= RISE_M + more_m || rise_m <= -FALL_M - more_m {
+                height_m[c] = around_m;
+                continue;
+            }
+            (found[c], height_m[c]) = (lowest[c], lowest[c]);
+            let (road_m, gap_m) = mean_around(&driven, c).unwrap_or((level_m, 0.0));
+            if (lowest[c] - road_m).abs() < STEP_M + STEP_PER_M * gap_m.min(FARTHEST_M) {
+                driven[c] = lowest[c];
+            }
+        }
+        Self {
+            height_m,
+            is_driven: driven.iter().map(|h| !h.is_nan()).collect(),
+        }
+    }
+}
+
+fn quantile(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let at = (values.len() as f64 * LEVEL_SHARE) as usize;
+    values.get(at).copied().unwrap_or(0.0)
+}
+
+/// The mean of what is known around a column, the near counting more, and the distance to the nearest, m. `None` if too little
+/// is known.
+fn mean_around(values: &[f64], c: usize) -> Option<(f64, f64)> {
+    REACH.into_iter().find_map(|reach| {
+        let (mut known, mut sum, mut weights, mut nearest_m) = (0, 0.0, 0.0, f64::INFINITY);
+        for other in around(c, reach).filter(|o| !values[*o].is_nan()) {
+            let d = distance_m(c, other);
+            let weight = (d + 0.2).powi(-2);
+            known += 1;
+            sum += weight * values[other];
+            weights += weight;
+            nearest_m = nearest_m.min(d);
+        }
+        (known >= ENOUGH).then_some((sum / weights, nearest_m))
+    })
+}
+
+/// Points of a column that stand on the ground.
+#[derive(Clone, Copy, Default)]
+struct Above {
+    count: f64,
+    /// Sums of x and y, of their squares and of their product; from the first point of the column on, to stay exact.
+    first_m: DVec2,
+    sum: DVec2,
+    squares: DVec2,
+    product: f64,
+    top_m: f64,
+}
+
+impl Above {
+    fn add(&mut self, at: DVec2, height_m: f64) {
+        if self.count == 0.0 {
+            self.first_m = at;
+        }
+        let d = at - self.first_m;
+        self.count += 1.0;
+        self.sum += d;
+        self.squares += d * d;
+        self.product += d.x * d.y;
+        self.top_m = self.top_m.max(height_m);
+    }
+
+    /// The sums of both, from the first point of this one on.
+    fn joined(self, other: &Self) -> Self {
+        let by = other.first_m - self.first_m;
+        let n = other.count;
+        Self {
+            count: self.count + n,
+            first_m: self.first_m,
+            sum: self.sum + other.sum + n * by,
+            squares: self.squares + other.squares + 2.0 * by * other.sum + n * by * by,
+            product: self.product + other.product + by.x * other.sum.y + by.y * other.sum.x + n * by.x * by.y,
+            top_m: self.top_m.max(other.top_m),
+        }
+    }
+
+    /// Standard deviation across the main direction, m.
+    fn thickness_m(&self) -> f64 {
+        let mean = self.sum / self.count;
+        let spread = self.squares / self.count - mean * mean;
+        let product = self.product / self.count - mean.x * mean.y;
+        let half = (spread.x - spread.y) / 2.0;
+        let least = (spread.x + spread.y) / 2.0 - (half * half + product * product).sqrt();
+        least.max(0.0).sqrt()
+    }
+}
+
+/// For each column whether what stands there is low and short on its own.
+fn things(above: &[Above]) -> Vec<bool> {
+    let mut out = vec![false; above.len()];
+    let mut seen: Vec<bool> = above.iter().map(|a| a.count == 0.0).collect();
+    for start in 0..above.len() {
+        if std::mem::replace(&mut seen[start], true) {
+            continue;
+        }
+        let (mut part, mut open) = (Vec::new(), VecDeque::from([start]));
+        while let Some(c) = open.pop_front() {
+            part.push(c);
+            for near in around(c, TOUCH) {
+                if !std::mem::replace(&mut seen[near], true) {
+                    open.push_back(near);
+                }
+            }
+        }
+        let top_m = part.iter().map(|c| above[*c].top_m).fold(0.0, f64::max);
+        let length = |place: fn(usize) -> usize| {
+            let places = part.iter().map(|c| place(*c));
+            let (low, high) = (places.clone().min(), places.max());
+            high.zip(low).map_or(0, |(high, low)| high - low + 1) as f64 * Window::VOXEL_M
+        };
+        let length_m = length(|c| c / Window::NY).max(length(|c| c % Window::NY));
+        if top_m < THING_TOP_M && length_m < THING_LENGTH_M {
+            part.into_iter().for_each(|c| out[c] = true);
+        }
+    }
+    out
+}
+
+/// How thick what stands in a column is seen from above, m: the mean over the columns around. 0 where too few points stand.
+fn thickness(above: &[Above]) -> Vec<f64> {
+    let of_column = |c: usize| {
+        let here = above[c];
+        let joined = around(c, 1)
+            .filter(|o| *o != c && above[*o].count > 0.0)
+            .fold(here, |sum, o| sum.joined(&above[o]));
+        let is_known = here.count > 0.0 && joined.count >= LEAST_POINTS;
+        (is_known.then(|| joined.thickness_m()), here.count)
+    };
+    let known: Vec<(Option<f64>, f64)> = (0..above.len()).map(of_column).collect();
+    let mean = |c: usize| {
+        if above[c].count == 0.0 {
+            return 0.0;
+        }
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (thickness_m, count) in around(c, SMOOTH).map(|o| known[o]) {
+            if let Some(thickness_m) = thickness_m {
+                sum += thickness_m * count;
+                weights += count;
+            }
+        }
+        if weights > 0.0 { sum / weights } else { 0.0 }
+    };
+    (0..above.len()).map(mean).collect()
+}

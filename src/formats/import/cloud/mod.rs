@@ -1,0 +1,330 @@
+//! Points into a scene: what every format of point clouds needs.
+//!
+//! Points are counted into the voxels of the networks' window. A voxel gets the class that most of its points have; of points
+//! without a label the class is told by shape ([`geometry`]). Labels of this program, as those of Occ3D, have the road under the
+//! vehicle in the lowest bin, two below its height; in clouds it lies where it is. The ground of a cloud is therefore moved so
+//! that its level around the vehicle comes to the middle of the lowest bin. Everything else stays.
+
+mod geometry;
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use glam::DVec3;
+use scene::{Class, SensorRig, VoxelGrid, Window};
+
+use super::{GUESSED, Loaded, labelled};
+
+/// Fields of points whose numbers are classes of Occ3D, in small letters.
+pub(super) const LABELS: [&str; 6] = [
+    "label",
+    "labels",
+    "class",
+    "semantic",
+    "scalar_label",
+    "scalar_class",
+];
+
+/// Layers per voxel in which heights are counted: 0.05 m each.
+const FINE: usize = 8;
+/// Layers of the window.
+const LAYERS: usize = Window::NZ * FINE;
+/// Classes that a number can hold beside its place.
+const CLASSES: u32 = 32;
+/// Points that wait until they are counted.
+const PENDING: usize = 1 << 20;
+/// Unlabelled points of one voxel of which the shape is looked at.
+const MOST_PER_VOXEL: u8 = 32;
+/// The layer in which the level of the ground is put: above it is the middle of the lowest bin.
+const GROUND_LAYER: usize = FINE / 2;
+/// The level of the ground is looked for within this distance of the vehicle, m, from at least so many points.
+const LEVEL_REACH_M: f64 = 20.0;
+const LEAST_FOR_LEVEL: u64 = 20;
+/// Ground below the first layer is where labels have it; ground above the last one (0.3 m) is a hill and stays.
+const LOWEST_LEVEL: usize = FINE - 1;
+const HIGHEST_LEVEL: usize = 25;
+/// Nothing of the own vehicle is above the ground by less, or beyond its box by more, m.
+const OWN_FROM_M: f64 = 0.3;
+const OWN_MARGIN_M: f64 = 0.2;
+
+/// What is known of a point's class.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Label {
+    /// It has one.
+    Class(Class),
+    /// It has a label that no class stands for: "others", counted.
+    Unknown,
+    /// It has none: its shape tells.
+    None,
+}
+
+/// None of the points would be left.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error(
+    "none of {points} points lies on the map, expected x and y within 40 m of the ego and z from -1 to 5.4 m (ego frame)"
+)]
+pub struct NothingOnTheMap {
+    /// Points in the file.
+    pub points: usize,
+}
+
+/// Points on the map, and what is known of them.
+#[derive(Default)]
+pub(super) struct Cloud {
+    /// Column, layer and class of a point in one number.
+    pending: Vec<u32>,
+    /// The same numbers, sorted, and how many points have them.
+    counted: Vec<(u32, u32)>,
+    loose: Vec<Loose>,
+    /// Loose points of each voxel.
+    held: Vec<u8>,
+    unlabelled: bool,
+    added: usize,
+    not_finite: usize,
+    elsewhere: usize,
+    unknown: usize,
+    own: usize,
+}
+
+/// A point of which the shape of its surroundings is looked at: without label, or labelled as ground.
+struct Loose {
+    /// Place in the window along x, y and z, in [`Loose::PARTS`] of a voxel.
+    at: [u16; 3],
+    labelled: bool,
+}
+
+impl Loose {
+    /// Parts of a voxel along x, y and z: 1.25 mm and 0.1 mm. A whole number, so that a point stays in its voxel.
+    const PARTS: DVec3 = DVec3::new(320.0, 320.0, 4096.0);
+
+    fn new(at: DVec3, labelled: bool) -> Self {
+        let parts = Window::to_voxel_units(at) * Self::PARTS;
+        Self {
+            at: parts.to_array().map(|v| v as u16),
+            labelled,
+        }
+    }
+
+    fn position_m(&self) -> DVec3 {
+        let parts = DVec3::from_array(self.at.map(|v| f64::from(v) + 0.5));
+        Window::from_voxel_units(parts / Self::PARTS)
+    }
+}
+
+impl Cloud {
+    /// One point, in m in the ego frame, and the number of its class in Occ3D if it has one.
+    pub(super) fn add(&mut self, at: DVec3, label: Option<f64>) {
+        let label = match label {
+            Some(id) if (0.0..f64::from(Class::FREE)).contains(&id) && id.fract() == 0.0 => {
+                Class::from_id(id as u8).map_or(Label::Unknown, Label::Class)
+            }
+            Some(_) => Label::Unknown,
+            None => Label::None,
+        };
+        self.add_point(at, label);
+    }
+
+    /// One point, in m in the ego frame.
+    pub(super) fn add_point(&mut self, at: DVec3, label: Label) {
+        self.added += 1;
+        if !at.is_finite() {
+            self.not_finite += 1;
+            return;
+        }
+        let Some([x, y, z]) = Window::voxel_at(at) else {
+            self.elsewhere += 1;
+            return;
+        };
+        let class = match label {
+            Label::Class(class) => Some(class),
+            Label::Unknown => Some(Class::Others),
+            Label::None => None,
+        };
+        if class.is_none_or(|class| class == Class::Others) && is_own(at) {
+            self.own += 1;
+            return;
+        }
+        self.unknown += usize::from(label == Label::Unknown);
+        self.unlabelled |= class.is_none();
+        if class.is_none_or(Class::is_ground) {
+            self.hold(at, (x * Window::NY + y) * Window::NZ + z, class.is_some());
+        }
+        if let Some(class) = class {
+            self.count(at, class);
+        }
+    }
+
+    /// True if no point lies on the map.
+    pub(super) fn is_empty(&self) -> bool {
+        self.pending.is_empty() && self.counted.is_empty() && self.loose.is_empty()
+    }
+
+    /// Points that are not in the scene, or not with their label, counted by kind.
+    fn skipped(&self) -> BTreeMap<String, usize> {
+        let counts = [
+            ("points that are not finite", self.not_finite),
+            ("points beside the map", self.elsewhere),
+            ("points on the own vehicle", self.own),
+            ("labels without a class, taken as others", self.unknown),
+        ];
+        let some = counts.into_iter().filter(|(_, n)| *n > 0);
+        some.map(|(what, n)| (what.to_owned(), n)).collect()
+    }
+
+    /// The scene of the points; `left_out` is what else the file holds, counted by kind.
+    pub(super) fn scene(
+        mut self,
+        name: &str,
+        left_out: BTreeMap<String, usize>,
+    ) -> Result<Loaded, NothingOnTheMap> {
+        if self.is_empty() {
+            return Err(NothingOnTheMap { points: self.added });
+        }
+        let mut skipped = left_out;
+        skipped.extend(self.skipped());
+        let by_shape = self.unlabelled;
+        if by_shape {
+            let loose = std::mem::take(&mut self.loose);
+            self.held = Vec::new();
+            let at: Vec<DVec3> = loose.iter().map(Loose::position_m).collect();
+            for ((point, at), class) in loose.iter().zip(&at).zip(geometry::classes(&at)) {
+                if !point.labelled {
+                    self.count(*at, class);
+                }
+            }
+        }
+        Ok(Loaded {
+            scene: labelled(name, self.grid(), None),
+            inferred: match by_shape {
+                true => &GUESSED_BY_SHAPE,
+                false => &GUESSED,
+            },
+            skipped,
+        })
+    }
+
+    fn hold(&mut self, at: DVec3, voxel: usize, labelled: bool) {
+        if self.held.is_empty() {
+            self.held = vec![0; Window::VOXELS];
+        }
+        if self.held[voxel] < MOST_PER_VOXEL {
+            self.held[voxel] += 1;
+            self.loose.push(Loose::new(at, labelled));
+        }
+    }
+
+    fn count(&mut self, at: DVec3, class: Class) {
+        let u = Window::to_voxel_units(at);
+        let column = (u.x as usize).min(Window::NX - 1) * Window::NY + (u.y as usize).min(Window::NY - 1);
+        let layer = ((u.z * FINE as f64) as usize).min(LAYERS - 1);
+        let place = (column * LAYERS + layer) as u32;
+        self.pending.push(place * CLASSES + u32::from(class.id()));
+        if self.pending.len() >= PENDING {
+            self.settle();
+        }
+    }
+
+    /// Counts what waits.
+    fn settle(&mut self) {
+        self.pending.sort_unstable();
+        let new = self.pending.chunk_by(|a, b| a == b);
+        let mut all: Vec<(u32, u32)> = std::mem::take(&mut self.counted);
+        all.extend(new.map(|points| (points[0], points.len() as u32)));
+        self.pending.clear();
+        self.counted = summed(all);
+    }
+
+    /// Each voxel by the vote of its points; of equally many the lowest class, "others" last.
+    fn grid(mut self) -> VoxelGrid {
+        self.settle();
+        let level = ground_level(&self.counted);
+        let voxel = |(key, count): &(u32, u32)| {
+            let (place, class) = (*key as usize / CLASSES as usize, key % CLASSES);
+            let (column, layer) = (place / LAYERS, place % LAYERS);
+            let is_ground = Class::from_id(class as u8).is_some_and(Class::is_ground);
+            let layer = match level.filter(|_| is_ground) {
+                Some(level) => (layer + GROUND_LAYER).saturating_sub(level).min(LAYERS - 1),
+                None => layer,
+            };
+            let voxel = column * Window::NZ + layer / FINE;
+            (voxel as u32 * CLASSES + class, *count)
+        };
+        let votes = summed(self.counted.iter().map(voxel).collect());
+        let mut grid = VoxelGrid::new();
+        for votes in votes.chunk_by(|a, b| a.0 / CLASSES == b.0 / CLASSES) {
+            let winner = votes.iter().max_by_key(|(key, count)| {
+                let class = key % CLASSES;
+                let others = u32::from(Class::Others.id());
+                (*count, class != others, std::cmp::Reverse(class))
+            });
+            let Some((key, _)) = winner else { continue };
+            let voxel = (key / CLASSES) as usize;
+            let (x, y, z) = (
+                voxel / (Window::NY * Window::NZ),
+                voxel / Window::NZ % Window::NY,
+                voxel % Window::NZ,
+            );
+            grid.set(x, y, z, (key % CLASSES) as u8);
+        }
+        grid
+    }
+}
+
+/// What of a cloud without labels is a guess.
+const GUESSED_BY_SHAPE: [&str; 4] = ["classes", "layout", "boxes", "background"];
+
+/// Equal keys as one, their counts added up; sorted.
+fn summed(mut all: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
+    all.sort_unstable();
+    all.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 = kept.1.saturating_add(next.1);
+        }
+        same
+    });
+    all
+}
+
+/// The layer that the road around the vehicle lies in, or the ground if there is no road; `None` if it is where labels have
+/// it, above 0.3 m, or not known.
+fn ground_level(counted: &[(u32, u32)]) -> Option<usize> {
+    let near = |place: usize| {
+        let column = place / LAYERS;
+        let center = Window::center(column / Window::NY, column % Window::NY, 0);
+        center.truncate().length() <= LEVEL_REACH_M
+    };
+    let level = |is_meant: &dyn Fn(Class) -> bool| {
+        let mut points = [0u64; LAYERS];
+        for (key, count) in counted {
+            let place = (key / CLASSES) as usize;
+            let class = Class::from_id((key % CLASSES) as u8);
+            if class.is_some_and(is_meant) && near(place) {
+                points[place % LAYERS] += u64::from(*count);
+            }
+        }
+        let all: u64 = points.iter().sum();
+        let mut below = 0;
+        let median = points.iter().position(|n| {
+            below += n;
+            2 * below >= all
+        });
+        median.filter(|_| all >= LEAST_FOR_LEVEL)
+    };
+    let found = level(&|class| class == Class::DriveableSurface).or_else(|| level(&Class::is_ground))?;
+    (LOWEST_LEVEL..=HIGHEST_LEVEL).contains(&found).then_some(found)
+}
+
+/// True for a place on the vehicle that carries the sensors, that of the default rig.
+fn is_own(at: DVec3) -> bool {
+    static OWN: LazyLock<(DVec3, DVec3)> = LazyLock::new(|| {
+        let rig = SensorRig::default();
+        let half = DVec3::from_array(rig.ego_size_m) / 2.0 + DVec3::splat(OWN_MARGIN_M);
+        (DVec3::from_array(rig.ego_center_m), half)
+    });
+    let (center, half) = *OWN;
+    at.z > OWN_FROM_M && (at - center).abs().cmple(half).all()
+}
+
+#[cfg(test)]
+mod tests;
