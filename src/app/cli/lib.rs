@@ -15,6 +15,7 @@ mod eval;
 mod export;
 pub(crate) mod generate;
 mod import;
+mod mcp;
 mod new;
 pub(crate) mod output;
 mod progress;
@@ -22,6 +23,8 @@ mod prompt;
 mod region_arg;
 mod render;
 mod scenery;
+mod schema;
+mod session;
 mod shot;
 mod trade;
 
@@ -82,6 +85,12 @@ enum Command {
     Eval(eval::Eval),
     /// What each knob of speed and accuracy costs and buys, measured on this machine.
     Trade(trade::Trade),
+    /// Drive an editor by JSON lines: one call a line in, one reply a line out.
+    Session(session::Session),
+    /// Drive an editor by an assistant: a server of the Model Context Protocol.
+    Mcp(mcp::Mcp),
+    /// The JSON Schema of all calls of `session` and `mcp`.
+    Schema(schema::SchemaCommand),
     /// What this machine offers.
     Doctor(doctor::Doctor),
 }
@@ -135,6 +144,9 @@ pub fn main() -> ExitCode {
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),
         Some(Command::Trade(c)) => c.run(),
+        Some(Command::Session(c)) => c.run(),
+        Some(Command::Mcp(c)) => c.run(),
+        Some(Command::Schema(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),
         None => editor(cli.scene, cli.trace),
     };
