@@ -41,8 +41,10 @@ pub struct CallDef {
     pub example: &'static str,
     /// See [`Operation::CHANGES`].
     pub changes: bool,
-    /// Schemas of the arguments and of the receipt, in one generator.
-    pub schemas: fn(&mut schemars::SchemaGenerator) -> [schemars::Schema; 2],
+    /// Schema of the arguments.
+    pub args: fn(&mut schemars::SchemaGenerator) -> schemars::Schema,
+    /// Schema of the receipt.
+    pub receipt: fn(&mut schemars::SchemaGenerator) -> schemars::Schema,
 }
 
 /// What a call answers.
@@ -75,10 +77,8 @@ macro_rules! calls {
                 about: <$args>::ABOUT,
                 example: <$args>::EXAMPLE,
                 changes: <$args>::CHANGES,
-                schemas: |generator| [
-                    generator.subschema_for::<$args>(),
-                    generator.subschema_for::<<$args as Operation>::Receipt>(),
-                ],
+                args: |generator| generator.subschema_for::<$args>(),
+                receipt: |generator| generator.subschema_for::<<$args as Operation>::Receipt>(),
             },)+]
         }
 

@@ -6,21 +6,19 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
-use crossbeam_channel::{Sender, bounded};
+use crossbeam_channel::bounded;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::change::Change;
 use crate::folder::Folder;
+pub use app::shell::guests::Task;
 use editor::checks::{self, Finding};
 use editor::{Document, Edit};
 use job::pipeline::OccPipeline;
 use job::region::edited_columns;
 use nets::OccModels;
 use scene::{Scene, SceneRev};
-
-/// Work on a document, to be done by the thread that owns it.
-pub type Task = Box<dyn FnOnce(&mut Document) + Send>;
 
 /// True once the call in progress is not wanted any more.
 pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
@@ -29,8 +27,8 @@ pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
 pub enum Holder {
     /// This session.
     Own(Box<Document>),
-    /// Another thread, such as that of a window: it takes tasks from the other end and does them one by one.
-    Elsewhere(Sender<Task>),
+    /// Another thread, such as that of a window. It is handed tasks, which it does one by one; false if it is gone.
+    Elsewhere(Box<dyn FnMut(Task) -> bool + Send>),
 }
 
 impl Holder {
@@ -41,12 +39,12 @@ impl Holder {
     ) -> anyhow::Result<R> {
         match self {
             Self::Own(document) => Ok(work(document)),
-            Self::Elsewhere(tasks) => {
+            Self::Elsewhere(hand) => {
                 let (answer, answered) = bounded(1);
                 let task: Task = Box::new(move |document| drop(answer.send(work(document))));
-                let gone = "the window that owns the scene is closed";
-                tasks.send(task).ok().context(gone)?;
-                answered.recv().ok().context(gone)
+                let handed = hand(task);
+                let answer = handed.then(|| answered.recv().ok()).flatten();
+                answer.context("the window that owns the scene lets nobody in any more")
             }
         }
     }
@@ -141,7 +139,8 @@ impl Desk {
         Ok(self.done(step, &states))
     }
 
-    /// Puts another scene in the place of the state `from`, as one undo step. Errors if the scene has changed since.
+    /// Puts another state in the place of the state `from`, as one undo step. Errors if the scene has changed since. Its
+    /// findings are no warnings: it is another scene, or is checked by whoever made it.
     pub fn put(&mut self, step: String, from: SceneRev, scene: Scene) -> anyhow::Result<Done> {
         let label = step.clone();
         let (is_current, states) = self.with(move |document| {
@@ -152,7 +151,10 @@ impl Desk {
             is_current
         })?;
         match is_current {
-            true => Ok(self.done(step, &states)),
+            true => Ok(Done {
+                warnings: Vec::new(),
+                ..self.done(step, &states)
+            }),
             false => bail!("the scene was changed in the window meanwhile: nothing was done, call again"),
         }
     }
@@ -160,6 +162,7 @@ impl Desk {
     /// The receipt of a change.
     pub fn done(&mut self, step: String, [before, after]: &[Arc<Scene>; 2]) -> Done {
         let changed = Change::between(before, after);
+        self.number(before.content());
         let differs = before.content() != after.content();
         let warnings = match differs {
             true => self.warnings(before, after),

@@ -88,7 +88,7 @@ impl Folder {
             match look(&at, name)? {
                 Some(is) if is.is_dir() => {}
                 Some(is) if is.is_symlink() => {
-                    let real = fs::canonicalize(&at).with_context(|| name.to_owned())?;
+                    let real = fs::canonicalize(&at).unwrap_or_default();
                     if !(real.starts_with(&self.root) && real.is_dir()) {
                         bail!("{name}: leads out of the folder of this session");
                     }

@@ -12,6 +12,7 @@ pub mod render;
 pub mod schema;
 mod service;
 mod session;
+mod window;
 
 pub use call::{Answer, Call, CallDef, Operation, Receipt, find, table};
 pub use change::{Change, Counts, Gained, changed_voxels, gained_and_lost};
@@ -20,6 +21,7 @@ pub use folder::{FileEntry, Folder};
 pub use mcp::{Http, http, random_token, stdio};
 pub use service::{Busy, MOST_WAITING, Service};
 pub use session::session;
+pub use window::{PORT, WindowDoor};
 
 /// Bytes of the longest call with its arguments.
 pub const LONGEST_CALL: usize = 1 << 20;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
-use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 
 use crate::call::{CallDef, table};
@@ -11,18 +11,25 @@ use crate::call::{CallDef, table};
 /// Where definitions are, as references begin.
 const DEFS: &str = "#/$defs/";
 
-fn generator() -> SchemaGenerator {
+/// Of what is read: what may be left out is not required.
+fn of_arguments() -> SchemaGenerator {
     SchemaSettings::draft2020_12().into_generator()
+}
+
+/// Of what is written: all keys are there.
+fn of_receipts() -> SchemaGenerator {
+    SchemaSettings::draft2020_12().for_serialize().into_generator()
 }
 
 /// Every call with its arguments and its receipt: a document of JSON Schema 2020-12 that a request must meet. `x-calls` says of
 /// each call what it does, one example, whether it changes the scene, and where its receipt is defined. The same bytes each
 /// time.
 pub fn document() -> Value {
-    let mut generator = generator();
-    let (mut requests, mut calls) = (Vec::new(), Map::new());
+    let (mut read, mut written) = (of_arguments(), of_receipts());
+    let (mut requests, mut calls, mut receipts) = (Vec::new(), Map::new(), Map::new());
     for def in table() {
-        let [args, receipt] = (def.schemas)(&mut generator).map(Schema::to_value);
+        let args = (def.args)(&mut read).to_value();
+        receipts.insert(def.name.to_owned(), (def.receipt)(&mut written).to_value());
         requests.push(json!({
             "type": "object",
             "properties": {
@@ -33,14 +40,27 @@ pub fn document() -> Value {
             "required": required(&def),
             "additionalProperties": false,
         }));
-        let about = json!({
-            "about": def.about,
-            "changes_the_scene": def.changes,
-            "example": example(&def),
-            "args": args,
-            "receipt": receipt,
-        });
-        calls.insert(def.name.to_owned(), about);
+        calls.insert(
+            def.name.to_owned(),
+            json!({ "about": def.about, "changes_the_scene": def.changes, "args": args }),
+        );
+    }
+    let mut defs = read.take_definitions(true);
+    let written = written.take_definitions(true);
+    // Types that are read in one shape and written in another have two definitions.
+    let two = with_two_shapes(&defs, &written);
+    for (name, mut def) in written {
+        renamed(&mut def, &two);
+        let name = if two.contains(&name) {
+            format!("{name}{WRITTEN}")
+        } else {
+            name
+        };
+        defs.insert(name, def);
+    }
+    for (name, mut receipt) in receipts {
+        renamed(&mut receipt, &two);
+        calls[&name]["receipt"] = receipt;
     }
     let mut document = json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -48,10 +68,59 @@ pub fn document() -> Value {
         "description": format!("One request a line: {{\"id\": 1, \"call\": \"state\", \"args\": {{}}}}. One reply a line: {{\"id\": 1, \"ok\": true, \"receipt\": …}} or {{\"id\": 1, \"ok\": false, \"error\": \"…\"}}. Lengths in m, angles in degrees counter-clockwise, times in s; x ahead, y left, z up. Version {}.", env!("CARGO_PKG_VERSION")),
         "oneOf": requests,
         "x-calls": calls,
-        "$defs": generator.take_definitions(true),
+        "$defs": defs,
     });
     tidy(&mut document);
+    // (an example is no schema, and stays as it is)
+    for def in table() {
+        document["x-calls"][def.name]["example"] = example(&def);
+    }
     document
+}
+
+/// What the name of the second definition of a type ends in.
+const WRITTEN: &str = "Written";
+
+/// Names of types whose two definitions differ, in themselves or in what they refer to.
+fn with_two_shapes(read: &Map<String, Value>, written: &Map<String, Value>) -> BTreeSet<String> {
+    let mut two: BTreeSet<String> = BTreeSet::new();
+    loop {
+        let differs = |(name, def): &(&String, &Value)| {
+            let mut refers = Vec::new();
+            references(def, &mut refers);
+            let to_one = refers.iter().any(|to| two.contains(to));
+            read.get(*name).is_some_and(|other| other != *def || to_one)
+        };
+        let found: BTreeSet<String> = written
+            .iter()
+            .filter(differs)
+            .map(|(name, _)| name.clone())
+            .collect();
+        if found.len() == two.len() {
+            return two;
+        }
+        two = found;
+    }
+}
+
+/// Lets references to some definitions lead to their second ones.
+fn renamed(value: &mut Value, two: &BTreeSet<String>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                match value {
+                    Value::String(to) if key == "$ref" => {
+                        if to.strip_prefix(DEFS).is_some_and(|name| two.contains(name)) {
+                            to.push_str(WRITTEN);
+                        }
+                    }
+                    _ => renamed(value, two),
+                }
+            }
+        }
+        Value::Array(list) => list.iter_mut().for_each(|v| renamed(v, two)),
+        _ => {}
+    }
 }
 
 /// Keys that a request must have.
@@ -74,11 +143,12 @@ pub fn example(def: &CallDef) -> Value {
 
 /// Schemas of the arguments and of the receipt of a call, each an object that stands alone.
 pub fn of_call(def: &CallDef) -> [Map<String, Value>; 2] {
-    let mut generator = generator();
-    let both = (def.schemas)(&mut generator).map(Schema::to_value);
-    let mut defs = Value::Object(generator.take_definitions(true));
-    tidy(&mut defs);
-    both.map(|schema| alone(&schema, &defs))
+    [(def.args, of_arguments()), (def.receipt, of_receipts())].map(|(of, mut generator)| {
+        let schema = of(&mut generator).to_value();
+        let mut defs = Value::Object(generator.take_definitions(true));
+        tidy(&mut defs);
+        alone(&schema, &defs)
+    })
 }
 
 /// A schema with the definitions that it needs, and no others.
@@ -183,6 +253,7 @@ mod tests {
             if let Err(error) = Call::parse(def.name, args.clone()) {
                 panic!("{}: {error}", def.name);
             }
+            assert_eq!(document()["x-calls"][def.name]["example"], example(&def));
             // Unknown keys are refused by name.
             let mut more = args;
             more.insert("bogus".into(), json!(1));

@@ -28,7 +28,7 @@ mod session;
 mod shot;
 mod trade;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -37,6 +37,7 @@ pub(crate) use common::Common;
 use common::{Gen, Moment, Outcome, Stop};
 
 use app::open;
+use assist::{PORT, WindowDoor};
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
 #[derive(Parser)]
@@ -172,6 +173,14 @@ fn editor(path: Option<PathBuf>, trace: Option<PathBuf>) -> Outcome {
         eprintln!("no display: running the demo without a window");
         return demo::Demo::default().run();
     }
-    app::run_window(scene, path, trace)?;
+    let folder = path.as_deref().and_then(Path::parent);
+    let folder = folder
+        .filter(|f| !f.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let door = WindowDoor {
+        folder: folder.to_owned(),
+        port: PORT,
+    };
+    app::run_window(scene, path, trace, Some(Box::new(door)))?;
     Ok(())
 }
