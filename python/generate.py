@@ -15,7 +15,7 @@ HEAD = '"""{about} Written by generate.py from `sceneloom schema`; do not edit."
 
 
 def of_ref(schema: dict[str, Any]) -> str:
-    return schema["$ref"].removeprefix("#/$defs/")
+    return str(schema["$ref"]).removeprefix("#/$defs/")
 
 
 def hint(schema: Any) -> str:
@@ -122,8 +122,17 @@ def safe(key: str) -> str:
     return key + "_" if keyword.iskeyword(key) else key
 
 
-def signature(schema: dict[str, Any], wrap: str) -> tuple[str, str, list[str]]:
-    """Parameters after a star, lines of documentation, and the lines that collect what was given."""
+def defined(name: str, parameters: list[str], result: str, indent: str) -> str:
+    """The head of a function, on as many lines as it needs."""
+    line = f"{indent}def {name}({', '.join(parameters)}) -> {result}:\n"
+    if len(line) <= 110:
+        return line
+    each = "".join(f"{indent}    {p},\n" for p in parameters)
+    return f"{indent}def {name}(\n{each}{indent}) -> {result}:\n"
+
+
+def signature(schema: dict[str, Any], wrap: str) -> tuple[list[str], str, str]:
+    """Parameters after a star, lines of documentation, and the code that collects what was given."""
     properties, required = schema.get("properties", {}), schema.get("required", [])
     ordered = [k for k in properties if k in required] + [k for k in properties if k not in required]
     parameters, about = [], []
@@ -136,8 +145,12 @@ def signature(schema: dict[str, Any], wrap: str) -> tuple[str, str, list[str]]:
         text = properties[key].get("description", "") if isinstance(properties[key], dict) else ""
         about += textwrap.wrap(f"{safe(key)}: {text}", 100, subsequent_indent="    ")
     given = ", ".join(f"{key!r}: {safe(key)}" for key in ordered)
-    collect = [f"{wrap} = _given({{{given}}}, {sorted(set(ordered) & set(required))!r})"]
-    return ", ".join(parameters), "\n".join(about), collect
+    needed = sorted(set(ordered) & set(required))
+    collect = f"{wrap} = _given({{{given}}}, {needed!r})"
+    if len(collect) > 100:
+        each = "".join(f"        {key!r}: {safe(key)},\n" for key in ordered)
+        collect = f"{wrap} = _given(\n    {{\n{each}    }},\n    {needed!r},\n)"
+    return parameters, "\n".join(about), collect
 
 
 def qualified(kind: str) -> str:
@@ -173,27 +186,28 @@ def calls(document_: dict[str, Any]) -> str:
     for name, of in sorted(document_["x-calls"].items()):
         schema = document_["$defs"][of_ref(of["args"])]
         parameters, about, collect = signature(schema, "args")
-        star = f", *, {parameters}" if parameters else ""
-        out += f"\n    def {safe(name)}(self{star}) -> types.{of_ref(of['receipt'])}:\n"
+        star = ["self"] + (["*"] + parameters if parameters else [])
+        out += "\n" + defined(safe(name), star, f"types.{of_ref(of['receipt'])}", "    ")
         lines = textwrap.wrap(of["about"], 100) + ([""] + about.split("\n") if about else [])
         out += '        """' + "\n        ".join(lines).replace("        \n", "\n") + '\n        """\n'
-        out += "".join(f"        {line}\n" for line in collect)
-        out += f'        return self.call("{name}", args)\n'
+        out += textwrap.indent(collect, " " * 8) + "\n"
+        out += f'        receipt: types.{of_ref(of["receipt"])} = self.call("{name}", args)\n        return receipt\n'
     return out
 
 
 def edits(document_: dict[str, Any]) -> str:
     out = HEAD.format(about="One function per edit, for the call `apply`.")
-    out += "from typing import Any, Literal, Sequence\n\nfrom . import types\n\n" + GIVEN
+    out += "from typing import Any, Literal, Sequence, cast\n\nfrom . import types\n\n" + GIVEN
     for of in document_["$defs"]["Edit"]["oneOf"]:
         (key, inner), = of["properties"].items()
         parameters, about, collect = signature(inner, "args")
-        star = f"*, {parameters}" if parameters else ""
-        out += f"\n\ndef {safe(key)}({star}) -> types.{variant_name('Edit', key)}:\n"
+        star = ["*"] + parameters if parameters else []
+        out += "\n\n" + defined(safe(key), star, f"types.{variant_name('Edit', key)}", "")
         lines = textwrap.wrap(of.get("description", ""), 100) + ([""] + about.split("\n") if about else [])
         out += '    """' + "\n    ".join(lines).replace("    \n", "\n") + '\n    """\n'
-        out += "".join(f"    {line}\n" for line in collect)
-        out += f'    return {{"{key}": args}}  # type: ignore[typeddict-item]\n'
+        out += textwrap.indent(collect, " " * 4) + "\n"
+        own = f"types.{variant_name('Edit', key)}"
+        out += f'    return cast({own!r}, {{"{key}": args}})\n'
     return out
 
 
@@ -203,7 +217,9 @@ def written(document_: dict[str, Any]) -> dict[str, str]:
 
 
 def schema_of(program: str) -> dict[str, Any]:
-    return json.loads(subprocess.run([program, "schema"], check=True, capture_output=True).stdout)
+    printed = subprocess.run([program, "schema"], check=True, capture_output=True).stdout
+    schema: dict[str, Any] = json.loads(printed)
+    return schema
 
 
 def main() -> None:

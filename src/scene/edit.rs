@@ -27,15 +27,15 @@ pub enum Edit {
     AddBox {
         /// One of the ten object classes.
         class: Class,
-        /// Centre in the ego frame, m.
+        /// Centre in the world frame, m.
         #[schemars(with = "[f64; 3]")]
         center_m: DVec3,
         /// Length, width, height, m.
         #[schemars(with = "[f64; 3]")]
         size_m: DVec3,
-        /// Heading, degrees counter-clockwise from ego x.
+        /// Heading, degrees counter-clockwise from x.
         yaw_deg: f64,
-        /// Velocity over ground in the ego frame's axes, m/s; none means standing.
+        /// Velocity over ground in the world frame's axes, m/s; none means standing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<[f64; 2]>")]
         velocity_mps: Option<DVec2>,
@@ -50,11 +50,11 @@ pub enum Edit {
     MoveBox {
         /// The box.
         id: BoxId,
-        /// New centre in the ego frame, m.
+        /// New centre in the world frame, m.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<[f64; 3]>")]
         center_m: Option<DVec3>,
-        /// New heading, degrees counter-clockwise from ego x.
+        /// New heading, degrees counter-clockwise from x.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         yaw_deg: Option<f64>,
         /// New length, width, height, m.
@@ -128,7 +128,7 @@ pub enum Edit {
     },
     /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
     AddPolylines {
-        /// What they mean and where they run, ego frame, m; at least two vertices each.
+        /// What they mean and where they run, world frame, m; at least two vertices each.
         lines: Vec<Polyline>,
     },
     /// Sets voxels to a class (`free` removes them) and locks them.
@@ -240,7 +240,7 @@ pub enum Edit {
         /// The box it is about, if it is about one.
         #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
         box_id: Option<BoxId>,
-        /// Where it was found, ego frame, m.
+        /// Where it was found, world frame, m.
         #[schemars(with = "[f64; 3]")]
         where_m: DVec3,
         /// Why it may stay; not empty.
@@ -253,7 +253,7 @@ pub enum Edit {
         /// The box it is about, if it is about one.
         #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
         box_id: Option<BoxId>,
-        /// Where it was found, ego frame, m.
+        /// Where it was found, world frame, m.
         #[schemars(with = "[f64; 3]")]
         where_m: DVec3,
     },

@@ -24,7 +24,7 @@ pub enum PolylineKind {
     PedCrossing,
 }
 
-/// A line on the ground, ego frame.
+/// A line on the ground, world frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polyline {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::edit::EditError;
 use crate::{Extent, raster};
 
-/// An area on the ground, ego frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
+/// An area on the ground, world frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {

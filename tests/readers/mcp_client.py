@@ -54,11 +54,12 @@ def short(value: Any, depth: int = 0) -> Any:
         kept = [short(v, depth + 1) for v in value[:3]]
         return kept + [f"... {len(value)} in all"] if len(value) > 3 else kept
     if isinstance(value, dict):
-        return {k: short(v, depth + 1) for k, v in value.items() if v not in (None, [], {}, 0, False, "")}
+        nothing = (None, [], {}, "") if depth == 0 else (None, [], {}, "", 0, False)
+        return {k: short(v, depth + 1) for k, v in value.items() if v not in nothing}
     return round(value, 3) if isinstance(value, float) else value
 
 
-async def call(client: Client, log: Transcript, name: str, keys: tuple[str, ...] = (), **args: Any) -> Any:
+async def call(client: Client, log: Transcript, name: str, keys: tuple[str, ...] = (), /, **args: Any) -> Any:
     """Calls a tool with arguments that meet its schema; its receipt meets its own. `keys` of it go into the transcript."""
     tool = log.tools[name]
     jsonschema.validate(args, tool.input_schema)
@@ -69,11 +70,11 @@ async def call(client: Client, log: Transcript, name: str, keys: tuple[str, ...]
     jsonschema.validate(receipt, tool.output_schema)
     expect(json.loads(text) == receipt, f"{name}: the text differs from the values")
     shown = short({k: receipt[k] for k in keys} if keys else receipt)
-    log.called(name, args, json.dumps(shown))
+    log.called(name, args, json.dumps(shown, ensure_ascii=False))
     return receipt, result
 
 
-async def refused(client: Client, log: Transcript, name: str, **args: Any) -> str:
+async def refused(client: Client, log: Transcript, name: str, /, **args: Any) -> str:
     """Calls what must be refused; the one line that says why."""
     try:
         result = await client.call_tool(name, args)
@@ -84,7 +85,7 @@ async def refused(client: Client, log: Transcript, name: str, **args: Any) -> st
     except Exception as error:  # a protocol error, of the client's own kind
         line = str(error)
     expect("\n" not in line and len(line) <= 320, f"{name}: refused in more than a line: {line}")
-    log.called(name, args, json.dumps({"refused": line}))
+    log.called(name, args, json.dumps({"refused": line}, ensure_ascii=False))
     return line
 
 

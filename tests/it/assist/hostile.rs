@@ -148,7 +148,7 @@ fn arguments_that_make_no_sense_are_refused_by_name() {
         (
             "apply",
             json!({ "edits": [{ "set_length": { "length_s": 1e9 } }] }),
-            "length",
+            "expected 0 to 600",
         ),
         (
             "apply",
