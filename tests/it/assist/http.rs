@@ -49,8 +49,8 @@ fn start(folder: &str) -> Server {
 }
 
 /// Sends a request; the status and the body of the answer.
-fn ask(server: &Server, path: &str, headers: &[(&str, &str)], body: &str) -> (u16, String) {
-    let mut stream = TcpStream::connect(&server.address).expect("it listens");
+fn ask(address: &str, path: &str, headers: &[(&str, &str)], body: &str) -> (u16, String) {
+    let mut stream = TcpStream::connect(address).expect("it listens");
     stream
         .set_read_timeout(Some(Duration::from_secs(120)))
         .expect("a timeout");
@@ -59,7 +59,7 @@ fn ask(server: &Server, path: &str, headers: &[(&str, &str)], body: &str) -> (u1
         body.len()
     );
     if !headers.iter().any(|(name, _)| *name == "Host") {
-        text += &format!("Host: {}\r\n", server.address);
+        text += &format!("Host: {address}\r\n");
     }
     for (name, value) in headers {
         text += &format!("{name}: {value}\r\n");
@@ -80,6 +80,14 @@ fn ask(server: &Server, path: &str, headers: &[(&str, &str)], body: &str) -> (u1
 
 fn message(method: &str, params: Value) -> String {
     json!({ "jsonrpc": "2.0", "id": 1, "method": method, "params": params }).to_string()
+}
+
+/// Calls a tool of a server at an address; the status and the answer, which is text where it is no JSON.
+pub fn call(address: &str, token: &str, name: &str, args: &Value) -> (u16, Value) {
+    let body = message("tools/call", json!({ "name": name, "arguments": args }));
+    let bearer = format!("Bearer {token}");
+    let (status, body) = ask(address, "/mcp", &[("Authorization", &bearer)], &body);
+    (status, if status == 200 { value(&body) } else { json!(body) })
 }
 
 /// The JSON of a body, which may come in chunks or as an event.
@@ -103,18 +111,23 @@ fn only_who_shows_the_token_is_let_in() {
         "Bearer 0123456789abcdef0",
         TOKEN,
     ] {
-        let (status, body) = ask(&server, "/mcp", &[("Authorization", wrong)], &list);
+        let (status, body) = ask(&server.address, "/mcp", &[("Authorization", wrong)], &list);
         assert_eq!((status, body.lines().count()), (401, 1), "{wrong}: {body}");
     }
-    assert_eq!(ask(&server, "/mcp", &[], &list).0, 401);
-    assert_eq!(ask(&server, "/", &[good], &list).0, 404);
+    assert_eq!(ask(&server.address, "/mcp", &[], &list).0, 401);
+    assert_eq!(ask(&server.address, "/", &[good], &list).0, 404);
     // Pages of a browser, and names of elsewhere that lead here.
-    let (status, _) = ask(&server, "/mcp", &[good, ("Origin", "https://example.com")], &list);
+    let (status, _) = ask(
+        &server.address,
+        "/mcp",
+        &[good, ("Origin", "https://example.com")],
+        &list,
+    );
     assert_eq!(status, 403);
-    let (status, _) = ask(&server, "/mcp", &[good, ("Host", "example.com")], &list);
+    let (status, _) = ask(&server.address, "/mcp", &[good, ("Host", "example.com")], &list);
     assert_eq!(status, 403);
 
-    let (status, body) = ask(&server, "/mcp", &[good], &list);
+    let (status, body) = ask(&server.address, "/mcp", &[good], &list);
     assert_eq!(status, 200, "{body}");
     assert!(value(&body)["result"]["tools"].as_array().map_or(0, Vec::len) >= 20);
 }
@@ -123,12 +136,7 @@ fn only_who_shows_the_token_is_let_in() {
 fn clients_share_one_scene_and_hostile_ones_are_refused() {
     let dir = tempfile::tempdir().expect("a folder");
     let server = start(&dir.path().display().to_string());
-    let bearer = format!("Bearer {TOKEN}");
-    let call = |name: &str, args: Value| {
-        let body = message("tools/call", json!({ "name": name, "arguments": args }));
-        let (status, body) = ask(&server, "/mcp", &[("Authorization", &bearer)], &body);
-        (status, if status == 200 { value(&body) } else { json!(body) })
-    };
+    let call = |name: &str, args: Value| call(&server.address, TOKEN, name, &args);
     let (_, made) = call("new", json!({ "template": "straight", "seed": 3 }));
     assert_eq!(made["result"]["structuredContent"]["revision"], 2, "{made}");
     let (_, undone) = call("undo", json!({}));

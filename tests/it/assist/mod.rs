@@ -1,7 +1,7 @@
 //! `sceneloom session`, `mcp` and `schema` as other programs use them: over their pipes and over HTTP.
 
 mod hostile;
-mod http;
+pub mod http;
 mod mcp;
 mod process;
 mod schema;
