@@ -13,14 +13,17 @@ import json
 import os
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 from typing import Any
 
+import httpx2
 import jsonschema
 import numpy
 from mcp import StdioServerParameters
 from mcp.client.client import Client
+from mcp.client.streamable_http import streamable_http_client
 
 PEDESTRIAN = 7  # the label of Occ3D
 
@@ -164,12 +167,37 @@ async def build(client: Client, folder: pathlib.Path) -> tuple[Transcript, dict[
     return log, read
 
 
+async def over_http(program: str, folder: str) -> int:
+    """The same server over HTTP, with the handshake of before 2026-07-28 and with today's; how many calls were answered."""
+    token = "0123456789abcdef"
+    command = [program, "mcp", "--folder", folder, "--listen", "127.0.0.1:0", "--token", token]
+    answered = 0
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as server:
+        try:
+            assert server.stderr is not None
+            url = server.stderr.readline().removeprefix("listening on ").strip()
+            for mode in ("legacy", "auto"):
+                headers = {"Authorization": f"Bearer {token}"}
+                async with httpx2.AsyncClient(headers=headers, timeout=120) as http:
+                    async with Client(streamable_http_client(url, http_client=http), mode=mode) as client:
+                        expect(len((await client.list_tools()).tools) > 20, "the tools over HTTP")
+                        made = await client.call_tool("new", {"template": "curve", "seed": answered})
+                        state = await client.call_tool("state", {"most_boxes": 0})
+                        now = state.structured_content["revision"]
+                        expect(made.structured_content["revision"] == now, "one scene for all requests")
+                        answered += 2
+        finally:
+            server.terminate()
+    return answered
+
+
 async def main() -> None:
     program = os.environ.get("SCENELOOM", "sceneloom")
     with tempfile.TemporaryDirectory() as folder:
         server = StdioServerParameters(command=program, args=["mcp", "--folder", folder])
         async with Client(server) as client:
             log, read = await build(client, pathlib.Path(folder))
+        read["calls_over_http"] = await over_http(program, folder)
     version = importlib.metadata.version("mcp")
     if len(sys.argv) > 1:
         head = f"# A session over MCP\n\nMade by `tests/readers/mcp_client.py` with the Python client of the protocol's makers (`mcp` {version}). Receipts are\nshortened: what is 0, empty or false is left out, and long lists are cut.\n\n"

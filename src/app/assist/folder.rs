@@ -38,9 +38,9 @@ pub struct FileEntry {
 impl Folder {
     /// That folder. Errors if it is none.
     pub fn new(path: &Path) -> anyhow::Result<Self> {
-        let root = fs::canonicalize(path).with_context(|| format!("--folder {}", path.display()))?;
+        let root = fs::canonicalize(path).with_context(|| format!("folder {}", path.display()))?;
         if !root.is_dir() {
-            bail!("--folder {}: not a folder", path.display());
+            bail!("folder {}: not a folder", path.display());
         }
         Ok(Self { root })
     }

@@ -325,9 +325,9 @@ fn every_example_of_the_schema_is_carried_out() {
 #[test]
 fn a_session_that_cannot_begin_says_why() {
     for (args, needle) in [
-        (vec!["session", "--folder", "/nowhere"], "--folder /nowhere"),
+        (vec!["session", "--folder", "/nowhere"], "folder /nowhere"),
         (vec!["session", "/nowhere.loom"], "/nowhere.loom"),
-        (vec!["mcp", "--folder", "/nowhere"], "--folder /nowhere"),
+        (vec!["mcp", "--folder", "/nowhere"], "folder /nowhere"),
         (
             vec!["mcp", "--listen", "0.0.0.0:0", "--token", "0123456789abcdef"],
             "loopback",
