@@ -1,12 +1,13 @@
 //! `open`: a scene from a file of the folder.
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
+use authoring::again::again;
 use authoring::open::{self, Placement};
 use formats::import::{self, Content};
 
@@ -49,7 +50,7 @@ pub struct Opened {
 
 impl Operation for Open {
     const NAME: &'static str = "open";
-    const ABOUT: &'static str = "Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz) or another format that is read. It can be undone. list_files tells what is there.";
+    const ABOUT: &'static str = "Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a picture that this program made (.png), or another format that is read. It can be undone. list_files tells what is there.";
     const EXAMPLE: &'static str = r#"{"file": "a.loom"}"#;
     const CHANGES: bool = true;
     type Receipt = Opened;
@@ -73,10 +74,11 @@ impl Operation for Open {
                 let path = desk.folder.existing(file)?;
                 let (importer, content) = import::read(&path)?;
                 let scene = match content {
-                    Content::Scene(_) if said.contains(&true) => {
+                    Content::Scene(_) | Content::Recipe(_) if said.contains(&true) => {
                         bail!("{file}: a scene; at_m, heading_deg and size_m are for road files")
                     }
                     Content::Scene(loaded) => loaded.scene,
+                    Content::Recipe(recipe) => again(&recipe).with_context(|| file.clone())?,
                     Content::Roads(network) => {
                         if let Some(problem) = placement.problem_on(&network) {
                             bail!("{file}: {problem}");
