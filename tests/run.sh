@@ -35,6 +35,13 @@ cargo test --release --workspace
 cargo test --profile checked --lib --quiet -p sceneloom-numeric -p sceneloom-scene -p sceneloom-editor -p sceneloom-formats \
   -p sceneloom-diffusion -p sceneloom-place
 
+# The Python package, with the program that was just built.
+if python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+  SCENELOOM="$(realpath "${CARGO_TARGET_DIR:-target}")/release/sceneloom" python3 -m unittest discover -s python/tests
+else
+  echo "tests of the Python package: not run, no Python 3.10 here"
+fi
+
 # The PyTorch twins of the networks, where PyTorch is there (pip install -r training/requirements.txt).
 if python3 -c 'import torch, numpy, safetensors' 2>/dev/null; then
   (cd training && python3 test_training.py ../tests/reference && python3 test_lidar.py ../tests/reference)

@@ -1,5 +1,6 @@
 //! What a box is called beyond its class: a name ("taxi", "school bus") and the colour of its paint.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A short text that is copied with its box; empty means none.
@@ -158,11 +159,12 @@ impl Paint {
 }
 
 /// Name and paint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct BoxLabel {
     /// What it is called; empty means by its class.
     #[serde(skip_serializing_if = "BoxName::is_empty")]
+    #[schemars(with = "String")]
     pub name: BoxName,
     /// Its colour; none means that pictures choose one.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -2,11 +2,12 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// An Occ3D class; the discriminant is the label value. Names and ids follow nuScenes.
 #[expect(missing_docs, reason = "the names are the field's own")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
 pub enum Class {
@@ -244,7 +245,7 @@ impl Class {
 /// A channel of the bird's-eye-view layout, in UniScene's order; the discriminant is the bit.
 /// Layers 0 to 7 are map layers that the user paints; 8 to 17 are the footprints of boxes.
 #[expect(missing_docs, reason = "the names are the field's own")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
 pub enum BevLayer {

@@ -146,7 +146,7 @@ impl JsonSchema for Weather {
 }
 
 /// Where the sun (at night the moon) stands.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sun {
     /// Degrees counter-clockwise from the x axis of the world frame.
@@ -156,7 +156,7 @@ pub struct Sun {
 }
 
 /// All that decides how a scene looks besides what is in it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Conditions {
     /// Time of day.

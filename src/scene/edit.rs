@@ -2,6 +2,7 @@
 //! produce. The editor applies them.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::clip::Manoeuvre;
@@ -14,7 +15,7 @@ use crate::{
 
 /// One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 /// `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Edit {
     /// Takes a box out, and its voxels.
@@ -26,14 +27,17 @@ pub enum Edit {
     AddBox {
         /// One of the ten object classes.
         class: Class,
-        /// Centre in the ego frame, m.
+        /// Centre in the world frame, m.
+        #[schemars(with = "[f64; 3]")]
         center_m: DVec3,
         /// Length, width, height, m.
+        #[schemars(with = "[f64; 3]")]
         size_m: DVec3,
-        /// Heading, degrees counter-clockwise from ego x.
+        /// Heading, degrees counter-clockwise from x.
         yaw_deg: f64,
-        /// Velocity over ground in the ego frame's axes, m/s; none means standing.
+        /// Velocity over ground in the world frame's axes, m/s; none means standing.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<[f64; 2]>")]
         velocity_mps: Option<DVec2>,
         /// Its number; none means the next one free.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -46,14 +50,16 @@ pub enum Edit {
     MoveBox {
         /// The box.
         id: BoxId,
-        /// New centre in the ego frame, m.
+        /// New centre in the world frame, m.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<[f64; 3]>")]
         center_m: Option<DVec3>,
-        /// New heading, degrees counter-clockwise from ego x.
+        /// New heading, degrees counter-clockwise from x.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         yaw_deg: Option<f64>,
         /// New length, width, height, m.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<[f64; 3]>")]
         size_m: Option<DVec3>,
     },
     /// Names and paints a box; what is left out of the label is none. No voxel changes, and nothing is generated.
@@ -94,6 +100,7 @@ pub enum Edit {
         /// The things.
         ids: Vec<ThingId>,
         /// How far in the world frame, m.
+        #[schemars(with = "[f64; 2]")]
         by_m: DVec2,
         /// Turn about the middle of them all, degrees counter-clockwise.
         #[serde(default, skip_serializing_if = "is_zero")]
@@ -121,7 +128,7 @@ pub enum Edit {
     },
     /// Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
     AddPolylines {
-        /// What they mean and where they run, ego frame, m; at least two vertices each.
+        /// What they mean and where they run, world frame, m; at least two vertices each.
         lines: Vec<Polyline>,
     },
     /// Sets voxels to a class (`free` removes them) and locks them.
@@ -233,7 +240,8 @@ pub enum Edit {
         /// The box it is about, if it is about one.
         #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
         box_id: Option<BoxId>,
-        /// Where it was found, ego frame, m.
+        /// Where it was found, world frame, m.
+        #[schemars(with = "[f64; 3]")]
         where_m: DVec3,
         /// Why it may stay; not empty.
         reason: String,
@@ -245,7 +253,8 @@ pub enum Edit {
         /// The box it is about, if it is about one.
         #[serde(default, rename = "box", skip_serializing_if = "Option::is_none")]
         box_id: Option<BoxId>,
-        /// Where it was found, ego frame, m.
+        /// Where it was found, world frame, m.
+        #[schemars(with = "[f64; 3]")]
         where_m: DVec3,
     },
     /// Replaces the text that describes the style.

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{BevLayer, Extent, Relief};
 
 /// What a polyline means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PolylineKind {
     /// Middle of a lane, in driving direction. Not drawn into a layer.
@@ -23,13 +24,14 @@ pub enum PolylineKind {
     PedCrossing,
 }
 
-/// A line on the ground, ego frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A line on the ground, world frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Polyline {
     /// What it means.
     pub kind: PolylineKind,
     /// Vertices, m; a closed outline does not repeat its first vertex.
+    #[schemars(with = "Vec<[f64; 2]>")]
     pub points_m: Vec<DVec2>,
 }
 

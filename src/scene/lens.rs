@@ -5,12 +5,13 @@
 //! *distorted* place; focal length and principal point take that to pixels. So a lens stays what it is at any image size.
 
 use glam::{DMat2, DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::rig::Camera;
 
 /// A model of a lens. Coefficients are those of the field, without unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Lens {
     /// Straight lines stay straight.
@@ -41,7 +42,7 @@ pub enum Lens {
 }
 
 /// In which order a rolling shutter reads the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReadOut {
     /// Row by row, the top one first.
@@ -55,7 +56,7 @@ pub enum ReadOut {
 }
 
 /// A rolling shutter. The moment of a picture is that of its middle row or column.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shutter {
     /// From the first row or column to the last, s.

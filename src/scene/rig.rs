@@ -1,12 +1,13 @@
 //! Sensors as data: cameras with intrinsics and mount, LiDARs as lists of elevations.
 
 use glam::{DQuat, DVec3, EulerRot};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Lens, Optics, Pose, Shutter};
 
 /// A camera; optical axes x right, y down, z forward.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
     /// As in the data set: `CAM_FRONT`.
@@ -163,7 +164,7 @@ impl Aim {
 }
 
 /// How a spinning LiDAR samples directions and time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LidarPattern {
     /// As in the data set: `LIDAR_TOP`.
@@ -289,7 +290,7 @@ fn is_full_turn(v: &f64) -> bool {
 }
 
 /// All sensors of a vehicle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorRig {
     /// Name of the rig.

@@ -1,18 +1,20 @@
 //! Shapes of a brush on the bird's-eye view: from what the user drew to grid cells.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::edit::EditError;
 use crate::{Extent, raster};
 
-/// An area on the ground, ego frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// An area on the ground, world frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
     /// A round dab; always at least the cell under its centre.
     Disc {
         /// Middle, m.
+        #[schemars(with = "[f64; 2]")]
         center_m: DVec2,
         /// Radius, m, at least 0.
         radius_m: f64,
@@ -20,18 +22,22 @@ pub enum Shape {
     /// An upright rectangle.
     Rect {
         /// Lower corner, m.
+        #[schemars(with = "[f64; 2]")]
         min_m: DVec2,
         /// Upper corner, m.
+        #[schemars(with = "[f64; 2]")]
         max_m: DVec2,
     },
     /// A closed polygon (even-odd rule); the first vertex is not repeated.
     Polygon {
         /// At least three vertices, m.
+        #[schemars(with = "Vec<[f64; 2]>")]
         points_m: Vec<DVec2>,
     },
     /// A stroke with round ends, never thinner than one cell.
     Line {
         /// At least one vertex, m.
+        #[schemars(with = "Vec<[f64; 2]>")]
         points_m: Vec<DVec2>,
         /// Full width, m, at least 0.
         width_m: f64,

@@ -73,6 +73,8 @@ fn rooms_know_only_whom_they_may() {
             let may = match (&*name, &*other) {
                 ("cli", _) => true,
                 (_, "cli") => false,
+                ("assist", _) => true,
+                (_, "assist") => false,
                 ("app", _) => true,
                 (_, "app") => false,
                 ("assets" | "numeric", _) => false,

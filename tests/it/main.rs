@@ -1,6 +1,7 @@
 //! All integration tests in one program, so that the rooms are linked once.
 
 mod appearance_gpu;
+mod assist;
 mod batch;
 mod bounded_memory;
 mod camera_files;

@@ -231,7 +231,7 @@ fn params_of(generate: &Generate, seed: u64) -> anyhow::Result<GenParams> {
         true => GenParams::whole_scene(),
         false => GenParams::default(),
     };
-    let region = whole.region.clone();
+    let region = whole.region;
     Ok(GenParams {
         seed,
         region: if generate.whole { RegionMode::Full } else { region },

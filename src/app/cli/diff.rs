@@ -9,10 +9,11 @@ use super::{Common, Outcome, output};
 use anyhow::anyhow;
 use app::open;
 use app::picture::{Picture, layout_top, lidar_top, occupancy_top};
+use assist::{changed_voxels, gained_and_lost};
 use editor::columns_between;
 use job::GenParams;
 use job::region::edited_columns;
-use scene::{Background, BevLayer, Class, Extent, Frame, LidarSweep, Scene, SceneBox, SourceFrame, Thing};
+use scene::{Background, BevLayer, Class, Frame, LidarSweep, Scene, SceneBox, SourceFrame, Thing};
 use sensors::lidar;
 
 /// Arguments.
@@ -55,13 +56,13 @@ impl Diff {
         let region = edited_columns(&edited(before, after), GenParams::default().halo_columns as usize);
         let region_count = region.iter().filter(|c| **c).count();
         let changed = changed_voxels(before, after);
-        let inside = |(x, y, _): &(usize, usize, usize)| {
+        let inside = |[x, y, _]: &[usize; 3]| {
             let column = after.extent().index(*x, *y);
             region[column] || of_things[column]
         };
         let changed_inside = changed.iter().filter(|v| inside(v)).count();
         report.insert("voxels_changed".into(), changed.len().into());
-        report.insert("voxels".into(), voxels(before, after, &changed));
+        report.insert("voxels".into(), json!(gained_and_lost(before, after, &changed)));
         report.insert(
             "region".into(),
             json!({
@@ -233,36 +234,6 @@ fn layout(before: &Frame, after: &Frame) -> Value {
     json!({ "cells_changed": cells, "layers": layers, "polylines_changed": lines })
 }
 
-/// Voxels that differ, as indices.
-fn changed_voxels(before: &Frame, after: &Frame) -> Vec<(usize, usize, usize)> {
-    let mut out = Vec::new();
-    for [x, y] in after.extent().all_columns() {
-        let (a, b) = (before.occupancy.column(x, y), after.occupancy.column(x, y));
-        out.extend((0..Extent::NZ).filter(|z| a[*z] != b[*z]).map(|z| (x, y, z)));
-    }
-    out
-}
-
-/// Voxels that each class gained and lost; classes that did neither are left out.
-fn voxels(before: &Frame, after: &Frame, changed: &[(usize, usize, usize)]) -> Value {
-    let mut counts = [[0usize; 2]; Class::COUNT];
-    for &(x, y, z) in changed {
-        for (i, frame) in [after, before].into_iter().enumerate() {
-            if let Some(of) = counts.get_mut(frame.occupancy.get(x, y, z) as usize) {
-                of[i] += 1;
-            }
-        }
-    }
-    let named = Class::ALL
-        .into_iter()
-        .zip(counts)
-        .filter(|(_, [gained, lost])| gained + lost > 0);
-    let entry = |(class, [gained, lost]): (Class, [usize; 2])| {
-        (class.name().to_owned(), json!({ "gained": gained, "lost": lost }))
-    };
-    Value::Object(named.map(entry).collect())
-}
-
 /// Ray by ray, where both scenes have the same LiDAR.
 fn lidar_report(a: &Scene, b: &Scene, sweep_a: &LidarSweep, sweep_b: &LidarSweep) -> Value {
     let same_sensor =
@@ -303,10 +274,10 @@ fn layout_change(before: &Frame, after: &Frame) -> Picture {
 }
 
 /// The later occupancy, dark; columns bright that gained (blue) or lost voxels (orange), or both (yellow).
-fn voxel_change(after: &Frame, changed: &[(usize, usize, usize)]) -> Picture {
+fn voxel_change(after: &Frame, changed: &[[usize; 3]]) -> Picture {
     let extent = after.extent();
     let mut flags = vec![(false, false); extent.columns()];
-    for &(x, y, z) in changed {
+    for &[x, y, z] in changed {
         let now_free = after.occupancy.get(x, y, z) == Class::FREE;
         let flag = &mut flags[extent.index(x, y)];
         *flag = (flag.0 | !now_free, flag.1 | now_free);

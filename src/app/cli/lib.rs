@@ -16,6 +16,7 @@ mod eval;
 mod export;
 pub(crate) mod generate;
 mod import;
+mod mcp;
 mod new;
 pub(crate) mod output;
 mod progress;
@@ -23,10 +24,12 @@ mod prompt;
 mod region_arg;
 mod render;
 mod scenery;
+mod schema;
+mod session;
 mod shot;
 mod trade;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -35,6 +38,7 @@ pub(crate) use common::Common;
 use common::{Gen, Moment, Outcome, Stop};
 
 use app::open;
+use assist::{PORT, WindowDoor};
 
 /// Sceneloom: paint a driving scene's layout, edit boxes and voxels, see occupancy, cameras and LiDAR follow.
 #[derive(Parser)]
@@ -85,6 +89,12 @@ enum Command {
     Eval(eval::Eval),
     /// What each knob of speed and accuracy costs and buys, measured on this machine.
     Trade(trade::Trade),
+    /// Drive an editor by JSON lines: one call a line in, one reply a line out.
+    Session(session::Session),
+    /// Drive an editor by an assistant: a server of the Model Context Protocol.
+    Mcp(mcp::Mcp),
+    /// The JSON Schema of all calls of `session` and `mcp`.
+    Schema(schema::SchemaCommand),
     /// What this machine offers.
     Doctor(doctor::Doctor),
 }
@@ -139,6 +149,9 @@ pub fn main() -> ExitCode {
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),
         Some(Command::Trade(c)) => c.run(),
+        Some(Command::Session(c)) => c.run(),
+        Some(Command::Mcp(c)) => c.run(),
+        Some(Command::Schema(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),
         None => editor(cli.scene, cli.trace),
     };
@@ -164,6 +177,14 @@ fn editor(path: Option<PathBuf>, trace: Option<PathBuf>) -> Outcome {
         eprintln!("no display: running the demo without a window");
         return demo::Demo::default().run();
     }
-    app::run_window(scene, path, trace)?;
+    let folder = path.as_deref().and_then(Path::parent);
+    let folder = folder
+        .filter(|f| !f.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let door = WindowDoor {
+        folder: folder.to_owned(),
+        port: PORT,
+    };
+    app::run_window(scene, path, trace, Some(Box::new(door)))?;
     Ok(())
 }

@@ -8,7 +8,6 @@ use serde_json::Value;
 
 use super::Common;
 use formats::png;
-use formats::recipe::Recipe;
 pub use judge::machine::peak_rss_mb;
 
 /// Prints the report: as JSON if asked, else the given text.
@@ -43,26 +42,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 
 /// Writes an RGBA8 picture as PNG.
 pub fn write_png(path: &Path, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {
-    write_png_of(path, [width, height], rgba, None)
-}
-
-/// The same, with how it came to be.
-pub fn write_png_of(
-    path: &Path,
-    [width, height]: [usize; 2],
-    rgba: &[u8],
-    recipe: Option<&Recipe>,
-) -> anyhow::Result<()> {
-    let encode = |notes: &png::Notes<'_>| png::rgba(width, height, rgba, notes);
-    let bytes = recipe
-        .map_or_else(|| encode(&png::Notes::default()), |r| r.in_png(true, encode))
-        .with_context(|| format!("encode {}", path.display()))?;
-    write_file(path, &bytes)
-}
-
-/// Writes 16-bit grey values as PNG.
-pub fn write_png16(path: &Path, width: usize, height: usize, values: &[u16]) -> anyhow::Result<()> {
-    let bytes = png::grey16(width, height, values, &png::Notes::default())
+    let bytes = png::rgba(width, height, rgba, &png::Notes::default())
         .with_context(|| format!("encode {}", path.display()))?;
     write_file(path, &bytes)
 }

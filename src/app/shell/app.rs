@@ -18,6 +18,7 @@ use super::files::Disk;
 use super::files::Files;
 pub use super::files::{NewScene, OpenScene, SaveScene};
 use super::generation::Generation;
+use super::guests::Guests;
 use super::live::Live;
 use super::perf::Perf;
 use super::preferences::Preferences;
@@ -116,6 +117,8 @@ pub struct SceneloomApp {
     pub preferences: Preferences,
     /// The window's frames.
     pub frames: Frames,
+    /// Assistants that were let in.
+    pub guests: Guests,
     ctx: egui::Context,
 }
 
@@ -196,6 +199,7 @@ impl SceneloomApp {
                 title: String::new(),
                 passes: 0,
             },
+            guests: Guests::default(),
             ctx: ctx.clone(),
         })
     }
@@ -263,6 +267,7 @@ impl SceneloomApp {
             self.adopt(&result, own_step);
         }
         self.take_opened(ctx);
+        self.serve_guests(ctx);
         self.play(ctx);
         self.update_drawing(ctx);
         if let Some((purpose, path)) = self.files.dialogs.poll() {

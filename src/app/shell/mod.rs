@@ -18,6 +18,7 @@ mod generation_commands;
 pub mod guard;
 #[cfg(test)]
 mod guarded_tests;
+pub mod guests;
 mod hints;
 pub mod keymap;
 mod keys;

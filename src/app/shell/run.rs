@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::app::{AppConfig, SceneloomApp};
+use super::guests::Door;
 use super::{priority, settings};
 use crate::{open, pipeline};
 use formats::loom;
@@ -12,8 +13,13 @@ use scene::Scene;
 use widgets::software_ui;
 
 /// Opens the editor on a scene, with the bundled networks. `path` is the file it came from; only a
-/// `.loom` is saved back; measurements go to `trace`. Errors as [`run_window_with`].
-pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -> anyhow::Result<()> {
+/// `.loom` is saved back; measurements go to `trace`; assistants come in by the `door`, if the user lets them. Errors as [`run_window_with`].
+pub fn run_window(
+    scene: Scene,
+    path: Option<PathBuf>,
+    trace: Option<PathBuf>,
+    door: Option<Box<dyn Door>>,
+) -> anyhow::Result<()> {
     super::logging::start();
     priority::workers_give_way();
     let config = AppConfig {
@@ -32,7 +38,7 @@ pub fn run_window(scene: Scene, path: Option<PathBuf>, trace: Option<PathBuf>) -
         native_dialogs: true,
         settings_file: settings::Settings::file(),
     };
-    run_window_with(config, trace)
+    run_window_with(config, trace, door)
 }
 
 /// A random world, another one each time.
@@ -49,7 +55,11 @@ fn new_scene() -> anyhow::Result<Scene> {
 
 /// Opens the window and returns when it is closed. Errors in one line if there is no display or no
 /// graphics adapter (a software one will do), or if the file that measurements go to cannot be written.
-pub fn run_window_with(config: AppConfig, trace: Option<PathBuf>) -> anyhow::Result<()> {
+pub fn run_window_with(
+    config: AppConfig,
+    trace: Option<PathBuf>,
+    door: Option<Box<dyn Door>>,
+) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id("sceneloom")
         .with_title(format!("{} – Sceneloom", config.scene.name))
@@ -67,6 +77,9 @@ pub fn run_window_with(config: AppConfig, trace: Option<PathBuf>) -> anyhow::Res
     let start = move |cc: &eframe::CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         let mut app = SceneloomApp::new(config, cc.wgpu_render_state.clone(), &cc.egui_ctx)?;
         app.keep_copies(&cc.egui_ctx);
+        if let Some(door) = door {
+            app = app.with_door(door);
+        }
         if let Some(state) = &cc.wgpu_render_state {
             software_ui::install(&cc.egui_ctx, state);
         }

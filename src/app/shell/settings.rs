@@ -48,6 +48,8 @@ pub struct Settings {
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Memory that the history may take, MB.
     pub history_mb: u32,
+    /// Let assistants on this machine drive the editor, if they show the token.
+    pub assistants: bool,
     /// Files opened or saved, the newest first.
     pub recent: Vec<PathBuf>,
 }
@@ -70,6 +72,7 @@ impl Default for Settings {
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
+            assistants: false,
             recent: Vec::new(),
         }
     }

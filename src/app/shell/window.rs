@@ -221,6 +221,7 @@ impl SceneloomApp {
         settings_ui(
             ui,
             &mut self.preferences.settings,
+            &self.guests,
             &mut self.state.windows.settings,
         );
         start_ui(

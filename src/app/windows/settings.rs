@@ -1,13 +1,14 @@
-//! The window of settings: theme, colours, size, and what happens at the start.
+//! The window of settings: theme, colours, size, what happens at the start, and whether assistants may come in.
 
 use egui::{Ui, Window};
 
+use crate::shell::guests::{Guests, OpenDoor};
 use crate::shell::settings::Settings;
 use scene::classes::Palette;
 use widgets::theme::{self, Theme};
 
 /// Draws the window while it is open.
-pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {
+pub fn settings_ui(ui: &Ui, settings: &mut Settings, guests: &Guests, open: &mut bool) {
     if !*open {
         return;
     }
@@ -61,6 +62,49 @@ pub fn settings_ui(ui: &Ui, settings: &mut Settings, open: &mut bool) {
                     ui.label("At the start");
                     ui.checkbox(&mut settings.start_screen, "Show the start screen");
                     ui.end_row();
+                    if guests.are_possible() {
+                        ui.label("Assistants");
+                        ui.checkbox(&mut settings.assistants, "May drive this editor")
+                            .on_hover_text(
+                                "Programs on this machine that show the token work on the scene, by a fixed set of calls; each change can be undone",
+                            );
+                        ui.end_row();
+                    }
                 });
+            if let (true, Some(door)) = (settings.assistants, guests.open()) {
+                door_ui(ui, door);
+            }
+            if let Some(problem) = guests.problem() {
+                ui.colored_label(ui.visuals().error_fg_color, problem);
+            }
+        });
+}
+
+/// Where assistants ask, and what they must show.
+fn door_ui(ui: &mut Ui, door: &OpenDoor) {
+    ui.add_space(theme::GAP);
+    let row = |ui: &mut Ui, name: &str, value: &str| {
+        ui.label(name);
+        ui.horizontal(|ui| {
+            ui.monospace(value);
+            let copy = ui
+                .small_button("Copy")
+                .on_hover_text(format!("Copy the {}", name.to_lowercase()));
+            if copy.clicked() {
+                ui.ctx().copy_text(value.to_owned());
+            }
+        });
+        ui.end_row();
+    };
+    egui::Grid::new("assistants")
+        .num_columns(2)
+        .spacing([theme::GAP * 2.0, theme::GAP])
+        .show(ui, |ui| {
+            row(ui, "Address", &door.url);
+            row(ui, "Token", &door.token);
+            ui.label("Files");
+            ui.monospace(door.folder.display().to_string())
+                .on_hover_text("The one folder whose files assistants may read and write");
+            ui.end_row();
         });
 }

@@ -52,6 +52,9 @@ pub(crate) enum Node {
 /// The turn that changes nothing.
 pub(crate) const NO_TURN: [[i64; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
+/// A chunk: its name, its content and its children.
+type Chunk<'a> = ([u8; 4], &'a [u8], &'a [u8]);
+
 impl<'a> File<'a> {
     /// Reads the chunks of a file.
     pub fn read(bytes: &'a [u8]) -> Result<Self, String> {
@@ -144,7 +147,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// Name, content and children of a chunk.
-    fn chunk(&mut self) -> Result<([u8; 4], &'a [u8], &'a [u8]), String> {
+    fn chunk(&mut self) -> Result<Chunk<'a>, String> {
         let id = *self.take(4)?.first_chunk().unwrap_or(b"    ");
         let within = |e: String| format!("chunk {}: {e}", name(&id));
         let [content, children] = [self.u32().map_err(within)?, self.u32().map_err(within)?];

@@ -80,10 +80,13 @@ fn of_camera(masks: &ColumnMasks, camera: &Camera) -> Vec<u16> {
     let rays = CameraRays::new(camera, width, height);
     marked(masks, width as usize * height as usize, |pixel| {
         let (u, v) = (pixel % width as usize, pixel / width as usize);
+        let ray = rays.at(u as f64 + 0.5, v as f64 + 0.5);
+        // Where the lens sees nothing, nothing is observed.
+        let seen = ray.direction != DVec3::ZERO;
         Ray {
-            origin: rays.origin,
-            direction: rays.direction(u as f64 + 0.5, v as f64 + 0.5).normalize(),
-            range_m: [0.0, f64::INFINITY],
+            origin: ray.origin,
+            direction: ray.direction.normalize_or(DVec3::X),
+            range_m: [0.0, if seen { f64::INFINITY } else { 0.0 }],
         }
     })
 }

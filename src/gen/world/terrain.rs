@@ -8,10 +8,13 @@ use scene::draw::{Draw, Noise};
 use scene::{BevLayer, BevLayout, Extent, Relief, Window};
 
 /// A lie of the land.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Terrain {
     /// Level everywhere.
+    #[default]
     Flat,
     /// The road climbs, falls or tilts sideways by up to 8 %.
     Grade,

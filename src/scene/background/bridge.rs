@@ -1,6 +1,7 @@
 //! Bridges: a deck carried over the ground on piers, with railings.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
@@ -13,10 +14,11 @@ const MAX_PIECES: usize = 10_000;
 const PIER_STEP_M: f64 = 14.0;
 
 /// A bridge. What is below stays as it is.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bridge {
     /// Middle of the deck, world frame, m; at least two vertices.
+    #[schemars(with = "Vec<[f64; 2]>")]
     pub points_m: Vec<DVec2>,
     /// Width of the deck, m.
     pub width_m: f64,

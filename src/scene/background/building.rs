@@ -1,6 +1,7 @@
 //! Buildings: an outline raised to a height, with a roof and what hangs on the facades.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
@@ -16,7 +17,7 @@ const FOUNDATION_M: f64 = 0.4;
 const OVERHANG_M: f64 = 1.4;
 
 /// Shape of a roof.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Roof {
     /// Level.
@@ -29,7 +30,7 @@ pub enum Roof {
 }
 
 /// What a facade looks like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Facade {
     /// A plain wall with windows.
@@ -46,10 +47,11 @@ pub enum Facade {
 }
 
 /// A building.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Building {
     /// Corners on the ground, world frame, m; closed without repeating the first, edges do not cross.
+    #[schemars(with = "Vec<[f64; 2]>")]
     pub outline_m: Vec<DVec2>,
     /// Height of the walls above the ground at its middle, m.
     pub height_m: f64,

@@ -1,6 +1,7 @@
 //! Things that run along a line: hedges, walls, fences, guard rails.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
@@ -71,12 +72,13 @@ impl LineKind {
 }
 
 /// A thing along a line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Line {
     /// What it is.
     pub kind: LineKind,
     /// Vertices on the ground, world frame, m; at least two.
+    #[schemars(with = "Vec<[f64; 2]>")]
     pub points_m: Vec<DVec2>,
     /// Height above the ground, m.
     pub height_m: f64,

@@ -13,6 +13,7 @@ mod tree;
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::solid::Solid;
@@ -28,12 +29,12 @@ pub use shrubs::Shrubs;
 pub use tree::{Tree, TreeKind};
 
 /// Names a thing of the background; unique in a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct ThingId(pub u32);
 
 /// What a thing is and where. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Form {
     /// A building with vertical walls.

@@ -1,6 +1,7 @@
 //! Small upright things: poles, signs, lamps, bus stops, benches, bins, stairs.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
@@ -98,12 +99,13 @@ impl PostKind {
 }
 
 /// A small upright thing.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Post {
     /// What it is.
     pub kind: PostKind,
     /// Its place on the ground, world frame, m.
+    #[schemars(with = "[f64; 2]")]
     pub position_m: DVec2,
     /// Heading, rad counter-clockwise from world x.
     #[serde(default)]

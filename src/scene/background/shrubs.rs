@@ -1,6 +1,7 @@
 //! Areas of shrubs and undergrowth: slim stems and low bushes spread over an outline.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
@@ -13,10 +14,11 @@ use crate::solid::Solid;
 const MAX_PLANTS: f64 = 4000.0;
 
 /// An area of shrubs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shrubs {
     /// Corners on the ground, world frame, m; closed without repeating the first, edges do not cross.
+    #[schemars(with = "Vec<[f64; 2]>")]
     pub outline_m: Vec<DVec2>,
     /// Height of the tallest above the ground, m.
     pub height_m: f64,

@@ -1,6 +1,7 @@
 //! Trees: a trunk and a crown that rays pass through in part.
 
 use glam::{DVec2, DVec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GroundM;
@@ -29,10 +30,11 @@ impl TreeKind {
 }
 
 /// A tree.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tree {
     /// Middle of the trunk on the ground, world frame, m.
+    #[schemars(with = "[f64; 2]")]
     pub position_m: DVec2,
     /// Top of the crown above the ground, m.
     pub height_m: f64,

@@ -4,6 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Clip, MARGIN_M, Moving, ObjectVoxels, Sampling, Track};
@@ -15,7 +16,7 @@ use crate::{BoxId, Frame, SceneBox, SourceFrame, VoxelGrid, VoxelPaint};
 const ONTO_M: f64 = 0.6;
 
 /// What a change of a moving object's place at one moment means for the others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Scope {
     /// It moves as before, elsewhere.

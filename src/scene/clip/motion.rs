@@ -2,6 +2,7 @@
 //! made; poses are computed from it.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::fit::fitted;
@@ -39,19 +40,20 @@ impl Moving {
 }
 
 /// A pose at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Key {
     /// Time in the clip, s.
     pub time_s: f64,
     /// Centre in the world frame, m.
+    #[schemars(with = "[f64; 2]")]
     pub at_m: DVec2,
     /// Heading, degrees counter-clockwise from x.
     pub yaw_deg: f64,
 }
 
 /// How a thing moves, in the world frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Motion {
     /// Through keyframes, smoothly and without overshoot: it stands before the first, after the last, and between two that
@@ -64,6 +66,7 @@ pub enum Motion {
         /// What it is fixed to.
         to: BoxId,
         /// Its centre in the other's frame (along its heading, to its left), m.
+        #[schemars(with = "[f64; 2]")]
         at_m: DVec2,
         /// Its heading against the other's, degrees.
         #[serde(default)]

@@ -1,13 +1,14 @@
 //! A path on the ground that is driven with a profile of speeds.
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::motion::{Motion, Moving};
 use crate::SceneBox;
 
 /// A speed at a time; between two the speed changes evenly.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Speed {
     /// Time in the clip, s.
@@ -18,10 +19,11 @@ pub struct Speed {
 
 /// A path and how fast it is driven. What drives it stands where it starts until the first speed, keeps the last one, and
 /// stops at the path's ends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Path {
     /// Where it leads, world frame, m; at least two points that differ.
+    #[schemars(with = "Vec<[f64; 2]>")]
     pub points_m: Vec<DVec2>,
     /// Where on it the motion starts, m from the first point.
     #[serde(default, skip_serializing_if = "is_zero")]

@@ -7,6 +7,7 @@ mod day;
 mod desk;
 mod editing;
 mod files;
+mod guests;
 mod overdraw;
 mod recovery;
 mod sensors;

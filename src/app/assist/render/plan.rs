@@ -1,11 +1,12 @@
-//! What one `render` will do, checked before anything is written.
+//! What one rendering will do, checked before anything is written.
 
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
 
-use super::Render;
+use super::Rendering;
 use super::write::sheet_bytes;
+use app::camera_views;
 use app::picture::View3d;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene};
@@ -46,11 +47,11 @@ pub struct Plan {
 impl Plan {
     /// Of what the arguments ask for. Errors in one line if the rig lacks a sensor for it, pictures are too large, the
     /// network or a graphics adapter is missing.
-    pub fn new(render: &Render, scene: &Scene) -> anyhow::Result<Self> {
-        let wants = |kind: &str| render.what.iter().any(|w| w == kind);
+    pub fn new(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
+        let wants = |kind: &str| wanted.what.iter().any(|w| w == kind);
         let mut cameras: Vec<Cameras> = Vec::new();
         for view in cameras::views().into_iter().filter(|v| wants(v.id.name())) {
-            let source = cameras::source_of(view.id, render.source);
+            let source = cameras::source_of(view.id, wanted.source);
             match cameras.iter_mut().find(|c| c.source.id() == source.id()) {
                 Some(of) => of.views.push(view),
                 None => cameras.push(Cameras {
@@ -65,14 +66,14 @@ impl Plan {
             bail!("the rig {:?} has no camera", scene.rig.name);
         }
         for of in &cameras {
-            let sheet = sheet_bytes(render.size, count);
-            bounds::check(render.size, of.source.bytes_per_pixel(), sheet).context("--size")?;
+            let sheet = sheet_bytes(wanted.size, count);
+            bounds::check(wanted.size, of.source.bytes_per_pixel(), sheet).context("--size")?;
         }
         if truth {
-            bounds::check(render.size, app::truth::BYTES_PER_PIXEL, 0).context("--size")?;
+            bounds::check(wanted.size, app::truth::BYTES_PER_PIXEL, 0).context("--size")?;
         }
         let lidar = wants("lidar")
-            .then(|| LidarModel::of(render, scene))
+            .then(|| LidarModel::of(wanted, scene))
             .transpose()?;
         Ok(Self {
             cameras,
@@ -85,13 +86,15 @@ impl Plan {
 }
 
 impl LidarModel {
-    fn of(render: &Render, scene: &Scene) -> anyhow::Result<Self> {
+    fn of(wanted: &Rendering, scene: &Scene) -> anyhow::Result<Self> {
         if scene.rig.lidars.is_empty() {
             bail!("the rig {:?} has no lidar", scene.rig.name);
         }
-        match render.lidar.as_str() {
-            "exact" => Ok(Self::Exact),
-            _ => Ok(Self::Learned(LidarNet::bundled().context("the LiDAR network")?)),
+        match wanted.lidar {
+            camera_views::LidarModel::Exact => Ok(Self::Exact),
+            camera_views::LidarModel::Learned => {
+                Ok(Self::Learned(LidarNet::bundled().context("the LiDAR network")?))
+            }
         }
     }
 

@@ -1,16 +1,14 @@
-//! The files that `render` writes.
+//! The files that a rendering writes.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use crate::output;
 use app::picture::{self, Picture, SHEET_COLOR};
-use formats::calibration;
 use formats::export::{OutFile, ply};
-use formats::multi_plane;
 use formats::npz::{self, Array, Values};
 use formats::recipe::Recipe;
+use formats::{atomic, calibration, multi_plane, png};
 use scene::{CameraMaps, Extent, LidarSweep, MultiPlaneImage, PerspectiveMap, Pose, Scene};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, View, ViewId};
@@ -22,6 +20,8 @@ pub struct Writer {
     recipe: Recipe,
     /// Paths of the files.
     pub files: Vec<PathBuf>,
+    /// The first picture that was written.
+    pub first: Option<Picture>,
     /// Pictures in colours of the cameras so far.
     sheet: Option<Picture>,
 }
@@ -52,13 +52,14 @@ impl Writer {
             dir: dir.into(),
             recipe,
             files: Vec::new(),
+            first: None,
             sheet: None,
         })
     }
 
     fn bytes(&mut self, name: &str, bytes: &[u8]) -> anyhow::Result<()> {
         let path = self.dir.join(name);
-        output::write_file(&path, bytes)?;
+        atomic::write(&path, bytes).with_context(|| format!("write {}", path.display()))?;
         self.files.push(path);
         Ok(())
     }
@@ -85,17 +86,21 @@ impl Writer {
     }
 
     fn png(&mut self, name: &str, width: usize, height: usize, rgba: &[u8]) -> anyhow::Result<()> {
-        let path = self.dir.join(name);
-        output::write_png_of(&path, [width, height], rgba, Some(&self.recipe))?;
-        self.files.push(path);
-        Ok(())
+        let encode = |notes: &png::Notes<'_>| png::rgba(width, height, rgba, notes);
+        let bytes = self.recipe.in_png(true, encode);
+        let bytes = bytes.with_context(|| format!("encode {name}"))?;
+        self.first.get_or_insert_with(|| Picture {
+            width,
+            height,
+            rgba: rgba.to_vec(),
+        });
+        self.bytes(name, &bytes)
     }
 
     fn png16(&mut self, name: &str, width: usize, height: usize, values: &[u16]) -> anyhow::Result<()> {
-        let path = self.dir.join(name);
-        output::write_png16(&path, width, height, values)?;
-        self.files.push(path);
-        Ok(())
+        let bytes = png::grey16(width, height, values, &png::Notes::default())
+            .with_context(|| format!("encode {name}"))?;
+        self.bytes(name, &bytes)
     }
 
     /// Any picture.

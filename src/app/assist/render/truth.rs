@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::Render;
+use super::Rendering;
 use super::write::Writer;
 use app::truth;
 use formats::export::truth as files;
@@ -10,7 +10,7 @@ use formats::export::{OutFile, Picture};
 use scene::Scene;
 use sensors::appearance::Quality;
 
-impl Render {
+impl Rendering {
     /// Renders and writes every camera of a scene whose sensors are in the world. Returns the seconds that rendering took.
     pub fn truth(&self, scene: &Scene, writer: &mut Writer) -> anyhow::Result<f64> {
         let quality = if self.preview {

@@ -1,0 +1,113 @@
+"""A session: the program as a child process that speaks JSON lines."""
+
+from __future__ import annotations
+
+import collections
+import json
+import os
+import shutil
+import subprocess
+import threading
+from typing import Any
+
+from .calls import Calls
+
+
+class CallError(Exception):
+    """A call was refused or failed; the scene is as before. One line."""
+
+
+class SessionEnded(Exception):
+    """The program has ended, or was not found."""
+
+
+class Session(Calls):
+    """One scene with its undo history. Calls are answered one by one, also if several threads make them.
+
+    scene: file to begin with; the scene that ships with the program if left out.
+    folder: the one folder whose files calls may read and write.
+    program: path of `sceneloom`; else that of the environment variable SCENELOOM, else the one on the PATH.
+    weights: folder of weights instead of the bundled ones.
+    """
+
+    def __init__(
+        self,
+        scene: str | os.PathLike[str] | None = None,
+        folder: str | os.PathLike[str] = ".",
+        program: str | os.PathLike[str] | None = None,
+        weights: str | os.PathLike[str] | None = None,
+    ) -> None:
+        found = program or os.environ.get("SCENELOOM") or shutil.which("sceneloom")
+        if not found:
+            raise SessionEnded("sceneloom was not found: name it by program= or SCENELOOM, or put it on the PATH")
+        command = [os.fspath(found), "session", "--folder", os.fspath(folder)]
+        if weights is not None:
+            command += ["--weights", os.fspath(weights)]
+        if scene is not None:
+            command += ["--", os.fspath(scene)]
+        try:
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                encoding="utf-8",
+            )
+        except OSError as error:
+            raise SessionEnded(f"{command[0]}: {error}") from error
+        self._lock = threading.Lock()
+        self._number = 0
+        self._said: collections.deque[str] = collections.deque(maxlen=20)
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
+
+    def _listen(self) -> None:
+        """Keeps the last lines of stderr, so that the program never waits for them to be read."""
+        assert self._process.stderr is not None
+        for line in self._process.stderr:
+            self._said.append(line.rstrip("\n"))
+
+    def call(self, name: str, args: dict[str, Any]) -> Any:
+        """Any call by its name; the methods of this class are typed. Returns the receipt."""
+        with self._lock:
+            self._number += 1
+            request = {"id": self._number, "call": name, "args": args}
+            # (NaN is no JSON)
+            line = json.dumps(request, allow_nan=False)
+            assert self._process.stdin is not None and self._process.stdout is not None
+            try:
+                self._process.stdin.write(line + "\n")
+                self._process.stdin.flush()
+                answer = self._process.stdout.readline()
+            except (OSError, ValueError) as error:
+                raise SessionEnded(self._why()) from error
+            if not answer:
+                raise SessionEnded(self._why())
+        reply = json.loads(answer)
+        if reply["ok"]:
+            return reply["receipt"]
+        raise CallError(reply["error"])
+
+    def _why(self) -> str:
+        self._listener.join(timeout=1)
+        return self._said[-1] if self._said else "the session has ended"
+
+    def close(self) -> int:
+        """Ends the session; the exit code of the program. Nothing is saved."""
+        if self._process.stdin is not None and not self._process.stdin.closed:
+            try:
+                self._process.stdin.close()
+            except OSError:
+                pass
+        code = self._process.wait()
+        self._listener.join(timeout=1)
+        for pipe in (self._process.stdout, self._process.stderr):
+            if pipe is not None:
+                pipe.close()
+        return code
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()

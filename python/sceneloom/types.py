@@ -1,0 +1,1653 @@
+"""Types of what calls take and answer. Written by generate.py from `sceneloom schema`; do not edit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal, Sequence, TypedDict
+
+if TYPE_CHECKING:
+    from typing_extensions import NotRequired, TypeAlias
+
+# A channel of the bird's-eye-view layout, in UniScene's order; the discriminant is the bit. Layers 0 to 7 are
+# map layers that the user paints; 8 to 17 are the footprints of boxes.
+BevLayer: TypeAlias = "Literal['drivable_area', 'ped_crossing', 'walkway', 'stop_line', 'carpark_area', 'road_divider', 'lane_divider', 'road_block', 'car', 'truck', 'construction_vehicle', 'bus', 'trailer', 'barrier', 'motorcycle', 'bicycle', 'pedestrian', 'traffic_cone']"
+
+# Names a box; the same id in several frames is one track.
+BoxId: TypeAlias = 'int'
+
+# Name and paint.
+BoxLabel = TypedDict(
+    'BoxLabel',
+    {
+        # What it is called; empty means by its class.
+        'name': 'NotRequired[str]',
+        # Its colour; none means that pictures choose one.
+        'paint': 'NotRequired[Paint | None]',
+    },
+)
+
+# A box as it is at the moment that is shown.
+BoxState = TypedDict(
+    'BoxState',
+    {
+        # Its middle, world frame, m.
+        'center_m': 'Sequence[float]',
+        # Its class.
+        'class': 'Class',
+        # Its number, by which edits name it.
+        'id': 'int',
+        # What it is called and how it is painted.
+        'label': 'BoxLabel',
+        # True if it has a track.
+        'moves': 'bool',
+        # Where it is, as the ego vehicle sees it.
+        'place': 'str',
+        # Length, width, height, m.
+        'size_m': 'Sequence[float]',
+        # Velocity over ground, world frame, m/s.
+        'velocity_mps': 'Sequence[float]',
+        # Heading, degrees counter-clockwise from x.
+        'yaw_deg': 'float',
+    },
+)
+
+# A bridge. What is below stays as it is.
+Bridge = TypedDict(
+    'Bridge',
+    {
+        # True if vehicles drive on it: its surface is road, else sidewalk.
+        'for_vehicles': 'NotRequired[bool]',
+        # Top of the deck above the ground at the middle of the line, m. The deck is level.
+        'height_m': 'float',
+        # Middle of the deck, world frame, m; at least two vertices.
+        'points_m': 'Sequence[Sequence[float]]',
+        # Thickness of the deck, m.
+        'thickness_m': 'float',
+        # Width of the deck, m.
+        'width_m': 'float',
+    },
+)
+
+# A building.
+Building = TypedDict(
+    'Building',
+    {
+        # Facade.
+        'facade': 'NotRequired[Facade]',
+        # Height of the walls above the ground at its middle, m.
+        'height_m': 'float',
+        # Corners on the ground, world frame, m; closed without repeating the first, edges do not cross.
+        'outline_m': 'Sequence[Sequence[float]]',
+        # Roof.
+        'roof': 'NotRequired[Roof]',
+    },
+)
+
+# A pinhole camera without distortion; optical axes x right, y down, z forward.
+Camera = TypedDict(
+    'Camera',
+    {
+        # Principal point in pixels.
+        'center_px': 'Sequence[float]',
+        # Focal lengths in pixels.
+        'focal_px': 'Sequence[float]',
+        # Image size in pixels.
+        'height': 'int',
+        # As in the data set: `CAM_FRONT`.
+        'name': 'str',
+        # Optical frame to ego: quaternion w, x, y, z.
+        'rotation_wxyz': 'Sequence[float]',
+        # Optical centre in the ego frame, m.
+        'translation_m': 'Sequence[float]',
+        # Image size in pixels.
+        'width': 'int',
+    },
+)
+
+# What a call changed. Of more than 100 boxes the first are named.
+Change = TypedDict(
+    'Change',
+    {
+        # Boxes by what became of them.
+        'boxes': 'Counts',
+        # Ids of boxes that came.
+        'boxes_added': 'Sequence[int]',
+        # Ids of boxes that moved, turned, or changed otherwise.
+        'boxes_changed': 'Sequence[int]',
+        # Ids of boxes that went.
+        'boxes_removed': 'Sequence[int]',
+        # Voxels gained and lost, by class that changed.
+        'classes': 'dict[str, Gained]',
+        # True if time of day, weather or the prompt changed.
+        'conditions': 'bool',
+        # Cells set and cleared, by layer that changed.
+        'layers': 'dict[str, Gained]',
+        # Cells of the map, 0.4 x 0.4 m each, in which a layer changed.
+        'layout_cells': 'int',
+        # True if the length of the scene changed.
+        'length': 'bool',
+        # True if the map covers another area than before: then cells and voxels are compared where it lies now.
+        'map_resized': 'bool',
+        # True if cameras or LiDARs changed.
+        'rig': 'bool',
+        # Things beside the road (buildings, trees, posts) by what became of them.
+        'things': 'Counts',
+        # Motions by what became of them; the ego vehicle counts as one.
+        'tracks': 'Counts',
+        # Voxels that changed, 0.4 m each way.
+        'voxels': 'int',
+    },
+)
+
+# Receipt of `check`.
+Checked = TypedDict(
+    'Checked',
+    {
+        # Open findings that are errors.
+        'errors': 'int',
+        # What was found, errors first; at most 200.
+        'findings': 'Sequence[Found]',
+        # What the repairs changed, if they were asked for.
+        'fixed': 'Done | None',
+        # Number of the state that was checked.
+        'revision': 'int',
+        # Findings that were waived: they may stand.
+        'waived': 'int',
+        # Open findings that are warnings.
+        'warnings': 'int',
+    },
+)
+
+# An Occ3D class; the discriminant is the label value. Names and ids follow nuScenes.
+Class: TypeAlias = "Literal['others', 'barrier', 'bicycle', 'bus', 'car', 'construction_vehicle', 'motorcycle', 'pedestrian', 'traffic_cone', 'trailer', 'truck', 'driveable_surface', 'other_flat', 'sidewalk', 'terrain', 'manmade', 'vegetation', 'free']"
+
+# Time.
+ClipState = TypedDict(
+    'ClipState',
+    {
+        # True if the ego vehicle moves.
+        'ego_moves': 'bool',
+        # How long the scene lasts, s; 0 for one moment.
+        'length_s': 'float',
+        # Frames per second of what is exported.
+        'rate_hz': 'float',
+        # The moment that is shown, s.
+        'time_s': 'float',
+        # Objects that move.
+        'tracks': 'int',
+    },
+)
+
+# All that decides how a scene looks besides what is in it.
+Conditions = TypedDict(
+    'Conditions',
+    {
+        # Varies colours, textures and where the sun stands.
+        'seed': 'int',
+        # Where the sun stands; none: as the time of day and the seed have it.
+        'sun': 'NotRequired[Sun | None]',
+        # Time of day.
+        'time': 'TimeOfDay',
+        # How far one sees, m: there 2 % of a contrast is left.
+        'visibility_m': 'float',
+        # Weather.
+        'weather': 'Weather',
+        # How wet the ground is, 0 (dry) to 1 (puddles).
+        'wetness': 'float',
+    },
+)
+
+# How many came, went and changed.
+Counts = TypedDict(
+    'Counts',
+    {
+        # That came.
+        'added': 'int',
+        # That are otherwise now.
+        'changed': 'int',
+        # That went.
+        'removed': 'int',
+    },
+)
+
+# Receipt of `diff`.
+Difference = TypedDict(
+    'Difference',
+    {
+        # What it was compared with.
+        'against': 'str',
+        # From there to the scene as it is now.
+        'changed': 'Change',
+        # Number of the state that the scene is in.
+        'revision': 'int',
+    },
+)
+
+# What a call that may change the scene did.
+Done = TypedDict(
+    'Done',
+    {
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+EditRemoveBoxArgs = TypedDict(
+    'EditRemoveBoxArgs',
+    {
+        # The box.
+        'id': 'BoxId',
+    },
+)
+
+# Takes a box out, and its voxels.
+EditRemoveBox = TypedDict(
+    'EditRemoveBox',
+    {
+        'remove_box': 'EditRemoveBoxArgs',
+    },
+)
+
+EditAddBoxArgs = TypedDict(
+    'EditAddBoxArgs',
+    {
+        # Centre in the ego frame, m.
+        'center_m': 'Sequence[float]',
+        # One of the ten object classes.
+        'class': 'Class',
+        # Its number; none means the next one free.
+        'id': 'NotRequired[BoxId | None]',
+        # What it is called and how it is painted.
+        'label': 'NotRequired[BoxLabel]',
+        # Length, width, height, m.
+        'size_m': 'Sequence[float]',
+        # Velocity over ground in the ego frame's axes, m/s; none means standing.
+        'velocity_mps': 'NotRequired[Sequence[float] | None]',
+        # Heading, degrees counter-clockwise from ego x.
+        'yaw_deg': 'float',
+    },
+)
+
+# Puts a box in, and voxels of its class.
+EditAddBox = TypedDict(
+    'EditAddBox',
+    {
+        'add_box': 'EditAddBoxArgs',
+    },
+)
+
+EditMoveBoxArgs = TypedDict(
+    'EditMoveBoxArgs',
+    {
+        # New centre in the ego frame, m.
+        'center_m': 'NotRequired[Sequence[float] | None]',
+        # The box.
+        'id': 'BoxId',
+        # New length, width, height, m.
+        'size_m': 'NotRequired[Sequence[float] | None]',
+        # New heading, degrees counter-clockwise from ego x.
+        'yaw_deg': 'NotRequired[float | None]',
+    },
+)
+
+# Moves, turns or resizes a box; what is left out stays.
+EditMoveBox = TypedDict(
+    'EditMoveBox',
+    {
+        'move_box': 'EditMoveBoxArgs',
+    },
+)
+
+EditLabelBoxArgs = TypedDict(
+    'EditLabelBoxArgs',
+    {
+        # The box.
+        'id': 'BoxId',
+        # Its name and paint from now on.
+        'label': 'BoxLabel',
+    },
+)
+
+# Names and paints a box; what is left out of the label is none. No voxel changes, and nothing is generated.
+EditLabelBox = TypedDict(
+    'EditLabelBox',
+    {
+        'label_box': 'EditLabelBoxArgs',
+    },
+)
+
+EditSetBoxClassArgs = TypedDict(
+    'EditSetBoxClassArgs',
+    {
+        # One of the ten object classes.
+        'class': 'Class',
+        # The box.
+        'id': 'BoxId',
+    },
+)
+
+# Turns a box into another class; its size and paint stay, its name goes.
+EditSetBoxClass = TypedDict(
+    'EditSetBoxClass',
+    {
+        'set_box_class': 'EditSetBoxClassArgs',
+    },
+)
+
+EditPaintBevArgs = TypedDict(
+    'EditPaintBevArgs',
+    {
+        # One of the eight map layers.
+        'layer': 'BevLayer',
+        # Where.
+        'shape': 'Shape',
+        # True sets, false clears.
+        'value': 'bool',
+    },
+)
+
+# Sets or clears a map layer. Clearing dividers or stop lines cuts the lines behind them there.
+EditPaintBev = TypedDict(
+    'EditPaintBev',
+    {
+        'paint_bev': 'EditPaintBevArgs',
+    },
+)
+
+EditAddThingsArgs = TypedDict(
+    'EditAddThingsArgs',
+    {
+        # What and where, world frame.
+        'forms': 'Sequence[Form]',
+    },
+)
+
+# Puts things beside the road, and their voxels.
+EditAddThings = TypedDict(
+    'EditAddThings',
+    {
+        'add_things': 'EditAddThingsArgs',
+    },
+)
+
+EditRemoveThingsArgs = TypedDict(
+    'EditRemoveThingsArgs',
+    {
+        # The things.
+        'ids': 'Sequence[ThingId]',
+    },
+)
+
+# Takes things out, and their voxels.
+EditRemoveThings = TypedDict(
+    'EditRemoveThings',
+    {
+        'remove_things': 'EditRemoveThingsArgs',
+    },
+)
+
+EditMoveThingsArgs = TypedDict(
+    'EditMoveThingsArgs',
+    {
+        # How far in the world frame, m.
+        'by_m': 'Sequence[float]',
+        # The things.
+        'ids': 'Sequence[ThingId]',
+        # Turn about the middle of them all, degrees counter-clockwise.
+        'turn_deg': 'NotRequired[float]',
+    },
+)
+
+# Moves and turns things together.
+EditMoveThings = TypedDict(
+    'EditMoveThings',
+    {
+        'move_things': 'EditMoveThingsArgs',
+    },
+)
+
+EditRaiseThingsArgs = TypedDict(
+    'EditRaiseThingsArgs',
+    {
+        # By how much, m; a storey is 3 m.
+        'by_m': 'float',
+        # The things.
+        'ids': 'Sequence[ThingId]',
+    },
+)
+
+# Makes things higher (or, with a negative number, lower).
+EditRaiseThings = TypedDict(
+    'EditRaiseThings',
+    {
+        'raise_things': 'EditRaiseThingsArgs',
+    },
+)
+
+EditChangeThingArgs = TypedDict(
+    'EditChangeThingArgs',
+    {
+        # What and where from now on, world frame.
+        'form': 'Form',
+        # The thing.
+        'id': 'ThingId',
+    },
+)
+
+# Gives a thing another form.
+EditChangeThing = TypedDict(
+    'EditChangeThing',
+    {
+        'change_thing': 'EditChangeThingArgs',
+    },
+)
+
+EditClearSceneryArgs = TypedDict(
+    'EditClearSceneryArgs',
+    {
+        # Where; everywhere if left out.
+        'shape': 'NotRequired[Shape | None]',
+    },
+)
+
+# Takes man-made and plant voxels out that belong to no thing, and lays the ground where they stood. Painted
+# voxels stay.
+EditClearScenery = TypedDict(
+    'EditClearScenery',
+    {
+        'clear_scenery': 'EditClearSceneryArgs',
+    },
+)
+
+EditAddPolylinesArgs = TypedDict(
+    'EditAddPolylinesArgs',
+    {
+        # What they mean and where they run, ego frame, m; at least two vertices each.
+        'lines': 'Sequence[Polyline]',
+    },
+)
+
+# Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of their layer.
+EditAddPolylines = TypedDict(
+    'EditAddPolylines',
+    {
+        'add_polylines': 'EditAddPolylinesArgs',
+    },
+)
+
+EditPaintVoxelsArgs = TypedDict(
+    'EditPaintVoxelsArgs',
+    {
+        # Indices `[x, y, z]`.
+        'cells': 'Sequence[Sequence[int]]',
+        # Any class.
+        'class': 'Class',
+    },
+)
+
+# Sets voxels to a class (`free` removes them) and locks them.
+EditPaintVoxels = TypedDict(
+    'EditPaintVoxels',
+    {
+        'paint_voxels': 'EditPaintVoxelsArgs',
+    },
+)
+
+EditUnlockVoxelsArgs = TypedDict(
+    'EditUnlockVoxelsArgs',
+    {
+        # Indices `[x, y, z]`.
+        'cells': 'Sequence[Sequence[int]]',
+    },
+)
+
+# Gives painted voxels back to generation; what they show stays for now.
+EditUnlockVoxels = TypedDict(
+    'EditUnlockVoxels',
+    {
+        'unlock_voxels': 'EditUnlockVoxelsArgs',
+    },
+)
+
+# Gives every painted voxel of the frame back to generation.
+EditClearPaint = TypedDict(
+    'EditClearPaint',
+    {
+        'clear_paint': 'dict[str, Any]',
+    },
+)
+
+EditCorrectArgs = TypedDict(
+    'EditCorrectArgs',
+    {
+        # A change of a box or of a map layer.
+        'edit': 'Edit',
+    },
+)
+
+# Corrects what was inferred wrongly when the frame was imported: the box or layer changes, in the source too,
+# and no voxel does, so that nothing is generated.
+EditCorrect = TypedDict(
+    'EditCorrect',
+    {
+        'correct': 'EditCorrectArgs',
+    },
+)
+
+EditAtArgs = TypedDict(
+    'EditAtArgs',
+    {
+        # What is changed there.
+        'edit': 'Edit',
+        # Number of the frame.
+        'frame': 'NotRequired[int | None]',
+        # For which moments a moving object changes its place; the whole track if left out.
+        'scope': 'NotRequired[Scope | None]',
+        # Time in the clip, s.
+        'time_s': 'NotRequired[float | None]',
+        # A moving object that the edit is of: the moment is one at which it is there.
+        'track': 'NotRequired[BoxId | None]',
+    },
+)
+
+# An edit at another moment than the one that is shown, and what it means for other moments. What stands still
+# is changed for all moments anyway. At most one of `frame`, `time_s` and `track` is given, and at least one of
+# all keys.
+EditAt = TypedDict(
+    'EditAt',
+    {
+        'at': 'EditAtArgs',
+    },
+)
+
+EditSetMotionArgs = TypedDict(
+    'EditSetMotionArgs',
+    {
+        # When it appears, s; it is there from the beginning if left out. Not of the ego vehicle.
+        'from_s': 'NotRequired[float | None]',
+        # The box; the ego vehicle if left out.
+        'id': 'NotRequired[BoxId | None]',
+        # How it moves from now on, world frame.
+        'motion': 'NotRequired[Motion | None]',
+        # When it disappears, s; it is there to the end if left out. Not of the ego vehicle.
+        'to_s': 'NotRequired[float | None]',
+    },
+)
+
+# Lets an object or the ego vehicle move, or (without a motion) stand where it is at the moment that is shown.
+EditSetMotion = TypedDict(
+    'EditSetMotion',
+    {
+        'set_motion': 'EditSetMotionArgs',
+    },
+)
+
+EditForecastArgs = TypedDict(
+    'EditForecastArgs',
+    {
+        # How many, s.
+        'seconds': 'float',
+    },
+)
+
+# So many seconds more: what moves at the end goes on along its lane and behind whoever is ahead, the ego
+# vehicle too, and the map grows to where it comes.
+EditForecast = TypedDict(
+    'EditForecast',
+    {
+        'forecast': 'EditForecastArgs',
+    },
+)
+
+EditExtendMapArgs = TypedDict(
+    'EditExtendMapArgs',
+    {
+        # So much farther along x, m.
+        'ahead_m': 'NotRequired[float]',
+        # So much farther against x, m.
+        'behind_m': 'NotRequired[float]',
+        # So much farther along y, m.
+        'left_m': 'NotRequired[float]',
+        # So much farther against y, m.
+        'right_m': 'NotRequired[float]',
+    },
+)
+
+# Makes the map larger, in the world frame. Roads go on beyond the edge as they reach it; what is new is to be
+# generated.
+EditExtendMap = TypedDict(
+    'EditExtendMap',
+    {
+        'extend_map': 'EditExtendMapArgs',
+    },
+)
+
+EditLetMoveArgs = TypedDict(
+    'EditLetMoveArgs',
+    {
+        # When what it is about begins, s; soon if left out.
+        'from_s': 'NotRequired[float | None]',
+        # It begins when so much is between it and the ego vehicle, m, in place of at a time.
+        'gap_m': 'NotRequired[float | None]',
+        # The box; the ego vehicle if left out.
+        'id': 'NotRequired[BoxId | None]',
+        # Speed, m/s; a usual one of its class if left out.
+        'mps': 'NotRequired[float | None]',
+        # How.
+        'template': 'Template',
+    },
+)
+
+# Lets a box move in a way that has a name, from where it is at the moment that is shown, along the lanes of the
+# map. A scene of one moment becomes a clip.
+EditLetMove = TypedDict(
+    'EditLetMove',
+    {
+        'let_move': 'EditLetMoveArgs',
+    },
+)
+
+EditSetLengthArgs = TypedDict(
+    'EditSetLengthArgs',
+    {
+        # Length, s; 0 for a scene of one moment.
+        'length_s': 'float',
+        # Frames per second of what is written; as before if left out.
+        'rate_hz': 'NotRequired[float | None]',
+    },
+)
+
+# Sets how long the scene lasts. What happens later than that stays, and is not shown.
+EditSetLength = TypedDict(
+    'EditSetLength',
+    {
+        'set_length': 'EditSetLengthArgs',
+    },
+)
+
+# Confirms what was inferred when the frame was imported: it is marked as a guess no more.
+EditConfirmInferred = TypedDict(
+    'EditConfirmInferred',
+    {
+        'confirm_inferred': 'dict[str, Any]',
+    },
+)
+
+EditWaiveArgs = TypedDict(
+    'EditWaiveArgs',
+    {
+        # The box it is about, if it is about one.
+        'box': 'NotRequired[BoxId | None]',
+        # Name of the check.
+        'check': 'str',
+        # Why it may stay; not empty.
+        'reason': 'str',
+        # Where it was found, ego frame, m.
+        'where_m': 'Sequence[float]',
+    },
+)
+
+# Lets a finding of the checks stand, with the reason. One that was waived before gets the new reason.
+EditWaive = TypedDict(
+    'EditWaive',
+    {
+        'waive': 'EditWaiveArgs',
+    },
+)
+
+EditUnwaiveArgs = TypedDict(
+    'EditUnwaiveArgs',
+    {
+        # The box it is about, if it is about one.
+        'box': 'NotRequired[BoxId | None]',
+        # Name of the check.
+        'check': 'str',
+        # Where it was found, ego frame, m.
+        'where_m': 'Sequence[float]',
+    },
+)
+
+# Takes a waiver back: the finding counts again. Nothing if there is none.
+EditUnwaive = TypedDict(
+    'EditUnwaive',
+    {
+        'unwaive': 'EditUnwaiveArgs',
+    },
+)
+
+EditSetPromptArgs = TypedDict(
+    'EditSetPromptArgs',
+    {
+        # The text; empty means none.
+        'prompt': 'str',
+    },
+)
+
+# Replaces the text that describes the style.
+EditSetPrompt = TypedDict(
+    'EditSetPrompt',
+    {
+        'set_prompt': 'EditSetPromptArgs',
+    },
+)
+
+EditSetConditionsArgs = TypedDict(
+    'EditSetConditionsArgs',
+    {
+        # The new ones.
+        'conditions': 'Conditions',
+    },
+)
+
+# Replaces light and air. No voxel changes.
+EditSetConditions = TypedDict(
+    'EditSetConditions',
+    {
+        'set_conditions': 'EditSetConditionsArgs',
+    },
+)
+
+EditKeepWordsArgs = TypedDict(
+    'EditKeepWordsArgs',
+    {
+        # The words.
+        'words': 'str',
+    },
+)
+
+# Notes words that were typed to change the scene.
+EditKeepWords = TypedDict(
+    'EditKeepWords',
+    {
+        'keep_words': 'EditKeepWordsArgs',
+    },
+)
+
+EditSetRigArgs = TypedDict(
+    'EditSetRigArgs',
+    {
+        # The new ones.
+        'rig': 'SensorRig',
+    },
+)
+
+# Replaces the sensors of the vehicle. No voxel changes.
+EditSetRig = TypedDict(
+    'EditSetRig',
+    {
+        'set_rig': 'EditSetRigArgs',
+    },
+)
+
+# One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
+# `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
+Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
+
+# Receipt of `export`.
+Exported = TypedDict(
+    'Exported',
+    {
+        # The files.
+        'files': 'Sequence[FileEntry]',
+        # What they hold.
+        'holds': 'str',
+        # What of that does not come back when they are read again; empty if all of it does.
+        'lost': 'str',
+        # Number of the state that was written.
+        'revision': 'int',
+    },
+)
+
+# What a facade looks like.
+Facade: TypeAlias = "Literal['plain', 'balconies', 'bays', 'arcade', 'glass']"
+
+# A file of the folder.
+FileEntry = TypedDict(
+    'FileEntry',
+    {
+        # Its size, bytes.
+        'bytes': 'int',
+        # Its name from the folder, with `/` between folders.
+        'name': 'str',
+    },
+)
+
+# Receipt of `list_files`.
+FileList = TypedDict(
+    'FileList',
+    {
+        # Files of the folder and of folders in it, by name.
+        'files': 'Sequence[FileEntry]',
+        # True if there are more than are listed.
+        'more': 'bool',
+    },
+)
+
+# Something that fits where one was meant.
+Fits = TypedDict(
+    'Fits',
+    {
+        # How to name it: `#12`.
+        'name': 'str',
+        # Where it is.
+        'place': 'str',
+    },
+)
+
+# A building with vertical walls.
+FormBuilding = TypedDict(
+    'FormBuilding',
+    {
+        'building': 'Building',
+    },
+)
+
+# A tree.
+FormTree = TypedDict(
+    'FormTree',
+    {
+        'tree': 'Tree',
+    },
+)
+
+# An area of shrubs and undergrowth.
+FormShrubs = TypedDict(
+    'FormShrubs',
+    {
+        'shrubs': 'Shrubs',
+    },
+)
+
+# A hedge, wall, fence or rail.
+FormLine = TypedDict(
+    'FormLine',
+    {
+        'line': 'Line',
+    },
+)
+
+# A pole, sign, lamp, stop, bench or bin.
+FormPost = TypedDict(
+    'FormPost',
+    {
+        'post': 'Post',
+    },
+)
+
+# A road or path carried over the ground.
+FormBridge = TypedDict(
+    'FormBridge',
+    {
+        'bridge': 'Bridge',
+    },
+)
+
+# What a thing is and where. As JSON: `{"tree": {"position_m": [8, -6], "height_m": 7, …}}`.
+Form: TypeAlias = 'FormBuilding | FormTree | FormShrubs | FormLine | FormPost | FormBridge'
+
+# Something that a check found.
+Found = TypedDict(
+    'Found',
+    {
+        # The box that it is about.
+        'box': 'int | None',
+        # Name of the check.
+        'check': 'str',
+        # Names of repairs, the best first.
+        'fixes': 'Sequence[str]',
+        # `error` or `warning`.
+        'severity': 'str',
+        # What is wrong, in a line.
+        'text': 'str',
+        # When, s; none if it is about the moment that is shown.
+        'time_s': 'float | None',
+        # Why it may stand, if it was waived.
+        'waived': 'str | None',
+        # Where, world frame, m.
+        'where_m': 'Sequence[float]',
+    },
+)
+
+# How many came and went.
+Gained = TypedDict(
+    'Gained',
+    {
+        # That came.
+        'gained': 'int',
+        # That went.
+        'lost': 'int',
+    },
+)
+
+# Receipt of `generate`.
+Generated = TypedDict(
+    'Generated',
+    {
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Calls of the denoising network.
+        'network_calls': 'int',
+        # What is worth knowing.
+        'notes': 'Sequence[str]',
+        # Columns that were generated.
+        'region_columns': 'int',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # Voxels outside of them that changed: 0.
+        'untouched_voxels_changed': 'int',
+        # Time by stage, s.
+        'wall_s': 'dict[str, float]',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# A pose at a time.
+Key = TypedDict(
+    'Key',
+    {
+        # Centre in the world frame, m.
+        'at_m': 'Sequence[float]',
+        # Time in the clip, s.
+        'time_s': 'float',
+        # Heading, degrees counter-clockwise from x.
+        'yaw_deg': 'float',
+    },
+)
+
+# How a spinning LiDAR samples directions and time.
+LidarPattern = TypedDict(
+    'LidarPattern',
+    {
+        # Pulses that leave the grid meet a continuation of the scene: roads, houses, trees.
+        'beyond_grid': 'NotRequired[bool]',
+        # Columns follow each other clockwise, seen from above.
+        'clockwise': 'NotRequired[bool]',
+        # Columns per revolution; column i looks at azimuth first + 2 pi i / n in the sensor frame.
+        'columns': 'int',
+        # Elevation of each beam in degrees, lowest first; ring i is entry i.
+        'elevations_deg': 'Sequence[float]',
+        # Azimuth of column 0 in the sensor frame, degrees.
+        'first_azimuth_deg': 'NotRequired[float]',
+        # Farthest return, m.
+        'max_range_m': 'float',
+        # Nearest return, m.
+        'min_range_m': 'float',
+        # As in the data set: `LIDAR_TOP`.
+        'name': 'str',
+        # The own vehicle's roof is in the way of a sensor above it and sends pulses back, as in real sweeps;
+        # else it is looked through.
+        'own_body': 'NotRequired[bool]',
+        # Sensor frame to ego: quaternion w, x, y, z.
+        'rotation_wxyz': 'Sequence[float]',
+        # Sector that returns anything, degrees from the first azimuth; 360 is all round.
+        'sector_deg': 'NotRequired[float]',
+        # Revolutions per second; 0 = the whole sweep at one instant. Otherwise column i is fired when the
+        # vehicle was (1 - i / n) of a revolution short of where it stands (see `SensorRig::ego_speed_mps`).
+        'spin_hz': 'NotRequired[float]',
+        # Origin in the ego frame, m.
+        'translation_m': 'Sequence[float]',
+    },
+)
+
+# A thing along a line.
+Line = TypedDict(
+    'Line',
+    {
+        # Height above the ground, m.
+        'height_m': 'float',
+        # What it is.
+        'kind': 'LineKind',
+        # Vertices on the ground, world frame, m; at least two.
+        'points_m': 'Sequence[Sequence[float]]',
+        # Width, m.
+        'width_m': 'float',
+    },
+)
+
+# What runs along a line.
+LineKind: TypeAlias = "Literal['hedge', 'wall', 'fence', 'guard_rail', 'retaining_wall']"
+
+# Receipt of `new`.
+Made = TypedDict(
+    'Made',
+    {
+        # Boxes in it: vehicles, people, barriers, cones.
+        'boxes': 'int',
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Name of the scene.
+        'name': 'str',
+        # Voxels that are not free.
+        'occupied_voxels': 'int',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # Things beside the road: buildings, trees, posts.
+        'things': 'int',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# What words are for.
+Make: TypeAlias = "Literal['change', 'new']"
+
+# The area that a map covers, world frame.
+Map = TypedDict(
+    'Map',
+    {
+        # Cells along x and y, 0.4 m each.
+        'cells': 'Sequence[int]',
+        # Where the ego vehicle is: x, y, z in m.
+        'ego_m': 'Sequence[float]',
+        # Its upper corner, m.
+        'max_m': 'Sequence[float]',
+        # Its lower corner, x and y, m.
+        'min_m': 'Sequence[float]',
+    },
+)
+
+# Through keyframes, smoothly and without overshoot: it stands before the first, after the last, and between two
+# that are at the same place.
+MotionKeys = TypedDict(
+    'MotionKeys',
+    {
+        'keys': 'Sequence[Key]',
+    },
+)
+
+# Along a path, with a profile of speeds.
+MotionPath = TypedDict(
+    'MotionPath',
+    {
+        'path': 'Path',
+    },
+)
+
+MotionAttachedArgs = TypedDict(
+    'MotionAttachedArgs',
+    {
+        # Its centre in the other's frame (along its heading, to its left), m.
+        'at_m': 'Sequence[float]',
+        # What it is fixed to.
+        'to': 'BoxId',
+        # Its heading against the other's, degrees.
+        'yaw_deg': 'NotRequired[float]',
+    },
+)
+
+# Fixed to another track, such as a trailer to its truck or a rider to a bicycle.
+MotionAttached = TypedDict(
+    'MotionAttached',
+    {
+        'attached': 'MotionAttachedArgs',
+    },
+)
+
+# How a thing moves, in the world frame.
+Motion: TypeAlias = 'MotionKeys | MotionPath | MotionAttached'
+
+# Receipt of `undo` and `redo`.
+Moved = TypedDict(
+    'Moved',
+    {
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # Names of the steps that were undone or redone, in that order.
+        'steps': 'Sequence[str]',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# Words that had no effect.
+NotUnderstood = TypedDict(
+    'NotUnderstood',
+    {
+        # `unknown` (in no list), `not_carried_out` (understood, and nothing of it was done) or `too_long` (not
+        # read).
+        'why': 'str',
+        # The words.
+        'words': 'str',
+    },
+)
+
+# Receipt of `open`.
+Opened = TypedDict(
+    'Opened',
+    {
+        # Boxes in it.
+        'boxes': 'int',
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Format of the file.
+        'format': 'str',
+        # How long it lasts, s; 0 for one moment.
+        'length_s': 'float',
+        # Name of the scene.
+        'name': 'str',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # Things beside the road.
+        'things': 'int',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# The colour of a box in camera pictures. Nothing else follows from it.
+Paint: TypeAlias = "Literal['white', 'silver', 'grey', 'black', 'red', 'orange', 'yellow', 'green', 'blue', 'purple', 'pink', 'brown', 'beige']"
+
+# A path and how fast it is driven. What drives it stands where it starts until the first speed, keeps the last
+# one, and stops at the path's ends.
+Path = TypedDict(
+    'Path',
+    {
+        # Where it leads, world frame, m; at least two points that differ.
+        'points_m': 'Sequence[Sequence[float]]',
+        # True if it is driven backwards, with the rear first.
+        'rear_first': 'NotRequired[bool]',
+        # How fast; at least one.
+        'speeds': 'Sequence[Speed]',
+        # Where on it the motion starts, m from the first point.
+        'start_m': 'NotRequired[float]',
+    },
+)
+
+# A phrase and what it became.
+Phrase = TypedDict(
+    'Phrase',
+    {
+        # Ids of boxes that it put in.
+        'added': 'Sequence[int]',
+        # What it does, in words.
+        'became': 'str',
+        # Ids of boxes that it changed.
+        'changed': 'Sequence[int]',
+        # How sure the reader is, 0 to 1.
+        'confidence': 'float',
+        # What could not be done as it was said.
+        'remarks': 'Sequence[str]',
+        # Ids of boxes that it took away.
+        'removed': 'Sequence[int]',
+        # The words, if the reader knows them.
+        'words': 'str | None',
+    },
+)
+
+# A line on the ground, ego frame.
+Polyline = TypedDict(
+    'Polyline',
+    {
+        # What it means.
+        'kind': 'PolylineKind',
+        # Vertices, m; a closed outline does not repeat its first vertex.
+        'points_m': 'Sequence[Sequence[float]]',
+    },
+)
+
+# What a polyline means.
+PolylineKind: TypeAlias = "Literal['lane_center', 'road_divider', 'lane_divider', 'stop_line', 'ped_crossing']"
+
+# A small upright thing.
+Post = TypedDict(
+    'Post',
+    {
+        # Height above the ground, m.
+        'height_m': 'float',
+        # What it is.
+        'kind': 'PostKind',
+        # Its place on the ground, world frame, m.
+        'position_m': 'Sequence[float]',
+        # Heading, rad counter-clockwise from world x.
+        'yaw_rad': 'NotRequired[float]',
+    },
+)
+
+# What stands there.
+PostKind: TypeAlias = "Literal['pole', 'street_light', 'sign', 'traffic_light', 'bus_stop', 'bench', 'bin', 'bollard', 'stairs']"
+
+# Receipt of `prompt`.
+Prompted = TypedDict(
+    'Prompted',
+    {
+        # What came of it, in a sentence.
+        'answer': 'str',
+        # What was said of things beside the road, as it was read.
+        'beside_the_road': 'Sequence[str]',
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Words that had no effect.
+        'not_understood': 'Sequence[NotUnderstood]',
+        # The whole reading in a line of notation.
+        'notation': 'str',
+        # What else is worth knowing.
+        'notes': 'Sequence[str]',
+        # What each phrase became.
+        'phrases': 'Sequence[Phrase]',
+        # What must be answered first: while there is a question nothing changes. Say it again and name the box
+        # (`#12`).
+        'questions': 'Sequence[Question]',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # What was asked for and not met, in words.
+        'shortfalls': 'Sequence[str]',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# Something that must be answered first.
+Question = TypedDict(
+    'Question',
+    {
+        # What fits.
+        'candidates': 'Sequence[Fits]',
+        # The question.
+        'text': 'str',
+    },
+)
+
+# Receipt of `render`.
+Rendered = TypedDict(
+    'Rendered',
+    {
+        # The files.
+        'files': 'Sequence[FileEntry]',
+        # Rays of the LiDAR and points that came back, if it was asked for.
+        'lidar': 'Sequence[int] | None',
+        # Number of the state that they show.
+        'revision': 'int',
+        # The moment that they show, s.
+        'time_s': 'float',
+        # Time by kind, s.
+        'wall_s': 'dict[str, float]',
+    },
+)
+
+# Lines of the map, world frame, m; long ones are thinned out.
+Roads = TypedDict(
+    'Roads',
+    {
+        # Outlines of crossings.
+        'crossings': 'Sequence[Sequence[Sequence[float]]]',
+        # Middles of lanes, in driving direction.
+        'lanes': 'Sequence[Sequence[Sequence[float]]]',
+        # True if there are more lines than are listed.
+        'more': 'bool',
+        # Lines between opposite directions.
+        'road_dividers': 'Sequence[Sequence[Sequence[float]]]',
+        # Stop lines.
+        'stop_lines': 'Sequence[Sequence[Sequence[float]]]',
+    },
+)
+
+# Shape of a roof.
+Roof: TypeAlias = "Literal['flat', 'gabled', 'hipped']"
+
+# Receipt of `save`.
+Saved = TypedDict(
+    'Saved',
+    {
+        # The file.
+        'file': 'FileEntry',
+        # Number of the state that was saved.
+        'revision': 'int',
+    },
+)
+
+# What a change of a moving object's place at one moment means for the others.
+Scope: TypeAlias = "Literal['whole_track', 'from_here_on', 'moment']"
+
+# All sensors of a vehicle.
+SensorRig = TypedDict(
+    'SensorRig',
+    {
+        # Cameras in ring order, front left first.
+        'cameras': 'Sequence[Camera]',
+        # From the rear axle to the middle of the ego vehicle, m.
+        'ego_center_m': 'Sequence[float]',
+        # Length, width, height of the ego vehicle, m; its rear axle is the origin.
+        'ego_size_m': 'Sequence[float]',
+        # Forward speed while a LiDAR spins, m/s; it matters only where `spin_hz` is set.
+        'ego_speed_mps': 'NotRequired[float]',
+        # LiDARs; the first one is the default.
+        'lidars': 'Sequence[LidarPattern]',
+        # Name of the rig.
+        'name': 'str',
+    },
+)
+
+# A kind of place.
+Setting: TypeAlias = "Literal['old-town', 'city', 'suburb', 'industry', 'forest', 'country', 'motorway', 'park', 'retail']"
+
+ShapeDiscArgs = TypedDict(
+    'ShapeDiscArgs',
+    {
+        # Middle, m.
+        'center_m': 'Sequence[float]',
+        # Radius, m, at least 0.
+        'radius_m': 'float',
+    },
+)
+
+# A round dab; always at least the cell under its centre.
+ShapeDisc = TypedDict(
+    'ShapeDisc',
+    {
+        'disc': 'ShapeDiscArgs',
+    },
+)
+
+ShapeRectArgs = TypedDict(
+    'ShapeRectArgs',
+    {
+        # Upper corner, m.
+        'max_m': 'Sequence[float]',
+        # Lower corner, m.
+        'min_m': 'Sequence[float]',
+    },
+)
+
+# An upright rectangle.
+ShapeRect = TypedDict(
+    'ShapeRect',
+    {
+        'rect': 'ShapeRectArgs',
+    },
+)
+
+ShapePolygonArgs = TypedDict(
+    'ShapePolygonArgs',
+    {
+        # At least three vertices, m.
+        'points_m': 'Sequence[Sequence[float]]',
+    },
+)
+
+# A closed polygon (even-odd rule); the first vertex is not repeated.
+ShapePolygon = TypedDict(
+    'ShapePolygon',
+    {
+        'polygon': 'ShapePolygonArgs',
+    },
+)
+
+ShapeLineArgs = TypedDict(
+    'ShapeLineArgs',
+    {
+        # At least one vertex, m.
+        'points_m': 'Sequence[Sequence[float]]',
+        # Full width, m, at least 0.
+        'width_m': 'float',
+    },
+)
+
+# A stroke with round ends, never thinner than one cell.
+ShapeLine = TypedDict(
+    'ShapeLine',
+    {
+        'line': 'ShapeLineArgs',
+    },
+)
+
+# Cells by index `[x, y]`.
+ShapeCells = TypedDict(
+    'ShapeCells',
+    {
+        'cells': 'Sequence[Sequence[int]]',
+    },
+)
+
+# An area on the ground, ego frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
+Shape: TypeAlias = 'ShapeDisc | ShapeRect | ShapePolygon | ShapeLine | ShapeCells'
+
+# Receipt of `show`.
+Shown = TypedDict(
+    'Shown',
+    {
+        # Boxes that are there then.
+        'boxes': 'int',
+        # Where the ego vehicle is then, world frame: x and y in m, heading in degrees.
+        'ego': 'Sequence[float]',
+        # Length of the scene, s; 0 for one moment.
+        'length_s': 'float',
+        # The moment that is shown now, s.
+        'time_s': 'float',
+    },
+)
+
+# An area of shrubs.
+Shrubs = TypedDict(
+    'Shrubs',
+    {
+        # Height of the tallest above the ground, m.
+        'height_m': 'float',
+        # Corners on the ground, world frame, m; closed without repeating the first, edges do not cross.
+        'outline_m': 'Sequence[Sequence[float]]',
+        # Plants per square metre, 0 to 2.
+        'per_m2': 'float',
+    },
+)
+
+# A speed at a time; between two the speed changes evenly.
+Speed = TypedDict(
+    'Speed',
+    {
+        # Speed along the path, m/s; negative goes back along it.
+        'mps': 'float',
+        # Time in the clip, s.
+        'time_s': 'float',
+    },
+)
+
+# Receipt of `state`.
+State = TypedDict(
+    'State',
+    {
+        # Boxes, the nearest first.
+        'boxes': 'Sequence[BoxState]',
+        # Names of the cameras.
+        'cameras': 'Sequence[str]',
+        # Time.
+        'clip': 'ClipState',
+        # Light and air.
+        'conditions': 'Conditions',
+        # How much of what there is.
+        'counts': 'StateCounts',
+        # Columns of voxels that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # The area that the map covers.
+        'map': 'Map',
+        # True if there are more boxes than are listed.
+        'more_boxes': 'bool',
+        # Name of the scene.
+        'name': 'str',
+        # Text that describes its style; empty when none.
+        'prompt': 'str',
+        # Name of the step that redo brings back.
+        'redo': 'str | None',
+        # Number of the state that the scene is in.
+        'revision': 'int',
+        # Lines of the map, if they were asked for.
+        'roads': 'Roads | None',
+        # Name of the step that undo takes back; none if there is none.
+        'undo': 'str | None',
+        # True if there are changes that no file has.
+        'unsaved': 'bool',
+        # Words that were typed to make it and to change it.
+        'words': 'Sequence[str]',
+    },
+)
+
+# How much of what there is.
+StateCounts = TypedDict(
+    'StateCounts',
+    {
+        # Boxes.
+        'boxes': 'int',
+        # Boxes by class.
+        'boxes_by_class': 'dict[str, int]',
+        # Area of each map layer, m2.
+        'layers_m2': 'dict[str, float]',
+        # Voxels that are not free.
+        'occupied_voxels': 'int',
+        # Things beside the road by kind.
+        'things': 'dict[str, int]',
+        # Voxels by class.
+        'voxels_by_class': 'dict[str, int]',
+    },
+)
+
+# Where the sun (at night the moon) stands.
+Sun = TypedDict(
+    'Sun',
+    {
+        # Degrees counter-clockwise from the x axis of the world frame.
+        'azimuth_deg': 'float',
+        # Degrees above the horizon, 0 to 90.
+        'elevation_deg': 'float',
+    },
+)
+
+# A way to move.
+Template: TypeAlias = "Literal['drive', 'follow', 'stop', 'cut_in', 'cross', 'pull_out', 'park', 'turn_left', 'turn_right']"
+
+# A lie of the land.
+Terrain: TypeAlias = "Literal['flat', 'grade', 'crest', 'dip', 'hills', 'embankment', 'cutting', 'terrace', 'viaduct']"
+
+# Names a thing of the background; unique in a scene.
+ThingId: TypeAlias = 'int'
+
+# Part of the day.
+TimeOfDay: TypeAlias = "Literal['dawn', 'day', 'dusk', 'night']"
+
+# Receipt of `add_track`.
+TrackAdded = TypedDict(
+    'TrackAdded',
+    {
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # How long the scene lasts now, s.
+        'length_s': 'float',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # The track.
+        'track': 'TrackState',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
+    },
+)
+
+# Receipt of `list_tracks`.
+TrackList = TypedDict(
+    'TrackList',
+    {
+        # How long the scene lasts, s; 0 for one moment.
+        'length_s': 'float',
+        # The moment that is shown, s.
+        'time_s': 'float',
+        # All tracks, the ego vehicle's first.
+        'tracks': 'Sequence[TrackState]',
+    },
+)
+
+# Something that moves.
+TrackState = TypedDict(
+    'TrackState',
+    {
+        # The box; none for the ego vehicle.
+        'box': 'int | None',
+        # Its class; none for the ego vehicle.
+        'class': 'Class | None',
+        # True while its voxels are a draft that `generate` has not drawn yet.
+        'draft': 'bool',
+        # `keys` (through keyframes), `path` (along a path) or `attached` (to another box).
+        'motion': 'str',
+        # Where it is at the beginning, the middle and the end of the scene, world frame: time in s, x and y in
+        # m, speed in m/s.
+        'passes': 'Sequence[Sequence[float]]',
+        # When it is there, s: from the first up to the second; none: from the beginning, to the end.
+        'there_s': 'Sequence[float | None]',
+    },
+)
+
+# A tree.
+Tree = TypedDict(
+    'Tree',
+    {
+        # Radius of the crown, m.
+        'crown_radius_m': 'float',
+        # Top of the crown above the ground, m.
+        'height_m': 'float',
+        # Kind.
+        'kind': 'NotRequired[TreeKind]',
+        # Middle of the trunk on the ground, world frame, m.
+        'position_m': 'Sequence[float]',
+    },
+)
+
+# Kind of tree.
+TreeKind: TypeAlias = "Literal['broadleaf', 'conifer', 'columnar', 'bare']"
+
+# A state that was kept.
+Version = TypedDict(
+    'Version',
+    {
+        # Boxes in it.
+        'boxes': 'int',
+        # Its name.
+        'name': 'str',
+        # Voxels that are not free.
+        'occupied_voxels': 'int',
+        # Number of the state.
+        'revision': 'int',
+    },
+)
+
+# Receipt of `keep_version` and `list_versions`.
+VersionList = TypedDict(
+    'VersionList',
+    {
+        # Number of the state that the scene is in now.
+        'revision': 'int',
+        # All versions, the oldest first.
+        'versions': 'Sequence[Version]',
+    },
+)
+
+# What is in the air.
+Weather: TypeAlias = "Literal['clear', 'overcast', 'rain', 'snow', 'fog', 'sandstorm']"

@@ -1,0 +1,124 @@
+//! `check`: the quality checks.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::call::Operation;
+use crate::desk::{Desk, Done};
+use app::shell::checking;
+use editor::checks::{self, Finding, Severity, waive};
+use editor::fix::fix_all;
+use scene::Scene;
+
+/// Findings that a receipt lists at most.
+const MOST_FINDINGS: usize = 200;
+
+/// Arguments of `check`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Check {
+    /// Also look with cameras and LiDAR, which takes a few seconds.
+    #[serde(default = "yes")]
+    sensors: bool,
+    /// Apply the first repair of each finding that has one, as one undo step, and check again.
+    #[serde(default)]
+    fix: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Receipt of `check`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Checked {
+    /// What was found, errors first; at most 200.
+    findings: Vec<Found>,
+    /// Open findings that are errors.
+    errors: usize,
+    /// Open findings that are warnings.
+    warnings: usize,
+    /// Findings that were waived: they may stand.
+    waived: usize,
+    /// What the repairs changed, if they were asked for.
+    fixed: Option<Done>,
+    /// Number of the state that was checked.
+    revision: u64,
+}
+
+/// Something that a check found.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Found {
+    /// Name of the check.
+    check: String,
+    /// `error` or `warning`.
+    severity: String,
+    /// Where, world frame, m.
+    where_m: [f64; 3],
+    /// When, s; none if it is about the moment that is shown.
+    time_s: Option<f64>,
+    /// The box that it is about.
+    #[serde(rename = "box")]
+    box_id: Option<u32>,
+    /// What is wrong, in a line.
+    text: String,
+    /// Why it may stand, if it was waived.
+    waived: Option<String>,
+    /// Names of repairs, the best first.
+    fixes: Vec<String>,
+}
+
+fn found(scene: &Scene, f: &Finding) -> Found {
+    let tidy = |v: f64| (v * 100.0).round() / 100.0 + 0.0;
+    Found {
+        check: f.check.to_owned(),
+        severity: f.severity.name().to_owned(),
+        where_m: f.where_m.to_array().map(tidy),
+        time_s: f.time_s,
+        box_id: f.box_id.map(|id| id.0),
+        text: f.text.clone(),
+        waived: waive::of(scene.frame(), f).map(|w| w.reason.to_string()),
+        fixes: f.fixes.iter().map(|fix| fix.label.to_owned()).collect(),
+    }
+}
+
+impl Operation for Check {
+    const NAME: &'static str = "check";
+    const ABOUT: &'static str = "Runs the quality checks: boxes that overlap, float, stand off the road or against the lane, voxels without a box, boxes that no sensor sees. Call it before export. An edit `waive` lets a finding stand.";
+    const EXAMPLE: &'static str = r#"{"sensors": false, "fix": false}"#;
+    const CHANGES: bool = true;
+    type Receipt = Checked;
+
+    fn run(self, desk: &mut Desk) -> anyhow::Result<Checked> {
+        let look = |scene: &Scene| match self.sensors {
+            true => checking::check(scene),
+            false => checks::run_checks(scene, None),
+        };
+        let mut scene = desk.scene()?;
+        let mut findings = look(&scene);
+        let mut fixed = None;
+        if self.fix {
+            let edits = fix_all(&scene, &findings);
+            if !edits.is_empty() {
+                fixed = Some(desk.apply("Repair what the checks found".into(), edits)?);
+                scene = desk.scene()?;
+                findings = look(&scene);
+            }
+        }
+        let open: Vec<&Finding> = waive::open(scene.frame(), &findings).collect();
+        let errors = open.iter().filter(|f| f.severity == Severity::Error).count();
+        let (warnings, waived) = (open.len() - errors, findings.len() - open.len());
+        Ok(Checked {
+            findings: findings
+                .iter()
+                .take(MOST_FINDINGS)
+                .map(|f| found(&scene, f))
+                .collect(),
+            errors,
+            warnings,
+            waived,
+            fixed,
+            revision: desk.number(scene.content()),
+        })
+    }
+}

@@ -1,0 +1,73 @@
+//! `new`: a scene from a procedural world.
+
+use anyhow::Context;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::names;
+use crate::call::Operation;
+use crate::desk::{Desk, Done};
+use authoring::open;
+use world::scenery::Setting;
+use world::template::TEMPLATES;
+use world::terrain::Terrain;
+
+/// Arguments of `new`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct New {
+    /// Kind of street.
+    #[schemars(schema_with = "names::template")]
+    template: String,
+    /// Fixes every random draw: the same seed gives the same scene.
+    #[serde(default)]
+    seed: u64,
+    /// What kind of place; one that suits the road if left out.
+    #[serde(default)]
+    setting: Option<Setting>,
+    /// The lie of the land.
+    #[serde(default)]
+    terrain: Terrain,
+}
+
+/// Receipt of `new`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Made {
+    /// What changed.
+    #[serde(flatten)]
+    done: Done,
+    /// Name of the scene.
+    name: String,
+    /// Boxes in it: vehicles, people, barriers, cones.
+    boxes: usize,
+    /// Things beside the road: buildings, trees, posts.
+    things: usize,
+    /// Voxels that are not free.
+    occupied_voxels: usize,
+}
+
+impl Operation for New {
+    const NAME: &'static str = "new";
+    const ABOUT: &'static str = "Replaces the scene by a new one from a procedural world: road, traffic, buildings, trees and voxels on a map of 80 x 80 m around the ego vehicle. It can be undone.";
+    const EXAMPLE: &'static str =
+        r#"{"template": "t-junction", "seed": 3, "setting": "city", "terrain": "flat"}"#;
+    const CHANGES: bool = true;
+    type Receipt = Made;
+
+    fn run(self, desk: &mut Desk) -> anyhow::Result<Made> {
+        names::check("template", &self.template, &TEMPLATES)?;
+        let from = desk.scene()?.content();
+        let scene = open::from_template_on(&self.template, self.seed, self.setting, self.terrain)
+            .context("no such template")?;
+        let (frame, name) = (scene.frame().clone(), scene.name.to_string());
+        let things = scene.background.len();
+        let done = desk.put(format!("New {}", self.template), from, scene)?;
+        Ok(Made {
+            done,
+            name,
+            boxes: frame.boxes.len(),
+            things,
+            occupied_voxels: frame.occupancy.count_set(),
+        })
+    }
+}

@@ -1,0 +1,108 @@
+//! `open`: a scene from a file of the folder.
+
+use anyhow::{Context, bail};
+use glam::DVec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::call::Operation;
+use crate::desk::{Desk, Done};
+use authoring::again::again;
+use authoring::open::{self, Placement};
+use formats::import::{self, Content};
+
+/// Arguments of `open`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Open {
+    /// File in the folder of this session, such as `a.loom`, `road.xodr` or `labels.npz`; without it the scene that ships with
+    /// the program.
+    #[serde(default)]
+    file: Option<String>,
+    /// Of a road file: where the ego vehicle stands in the file's frame, m; a good place on a lane if left out.
+    #[serde(default)]
+    at_m: Option<[f64; 2]>,
+    /// Of a road file: its heading, degrees counter-clockwise from x; along the lane if left out.
+    #[serde(default)]
+    heading_deg: Option<f64>,
+    /// Of a road file: length and width of the map, m; 80 x 80 if left out.
+    #[serde(default)]
+    size_m: Option<[f64; 2]>,
+}
+
+/// Receipt of `open`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Opened {
+    /// What changed.
+    #[serde(flatten)]
+    done: Done,
+    /// Name of the scene.
+    name: String,
+    /// Format of the file.
+    format: String,
+    /// Boxes in it.
+    boxes: usize,
+    /// Things beside the road.
+    things: usize,
+    /// How long it lasts, s; 0 for one moment.
+    length_s: f64,
+}
+
+impl Operation for Open {
+    const NAME: &'static str = "open";
+    const ABOUT: &'static str = "Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a picture that this program made (.png), or another format that is read. It can be undone. list_files tells what is there.";
+    const EXAMPLE: &'static str = r#"{"file": "a.loom"}"#;
+    const CHANGES: bool = true;
+    type Receipt = Opened;
+
+    fn run(self, desk: &mut Desk) -> anyhow::Result<Opened> {
+        let from = desk.scene()?.content();
+        let placement = Placement {
+            at_m: self.at_m.map(DVec2::from),
+            heading_rad: self.heading_deg.map(f64::to_radians),
+            size_m: self.size_m,
+            ..Placement::default()
+        };
+        let said = [
+            self.at_m.is_some(),
+            self.heading_deg.is_some(),
+            self.size_m.is_some(),
+        ];
+        let (scene, format) = match &self.file {
+            None => (open::bundled()?, "loom"),
+            Some(file) => {
+                let path = desk.folder.existing(file)?;
+                let (importer, content) = import::read(&path)?;
+                let scene = match content {
+                    Content::Scene(_) | Content::Recipe(_) if said.contains(&true) => {
+                        bail!("{file}: a scene; at_m, heading_deg and size_m are for road files")
+                    }
+                    Content::Scene(loaded) => loaded.scene,
+                    Content::Recipe(recipe) => again(&recipe).with_context(|| file.clone())?,
+                    Content::Roads(network) => {
+                        if let Some(problem) = placement.problem_on(&network) {
+                            bail!("{file}: {problem}");
+                        }
+                        open::on_roads(*network, &import::scene_name(&path), &placement).scene
+                    }
+                };
+                (scene, importer.id)
+            }
+        };
+        let (name, boxes, things) = (
+            scene.name.to_string(),
+            scene.frame().boxes.len(),
+            scene.background.len(),
+        );
+        let length_s = scene.clip().length_s;
+        let step = format!("Open {}", self.file.as_deref().unwrap_or("the first scene"));
+        Ok(Opened {
+            done: desk.put(step, from, scene)?,
+            name,
+            format: format.to_owned(),
+            boxes,
+            things,
+            length_s,
+        })
+    }
+}

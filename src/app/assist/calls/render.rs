@@ -1,0 +1,177 @@
+//! `render`: pictures of what the sensors see.
+
+use std::collections::BTreeMap;
+
+use anyhow::bail;
+use image::RgbaImage;
+use image::imageops::{self, FilterType};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::names;
+use crate::call::Operation;
+use crate::desk::Desk;
+use crate::folder::FileEntry;
+use crate::render::{Rendering, check_what};
+use app::camera_views::LidarModel;
+use app::picture::Picture;
+use formats::png;
+use scene::{Scene, TimeOfDay, Weather};
+use sensors::cameras::{self, SourceId, ViewId};
+
+/// Longest side of the picture that goes with a receipt, pixels.
+const SMALL_SIDE: u32 = 640;
+
+/// Arguments of `render`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Render {
+    /// What is rendered: `bev` is the map and the voxels from above, `view` the 3D view (needs a graphics driver), `lidar` the
+    /// points of a sweep; the others are what cameras see, `appearance` as a photograph.
+    #[schemars(schema_with = "names::what")]
+    what: Vec<String>,
+    /// Names of cameras, as `state` lists them; all of them if left out.
+    #[serde(default)]
+    cameras: Vec<String>,
+    /// Width and height of camera pictures, pixels.
+    #[serde(default = "usual_size")]
+    #[schemars(schema_with = "names::size")]
+    size: [u32; 2],
+    /// What classes and depths are rendered from.
+    #[serde(default = "usual_source")]
+    #[schemars(schema_with = "names::source")]
+    source: String,
+    /// Time of day of `appearance`; the scene's if left out.
+    #[serde(default)]
+    time: Option<TimeOfDay>,
+    /// Weather of `appearance`; the scene's if left out.
+    #[serde(default)]
+    weather: Option<Weather>,
+    /// `appearance` several times faster, with rougher edges.
+    #[serde(default)]
+    preview: bool,
+    /// The LiDAR network instead of exact rays.
+    #[serde(default)]
+    learned_lidar: bool,
+    /// Folder in the folder of this session that the files go to.
+    #[serde(default = "usual_folder")]
+    folder: String,
+    /// Write over files that are there.
+    #[serde(default)]
+    replace: bool,
+}
+
+fn usual_size() -> [u32; 2] {
+    [480, 270]
+}
+
+fn usual_source() -> String {
+    "shapes".into()
+}
+
+fn usual_folder() -> String {
+    "pictures".into()
+}
+
+/// Receipt of `render`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Rendered {
+    /// The files.
+    files: Vec<FileEntry>,
+    /// Rays of the LiDAR and points that came back, if it was asked for.
+    lidar: Option<[usize; 2]>,
+    /// Time by kind, s.
+    wall_s: BTreeMap<String, f64>,
+    /// The moment that they show, s.
+    time_s: f64,
+    /// Number of the state that they show.
+    revision: u64,
+    #[serde(skip)]
+    #[schemars(skip)]
+    picture: Option<Vec<u8>>,
+}
+
+impl Render {
+    /// The scene with the cameras that were asked for, in the order of the rig.
+    fn with_cameras(&self, scene: &Scene) -> anyhow::Result<Scene> {
+        let mut scene = scene.clone();
+        if self.cameras.is_empty() {
+            return Ok(scene);
+        }
+        let mut rig = (*scene.rig).clone();
+        let known: Vec<String> = rig.cameras.iter().map(|c| c.name.clone()).collect();
+        if let Some(unknown) = self.cameras.iter().find(|c| !known.contains(c)) {
+            bail!("cameras holds {unknown:?}, expected some of {}", known.join(", "));
+        }
+        rig.cameras.retain(|c| self.cameras.contains(&c.name));
+        scene.rig = rig.into();
+        Ok(scene)
+    }
+}
+
+/// A small copy as PNG.
+fn small(picture: Picture) -> Option<Vec<u8>> {
+    let [width, height] = [picture.width, picture.height].map(|side| u32::try_from(side).ok());
+    let (width, height) = (width?, height?);
+    let shrink = f64::from(SMALL_SIDE) / f64::from(width.max(height).max(1));
+    let full = RgbaImage::from_raw(width, height, picture.rgba)?;
+    let image = match shrink < 1.0 {
+        true => {
+            let side = |s: u32| ((f64::from(s) * shrink).round() as u32).max(1);
+            imageops::resize(&full, side(width), side(height), FilterType::Triangle)
+        }
+        false => full,
+    };
+    let [w, h] = [image.width() as usize, image.height() as usize];
+    png::rgba(w, h, image.as_raw(), &png::Notes::default()).ok()
+}
+
+impl Operation for Render {
+    const NAME: &'static str = "render";
+    const ABOUT: &'static str = "Renders what cameras and LiDAR of the ego vehicle see at the moment that is shown, or the map from above, and writes PNG pictures and data into a folder. Over MCP the first picture comes with the answer, at most 640 pixels wide. Look at bev to see where things are.";
+    const EXAMPLE: &'static str = r#"{"what": ["bev", "semantic"], "cameras": ["CAM_FRONT"], "size": [480, 270], "folder": "pictures", "replace": true}"#;
+    const CHANGES: bool = false;
+    type Receipt = Rendered;
+
+    fn run(self, desk: &mut Desk) -> anyhow::Result<Rendered> {
+        check_what(&self.what, "what")?;
+        names::check_size(self.size)?;
+        names::check("source", &self.source, &names::sources())?;
+        desk.folder.may_write(&format!("{}/x", self.folder), true)?;
+        let scene = desk.scene()?;
+        let source = cameras::sources_of(ViewId::SEMANTIC)
+            .into_iter()
+            .map(|s| s.id())
+            .find(|id| id.name() == self.source)
+            .unwrap_or(SourceId::default());
+        let rendering = Rendering {
+            what: self.what.clone(),
+            size: self.size,
+            source,
+            weather: self.weather,
+            time: self.time,
+            preview: self.preview,
+            lidar: match self.learned_lidar {
+                true => LidarModel::Learned,
+                false => LidarModel::Exact,
+            },
+        };
+        let staging = desk.folder.staging()?;
+        let made = rendering.write(&self.with_cameras(&scene)?, staging.path())?;
+        let wall_s = made.wall_s.iter().map(|(kind, s)| ((*kind).to_owned(), *s));
+        Ok(Rendered {
+            files: desk
+                .folder
+                .publish(staging.path(), (&self.folder, None), self.replace)?,
+            lidar: made.lidar,
+            wall_s: wall_s.collect(),
+            time_s: scene.time_s(),
+            revision: desk.number(scene.content()),
+            picture: made.first.and_then(small),
+        })
+    }
+
+    fn picture(receipt: &mut Rendered) -> Option<Vec<u8>> {
+        receipt.picture.take()
+    }
+}

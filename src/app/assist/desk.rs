@@ -1,0 +1,276 @@
+//! What the calls of a session work on: the document (its own or that of a window), the folder, versions, numbers of
+//! revisions, the networks.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::{Context, bail};
+use crossbeam_channel::bounded;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::change::Change;
+use crate::folder::Folder;
+pub use app::shell::guests::Task;
+use editor::checks::{self, Finding};
+use editor::{Document, Edit};
+use job::pipeline::OccPipeline;
+use job::region::edited_columns;
+use nets::OccModels;
+use scene::{Scene, SceneRev};
+
+/// True once the call in progress is not wanted any more.
+pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
+
+/// Who owns the document.
+pub enum Holder {
+    /// This session.
+    Own(Box<Document>),
+    /// Another thread, such as that of a window. It is handed tasks, which it does one by one; false if it is gone.
+    Elsewhere(Box<dyn FnMut(Task) -> bool + Send>),
+}
+
+impl Holder {
+    /// Does something with the document. Errors if whoever owns it is gone.
+    fn with<R: Send + 'static>(
+        &mut self,
+        work: impl FnOnce(&mut Document) -> R + Send + 'static,
+    ) -> anyhow::Result<R> {
+        match self {
+            Self::Own(document) => Ok(work(document)),
+            Self::Elsewhere(hand) => {
+                let (answer, answered) = bounded(1);
+                let task: Task = Box::new(move |document| drop(answer.send(work(document))));
+                let handed = hand(task);
+                let answer = handed.then(|| answered.recv().ok()).flatten();
+                answer.context("the window that owns the scene lets nobody in any more")
+            }
+        }
+    }
+}
+
+/// What a call that may change the scene did.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Done {
+    /// Number of the state that the scene is in now. A state that comes back by undo has its old number.
+    pub revision: u64,
+    /// Name of the undo step; empty if nothing changed.
+    pub step: String,
+    /// What changed, in numbers.
+    pub changed: Change,
+    /// Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+    pub draft_columns: usize,
+    /// What should be looked at, such as findings of the checks that were not there before.
+    pub warnings: Vec<String>,
+}
+
+/// Warnings that a receipt holds at most.
+const MOST_WARNINGS: usize = 8;
+/// Versions kept at most.
+const MOST_VERSIONS: usize = 64;
+
+/// One scene and all that calls need to work on it.
+pub struct Desk {
+    holder: Holder,
+    /// Where files are read and written.
+    pub folder: Folder,
+    /// Whether the call in progress is still wanted.
+    pub stop: Stop,
+    weights: Option<PathBuf>,
+    pipeline: Option<OccPipeline>,
+    revisions: HashMap<SceneRev, u64>,
+    versions: Vec<(String, Arc<Scene>)>,
+    /// Findings of the state that was checked last, without sensors.
+    checked: Option<(SceneRev, Arc<Vec<Finding>>)>,
+}
+
+impl Desk {
+    /// On a document, with a folder for files. Networks come from `weights`, or are the bundled ones.
+    pub fn new(holder: Holder, folder: Folder, weights: Option<PathBuf>) -> Self {
+        Self {
+            holder,
+            folder,
+            stop: Arc::new(|| false),
+            weights,
+            pipeline: None,
+            revisions: HashMap::new(),
+            versions: Vec::new(),
+            checked: None,
+        }
+    }
+
+    /// The scene as it is now. Errors if whoever owns the document is gone.
+    pub fn scene(&mut self) -> anyhow::Result<Arc<Scene>> {
+        self.look(|document| document.settled_scene().clone())
+    }
+
+    /// Looks at the document.
+    pub fn look<R: Send + 'static>(
+        &mut self,
+        look: impl FnOnce(&Document) -> R + Send + 'static,
+    ) -> anyhow::Result<R> {
+        self.holder.with(move |document| look(document))
+    }
+
+    /// True if the document is this session's own.
+    pub fn is_own(&self) -> bool {
+        matches!(self.holder, Holder::Own(_))
+    }
+
+    /// Changes the document in a way that is not an undo step, or has its own; returns what `work` does and the states before
+    /// and after.
+    pub fn with<R: Send + 'static>(
+        &mut self,
+        work: impl FnOnce(&mut Document) -> R + Send + 'static,
+    ) -> anyhow::Result<(R, [Arc<Scene>; 2])> {
+        self.holder.with(move |document| {
+            let before = document.settled_scene().clone();
+            let out = work(document);
+            (out, [before, document.settled_scene().clone()])
+        })
+    }
+
+    /// Applies edits as one undo step: all of them, or on error none.
+    pub fn apply(&mut self, step: String, edits: Vec<Edit>) -> anyhow::Result<Done> {
+        let label = step.clone();
+        let (applied, states) = self.with(move |document| document.apply_all(label, &edits))?;
+        applied?;
+        Ok(self.done(step, &states))
+    }
+
+    /// Puts another state in the place of the state `from`, as one undo step. Errors if the scene has changed since. Its
+    /// findings are no warnings: it is another scene, or is checked by whoever made it.
+    pub fn put(&mut self, step: String, from: SceneRev, scene: Scene) -> anyhow::Result<Done> {
+        let label = step.clone();
+        let (is_current, states) = self.with(move |document| {
+            let is_current = document.settled_scene().content() == from;
+            if is_current {
+                document.restore(label, &scene);
+            }
+            is_current
+        })?;
+        match is_current {
+            true => Ok(Done {
+                warnings: Vec::new(),
+                ..self.done(step, &states)
+            }),
+            false => bail!("the scene was changed in the window meanwhile: nothing was done, call again"),
+        }
+    }
+
+    /// The receipt of a change.
+    pub fn done(&mut self, step: String, [before, after]: &[Arc<Scene>; 2]) -> Done {
+        let changed = Change::between(before, after);
+        self.number(before.content());
+        let differs = before.content() != after.content();
+        let warnings = match differs {
+            true => self.warnings(before, after),
+            false => Vec::new(),
+        };
+        Done {
+            revision: self.number(after.content()),
+            step: if differs { step } else { String::new() },
+            changed,
+            draft_columns: draft_columns(after),
+            warnings,
+        }
+    }
+
+    /// The number of a state: states are numbered from 1 in the order in which this session sees them.
+    pub fn number(&mut self, state: SceneRev) -> u64 {
+        let next = self.revisions.len() as u64 + 1;
+        *self.revisions.entry(state).or_insert(next)
+    }
+
+    /// What the checks that need no sensors find, the open findings alone.
+    fn findings(&mut self, scene: &Scene) -> Arc<Vec<Finding>> {
+        if let Some((of, found)) = &self.checked
+            && *of == scene.rev
+        {
+            return found.clone();
+        }
+        let found = checks::run_checks(scene, None);
+        let open = checks::waive::open(scene.frame(), &found).cloned().collect();
+        let found: Arc<Vec<Finding>> = Arc::new(open);
+        self.checked = Some((scene.rev, found.clone()));
+        found
+    }
+
+    /// Findings that were not there before, of what is the same scene.
+    fn warnings(&mut self, before: &Scene, after: &Scene) -> Vec<String> {
+        let known: Vec<_> = self.findings(before).iter().map(same).collect();
+        let found = self.findings(after);
+        let new: Vec<&Finding> = found.iter().filter(|f| !known.contains(&same(f))).collect();
+        let mut out: Vec<String> = new.iter().take(MOST_WARNINGS).map(|f| told(f)).collect();
+        if new.len() > MOST_WARNINGS {
+            let more = new.len() - MOST_WARNINGS;
+            out.push(format!("{more} more findings; check lists them"));
+        }
+        out
+    }
+
+    /// The networks, read when they are first asked for.
+    pub fn pipeline(&mut self) -> anyhow::Result<&mut OccPipeline> {
+        if self.pipeline.is_none() {
+            let models = OccModels::of(self.weights.as_deref())?;
+            self.pipeline = Some(OccPipeline::new(models));
+        }
+        self.pipeline.as_mut().context("no networks")
+    }
+
+    /// States kept under a name, the oldest first.
+    pub fn versions(&self) -> &[(String, Arc<Scene>)] {
+        &self.versions
+    }
+
+    /// The state kept under a name.
+    pub fn version(&self, name: &str) -> anyhow::Result<Arc<Scene>> {
+        let found = self.versions.iter().find(|(of, _)| of == name);
+        found.map(|(_, scene)| scene.clone()).with_context(|| {
+            let names: Vec<&str> = self.versions.iter().map(|(of, _)| of.as_str()).collect();
+            match names.is_empty() {
+                true => format!("no version {name:?}: none was kept yet"),
+                false => format!("no version {name:?}, expected one of {}", names.join(", ")),
+            }
+        })
+    }
+
+    /// Keeps a state under a name; another of that name goes. Errors if there are as many as are kept.
+    pub fn keep(&mut self, name: String, scene: Arc<Scene>) -> anyhow::Result<()> {
+        let others = self.versions.iter().filter(|(of, _)| *of != name).count();
+        if others >= MOST_VERSIONS {
+            bail!("{others} versions are kept already, expected fewer than {MOST_VERSIONS}");
+        }
+        self.versions.retain(|(of, _)| *of != name);
+        self.versions.push((name, scene));
+        Ok(())
+    }
+}
+
+/// What tells findings apart; numbers in their words may change.
+fn same(f: &Finding) -> (&'static str, Option<scene::BoxId>, [i64; 3]) {
+    let place = match f.box_id {
+        Some(_) => [0; 3],
+        None => f.where_m.to_array().map(|v| v.round() as i64),
+    };
+    (f.check, f.box_id, place)
+}
+
+/// A finding in a line.
+fn told(f: &Finding) -> String {
+    let [x, y, _] = f.where_m.to_array();
+    let of_box = f.box_id.map_or(String::new(), |id| format!(", box {}", id.0));
+    format!(
+        "{}: {} [{}{of_box}] at {x:.1}, {y:.1} m",
+        f.severity.name(),
+        f.text,
+        f.check
+    )
+}
+
+/// Columns that the networks have not drawn since they were edited.
+pub fn draft_columns(scene: &Scene) -> usize {
+    let of = scene.for_generation();
+    edited_columns(of.frame(), 0).iter().filter(|c| **c).count()
+}

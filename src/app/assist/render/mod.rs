@@ -1,0 +1,176 @@
+//! Pictures and data of what the sensors see, as files of a folder: what `sceneloom render` and the call `render` share.
+
+mod plan;
+mod truth;
+mod write;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::bail;
+
+use app::camera_views::{self, camera_input};
+use app::graphics::Graphics;
+use app::picture::{self, Picture};
+use formats::recipe::Recipe;
+use scene::{Scene, TimeOfDay, Weather};
+use sensors::appearance::Quality;
+use sensors::cameras::{self, CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
+
+use plan::{Cameras, Plan};
+use write::Writer;
+
+/// What can be rendered besides the views of cameras.
+const OTHERS: [&str; 4] = ["truth", "lidar", "bev", "view"];
+
+/// What is rendered, and how.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// Names from [`kinds`].
+    pub what: Vec<String>,
+    /// Size of camera pictures in pixels.
+    pub size: [u32; 2],
+    /// What classes and depths are rendered from.
+    pub source: SourceId,
+    /// Weather of pictures; else the scene's.
+    pub weather: Option<Weather>,
+    /// Time of day of pictures; else the scene's.
+    pub time: Option<TimeOfDay>,
+    /// One sample per pixel for pictures.
+    pub preview: bool,
+    /// How the LiDAR sweep comes about.
+    pub lidar: camera_views::LidarModel,
+}
+
+/// What was rendered.
+#[derive(Debug, Default)]
+pub struct Rendered {
+    /// The files, in the order in which they were written.
+    pub files: Vec<PathBuf>,
+    /// Seconds that each part took, by its name in the report.
+    pub wall_s: BTreeMap<&'static str, f64>,
+    /// Rays and returns of the LiDAR, if it was asked for.
+    pub lidar: Option<[usize; 2]>,
+    /// One of the pictures, to be looked at.
+    pub first: Option<Picture>,
+}
+
+/// Names of everything that can be rendered.
+pub fn kinds() -> Vec<&'static str> {
+    let views = cameras::views().into_iter().map(|v| v.id.name());
+    views.chain(OTHERS).collect()
+}
+
+/// Errors if nothing is asked for, or something unknown; `key` is the name of the list.
+pub fn check_what(what: &[String], key: &str) -> anyhow::Result<()> {
+    let kinds = kinds();
+    if what.is_empty() {
+        bail!("{key} is empty, expected some of {}", kinds.join(", "));
+    }
+    if let Some(unknown) = what.iter().find(|w| !kinds.contains(&w.as_str())) {
+        bail!("{key} holds {unknown:?}, expected {}", kinds.join(", "));
+    }
+    Ok(())
+}
+
+impl Rendering {
+    /// The scene as camera sources take it, under the weather and time that were asked for.
+    fn input<'a>(&self, scene: &'a Scene) -> CameraInput<'a> {
+        let own = scene.conditions;
+        let timed = self.time.map_or(own, |time| own.at(time));
+        CameraInput {
+            conditions: self.weather.map_or(timed, |weather| timed.under(weather)),
+            ..camera_input(scene, Detail::Full)
+        }
+    }
+
+    /// How the pictures come to be: under the weather and time that were asked for.
+    fn recipe(&self, scene: &Scene) -> Recipe {
+        Recipe {
+            conditions: self.input(scene).conditions,
+            ..Recipe::of(scene)
+        }
+    }
+
+    /// Renders and writes the pictures of one source, a few cameras at a time if they are small, else one.
+    fn cameras(
+        &self,
+        scene: &Scene,
+        cameras: &Cameras,
+        (writer, out): (&mut Writer, &mut Rendered),
+    ) -> anyhow::Result<()> {
+        let mut time_s = 0.0;
+        let start = Instant::now();
+        let ready = Ready::new(cameras.source, &self.input(scene));
+        // The same bytes on every machine, unless a card is asked for.
+        let mut card = Graphics::forced();
+        let on_card = ready.upload_to(|| card.as_mut().map(|card| card as &mut dyn Card));
+        time_s += start.elapsed().as_secs_f64();
+        let options = RenderOptions {
+            size: self.size,
+            quality: if self.preview {
+                Quality::Preview
+            } else {
+                Quality::Full
+            },
+        };
+        let all = &scene.rig.cameras;
+        let mut place = 0;
+        for group in all.chunks(ready.side_by_side(&options)) {
+            let start = Instant::now();
+            let card = card.as_mut().filter(|_| on_card);
+            let pictures = ready.render_all(group, &options, card.map(|card| card as &mut dyn Card))?;
+            time_s += start.elapsed().as_secs_f64();
+            for picture in pictures {
+                writer.camera(picture, &cameras.views, (place, all.len()))?;
+                place += 1;
+            }
+        }
+        writer.finish_sheet(&cameras.views)?;
+        *out.wall_s.entry(cameras.source.report_key()).or_default() += time_s;
+        Ok(())
+    }
+
+    /// Renders the moment that a scene shows, and writes the files into a folder, which is made. Errors in one line; whatever
+    /// cannot be had is told before anything is written.
+    pub fn write(&self, scene: &Scene, folder: &Path) -> anyhow::Result<Rendered> {
+        let of_file = scene;
+        let scene = &*of_file.with_rig_in_world();
+        let plan = Plan::new(self, scene)?;
+        let mut writer = Writer::new(folder, self.recipe(of_file))?;
+        let mut out = Rendered::default();
+        let frame = scene.frame();
+        for cameras in &plan.cameras {
+            self.cameras(scene, cameras, (&mut writer, &mut out))?;
+        }
+        if plan.truth {
+            let time_s = self.truth(scene, &mut writer)?;
+            out.wall_s.insert("truth", time_s);
+        }
+        if plan.truth || !plan.cameras.is_empty() || plan.lidar.is_some() {
+            writer.calibration(of_file, &frame.world_from_ego, self.size)?;
+        }
+        if let Some(model) = &plan.lidar {
+            let start = Instant::now();
+            let sweep = model.sweep(scene)?;
+            out.wall_s.insert("lidar", start.elapsed().as_secs_f64());
+            out.lidar = Some([sweep.rays, sweep.points.len()]);
+            writer.lidar(frame.extent(), &sweep)?;
+        }
+        if plan.bev {
+            let start = Instant::now();
+            writer.picture("bev.png", &picture::layout_top(frame, 4))?;
+            writer.picture("occupancy_top.png", &picture::occupancy_top(&frame.occupancy, 4))?;
+            out.wall_s.insert("bev", start.elapsed().as_secs_f64());
+        }
+        if let Some(mut view) = plan.view {
+            let start = Instant::now();
+            let shot = view.shot(scene, &Default::default())?;
+            writer.picture("view.png", &shot)?;
+            out.wall_s.insert("view", start.elapsed().as_secs_f64());
+        }
+        (out.files, out.first) = (writer.files, writer.first);
+        Ok(out)
+    }
+}

@@ -1,0 +1,27 @@
+//! `sceneloom schema`: the JSON Schema of all calls of `session` and `mcp`.
+
+use std::io::Write;
+
+use super::Outcome;
+use assist::schema;
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct SchemaCommand {
+    /// On one line.
+    #[arg(long)]
+    compact: bool,
+}
+
+impl SchemaCommand {
+    pub(super) fn run(self) -> Outcome {
+        let document = schema::document();
+        // (whoever reads it may stop early)
+        let mut out = std::io::stdout();
+        let _ = match self.compact {
+            true => writeln!(out, "{document}"),
+            false => writeln!(out, "{document:#}"),
+        };
+        Ok(())
+    }
+}

@@ -1,0 +1,169 @@
+//! Assistants that drive the editor of the window: off unless the user lets them in. Their work arrives as tasks from another
+//! thread and is done between two frames; what takes long they do themselves, on a copy.
+
+use std::any::Any;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crossbeam_channel::Receiver;
+
+use super::app::{SceneloomApp, one_line};
+use editor::Document;
+use job::guard::guarded;
+
+/// Work on the document, to be done by the thread of the window.
+pub type Task = Box<dyn FnOnce(&mut Document) + Send>;
+
+/// Asks the window for a frame, in which it does what was sent to it.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Lets assistants in. The command line puts one into the window, which knows no server.
+pub trait Door {
+    /// Begins to listen. Whoever sends a task calls `wake` after it. Errors in one line.
+    fn open(&mut self, wake: Wake) -> anyhow::Result<OpenDoor>;
+}
+
+/// A door while it is open; it closes when this is dropped.
+pub struct OpenDoor {
+    /// Where assistants ask.
+    pub url: String,
+    /// What they must show.
+    pub token: String,
+    /// The one folder whose files they may read and write.
+    pub folder: PathBuf,
+    /// What they want done.
+    pub tasks: Receiver<Task>,
+    /// Whatever listens.
+    pub listening: Box<dyn Any>,
+}
+
+/// The door of a window, and whether it is open.
+#[derive(Default)]
+pub struct Guests {
+    door: Option<Box<dyn Door>>,
+    open: Option<OpenDoor>,
+    /// Why it could not be opened; it is tried again when the user asks again.
+    problem: Option<String>,
+}
+
+/// Tasks done between two frames at most.
+const MOST_TASKS: usize = 64;
+
+impl Guests {
+    /// With a door that is closed.
+    pub fn new(door: Box<dyn Door>) -> Self {
+        Self {
+            door: Some(door),
+            ..Self::default()
+        }
+    }
+
+    /// True if there is a door.
+    pub fn are_possible(&self) -> bool {
+        self.door.is_some()
+    }
+
+    /// The door, if it is open.
+    pub fn open(&self) -> Option<&OpenDoor> {
+        self.open.as_ref()
+    }
+
+    /// Why it is not open although the user wants it.
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+
+    /// Opens or closes the door as the user wants it. True if that has just failed.
+    fn follow(&mut self, wanted: bool, wake: impl FnOnce() -> Wake) -> bool {
+        if !wanted {
+            (self.open, self.problem) = (None, None);
+            return false;
+        }
+        let Some(door) = self.door.as_mut() else {
+            return false;
+        };
+        if self.open.is_some() || self.problem.is_some() {
+            return false;
+        }
+        match door.open(wake()) {
+            Ok(open) => self.open = Some(open),
+            Err(error) => self.problem = Some(one_line(&error)),
+        }
+        self.problem.is_some()
+    }
+}
+
+impl SceneloomApp {
+    /// Gives the window a door for assistants.
+    pub fn with_door(mut self, door: Box<dyn Door>) -> Self {
+        self.guests = Guests::new(door);
+        self
+    }
+
+    /// Does what assistants have sent since the last frame.
+    pub(crate) fn serve_guests(&mut self, ctx: &egui::Context) {
+        let wanted = self.preferences.settings.assistants;
+        let wake = || -> Wake {
+            let ctx = ctx.clone();
+            Arc::new(move || ctx.request_repaint())
+        };
+        if self.guests.follow(wanted, wake) {
+            let why = self.guests.problem().unwrap_or_default().to_owned();
+            self.fail(format!("Assistants cannot come in: {why}"));
+        }
+        let Some(open) = &self.guests.open else { return };
+        let tasks: Vec<Task> = open.tasks.try_iter().take(MOST_TASKS).collect();
+        if tasks.is_empty() {
+            return;
+        }
+        for task in tasks {
+            // The document changes whole or not at all.
+            if let Err(panicked) = guarded("assistant", || task(&mut self.document)) {
+                self.fail(panicked.to_string());
+            }
+        }
+        // What they took away is not selected any more.
+        self.state.correcting &= self.document.scene().frame().inferred.any();
+        self.state.tidy_selection(self.document.scene());
+        ctx.request_repaint();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossbeam_channel::{bounded, unbounded};
+
+    /// Opens once.
+    struct OneTime(Option<Receiver<Task>>);
+
+    impl Door for OneTime {
+        fn open(&mut self, _: Wake) -> anyhow::Result<OpenDoor> {
+            let tasks = self.0.take();
+            Ok(OpenDoor {
+                url: "http://127.0.0.1:1/mcp".into(),
+                token: "t".into(),
+                folder: ".".into(),
+                tasks: tasks.ok_or_else(|| anyhow::anyhow!("the port is taken"))?,
+                listening: Box::new(()),
+            })
+        }
+    }
+
+    #[test]
+    fn the_door_follows_the_setting_and_a_failure_is_told_once() {
+        let (sender, tasks) = unbounded();
+        let mut guests = Guests::new(Box::new(OneTime(Some(tasks))));
+        let wake = || -> Wake { Arc::new(|| {}) };
+        assert!(!guests.follow(false, wake) && guests.open().is_none());
+        assert!(!guests.follow(true, wake) && guests.open().is_some());
+        let (answer, answered) = bounded::<()>(1);
+        sender.send(Box::new(move |_| drop(answer))).expect("it is open");
+        // Closed: what was not done is given up, and who waits for it hears so.
+        assert!(!guests.follow(false, wake) && guests.open().is_none());
+        assert!(answered.recv().is_err() && sender.send(Box::new(|_| {})).is_err());
+        assert!(guests.follow(true, wake) && guests.problem() == Some("the port is taken"));
+        assert!(!guests.follow(true, wake), "told once");
+        assert!(!guests.follow(false, wake) && guests.problem().is_none());
+    }
+}
