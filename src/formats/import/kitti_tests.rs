@@ -146,7 +146,7 @@ fn other_numbers_are_no_scan() {
     );
     let wild = scan(&[
         [f32::NAN, 0.0, 0.0],
-        [1e-30, 1.0, 1.0],
+        [1e-30, 1e-9, 0.0],
         [1e9, 0.0, 0.0],
         [1.0, 1.0, 1.0],
     ]);
@@ -172,6 +172,9 @@ fn scans_are_told_apart_from_each_other_and_from_the_rest() {
         columns.are_in(&values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())
     };
     let kitti = [20.1, -3.5, -1.7, 0.32, 5.5, 8.25, 0.5, 0.0].repeat(40);
+    // The sine of half a turn is not quite 0.
+    let kitti_ahead = [20.1, 1e-15, -1.7, 0.32].repeat(40);
+    assert!(is(Columns::Kitti, &kitti_ahead));
     let nuscenes = [20.1, -3.5, -1.7, 12.0, 31.0, 5.5, 8.25, 0.5, 0.0, 0.0].repeat(40);
     assert!(is(Columns::Kitti, &kitti) && !is(Columns::NuScenes, &kitti));
     assert!(is(Columns::NuScenes, &nuscenes) && !is(Columns::Kitti, &nuscenes));

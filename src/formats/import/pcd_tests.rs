@@ -82,6 +82,49 @@ fn fields_come_in_any_order_and_type() {
     }
 }
 
+/// Written by pypcd4 1.5.1: six times four points, packed by LZF.
+const PACKED: &[u8] = b"VERSION 0.7\nFIELDS x y z label\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 24\nHEIGHT 1\n\
+    VIEWPOINT 0.0 0.0 0.0 1.0 0.0 0.0 0.0\nPOINTS 24\nDATA binary_compressed\n\
+    :\x00\x00\x008\x01\x00\x00\x0c\x9a\x99!A33#Aff\"A\x9a \x0b@\x03\xe0C\x0f\x03ffF\xc0\xe0S\x03\x03\xcd\xcc\xcc=\
+    \xc0\x03\x03fff?\xc0\x0b@\x07\xe0;\x0f\x03\x04\x04\x00\t\xe0\n\x03\x00\t";
+
+#[test]
+fn compressed_points_are_read() {
+    let found = loaded(PACKED).expect("sound");
+    let grid = &found.scene.frame().occupancy;
+    let at = |z| {
+        let [x, y, z] = Window::voxel_at(DVec3::new(10.1, -3.1, z)).expect("on the map");
+        grid.get(x, y, z)
+    };
+    assert_eq!((at(0.1), at(0.9), grid.count_set()), (4, 9, 2));
+    assert!(found.skipped.is_empty(), "{:?}", found.skipped);
+}
+
+#[test]
+fn compressed_points_that_lie_are_refused() {
+    let data = PACKED.len() - 58 - 8;
+    let with = |at: usize, bytes: &[u8]| {
+        let mut file = PACKED.to_vec();
+        file[data + at..data + at + bytes.len()].copy_from_slice(bytes);
+        loaded(&file).map(drop).expect_err("refused").to_string()
+    };
+    let begins = "binary_compressed: 58 bytes for";
+    assert!(with(0, &[59]).starts_with(&format!("{begins} 59 that unpack to 312")));
+    assert!(with(4, &[255; 4]).starts_with(&format!("{begins} 58 that unpack to 4294967295")));
+    assert!(with(0, &[1, 0, 0, 0]).starts_with(&format!("{begins} 1 that unpack to 312")));
+    assert_eq!(
+        with(4, &[57]),
+        "binary_compressed: 313 bytes unpacked, expected 24 points of 13 bytes"
+    );
+    assert_eq!(
+        with(8, &[0x20]),
+        "binary_compressed: damaged data, expected 312 bytes packed by LZF"
+    );
+    for cut in data..PACKED.len() {
+        assert!(loaded(&PACKED[..cut]).is_err(), "{cut}");
+    }
+}
+
 #[test]
 fn without_labels_the_shape_tells() {
     let text = String::from_utf8(sample())

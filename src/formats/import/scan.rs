@@ -16,12 +16,11 @@ pub(super) enum Columns {
     NuScenes,
 }
 
-/// Farthest that a LiDAR sees, m, and nearest coordinate that is not rounded to 0.
+/// Farthest that a LiDAR sees, m, and nearest: an echo has a coordinate beyond that.
 const FAR_M: f32 = 10_000.0;
-const NEAR_M: f32 = 1e-6;
-/// Points in a head are nearer than this, m; a real one has some beyond that.
+const NEAR_M: f32 = 0.01;
+/// Points in a head are nearer than this, m.
 const HEAD_FAR_M: f32 = 500.0;
-const HEAD_NEAR_M: f32 = 0.1;
 /// Share of numbers that must be coordinates, or the file is something else.
 const LEAST_SOUND: f64 = 0.9;
 /// Strongest echo, and most rings.
@@ -45,18 +44,18 @@ impl Columns {
         }
         let sound = |point: &[u8]| {
             let v = self.values(point);
-            let near = v[..3].iter().all(|c| is_coordinate(*c) && c.abs() < HEAD_FAR_M);
-            near && match self {
-                Self::Kitti => (0.0..=1.0).contains(&v[3]),
-                Self::NuScenes => {
-                    (0.0..=STRONGEST).contains(&v[3])
-                        && (0.0..MOST_RINGS).contains(&v[4])
-                        && v[4].fract() == 0.0
+            is_echo(&v, HEAD_FAR_M)
+                && match self {
+                    Self::Kitti => (0.0..=1.0).contains(&v[3]),
+                    Self::NuScenes => {
+                        (0.0..=STRONGEST).contains(&v[3])
+                            && (0.0..MOST_RINGS).contains(&v[4])
+                            && v[4].fract() == 0.0
+                    }
                 }
-            }
         };
-        let away = |point: &[u8]| self.values(point)[..3].iter().any(|c| c.abs() > HEAD_NEAR_M);
-        head.chunks_exact(stride).all(sound) && head.chunks_exact(stride).any(away)
+        let is_somewhere = |point: &[u8]| self.values(point)[..3] != [0.0; 3];
+        head.chunks_exact(stride).all(sound) && head.chunks_exact(stride).any(is_somewhere)
     }
 
     fn values(self, point: &[u8]) -> [f32; 5] {
@@ -88,9 +87,7 @@ impl Columns {
             )
         };
         let points = bytes.chunks_exact(stride);
-        let wild = points
-            .clone()
-            .filter(|p| !self.values(p)[..3].iter().all(|c| is_coordinate(*c)));
+        let wild = points.clone().filter(|p| !is_echo(&self.values(p), FAR_M));
         let (wild, all) = (wild.count(), points.len());
         if (wild as f64) > (1.0 - LEAST_SOUND) * all as f64 {
             return Err(FormatError::new(format!(
@@ -101,9 +98,11 @@ impl Columns {
     }
 }
 
-/// True for a number that can be a coordinate of an echo in m.
-fn is_coordinate(v: f32) -> bool {
-    v == 0.0 || (NEAR_M..FAR_M).contains(&v.abs())
+/// True for the place of an echo that is no farther than this along any axis, or of none, which is all zeros.
+fn is_echo(values: &[f32; 5], far_m: f32) -> bool {
+    let place = &values[..3];
+    let within = place.iter().all(|c| c.abs() < far_m);
+    within && (place.iter().any(|c| c.abs() > NEAR_M) || *place == [0.0; 3])
 }
 
 /// A file beside the scan that is read if it is there: `count` values of `size` bytes. Errors if it holds another number.

@@ -162,3 +162,56 @@ fn many_points_are_counted_to_the_last() {
         Err(NothingOnTheMap { points: 0 })
     );
 }
+
+/// How well shape tells classes apart, on sweeps of this program: `sceneloom export --format ply` into the folder that
+/// `SCENELOOM_SWEEPS` names. docs/formats/points.md has the figures and the scenes.
+#[test]
+#[ignore = "needs a folder of sweeps"]
+fn shares_of_points_with_the_right_group() {
+    let folder = std::env::var("SCENELOOM_SWEEPS").expect("SCENELOOM_SWEEPS names a folder");
+    let group = |class: Class| match class {
+        Class::Manmade => 1,
+        Class::Vegetation => 2,
+        ground if ground.is_ground() => 0,
+        _ => 3,
+    };
+    let mut counts = [[0usize; 4]; 4];
+    let (mut shares, mut roads) = (Vec::new(), [0usize; 2]);
+    let files = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|file| file.expect("a file").path());
+    for path in files.filter(|path| path.extension().is_some_and(|e| e == "ply")) {
+        let bytes = std::fs::read(&path).expect("read");
+        let end = b"end_header\n";
+        let body = bytes.windows(end.len()).position(|w| w == end).expect("a header") + end.len();
+        let (mut points, mut truth) = (Vec::new(), Vec::new());
+        for record in bytes[body..].chunks_exact(39) {
+            let float = |i: usize| f32::from_le_bytes(record[4 * i..][..4].try_into().expect("four"));
+            let at = DVec3::new(float(0).into(), float(1).into(), float(2).into());
+            let class = Class::from_id(record[38]).expect("a class");
+            if Window::voxel_at(at).is_some() && !(class == Class::Others && is_own(at)) {
+                points.push(at);
+                truth.push(class);
+            }
+        }
+        let mut right = 0;
+        for (truth, found) in truth.iter().zip(geometry::classes(&points)) {
+            counts[group(*truth)][group(found)] += 1;
+            right += usize::from(group(*truth) == group(found));
+            if truth.is_ground() && found.is_ground() {
+                let is_road = |class| class == Class::DriveableSurface;
+                roads[0] += 1;
+                roads[1] += usize::from(is_road(*truth) == is_road(found));
+            }
+        }
+        shares.push(right as f64 / points.len() as f64);
+        println!("{} {:.3}", path.display(), shares[shares.len() - 1]);
+    }
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    println!(
+        "mean {mean:.3}; road or not, of ground {:.3}",
+        roads[1] as f64 / roads[0] as f64
+    );
+    println!("true ground, manmade, vegetation, things, as found: {counts:?}");
+    assert!(mean > 0.7, "{mean}");
+}
