@@ -123,7 +123,7 @@ fn small(picture: Picture) -> Option<Vec<u8>> {
         false => full,
     };
     let [w, h] = [image.width() as usize, image.height() as usize];
-    png::rgba(w, h, image.as_raw(), &[]).ok()
+    png::rgba(w, h, image.as_raw(), &png::Notes::default()).ok()
 }
 
 impl Operation for Render {

@@ -98,7 +98,8 @@ impl Writer {
     }
 
     fn png16(&mut self, name: &str, width: usize, height: usize, values: &[u16]) -> anyhow::Result<()> {
-        let bytes = png::grey16(width, height, values, &png::Notes::default()).with_context(|| format!("encode {name}"))?;
+        let bytes = png::grey16(width, height, values, &png::Notes::default())
+            .with_context(|| format!("encode {name}"))?;
         self.bytes(name, &bytes)
     }
 
