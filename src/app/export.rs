@@ -251,6 +251,7 @@ impl Products for Making<'_> {
         Ok(Seen {
             lidar_returns: seen.lidar_returns,
             camera_pixels: seen.camera_pixels,
+            visible: None,
         })
     }
 

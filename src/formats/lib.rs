@@ -4,17 +4,24 @@
 pub mod atomic;
 pub mod box_list;
 pub mod calibration;
+#[cfg(test)]
+mod clip_tests;
 pub mod error;
 pub mod export;
 pub mod import;
 pub mod input;
+pub mod jpeg;
 pub mod loom;
+pub mod moments;
 pub mod multi_plane;
 pub mod npz;
+pub mod nuscenes;
 pub mod occ3d;
 pub mod opendrive;
+pub mod physical;
 pub mod png;
 pub mod recipe;
+pub mod sensor_names;
 #[cfg(test)]
 mod table_tests;
 pub mod video;

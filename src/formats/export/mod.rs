@@ -4,6 +4,7 @@
 pub mod boxes;
 pub mod depth;
 pub mod loom;
+pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
 pub mod pictures;
@@ -31,6 +32,7 @@ const TABLE: [&Exporter; 9] = [
     &pictures::EXPORTER,
     &truth::EXPORTER,
     &view::EXPORTER,
+    &nuscenes::EXPORTER,
 ];
 
 /// A format that is written.
@@ -143,6 +145,8 @@ pub struct Seen {
     pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
     /// Pixels of all cameras.
     pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
+    /// Share of each box's pixels, whatever hides them, that cameras see, 0 to 1; `None` also where nobody counted.
+    pub visible: Option<BTreeMap<BoxId, f64>>,
 }
 
 /// A picture to be written.
@@ -184,7 +188,6 @@ impl OutFile {
     }
 
     /// The same in a folder of the export's folder.
-    #[allow(dead_code)] // until the first format with folders
     fn within(self, folder: &str) -> Self {
         let tidy = |part: &str| match part {
             "." | ".." => "_".to_owned(),

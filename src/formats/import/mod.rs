@@ -4,6 +4,7 @@
 pub mod boxes;
 mod cloud;
 pub mod loom;
+pub mod nuscenes;
 pub mod occ3d;
 pub mod opendrive;
 pub mod pcd;
@@ -20,12 +21,13 @@ use super::recipe::Recipe;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 6] = [
+const TABLE: [&Importer; 7] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
     &picture::IMPORTER,
+    &nuscenes::IMPORTER,
     &opendrive::IMPORTER,
 ];
 
