@@ -4,6 +4,7 @@
 pub mod boxes;
 pub mod depth;
 pub mod loom;
+pub mod mcap;
 pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
@@ -22,7 +23,7 @@ use super::recipe::Recipe;
 use super::{FormatError, Holds};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 9] = [
+const TABLE: [&Exporter; 10] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
@@ -33,6 +34,7 @@ const TABLE: [&Exporter; 9] = [
     &truth::EXPORTER,
     &view::EXPORTER,
     &nuscenes::EXPORTER,
+    &mcap::EXPORTER,
 ];
 
 /// A format that is written.
