@@ -66,11 +66,7 @@ fn track(made: SceneBox, there_s: [Option<f64>; 2]) -> Track {
     let from = made.center_m.truncate();
     let keys = [0.0, 0.6, 1.9].map(|time_s| {
         let at = from + made.velocity_mps * time_s + DVec2::new(0.0, time_s * time_s);
-        key(
-            time_s,
-            at.to_array(),
-            made.yaw_rad.to_degrees() + 8.0 * time_s,
-        )
+        key(time_s, at.to_array(), made.yaw_rad.to_degrees() + 8.0 * time_s)
     });
     Track {
         made,
@@ -123,7 +119,8 @@ impl Plain {
 
     /// How far along a ray something is met, and what.
     fn cast(&self, boxes: &[SceneBox], origin: DVec3, dir: DVec3) -> Option<(f64, Class, Option<BoxId>)> {
-        let ground = (dir.z < 0.0).then(|| ((LABEL_GROUND_M - origin.z) / dir.z, Class::DriveableSurface, None));
+        let ground =
+            (dir.z < 0.0).then(|| ((LABEL_GROUND_M - origin.z) / dir.z, Class::DriveableSurface, None));
         let met = boxes.iter().filter_map(|b| {
             let (from, to) = (b.to_local(origin), b.to_local(origin + dir));
             let (way, half) = (to - from, b.size_m / 2.0);

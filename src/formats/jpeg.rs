@@ -44,7 +44,10 @@ mod tests {
         assert_eq!(image.dimensions(), (64, 32));
         for (x, expected) in [(4, [200, 30, 40]), (60, [10, 90, 210])] {
             let found = image.get_pixel(x, 16).0;
-            assert!(found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) < 6), "{found:?}");
+            assert!(
+                found.iter().zip(expected).all(|(a, b)| a.abs_diff(b) < 6),
+                "{found:?}"
+            );
         }
         for (width, height) in [(64, 31), (0, 0), (70_000, 1), (usize::MAX, 2)] {
             rgba(width, height, &pixels).expect_err("no such picture");

@@ -9,7 +9,9 @@ pub fn times_s(scene: &Scene, step_s: f64) -> Vec<f64> {
         return vec![scene.time_s()];
     }
     let last = (clip.length_s / step_s + 1e-6).floor() as usize;
-    (0..=last).map(|i| (i as f64 * step_s).min(clip.length_s)).collect()
+    (0..=last)
+        .map(|i| (i as f64 * step_s).min(clip.length_s))
+        .collect()
 }
 
 #[cfg(test)]

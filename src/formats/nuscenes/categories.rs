@@ -64,7 +64,9 @@ const STATIC_OTHER: u8 = 29;
 
 /// What a category of that name is; `None` for a name that is not in the list.
 pub fn meaning(name: &str) -> Option<Means> {
-    ALL.iter().find(|(known, _)| *known == name).map(|(_, means)| *means)
+    ALL.iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, means)| *means)
 }
 
 /// The category of points of a class.

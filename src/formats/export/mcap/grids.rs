@@ -16,9 +16,18 @@ pub(super) fn drivable_area(layout: &BevLayout, timestamp: Option<Time>) -> Grid
 /// ([`BevLayer::bit`]).
 pub(super) fn semantic_map(layout: &BevLayout, timestamp: Option<Time>) -> Grid {
     let cell = |cell: u32| {
-        let upper = BevLayer::MAP.into_iter().rev().find(|layer| cell & layer.bit() != 0);
+        let upper = BevLayer::MAP
+            .into_iter()
+            .rev()
+            .find(|layer| cell & layer.bit() != 0);
         let [r, g, b] = upper.map_or([0; 3], BevLayer::color);
-        [r, g, b, if upper.is_some() { 255 } else { 0 }, (cell & 0xff) as u8]
+        [
+            r,
+            g,
+            b,
+            if upper.is_some() { 255 } else { 0 },
+            (cell & 0xff) as u8,
+        ]
     };
     grid(layout, timestamp, &colors_and("layers"), cell)
 }

@@ -22,7 +22,8 @@ use crate::sensor_names::{self, LIDAR};
 use crate::{FormatError, Holds, jpeg, moments, physical};
 use messages::{
     CameraCalibration, Color, CompressedImage, CubePrimitive, FrameTransform, FrameTransforms, KeyValuePair,
-    Numeric, PointCloud, PoseInFrame, SceneEntity, SceneEntityDeletion, SceneUpdate, Time, fields, nanoseconds,
+    Numeric, PointCloud, PoseInFrame, SceneEntity, SceneEntityDeletion, SceneUpdate, Time, fields,
+    nanoseconds,
 };
 
 /// See the module.
@@ -70,7 +71,11 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
         log.put("/markers/annotations", "SceneUpdate", &boxes(&now, log.stamp()))?;
         if i == 0 {
             let layout = &now.canvas().layout;
-            log.put("/drivable_area", "Grid", &grids::drivable_area(layout, log.stamp()))?;
+            log.put(
+                "/drivable_area",
+                "Grid",
+                &grids::drivable_area(layout, log.stamp()),
+            )?;
             log.put("/semantic_map", "Grid", &grids::semantic_map(layout, log.stamp()))?;
         }
         log.put("/occupancy", "VoxelGrid", &grids::occupancy(&now, log.stamp()))?;
@@ -102,7 +107,9 @@ impl Log {
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .library(concat!("sceneloom ", env!("CARGO_PKG_VERSION")));
-        let mut writer = options.create(Cursor::new(Vec::new())).map_err(FormatError::new)?;
+        let mut writer = options
+            .create(Cursor::new(Vec::new()))
+            .map_err(FormatError::new)?;
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let about = mcap::records::Metadata {
             name: "scene".into(),
@@ -140,7 +147,9 @@ impl Log {
             log_time: time_ns,
             publish_time: time_ns,
         };
-        let written = self.writer.write_to_known_channel(&header, &message.encode_to_vec());
+        let written = self
+            .writer
+            .write_to_known_channel(&header, &message.encode_to_vec());
         written.map_err(FormatError::new)
     }
 
@@ -282,7 +291,11 @@ fn pictures(
             format: "jpeg".into(),
             frame_id: names[i].clone(),
         };
-        log.put(&format!("{topic}/image_rect_compressed"), "CompressedImage", &image)
+        log.put(
+            &format!("{topic}/image_rect_compressed"),
+            "CompressedImage",
+            &image,
+        )
     })
 }
 

@@ -14,7 +14,11 @@ fn written(scene: &Scene) -> (Vec<u8>, Messages) {
     for message in mcap::MessageStream::new(&bytes).expect("an MCAP file") {
         let message = message.expect("whole");
         let schema = message.channel.schema.as_ref().expect("a schema");
-        assert!(schema.encoding == "protobuf" && *schema.data == *DESCRIPTORS, "{}", schema.name);
+        assert!(
+            schema.encoding == "protobuf" && *schema.data == *DESCRIPTORS,
+            "{}",
+            schema.name
+        );
         let list = out.entry(message.channel.topic.clone()).or_default();
         list.push((message.log_time, message.data.to_vec()));
     }
@@ -77,7 +81,10 @@ fn boxes_vehicle_and_sensors_are_where_they_are() {
     let last = messages["/markers/annotations"].len() - 1;
     let update: SceneUpdate = decode(&messages, "/markers/annotations", last);
     let ids: BTreeSet<&str> = update.entities.iter().map(|e| e.id.as_str()).collect();
-    assert!(!ids.contains("box 4") && ids.contains("box 2"), "one came and one left: {ids:?}");
+    assert!(
+        !ids.contains("box 4") && ids.contains("box 2"),
+        "one came and one left: {ids:?}"
+    );
 }
 
 #[test]
@@ -89,7 +96,9 @@ fn points_stand_on_the_ground_and_pictures_have_their_calibration() {
     let mut ground = 0;
     for point in cloud.data.chunks_exact(cloud.point_stride as usize) {
         let [x, y, z] = [0, 4, 8].map(|i| {
-            f64::from(f32::from_le_bytes(point[i..i + 4].try_into().expect("four bytes")))
+            f64::from(f32::from_le_bytes(
+                point[i..i + 4].try_into().expect("four bytes"),
+            ))
         });
         let in_ego = pose.apply(DVec3::new(x, y, z));
         if Class::from_id(point[18]).is_some_and(Class::is_ground) {
@@ -98,10 +107,16 @@ fn points_stand_on_the_ground_and_pictures_have_their_calibration() {
         }
     }
     assert!(ground > 100, "{ground}");
-    assert_eq!(cloud.fields.last().map(|f| (f.name.as_str(), f.offset)), Some(("class", 18)));
+    assert_eq!(
+        cloud.fields.last().map(|f| (f.name.as_str(), f.offset)),
+        Some(("class", 18))
+    );
     let info: CameraCalibration = decode(&messages, "/cam_front/camera_info", 0);
     let camera = scene.rig.cameras[1].resized(32, 18);
-    assert_eq!((info.width, info.height, info.frame_id.as_str()), (32, 18, "CAM_FRONT"));
+    assert_eq!(
+        (info.width, info.height, info.frame_id.as_str()),
+        (32, 18, "CAM_FRONT")
+    );
     assert_eq!(info.intrinsic[0], camera.focal_px[0]);
     assert_eq!(info.projection[6], camera.center_px[1]);
     let image: CompressedImage = decode(&messages, "/cam_front/image_rect_compressed", 0);
@@ -141,6 +156,8 @@ fn what_cannot_be_written_is_one_line_and_what_lacks_sensors_is_written() {
     rig.lidars.clear();
     assert_eq!(written(&scene).1.len(), 6);
     scene.change_canvas(|c| c.boxes.get_mut(&BoxId(4)).expect("there").center_m.x = f64::INFINITY);
-    let line = to_bytes(&scene, &mut Plain::of(&scene)).expect_err("not finite").to_string();
+    let line = to_bytes(&scene, &mut Plain::of(&scene))
+        .expect_err("not finite")
+        .to_string();
     assert!(line.contains("center_m"), "{line}");
 }

@@ -16,11 +16,26 @@ const MOVES_MPS: f64 = 0.2;
 /// The attributes of the data set, and what each says.
 const ATTRIBUTES: [(&str, &str); 8] = [
     ("vehicle.moving", "Vehicle is moving."),
-    ("vehicle.stopped", "Vehicle, with a driver/rider in/on it, is currently stationary but has an intent to move."),
-    ("vehicle.parked", "Vehicle is stationary (usually for longer duration) with no immediate intent to move."),
-    ("cycle.with_rider", "There is a rider on the bicycle or motorcycle."),
-    ("cycle.without_rider", "There is NO rider on the bicycle or motorcycle."),
-    ("pedestrian.sitting_lying_down", "The human is sitting or lying down."),
+    (
+        "vehicle.stopped",
+        "Vehicle, with a driver/rider in/on it, is currently stationary but has an intent to move.",
+    ),
+    (
+        "vehicle.parked",
+        "Vehicle is stationary (usually for longer duration) with no immediate intent to move.",
+    ),
+    (
+        "cycle.with_rider",
+        "There is a rider on the bicycle or motorcycle.",
+    ),
+    (
+        "cycle.without_rider",
+        "There is NO rider on the bicycle or motorcycle.",
+    ),
+    (
+        "pedestrian.sitting_lying_down",
+        "The human is sitting or lying down.",
+    ),
     ("pedestrian.standing", "The human is standing."),
     ("pedestrian.moving", "The human is moving."),
 ];
@@ -30,7 +45,11 @@ const BINS: [(f64, &str, &str); 4] = [
     (0.0, "v0-40", "visibility of whole object is between 0 and 40%"),
     (0.4, "v40-60", "visibility of whole object is between 40 and 60%"),
     (0.6, "v60-80", "visibility of whole object is between 60 and 80%"),
-    (0.8, "v80-100", "visibility of whole object is between 80 and 100%"),
+    (
+        0.8,
+        "v80-100",
+        "visibility of whole object is between 80 and 100%",
+    ),
 ];
 
 /// Boxes by object.
@@ -42,7 +61,13 @@ pub(super) struct Annotations {
 
 impl Annotations {
     /// The boxes of a key frame.
-    pub(super) fn key_frame(&mut self, writing: &mut Writing<'_>, key_frame: usize, now: &Scene, seen: &Seen) {
+    pub(super) fn key_frame(
+        &mut self,
+        writing: &mut Writing<'_>,
+        key_frame: usize,
+        now: &Scene,
+        seen: &Seen,
+    ) {
         let frame = now.frame();
         for b in frame.boxes.values() {
             let id = u64::from(b.id.0);
@@ -52,10 +77,14 @@ impl Annotations {
                 .or_insert_with(|| (categories::of_box(b.class, &b.label.name), Vec::new()));
             rows.push(writing.tables.sample_annotation.len());
             let is_track = now.clip().tracks.contains_key(&b.id);
-            let attributes = attribute(b, is_track).map(|i| writing.tokens.token("attribute", i as u64));
+            let may_move = is_track || now.clip().is_still();
+            let attributes =
+                attribute(b, is_track, may_move).map(|i| writing.tokens.token("attribute", i as u64));
             let returns = seen.lidar_returns.as_ref().and_then(|n| n.get(&b.id));
             let row = SampleAnnotation {
-                token: writing.tokens.token("sample_annotation", (key_frame as u64) << 32 | id),
+                token: writing
+                    .tokens
+                    .token("sample_annotation", (key_frame as u64) << 32 | id),
                 sample_token: writing.sample_token(key_frame),
                 instance_token: writing.tokens.token("instance", id),
                 visibility_token: (1 + bin(seen, b.id)).to_string(),
@@ -100,9 +129,10 @@ fn bin(seen: &Seen, id: BoxId) -> usize {
     BINS.iter().rposition(|(from, ..)| share >= *from).unwrap_or(0)
 }
 
-/// Place in [`ATTRIBUTES`]. What stands still is parked unless it moves at another time.
-fn attribute(b: &SceneBox, is_track: bool) -> Option<usize> {
-    let moves = b.velocity_mps.length() > MOVES_MPS;
+/// Place in [`ATTRIBUTES`]. What stands still is parked unless it moves at another time. In a clip what is no track stays
+/// where it is, whatever velocity it has.
+fn attribute(b: &SceneBox, is_track: bool, may_move: bool) -> Option<usize> {
+    let moves = may_move && b.velocity_mps.length() > MOVES_MPS;
     let name = match b.class {
         Class::Barrier | Class::TrafficCone => return None,
         Class::Bicycle | Class::Motorcycle if moves => "cycle.with_rider",
@@ -140,14 +170,20 @@ pub(super) fn visibilities() -> Vec<Visibility> {
 /// many of its users look for `night` and `rain`.
 pub(super) fn description(scene: &Scene) -> String {
     let conditions = &scene.conditions;
-    let time = Some(conditions.time).filter(|t| *t != TimeOfDay::Day).map(TimeOfDay::name);
+    let time = Some(conditions.time)
+        .filter(|t| *t != TimeOfDay::Day)
+        .map(TimeOfDay::name);
     let weather = Some(conditions.weather)
         .filter(|w| *w != Weather::Clear)
         .map(Weather::name);
     let mut out = scene.prompt.to_string();
     for word in [time, weather].into_iter().flatten() {
         if !out.to_lowercase().contains(word) {
-            out = if out.is_empty() { word.to_owned() } else { format!("{out}, {word}") };
+            out = if out.is_empty() {
+                word.to_owned()
+            } else {
+                format!("{out}, {word}")
+            };
         }
     }
     out
@@ -178,11 +214,13 @@ mod tests {
     #[test]
     fn attributes_tell_what_moves() {
         let mut b = crate::table_tests::scene().frame().boxes[&BoxId(4)];
-        let mut name = |class, mps: f64, is_track| {
+        let mut named = |class, mps: f64, is_track, may_move| {
             b.class = class;
             b.velocity_mps = glam::DVec2::new(0.0, mps);
-            attribute(&b, is_track).map(|i| ATTRIBUTES[i].0)
+            attribute(&b, is_track, may_move).map(|i| ATTRIBUTES[i].0)
         };
+        assert_eq!(named(Class::Car, 3.0, false, false), Some("vehicle.parked"));
+        let mut name = |class, mps, is_track| named(class, mps, is_track, true);
         assert_eq!(name(Class::Car, 3.0, true), Some("vehicle.moving"));
         assert_eq!(name(Class::Bus, 0.0, true), Some("vehicle.stopped"));
         assert_eq!(name(Class::Trailer, 0.1, false), Some("vehicle.parked"));

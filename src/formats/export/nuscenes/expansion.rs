@@ -10,7 +10,13 @@ use crate::FormatError;
 use crate::nuscenes::tokens::Tokens;
 
 /// Layers that the devkit expects to be there.
-const EMPTY: [&str; 5] = ["road_segment", "road_block", "lane", "lane_connector", "traffic_light"];
+const EMPTY: [&str; 5] = [
+    "road_segment",
+    "road_block",
+    "lane",
+    "lane_connector",
+    "traffic_light",
+];
 
 /// The file. `shift_m` leads from the world frame to the global frame.
 pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> Result<Vec<u8>, FormatError> {
@@ -34,7 +40,10 @@ pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> R
     file.insert("connectivity".into(), json!({}));
 
     let of = |layer: BevLayer| areas(extent, |x, y| layout.has(layer, x, y));
-    let drivable: Vec<String> = of(BevLayer::DrivableArea).iter().map(|a| out.polygon(a)).collect();
+    let drivable: Vec<String> = of(BevLayer::DrivableArea)
+        .iter()
+        .map(|a| out.polygon(a))
+        .collect();
     let rows: Vec<Value> = match drivable.is_empty() {
         true => Vec::new(),
         false => vec![json!({"token": tokens.token("drivable_area", 0), "polygon_tokens": drivable})],
@@ -49,7 +58,10 @@ pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> R
                 "stop_line_type": "STOP_SIGN", "ped_crossing_tokens": [], "traffic_light_tokens": [], "road_block_token": ""
             }),
         ),
-        (BevLayer::CarparkArea, json!({"orientation": 0.0, "road_block_token": ""})),
+        (
+            BevLayer::CarparkArea,
+            json!({"orientation": 0.0, "road_block_token": ""}),
+        ),
     ] {
         let row = |(i, area): (usize, &Area)| {
             let mut row = more.clone();
@@ -64,8 +76,13 @@ pub(super) fn to_bytes(layout: &BevLayout, shift_m: DVec2, tokens: &Tokens) -> R
         (PolylineKind::RoadDivider, "road_divider"),
         (PolylineKind::LaneDivider, "lane_divider"),
     ] {
-        let lines = layout.polylines.iter().filter(|l| l.kind == kind && l.points_m.len() > 1);
-        let rows = lines.enumerate().map(|(i, line)| out.divider(layer, i, &line.points_m));
+        let lines = layout
+            .polylines
+            .iter()
+            .filter(|l| l.kind == kind && l.points_m.len() > 1);
+        let rows = lines
+            .enumerate()
+            .map(|(i, line)| out.divider(layer, i, &line.points_m));
         let rows: Vec<Value> = rows.collect();
         file.insert(layer.into(), rows.into());
     }
@@ -142,7 +159,9 @@ mod tests {
         assert_eq!(file["lane_divider"][0]["line_token"], line["token"]);
         assert_eq!(node(&line["node_tokens"][0]), [10.0, 41.5]);
         assert_eq!(node(&line["node_tokens"][1]), [70.0, 41.5]);
-        let drivable = file["drivable_area"][0]["polygon_tokens"].as_array().expect("areas");
+        let drivable = file["drivable_area"][0]["polygon_tokens"]
+            .as_array()
+            .expect("areas");
         let road = areas(layout.extent(), |x, y| layout.has(BevLayer::DrivableArea, x, y));
         assert_eq!(drivable.len(), road.len());
         let first = file["polygon"].as_array().expect("polygons").iter();

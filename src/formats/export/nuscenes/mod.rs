@@ -135,7 +135,10 @@ impl Writing<'_> {
 
     fn global_pose(&self, world_from_ego: &Pose) -> ([f64; 4], [f64; 3]) {
         let q = world_from_ego.rotation;
-        (crate::nuscenes::wxyz(q), self.global(world_from_ego.translation_m))
+        (
+            crate::nuscenes::wxyz(q),
+            self.global(world_from_ego.translation_m),
+        )
     }
 
     /// A file, its path from the folder of the data set on.

@@ -178,10 +178,14 @@ mod tests {
                 cells.iter().filter(|c| **c).count() as f64 * 0.16,
             );
             // Corners that keep apart take next to nothing away.
-            assert!((sum - expected).abs() < 0.05 * expected + 0.01, "{sum} {expected}");
+            assert!(
+                (sum - expected).abs() < 0.05 * expected + 0.01,
+                "{sum} {expected}"
+            );
             for area in &found {
                 for ring in std::iter::once(&area.outside).chain(&area.holes) {
-                    let mut points: Vec<[u64; 2]> = ring.iter().map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
+                    let mut points: Vec<[u64; 2]> =
+                        ring.iter().map(|p| [p.x.to_bits(), p.y.to_bits()]).collect();
                     points.sort_unstable();
                     points.dedup();
                     assert_eq!(points.len(), ring.len(), "a ring meets itself");
@@ -189,7 +193,13 @@ mod tests {
             }
         }
         // A ring whose ends meet at a corner has no hole; one that closes has.
-        assert_eq!(of(&["###", "#.#", "##."]).iter().map(|a| a.holes.len()).sum::<usize>(), 0);
+        assert_eq!(
+            of(&["###", "#.#", "##."])
+                .iter()
+                .map(|a| a.holes.len())
+                .sum::<usize>(),
+            0
+        );
         assert_eq!(of(&["###", "#.#", "###"])[0].holes.len(), 1);
         assert!(of(&["..."]).is_empty());
     }

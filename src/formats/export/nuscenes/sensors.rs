@@ -84,7 +84,11 @@ impl Sensors {
         if self.has_lidar {
             let sweep = sweep(now, products)?;
             let token = self.add_sweep(writing, &sweep, sample, now, true);
-            let labels = sweep.points.iter().map(|p| categories::of_points(p.class)).collect();
+            let labels = sweep
+                .points
+                .iter()
+                .map(|p| categories::of_points(p.class))
+                .collect();
             let folder = format!("lidarseg/{}", super::VERSION);
             let filename = writing.file(&folder, &format!("{token}_lidarseg.bin"), labels);
             writing.tables.lidarseg.push(Lidarseg {
@@ -183,7 +187,11 @@ impl Sensors {
         let timestamp = timestamp_us(measured.now.time_s());
         let (channel, is_lidar) = (&self.channels[sensor], measured.size == [0; 2]);
         let kind = if is_lidar { "pcd.bin" } else { "jpg" };
-        let folder = if measured.is_key_frame { "samples" } else { "sweeps" };
+        let folder = if measured.is_key_frame {
+            "samples"
+        } else {
+            "sweeps"
+        };
         let name = format!("{}__{channel}__{timestamp}.{kind}", self.log);
         let filename = writing.file(&format!("{folder}/{channel}"), &name, measured.bytes);
         let (rotation, translation) = writing.global_pose(&measured.now.frame().world_from_ego);
@@ -216,7 +224,9 @@ impl Sensors {
         let rows = &mut writing.tables.sample_data;
         for i in 0..rows.len() {
             let sensors = &writing.tables.calibrated_sensor;
-            let sensor = sensors.iter().position(|s| s.token == rows[i].calibrated_sensor_token);
+            let sensor = sensors
+                .iter()
+                .position(|s| s.token == rows[i].calibrated_sensor_token);
             let Some(last) = sensor.map(|sensor| &mut last[sensor]) else {
                 continue;
             };

@@ -18,13 +18,17 @@ fn written(scene: &Scene) -> (BTreeMap<String, Vec<u8>>, BTreeMap<String, Vec<Va
 }
 
 fn text(row: &Value, key: &str) -> String {
-    row[key].as_str().unwrap_or_else(|| panic!("{key} in {row}")).to_owned()
+    row[key]
+        .as_str()
+        .unwrap_or_else(|| panic!("{key} in {row}"))
+        .to_owned()
 }
 
 #[test]
 fn every_key_leads_to_a_row_and_every_file_is_there() {
     let (files, tables) = written(&clip_scene(4));
-    let tokens = |table: &str| -> BTreeSet<String> { tables[table].iter().map(|r| text(r, "token")).collect() };
+    let tokens =
+        |table: &str| -> BTreeSet<String> { tables[table].iter().map(|r| text(r, "token")).collect() };
     let all: BTreeMap<&str, BTreeSet<String>> = tables.keys().map(|t| (t.as_str(), tokens(t))).collect();
     assert_eq!(all.len(), 14, "{:?}", all.keys());
     for (table, rows) in &tables {
@@ -49,9 +53,14 @@ fn every_key_leads_to_a_row_and_every_file_is_there() {
             }
         }
     }
-    let named = tables["sample_data"].iter().chain(&tables["lidarseg"]).chain(&tables["map"]);
+    let named = tables["sample_data"]
+        .iter()
+        .chain(&tables["lidarseg"])
+        .chain(&tables["map"]);
     let named: BTreeSet<String> = named.map(|row| text(row, "filename")).collect();
-    let data = files.keys().filter(|f| !f.starts_with("v1.0-mini/") && !f.starts_with("maps/expansion/"));
+    let data = files
+        .keys()
+        .filter(|f| !f.starts_with("v1.0-mini/") && !f.starts_with("maps/expansion/"));
     assert_eq!(data.cloned().collect::<BTreeSet<_>>(), named);
     // 5 key frames with a sweep and six pictures, four sweeps between each two.
     assert_eq!(tables["sample"].len(), 5);
@@ -110,14 +119,19 @@ fn boxes_and_points_are_where_the_devkit_looks_for_them() {
     // The sweep of that key frame: in the sensor's frame, a label for each point, the ground where boxes stand.
     let is_sweep = |row: &&Value| at(row) && row["fileformat"] == "pcd" && row["is_key_frame"] == true;
     let row = tables["sample_data"].iter().find(is_sweep).expect("a sweep");
-    let labels = tables["lidarseg"].iter().find(|l| l["sample_data_token"] == row["token"]).expect("labels");
+    let labels = tables["lidarseg"]
+        .iter()
+        .find(|l| l["sample_data_token"] == row["token"])
+        .expect("labels");
     let (points, labels) = (&files[&text(row, "filename")], &files[&text(labels, "filename")]);
     assert_eq!(points.len(), labels.len() * 20);
     let lidar = scene.rig.lidars[0].ego_from_sensor();
     let mut on_boxes = 0;
     for (point, label) in points.chunks_exact(20).zip(labels) {
         let [x, y, z] = [0, 4, 8].map(|i| {
-            f64::from(f32::from_le_bytes(point[i..i + 4].try_into().expect("four bytes")))
+            f64::from(f32::from_le_bytes(
+                point[i..i + 4].try_into().expect("four bytes"),
+            ))
         });
         let in_ego = lidar.apply(DVec3::new(x, y, z));
         let in_world = now.frame().world_from_ego.apply(in_ego);
@@ -126,7 +140,10 @@ fn boxes_and_points_are_where_the_devkit_looks_for_them() {
                 assert!(in_ego.z.abs() < 1e-3, "{in_ego}");
             }
             _ => {
-                assert!(now.frame().boxes.values().any(|b| b.contains(in_world, 1e-3)), "{in_world}");
+                assert!(
+                    now.frame().boxes.values().any(|b| b.contains(in_world, 1e-3)),
+                    "{in_world}"
+                );
                 on_boxes += 1;
             }
         }
@@ -143,7 +160,9 @@ fn a_scene_that_stands_still_is_one_sample_and_equal_scenes_give_equal_bytes() {
     assert_eq!(tables["scene"][0]["name"], "a \"name\"\n");
     assert_eq!(tables["scene"][0]["description"], "fog");
     assert_eq!(files, written(&scene).0);
-    let picture = files.iter().find(|(name, _)| name.starts_with("samples/CAM_BACK_LEFT/"));
+    let picture = files
+        .iter()
+        .find(|(name, _)| name.starts_with("samples/CAM_BACK_LEFT/"));
     let picture = image::load_from_memory(picture.expect("a picture").1).expect("a JPEG");
     assert_eq!((picture.width(), picture.height()), (32, 18));
     // The intrinsics are those of the pictures.
@@ -159,7 +178,9 @@ fn what_cannot_be_written_is_one_line() {
     scene.change_canvas(|canvas| {
         canvas.boxes.values_mut().for_each(|b| b.size_m.x = f64::NAN);
     });
-    let line = write(&scene, &mut Plain::of(&scene)).expect_err("NaN").to_string();
+    let line = write(&scene, &mut Plain::of(&scene))
+        .expect_err("NaN")
+        .to_string();
     assert!(line.contains("size_m"), "{line}");
     // Without sensors there are boxes and the map alone.
     let mut bare = clip_scene(1);

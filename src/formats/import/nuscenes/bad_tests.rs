@@ -36,7 +36,9 @@ fn tables_that_are_cut_or_missing_are_one_line() {
             assert_eq!(line.is_some(), needed, "{name} cut at {cut}: {line:?}");
         }
         std::fs::remove_file(&path).expect("removed");
-        let optional = ["attribute", "lidarseg", "map"].iter().any(|t| name.to_string().contains(t));
+        let optional = ["attribute", "lidarseg", "map"]
+            .iter()
+            .any(|t| name.to_string().contains(t));
         let line = outcome(folder.path());
         assert_eq!(line.is_some(), needed && !optional, "{name} missing: {line:?}");
         std::fs::write(&path, &whole).expect("written");
@@ -60,7 +62,13 @@ fn damaged_bytes_and_numbers_do_no_harm() {
                 outcome(folder.path());
             }
             let text = String::from_utf8(whole.clone()).expect("text");
-            for (from, to) in [("0.", "1e308"), ("1", "-1"), ("5", "9e99"), ("\"", "\"../"), (".", ".0e-")] {
+            for (from, to) in [
+                ("0.", "1e308"),
+                ("1", "-1"),
+                ("5", "9e99"),
+                ("\"", "\"../"),
+                (".", ".0e-"),
+            ] {
                 std::fs::write(&path, text.replace(from, to)).expect("written");
                 outcome(folder.path());
             }
@@ -92,20 +100,34 @@ fn what_a_table_claims_is_checked() {
     assert!(line.contains("expected at most 600"), "{line}");
     let line = change("sample", "\"s1\"", "\"s3\"");
     assert!(line.contains("0 samples"), "{line}");
-    let line = change("sample_data", "\"sample_token\": \"b\"", "\"sample_token\": \"c\"");
+    let line = change(
+        "sample_data",
+        "\"sample_token\": \"b\"",
+        "\"sample_token\": \"c\"",
+    );
     assert!(line.contains("no sensor's data"), "{line}");
     let line = change("scene", "[", "[[");
     assert!(line.contains("expected"), "{line}");
     let long = "x".repeat(1 << 20);
-    let line = change("sample_annotation", "\"translation\": [", &format!("\"translation\": [{long:?},"));
-    assert!(line.starts_with("sample_annotation.json") || line.contains("sample_annotation"), "{line}");
+    let line = change(
+        "sample_annotation",
+        "\"translation\": [",
+        &format!("\"translation\": [{long:?},"),
+    );
+    assert!(
+        line.starts_with("sample_annotation.json") || line.contains("sample_annotation"),
+        "{line}"
+    );
 }
 
 #[test]
 fn a_folder_without_tables_is_one_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = outcome(folder.path()).expect("nothing there");
-    assert!(line.contains("a folder, expected") && line.contains("nuScenes"), "{line}");
+    assert!(
+        line.contains("a folder, expected") && line.contains("nuScenes"),
+        "{line}"
+    );
     // The folder of the tables itself will do.
     let whole = foreign();
     assert!(read(&whole.path().join("v1.0-mini")).is_ok());

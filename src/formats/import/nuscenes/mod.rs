@@ -1,9 +1,10 @@
 //! nuScenes tables: a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
 //!
-//! Read is the first scene by name. The vehicle moves through its poses at the key frames, objects through their annotations;
-//! what is parked, or stands within 5 cm in all key frames, stands still. Sensors become the rig. Voxels come from Occ3D's
-//! `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the LiDAR sweeps of the key frames with their lidarseg
-//! labels; there, points in boxes are left out and boxes drawn as drafts. The map is inferred from the voxels.
+//! Read is the first scene by name. The vehicle moves through its poses at the key frames, objects through their annotations,
+//! and both go straight on beyond the first and the last. What is parked, or stays within 5 cm in all key frames, stands
+//! still. Sensors become the rig. Voxels come from Occ3D's `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the
+//! LiDAR sweeps of the key frames with their lidarseg labels; there, points in boxes are left out and boxes drawn as drafts.
+//! The map is inferred from the voxels.
 //!
 //! The world frame is that of the first ego pose (x forward, on the ground), except in folders that Sceneloom wrote: their
 //! `map.json` names the origin that the scene had.
@@ -21,8 +22,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use scene::message::shortened;
 use scene::{
-    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Scene, TimeOfDay, Weather, draft,
-    infer,
+    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Scene, TimeOfDay, Weather,
+    draft, infer,
 };
 
 use super::{Content, Importer, Loaded, Source};
@@ -70,7 +71,10 @@ fn in_folder(folder: &Path) -> Option<PathBuf> {
     };
     tables(folder).or_else(|| {
         let entries = std::fs::read_dir(folder).ok()?;
-        let mut versions: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(version).collect();
+        let mut versions: Vec<PathBuf> = entries
+            .filter_map(|e| Some(e.ok()?.path()))
+            .filter(version)
+            .collect();
         versions.sort();
         versions.iter().find_map(|path| tables(path))
     })
@@ -143,7 +147,9 @@ const GUESSED: [&str; 2] = ["layout", "background"];
 
 /// Text of a file without what ends lines.
 fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
 }
 
 /// Ground within 40 m of the vehicle along x and y, at every key frame.
@@ -173,7 +179,7 @@ fn ego_motion(recording: &read::Recording) -> Option<Motion> {
         yaw_deg: yaw_rad(frame.world_from_ego.rotation).to_degrees(),
     };
     let moves = frames.iter().any(|f| !same(&f.world_from_ego));
-    moves.then(|| Motion::Keys(frames.iter().map(key).collect()))
+    moves.then(|| objects::motion(frames.iter().map(key).collect()))
 }
 
 /// Light and air from the words that the devkit's evaluation goes by, and the program's own names of them.

@@ -42,7 +42,11 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
         let made = scene_box(id, object, &first, velocity_mps(object, &times_s));
         let full = out.standing.len() >= Frame::MAX_BOXES || out.tracks.len() >= Clip::MAX_TRACKS;
         if full || made.problem().is_some() {
-            let what = if full { "objects beyond the most" } else { "objects that are not sound" };
+            let what = if full {
+                "objects beyond the most"
+            } else {
+                "objects that are not sound"
+            };
             count(skipped, what, 1);
             continue;
         }
@@ -58,7 +62,7 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
         }
         let track = Track {
             made,
-            motion: Motion::Keys(object.boxes.iter().map(|(f, a)| key(times_s[*f], a)).collect()),
+            motion: motion(object.boxes.iter().map(|(f, a)| key(times_s[*f], a)).collect()),
             there_s: there_s(object, &times_s),
             voxels: shape(&made),
             settled: true,
@@ -85,6 +89,31 @@ fn scene_box(id: BoxId, object: &Object, at: &Annotation, velocity_mps: DVec2) -
         velocity_mps,
         label: object.label,
     }
+}
+
+/// The motion through keyframes. Before the first and after the last of them a motion stands; what moves there goes straight
+/// on to one more key on either side, so that it has its velocity at all times.
+pub(super) fn motion(keys: Vec<Key>) -> Motion {
+    let beyond = |from: &Key, end: &Key| {
+        let by_m = end.at_m - from.at_m;
+        let turn = DVec2::from_angle(from.yaw_deg.to_radians())
+            .angle_to(DVec2::from_angle(end.yaw_deg.to_radians()));
+        let next = Key {
+            time_s: 2.0 * end.time_s - from.time_s,
+            at_m: end.at_m + by_m,
+            yaw_deg: end.yaw_deg + turn.to_degrees(),
+        };
+        (by_m.length() > STANDS_M).then_some(next)
+    };
+    let ends = match keys.as_slice() {
+        [first, second, ..] => [
+            beyond(second, first),
+            beyond(&keys[keys.len() - 2], &keys[keys.len() - 1]),
+        ],
+        _ => [None; 2],
+    };
+    let [before, after] = ends;
+    Motion::Keys(before.into_iter().chain(keys).chain(after).collect())
 }
 
 fn key(time_s: f64, at: &Annotation) -> Key {

@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Extent, Relief, SceneBox, SensorRig, Unobserved, VoxelGrid, Window, draft,
-    infer,
+    BevLayer, BevLayout, BoxId, Class, Extent, Relief, SceneBox, SensorRig, Unobserved, VoxelGrid, Window,
+    draft, infer,
 };
 
 use super::objects::{Things, holds, stamp};
@@ -74,7 +74,10 @@ fn is_plain(name: &str) -> bool {
 
 /// Where a file of the data set is from the folder of its tables; `None` for a path that leads out of it.
 fn in_data_set(filename: &str) -> Option<String> {
-    filename.split('/').all(is_plain).then(|| format!("../{filename}"))
+    filename
+        .split('/')
+        .all(is_plain)
+        .then(|| format!("../{filename}"))
 }
 
 /// Occ3D labels of the key frames, each column from the nearest one that has them.
@@ -106,7 +109,9 @@ fn labels(
                 let ego = recording.frames[files[*i].0].world_from_ego.translation_m;
                 ego.truncate().distance_squared(p)
             };
-            (0..files.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
+            (0..files.len())
+                .min_by(|a, b| away(a).total_cmp(&away(b)))
+                .unwrap_or(0)
         })
         .collect();
     let mut voxels = VoxelGrid::over(extent);
@@ -122,7 +127,11 @@ fn labels(
         let hidden = occ3d_unobserved(&labels);
         masked |= hidden.is_some();
         let ego_from_world = recording.frames[*frame].world_from_ego.inverse();
-        for (at, [x, y]) in extent.all_columns().enumerate().filter(|(at, _)| nearest[*at] == i) {
+        for (at, [x, y]) in extent
+            .all_columns()
+            .enumerate()
+            .filter(|(at, _)| nearest[*at] == i)
+        {
             let center = extent.center(x, y, 0);
             let p = ego_from_world.apply(center.with_z(0.0));
             let Some([u, v]) = Window::column_at(p.x, p.y) else {
@@ -188,11 +197,25 @@ fn sweeps(
         let labels = sweep.labels.as_deref().map(|f| read(f).unwrap_or_default());
         let labels = labels.filter(|labels| {
             let fits = labels.len() == points.len() / POINT;
-            count(skipped, "lidarseg files of another length than their sweep", usize::from(!fits));
+            count(
+                skipped,
+                "lidarseg files of another length than their sweep",
+                usize::from(!fits),
+            );
             fits
         });
-        count(skipped, "LiDAR sweeps that end within a point", usize::from(!points.len().is_multiple_of(POINT)));
-        votes.add(recording, (frame, sweep), &points, labels.as_deref(), (things, moving));
+        count(
+            skipped,
+            "LiDAR sweeps that end within a point",
+            usize::from(!points.len().is_multiple_of(POINT)),
+        );
+        votes.add(
+            recording,
+            (frame, sweep),
+            &points,
+            labels.as_deref(),
+            (things, moving),
+        );
     }
     count(skipped, "points that are not finite", votes.not_finite);
     count(skipped, "points beside the map", votes.elsewhere);
@@ -295,8 +318,20 @@ mod tests {
 
     #[test]
     fn paths_do_not_lead_out_of_the_data_set() {
-        assert_eq!(in_data_set("samples/L/a.bin").as_deref(), Some("../samples/L/a.bin"));
-        for bad in ["", "/etc/passwd", "../a", "samples/../../a", "samples//a", "C:/a", "a\\b", "a/\0"] {
+        assert_eq!(
+            in_data_set("samples/L/a.bin").as_deref(),
+            Some("../samples/L/a.bin")
+        );
+        for bad in [
+            "",
+            "/etc/passwd",
+            "../a",
+            "samples/../../a",
+            "samples//a",
+            "C:/a",
+            "a\\b",
+            "a/\0",
+        ] {
             assert_eq!(in_data_set(bad), None, "{bad:?}");
         }
     }

@@ -133,17 +133,16 @@ pub(super) fn recording(source: &Source<'_>, skipped: &mut Skipped) -> Result<Re
 }
 
 /// The key frames of a scene in order of time.
-fn samples(
-    source: &Source<'_>,
-    scene: &SceneRow,
-    skipped: &mut Skipped,
-) -> Result<Vec<Sample>, FormatError> {
-    let mut samples: Vec<Sample> =
-        rows::of(source, "sample", |row: &Sample| row.scene_token == scene.token)?;
+fn samples(source: &Source<'_>, scene: &SceneRow, skipped: &mut Skipped) -> Result<Vec<Sample>, FormatError> {
+    let mut samples: Vec<Sample> = rows::of(source, "sample", |row: &Sample| row.scene_token == scene.token)?;
     samples.sort_by(|a, b| (a.timestamp, &a.token).cmp(&(b.timestamp, &b.token)));
     let found = samples.len();
     samples.dedup_by_key(|s| s.timestamp);
-    count(skipped, "key frames at the time of another", found - samples.len());
+    count(
+        skipped,
+        "key frames at the time of another",
+        found - samples.len(),
+    );
     let span = samples.first().zip(samples.last());
     let span_us = span.map(|(a, b)| i128::from(b.timestamp) - i128::from(a.timestamp));
     match span_us {
@@ -232,20 +231,24 @@ fn ego_poses(source: &Source<'_>, of: &[&SampleData]) -> Result<Vec<Pose>, Forma
 
 /// The frame that the scene's coordinates are in: see the module above.
 fn world_from_global(source: &Source<'_>, scene: &SceneRow, first: &Pose) -> Result<Pose, FormatError> {
-    let maps: Vec<Map> = rows::of_optional(source, "map", |row: &Map| row.log_tokens.contains(&scene.log_token))?;
+    let maps: Vec<Map> = rows::of_optional(source, "map", |row: &Map| {
+        row.log_tokens.contains(&scene.log_token)
+    })?;
     let origin_m = maps.iter().find_map(|m| m.world_origin_m);
-    Ok(match origin_m.filter(|o| o.iter().all(|v| v.abs() <= FARTHEST_M)) {
-        Some([x, y]) => Pose {
-            rotation: DQuat::IDENTITY,
-            translation_m: DVec3::new(-x, -y, 0.0),
+    Ok(
+        match origin_m.filter(|o| o.iter().all(|v| v.abs() <= FARTHEST_M)) {
+            Some([x, y]) => Pose {
+                rotation: DQuat::IDENTITY,
+                translation_m: DVec3::new(-x, -y, 0.0),
+            },
+            None => {
+                let at = first.translation_m;
+                let mut global_from_world = Pose::planar(at.x, at.y, yaw_rad(first.rotation));
+                global_from_world.translation_m.z = at.z;
+                global_from_world.inverse()
+            }
         },
-        None => {
-            let at = first.translation_m;
-            let mut global_from_world = Pose::planar(at.x, at.y, yaw_rad(first.rotation));
-            global_from_world.translation_m.z = at.z;
-            global_from_world.inverse()
-        }
-    })
+    )
 }
 
 /// Files of labels by the token of their sweep.
@@ -254,7 +257,10 @@ fn lidarseg(source: &Source<'_>, of: &[&SampleData]) -> Result<HashMap<String, S
     let rows: Vec<Lidarseg> = rows::of_optional(source, "lidarseg", |row: &Lidarseg| {
         wanted.contains(&*row.sample_data_token)
     })?;
-    Ok(rows.into_iter().map(|r| (r.sample_data_token, r.filename)).collect())
+    Ok(rows
+        .into_iter()
+        .map(|r| (r.sample_data_token, r.filename))
+        .collect())
 }
 
 fn sweep(
@@ -320,7 +326,10 @@ fn objects(
         let Some(rows) = of_instance.remove(&*instance.token) else {
             continue;
         };
-        let name = name_of.get(&*instance.category_token).copied().unwrap_or("no category");
+        let name = name_of
+            .get(&*instance.category_token)
+            .copied()
+            .unwrap_or("no category");
         let (class, called) = match categories::meaning(name) {
             Some(Means::Class(class)) => (class, ""),
             Some(Means::Named(class, called)) => (class, called),
@@ -336,7 +345,9 @@ fn objects(
                 name: BoxName::new(called),
                 paint: None,
             },
-            parked: rows.iter().all(|row| row.attribute_tokens.iter().any(|t| parked.contains(&**t))),
+            parked: rows
+                .iter()
+                .all(|row| row.attribute_tokens.iter().any(|t| parked.contains(&**t))),
             boxes: BTreeMap::new(),
         };
         for row in rows {
@@ -344,7 +355,11 @@ fn objects(
                 count(skipped, "boxes that are not finite", 1);
                 continue;
             };
-            if object.boxes.insert(place[&*row.sample_token], annotation).is_some() {
+            if object
+                .boxes
+                .insert(place[&*row.sample_token], annotation)
+                .is_some()
+            {
                 count(skipped, "boxes of an object that has another in its key frame", 1);
             }
         }

@@ -42,7 +42,9 @@ pub(super) fn parse<T: DeserializeOwned>(
     keep: impl FnMut(&T) -> bool,
 ) -> Result<Vec<T>, String> {
     let mut json = serde_json::Deserializer::from_slice(bytes);
-    let rows = json.deserialize_seq(Keep(keep, PhantomData)).map_err(|e| one_line(&e))?;
+    let rows = json
+        .deserialize_seq(Keep(keep, PhantomData))
+        .map_err(|e| one_line(&e))?;
     json.end().map_err(|e| one_line(&e))?;
     Ok(rows)
 }
