@@ -2,15 +2,15 @@
 
 use scene::Scene;
 
-/// Times from the start of the clip to its end, every `step_s`; the moment shown alone where nothing moves.
-pub fn times_s(scene: &Scene, step_s: f64) -> Vec<f64> {
+/// Times from the start of the clip to its end, `rate_hz` a second; the moment shown alone where nothing moves.
+pub fn times_s(scene: &Scene, rate_hz: f64) -> Vec<f64> {
     let clip = scene.clip();
     if clip.is_still() || clip.length_s <= 0.0 {
         return vec![scene.time_s()];
     }
-    let last = (clip.length_s / step_s + 1e-6).floor() as usize;
+    let last = (clip.length_s * rate_hz + 1e-6).floor() as usize;
     (0..=last)
-        .map(|i| (i as f64 * step_s).min(clip.length_s))
+        .map(|i| (i as f64 / rate_hz).min(clip.length_s))
         .collect()
 }
 
@@ -22,12 +22,12 @@ mod tests {
 
     #[test]
     fn moments_reach_to_the_end_and_no_farther() {
-        assert_eq!(times_s(&scene(), 0.5), [0.0]);
+        assert_eq!(times_s(&scene(), 2.0), [0.0]);
         let mut moving = clip_scene(1);
         moving.change_clip(|clip| clip.length_s = 1.3);
-        assert_eq!(times_s(&moving, 0.5), [0.0, 0.5, 1.0]);
+        assert_eq!(times_s(&moving, 2.0), [0.0, 0.5, 1.0]);
         moving.change_clip(|clip| clip.length_s = 0.3);
-        // 3 * 0.1 is a hair more than 0.3.
-        assert_eq!(times_s(&moving, 0.1), [0.0, 0.1, 0.2, 0.3]);
+        // 0.3 * 10 is a hair less than 3.
+        assert_eq!(times_s(&moving, 10.0), [0.0, 0.1, 0.2, 0.3]);
     }
 }

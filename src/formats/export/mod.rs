@@ -8,6 +8,7 @@ pub mod mcap;
 pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod openlabel;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
@@ -23,7 +24,7 @@ use super::recipe::Recipe;
 use super::{FormatError, Holds};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 10] = [
+const TABLE: [&Exporter; 11] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
@@ -35,6 +36,7 @@ const TABLE: [&Exporter; 10] = [
     &view::EXPORTER,
     &nuscenes::EXPORTER,
     &mcap::EXPORTER,
+    &openlabel::EXPORTER,
 ];
 
 /// A format that is written.

@@ -11,8 +11,8 @@ pub mod tokens;
 use glam::DQuat;
 use scene::Pose;
 
-/// Time between two key frames, s.
-pub const KEY_FRAME_S: f64 = 0.5;
+/// Key frames per second.
+pub const KEY_FRAMES_HZ: f64 = 2.0;
 
 /// A quaternion in the order of the tables.
 pub fn wxyz(q: DQuat) -> [f64; 4] {

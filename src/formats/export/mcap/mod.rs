@@ -52,8 +52,7 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
     }
     let mut log = Log::new(scene)?;
     let cameras = sensor_names::cameras(&scene.rig);
-    let step_s = 1.0 / scene.clip().rate_hz;
-    let times_s = moments::times_s(scene, step_s);
+    let times_s = moments::times_s(scene, scene.clip().rate_hz);
     for (i, &time_s) in times_s.iter().enumerate() {
         products.show(time_s)?;
         let now = scene.at(time_s);

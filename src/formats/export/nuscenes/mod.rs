@@ -21,7 +21,7 @@ use crate::nuscenes::tables::{
     SampleData, SceneRow, Sensor, Visibility,
 };
 use crate::nuscenes::tokens::Tokens;
-use crate::nuscenes::{KEY_FRAME_S, categories};
+use crate::nuscenes::{KEY_FRAMES_HZ, categories};
 use crate::{FormatError, Holds, moments};
 
 /// See the module.
@@ -83,7 +83,7 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
         tables: Tables::default(),
         files: Vec::new(),
     };
-    let times_s = moments::times_s(scene, KEY_FRAME_S);
+    let times_s = moments::times_s(scene, KEY_FRAMES_HZ);
     let mut sensors = sensors::Sensors::new(&mut writing);
     let mut boxes = annotations::Annotations::default();
     for (i, &time_s) in times_s.iter().enumerate() {
