@@ -347,7 +347,8 @@ fn every_line_of_the_tables_is_whole() {
         assert!(!e.title.is_empty() && !e.holds.is_empty(), "{}", e.id);
     }
     assert!(
-        import::in_words().contains("point clouds (.pcd)"),
+        import::in_words().contains("point clouds (.pcd)")
+            && import::in_words().contains("nuScenes tables (a folder)"),
         "{}",
         import::in_words()
     );

@@ -123,7 +123,10 @@ pub fn extensions() -> Vec<&'static str> {
 
 /// The formats in a sentence: `Sceneloom scenes (.loom), …`.
 pub fn in_words() -> String {
-    let one = |i: &&Importer| format!("{} (.{})", i.title, i.extensions.join(", ."));
+    let one = |i: &&Importer| match i.extensions {
+        [] => format!("{} (a folder)", i.title),
+        extensions => format!("{} (.{})", i.title, extensions.join(", .")),
+    };
     all().iter().map(one).collect::<Vec<_>>().join(", ")
 }
 

@@ -90,7 +90,10 @@ mod tests {
         }
         let (found, expected) = (layout(&labels), layout(&window));
         assert_eq!(found.extent(), extent);
-        assert_eq!(found.count(BevLayer::DrivableArea), expected.count(BevLayer::DrivableArea));
+        assert_eq!(
+            found.count(BevLayer::DrivableArea),
+            expected.count(BevLayer::DrivableArea)
+        );
         assert_eq!(found.relief.column_m(90, 90), expected.relief.column_m(90, 90));
         assert!(found.relief.column_m(150, 90) > 0.8);
     }

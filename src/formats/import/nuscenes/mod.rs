@@ -33,7 +33,7 @@ use crate::{FormatError, Holds, input};
 /// See the module.
 pub const IMPORTER: Importer = Importer {
     id: "nuscenes",
-    title: "nuScenes tables (folder or its scene.json)",
+    title: "nuScenes tables",
     extensions: &[],
     holds: &[Holds::Boxes, Holds::Points],
     largest: input::LARGEST_TEXT,
