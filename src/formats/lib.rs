@@ -4,18 +4,23 @@
 pub mod atomic;
 pub mod box_list;
 pub mod calibration;
+#[cfg(test)]
+mod clip_tests;
 pub mod error;
 pub mod export;
 mod glb;
 pub mod import;
 pub mod input;
+pub mod jpeg;
 pub mod kitti;
 pub mod las;
 pub mod loom;
 mod lzf;
+pub mod moments;
 pub mod multi_plane;
 mod npy;
 pub mod npz;
+pub mod nuscenes;
 pub mod occ3d;
 pub mod opendrive;
 mod physical;
@@ -24,6 +29,7 @@ pub mod png;
 mod points_tests;
 pub mod recipe;
 mod semantic_kitti;
+pub mod sensor_names;
 mod sparse_npy;
 pub mod table;
 #[cfg(test)]

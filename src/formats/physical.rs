@@ -31,3 +31,38 @@ pub fn to_physical_ground(sweep: &mut LidarSweep, origin_in_ego: DVec3, frame: &
     }
     sweep.physical = true;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip_tests::{clip_scene, point};
+    use scene::{Class, Pose};
+
+    #[test]
+    fn rays_end_at_the_physical_ground_and_objects_keep_what_is_above_it() {
+        let scene = clip_scene(3);
+        let mut frame = (**scene.frame()).clone();
+        frame.world_from_ego = Pose::planar(3.0, -2.0, 0.4);
+        let mut sweep = LidarSweep {
+            points: vec![
+                point([10.0, 0.0, -0.6], Class::DriveableSurface),
+                point([10.0, 0.0, -0.4], Class::Car),
+                point([10.0, 0.0, 0.9], Class::Car),
+            ],
+            rays: 3,
+            physical: false,
+        };
+        let above = sweep.points[2];
+        to_physical_ground(&mut sweep, DVec3::new(0.0, 0.0, 1.8), &frame);
+        assert!(sweep.physical);
+        for (point, share) in sweep.points.iter().zip([1.8 / 2.4, 1.8 / 2.2]) {
+            let [x, y, z] = point.position_in_ego;
+            assert!((f64::from(x) - 10.0 * share).abs() < 1e-5 && y.abs() < 1e-5 && z.abs() < 1e-5);
+            assert!(point.class.is_ground(), "{point:?}");
+        }
+        assert_eq!(sweep.points[2], above);
+        let before = sweep.clone();
+        to_physical_ground(&mut sweep, DVec3::Z, &frame);
+        assert_eq!(sweep, before);
+    }
+}

@@ -1,7 +1,9 @@
 //! Tests made from the tables: what can be written and read comes back, and no bad file does harm.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::catch_unwind;
+use std::path::PathBuf;
 use std::sync::{Arc, LazyLock};
 
 use glam::{DVec2, DVec3};
@@ -11,7 +13,9 @@ use scene::{
     SceneBox, SensorRig, TruthPixel, VoxelGrid,
 };
 
-use crate::export::{self, Exporter, Observed, Picture, Products, Seen};
+use tempfile::TempDir;
+
+use crate::export::{self, Exporter, Observed, OutFile, Picture, Products, Seen};
 use crate::import::{self, Content, Importer, Source};
 use crate::recipe::Recipe;
 use crate::{FormatError, Holds, box_list, loom, occ3d};
@@ -195,12 +199,39 @@ impl Products for Small {
     }
 }
 
+/// Reads bytes as a file of the format. A format of several files finds the others of its small scene beside it.
 fn read(importer: &Importer, bytes: &[u8]) -> Result<Content, FormatError> {
+    thread_local! {
+        static FOLDERS: RefCell<BTreeMap<&'static str, (TempDir, PathBuf)>> = RefCell::default();
+    }
+    let path = importer.in_folder.map(|first| {
+        FOLDERS.with_borrow_mut(|folders| {
+            let (_, path) = folders.entry(importer.id).or_insert_with(|| {
+                let exporter = export::from_id(importer.id).expect("it is written too");
+                let files = (exporter.write)(&scene(), &mut Small).expect(exporter.id);
+                let folder = in_folder(&files);
+                let first = first(folder.path()).expect("the format knows its own folder");
+                (folder, first)
+            });
+            path.clone()
+        })
+    });
     (importer.read)(&Source {
         bytes,
         name: "small",
-        path: None,
+        path: path.as_deref(),
     })
+}
+
+/// A folder with these files.
+pub(crate) fn in_folder(files: &[OutFile]) -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    for file in files {
+        let path = folder.path().join(&file.name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(path, &file.bytes).expect("written");
+    }
+    folder
 }
 
 fn exporters() -> impl Iterator<Item = &'static Exporter> {
@@ -232,12 +263,7 @@ pub(crate) fn round_trip(exporter: &Exporter, scene: &Scene) -> Option<Content> 
     assert_eq!(names.len(), files.len(), "{}: a name twice", exporter.id);
     assert!(names.iter().all(|name| is_tidy(name)), "{names:?}");
     let importer = import::all().iter().find(|i| i.id == exporter.id)?;
-    let folder = tempfile::tempdir().expect("a folder");
-    for file in &files {
-        let path = folder.path().join(&file.name);
-        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
-        std::fs::write(path, &file.bytes).expect("written");
-    }
+    let folder = in_folder(&files);
     let first = match (importer.in_folder, files.as_slice()) {
         (Some(first), _) => first(folder.path()).expect("the format knows its own folder"),
         (None, [file]) => folder.path().join(&file.name),
@@ -330,7 +356,8 @@ fn every_line_of_the_tables_is_whole() {
         assert!(!e.title.is_empty() && !e.holds.is_empty(), "{}", e.id);
     }
     assert!(
-        import::in_words().contains("point clouds (.pcd)"),
+        import::in_words().contains("point clouds (.pcd)")
+            && import::in_words().contains("nuScenes tables (a folder)"),
         "{}",
         import::in_words()
     );

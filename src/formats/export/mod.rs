@@ -8,8 +8,11 @@ pub mod glb;
 pub mod kitti;
 pub mod las;
 pub mod loom;
+pub mod mcap;
+pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod openlabel;
 pub mod openoccupancy;
 pub mod pcd;
 pub mod pictures;
@@ -52,6 +55,9 @@ const TABLE: &[&Exporter] = &[
     &view::EXPORTER,
     &world_scenario::EXPORTER,
     &control_video::EXPORTER,
+    &nuscenes::EXPORTER,
+    &mcap::EXPORTER,
+    &openlabel::EXPORTER,
 ];
 
 /// A format that is written.

@@ -7,6 +7,7 @@ pub mod glb;
 pub mod kitti;
 pub mod las;
 pub mod loom;
+pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
 pub mod opendrive;
@@ -43,6 +44,7 @@ const TABLE: &[&Importer] = &[
     &boxes::IMPORTER,
     &picture::IMPORTER,
     &glb::IMPORTER,
+    &nuscenes::IMPORTER,
     &opendrive::IMPORTER,
 ];
 
@@ -138,7 +140,10 @@ pub fn extensions() -> Vec<&'static str> {
 
 /// The formats in a sentence: `Sceneloom scenes (.loom), …`.
 pub fn in_words() -> String {
-    let one = |i: &&Importer| format!("{} (.{})", i.title, i.extensions.join(", ."));
+    let one = |i: &&Importer| match i.extensions {
+        [] => format!("{} (a folder)", i.title),
+        extensions => format!("{} (.{})", i.title, extensions.join(", .")),
+    };
     all().iter().map(one).collect::<Vec<_>>().join(", ")
 }
 

@@ -1,6 +1,6 @@
 //! Map layers from ground labels.
 
-use crate::{BevLayer, BevLayout, Class, VoxelGrid, Window};
+use crate::{BevLayer, BevLayout, Class, Extent, VoxelGrid};
 
 /// Columns around a gap that must be road on opposite sides for it to be road: 3.2 m bridges a car's width.
 const REACH: usize = 8;
@@ -9,7 +9,8 @@ const REACH: usize = 8;
 /// stand on, and labels have holes: a column without ground that has the same ground on two opposite
 /// sides within reach gets it too. The relief is read from the bins that ground lies in.
 pub fn layout(labels: &VoxelGrid) -> BevLayout {
-    let mut layout = BevLayout::default();
+    let extent = labels.extent();
+    let mut layout = BevLayout::over(extent);
     layout.relief = super::relief(labels);
     for (class, layer) in [
         (Class::DriveableSurface, BevLayer::DrivableArea),
@@ -19,29 +20,28 @@ pub fn layout(labels: &VoxelGrid) -> BevLayout {
         let open: Vec<bool> = columns(labels)
             .map(|c| !c.iter().any(|l| Class::from_id(*l).is_some_and(Class::is_ground)))
             .collect();
-        for x in 0..Window::NX {
-            for y in 0..Window::NY {
-                let at = x * Window::NY + y;
-                if seen[at] || (open[at] && between(&seen, x, y)) {
-                    layout.set(layer, x, y, true);
-                }
+        for (at, [x, y]) in extent.all_columns().enumerate() {
+            if seen[at] || (open[at] && between(extent, &seen, x, y)) {
+                layout.set(layer, x, y, true);
             }
         }
     }
     layout
 }
 
-fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8; Window::NZ]> {
-    (0..Window::COLUMNS).map(|c| labels.column(c / Window::NY, c % Window::NY))
+fn columns(labels: &VoxelGrid) -> impl Iterator<Item = &[u8; Extent::NZ]> {
+    let columns = labels.extent().all_columns();
+    columns.map(|[x, y]| labels.column(x, y))
 }
 
 /// True if something set lies on both sides along x, along y or along a diagonal.
-fn between(seen: &[bool], x: usize, y: usize) -> bool {
+fn between(extent: Extent, seen: &[bool], x: usize, y: usize) -> bool {
+    let [nx, ny] = [extent.nx(), extent.ny()].map(|n| n as isize);
     let meets = |dx: isize, dy: isize| {
         (1..=REACH as isize).any(|i| {
             let (x, y) = (x as isize + i * dx, y as isize + i * dy);
-            let inside = (0..Window::NX as isize).contains(&x) && (0..Window::NY as isize).contains(&y);
-            inside && seen[x as usize * Window::NY + y as usize]
+            let inside = (0..nx).contains(&x) && (0..ny).contains(&y);
+            inside && seen[extent.index(x as usize, y as usize)]
         })
     };
     [(1, 0), (0, 1), (1, 1), (1, -1)]
@@ -77,5 +77,24 @@ mod tests {
         assert!(layout.has(BevLayer::DrivableArea, 150, 100));
         assert_eq!(layout.count(BevLayer::DrivableArea), 200 * 40);
         assert_eq!(layout.count(BevLayer::Walkway), 200 * 6);
+    }
+
+    #[test]
+    fn a_map_of_any_extent_is_read_as_its_window_is() {
+        let extent = Extent::new([-300, 40], [260, 230]).expect("sound");
+        let (mut labels, mut window) = (VoxelGrid::over(extent), VoxelGrid::new());
+        for (x, y) in (20..180).flat_map(|x| (70..110).map(move |y| (x, y))) {
+            let bin = x / 40;
+            labels.set(x, y, bin, Class::DriveableSurface.id());
+            window.set(x, y, bin, Class::DriveableSurface.id());
+        }
+        let (found, expected) = (layout(&labels), layout(&window));
+        assert_eq!(found.extent(), extent);
+        assert_eq!(
+            found.count(BevLayer::DrivableArea),
+            expected.count(BevLayer::DrivableArea)
+        );
+        assert_eq!(found.relief.column_m(90, 90), expected.relief.column_m(90, 90));
+        assert!(found.relief.column_m(150, 90) > 0.8);
     }
 }

@@ -1,6 +1,6 @@
 //! The height of the ground from labels: where ground classes lie above the lowest bin, a slope is read from them.
 
-use crate::{Class, Relief, VoxelGrid, Window};
+use crate::{Class, Extent, Relief, VoxelGrid};
 
 /// Share of the ground's columns that must lie higher than flat ground does, or the ground is called flat.
 const UNEVEN_SHARE: f64 = 0.03;
@@ -12,9 +12,10 @@ const RADIUS: usize = 3;
 
 /// Heights of the ground, m; [`Relief::FLAT`] where all of it lies in the bins of flat ground.
 pub fn relief(labels: &VoxelGrid) -> Relief {
-    let (mut known, mut uneven, mut ground) = (vec![f32::NAN; Window::COLUMNS], 0, 0);
-    for (c, height) in known.iter_mut().enumerate() {
-        let column = labels.column(c / Window::NY, c % Window::NY);
+    let extent = labels.extent();
+    let (mut known, mut uneven, mut ground) = (vec![f32::NAN; extent.columns()], 0, 0);
+    for ([x, y], height) in extent.all_columns().zip(&mut known) {
+        let column = labels.column(x, y);
         let found = column.iter().enumerate().find_map(|(z, l)| {
             Class::from_id(*l)
                 .filter(|class| class.is_ground())
@@ -30,16 +31,16 @@ pub fn relief(labels: &VoxelGrid) -> Relief {
         } else {
             0.0
         };
-        *height = (bin as f64 * Window::VOXEL_M) as f32 - above;
+        *height = (bin as f64 * Extent::VOXEL_M) as f32 - above;
     }
     if (uneven as f64) < UNEVEN_SHARE * f64::from(ground.max(1)) {
         return Relief::FLAT;
     }
-    let mut heights = filled(&known, Window::NX, Window::NY);
+    let mut heights = filled(&known, extent.nx(), extent.ny());
     for _ in 0..PASSES {
-        heights = blurred(&heights);
+        heights = blurred(extent, &heights);
     }
-    Relief::from_heights(crate::Extent::WINDOW, heights).unwrap_or_default()
+    Relief::from_heights(extent, heights).unwrap_or_default()
 }
 
 /// Unknown cells (NaN) get the mean of what is known around them, from the nearest scale that knows any.
@@ -69,9 +70,9 @@ fn filled(cells: &[f32], nx: usize, ny: usize) -> Vec<f32> {
 }
 
 /// Means over a square around each column.
-fn blurred(heights: &[f32]) -> Vec<f32> {
-    let (nx, ny) = (Window::NX, Window::NY);
-    let along = |values: &[f32], stride: usize, n: usize, place: fn(usize) -> usize| -> Vec<f32> {
+fn blurred(extent: Extent, heights: &[f32]) -> Vec<f32> {
+    let (nx, ny) = (extent.nx(), extent.ny());
+    let along = |values: &[f32], stride: usize, n: usize, place: &dyn Fn(usize) -> usize| -> Vec<f32> {
         (0..values.len())
             .map(|i| {
                 let at = place(i);
@@ -81,13 +82,14 @@ fn blurred(heights: &[f32]) -> Vec<f32> {
             })
             .collect()
     };
-    let rows = along(heights, 1, ny, |i| i % Window::NY);
-    along(&rows, ny, nx, |i| i / Window::NY)
+    let rows = along(heights, 1, ny, &|i| i % ny);
+    along(&rows, ny, nx, &|i| i / ny)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Window;
     use glam::DVec2;
 
     fn sloped(grade: f64, hole: bool) -> VoxelGrid {

@@ -1,0 +1,267 @@
+//! Sweeps and pictures, where the sensors are, and where the vehicle was.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use scene::{BoxId, LidarSweep, Scene};
+
+use super::{Writing, log_name, timestamp_us};
+use crate::export::{Picture, Products, nuscenes_lidar};
+use crate::nuscenes::tables::{CalibratedSensor, EgoPose, Lidarseg, SampleData, Sensor};
+use crate::nuscenes::{categories, wxyz};
+use crate::sensor_names::{self, LIDAR};
+use crate::{FormatError, jpeg, physical};
+
+/// Time between two sweeps, s.
+const SWEEP_S: f64 = 0.1;
+/// Longest clip with sweeps between its key frames, s: those of a minute are 400 MB.
+const LONGEST_S: f64 = 60.0;
+/// Bits of a token's number that count what a sensor measured.
+const COUNT_BITS: u64 = 32;
+
+/// The sensors that are written: the cameras of the rig in its order, and its first LiDAR after them.
+pub(super) struct Sensors {
+    /// Channels in that order.
+    channels: Vec<String>,
+    has_lidar: bool,
+    /// How many files each has.
+    counts: Vec<u64>,
+    log: String,
+    has_sweeps: bool,
+}
+
+/// Share of each box that cameras see of what they would see if nothing stood in front, 0 to 1, all cameras together.
+pub(super) type Visible = BTreeMap<BoxId, f64>;
+
+/// A file of a sensor.
+struct Measured<'a> {
+    sensor: usize,
+    sample: &'a str,
+    now: &'a Scene,
+    is_key_frame: bool,
+    /// Columns and rows of a picture.
+    size: [u32; 2],
+    bytes: Vec<u8>,
+}
+
+impl Sensors {
+    /// Their rows. The intrinsics of cameras follow with their first picture.
+    pub(super) fn new(writing: &mut Writing<'_>) -> Self {
+        let rig = &writing.scene.rig;
+        let mut channels = sensor_names::cameras(rig);
+        let has_lidar = !rig.lidars.is_empty();
+        channels.extend(has_lidar.then(|| LIDAR.to_owned()));
+        let cameras = rig.cameras.iter().map(|c| c.ego_from_camera());
+        let lidar = rig.lidars.iter().take(1).map(|l| l.ego_from_sensor());
+        for (i, pose) in cameras.chain(lidar).enumerate() {
+            let camera = rig.cameras.get(i);
+            writing.tables.sensor.push(Sensor {
+                token: writing.tokens.token("sensor", i as u64),
+                channel: channels[i].clone(),
+                modality: camera.map_or("lidar", |_| "camera").into(),
+            });
+            writing.tables.calibrated_sensor.push(CalibratedSensor {
+                token: writing.tokens.token("calibrated_sensor", i as u64),
+                sensor_token: writing.tokens.token("sensor", i as u64),
+                translation: pose.translation_m.to_array(),
+                rotation: wxyz(pose.rotation),
+                camera_intrinsic: camera.map_or_else(Vec::new, intrinsics),
+            });
+        }
+        Self {
+            counts: vec![0; channels.len()],
+            channels,
+            has_lidar,
+            log: log_name(writing.scene),
+            has_sweeps: writing.scene.clip().length_s <= LONGEST_S,
+        }
+    }
+
+    /// Sweep and pictures of a key frame. Returns how much of each box the cameras see.
+    pub(super) fn key_frame(
+        &mut self,
+        writing: &mut Writing<'_>,
+        products: &mut dyn Products,
+        sample: &str,
+        now: &Scene,
+    ) -> Result<Visible, FormatError> {
+        if self.has_lidar {
+            let sweep = sweep(now, products)?;
+            let token = self.add_sweep(writing, &sweep, sample, now, true);
+            let labels = sweep
+                .points
+                .iter()
+                .map(|p| categories::of_points(p.class))
+                .collect();
+            let folder = format!("lidarseg/{}", super::VERSION);
+            let filename = writing.file(&folder, &format!("{token}_lidarseg.bin"), labels);
+            writing.tables.lidarseg.push(Lidarseg {
+                sample_data_token: token.clone(),
+                token,
+                filename,
+            });
+        }
+        let mut visible = Visible::new();
+        if now.rig.cameras.is_empty() {
+            return Ok(visible);
+        }
+        // Pixels that show a box, and those that would if nothing stood in front.
+        let mut pixels: BTreeMap<BoxId, [f64; 2]> = BTreeMap::new();
+        let mut next = 0;
+        products.truth(&mut |picture, truth| {
+            // In the order of the rig, of which a name may stand for several.
+            let same = |i: &usize| now.rig.cameras[*i].name == picture.camera;
+            let Some(camera) = (next..now.rig.cameras.len()).find(same) else {
+                return Ok(());
+            };
+            next = camera + 1;
+            for seen in &truth.boxes {
+                let [shown, whole] = pixels.entry(seen.of.id).or_default();
+                *shown += seen.visibility * f64::from(seen.whole_px);
+                *whole += f64::from(seen.whole_px);
+            }
+            self.add_picture(writing, &picture, camera, sample, now)
+        })?;
+        let seen = pixels.into_iter().filter(|(_, [_, whole])| *whole > 0.0);
+        visible.extend(seen.map(|(id, [shown, whole])| (id, shown / whole)));
+        Ok(visible)
+    }
+
+    /// Sweeps between two key frames, without these.
+    pub(super) fn between(
+        &mut self,
+        writing: &mut Writing<'_>,
+        products: &mut dyn Products,
+        sample: &str,
+        times_s: Range<f64>,
+    ) -> Result<(), FormatError> {
+        if !(self.has_lidar && self.has_sweeps) {
+            return Ok(());
+        }
+        let steps = ((times_s.end - times_s.start) / SWEEP_S).round() as usize;
+        for step in 1..steps {
+            let time_s = times_s.start + SWEEP_S * step as f64;
+            products.show(time_s)?;
+            let now = writing.scene.at(time_s);
+            let sweep = sweep(&now, products)?;
+            self.add_sweep(writing, &sweep, sample, &now, false);
+        }
+        Ok(())
+    }
+
+    fn add_sweep(
+        &mut self,
+        writing: &mut Writing<'_>,
+        sweep: &LidarSweep,
+        sample: &str,
+        now: &Scene,
+        is_key_frame: bool,
+    ) -> String {
+        let measured = Measured {
+            sensor: self.channels.len() - 1,
+            sample,
+            now,
+            is_key_frame,
+            size: [0; 2],
+            bytes: nuscenes_lidar::to_bytes(sweep, &now.rig.lidars[0]),
+        };
+        self.add(writing, measured)
+    }
+
+    fn add_picture(
+        &mut self,
+        writing: &mut Writing<'_>,
+        picture: &Picture,
+        camera: usize,
+        sample: &str,
+        now: &Scene,
+    ) -> Result<(), FormatError> {
+        let bytes = jpeg::rgba(picture.width, picture.height, &picture.rgba).map_err(FormatError::new)?;
+        let size = [picture.width as u32, picture.height as u32];
+        let resized = now.rig.cameras[camera].resized(size[0], size[1]);
+        writing.tables.calibrated_sensor[camera].camera_intrinsic = intrinsics(&resized);
+        let measured = Measured {
+            sensor: camera,
+            sample,
+            now,
+            is_key_frame: true,
+            size,
+            bytes,
+        };
+        self.add(writing, measured);
+        Ok(())
+    }
+
+    /// The rows of a file, and the file. Returns the token.
+    fn add(&mut self, writing: &mut Writing<'_>, measured: Measured<'_>) -> String {
+        let (sensor, count) = (measured.sensor, self.counts[measured.sensor]);
+        self.counts[sensor] += 1;
+        let token = writing
+            .tokens
+            .token("sample_data", (sensor as u64) << COUNT_BITS | count);
+        let timestamp = timestamp_us(measured.now.time_s());
+        let (channel, is_lidar) = (&self.channels[sensor], measured.size == [0; 2]);
+        let kind = if is_lidar { "pcd.bin" } else { "jpg" };
+        let folder = if measured.is_key_frame {
+            "samples"
+        } else {
+            "sweeps"
+        };
+        let name = format!("{}__{channel}__{timestamp}.{kind}", self.log);
+        let filename = writing.file(&format!("{folder}/{channel}"), &name, measured.bytes);
+        let (rotation, translation) = writing.global_pose(&measured.now.frame().world_from_ego);
+        writing.tables.ego_pose.push(EgoPose {
+            token: token.clone(),
+            timestamp,
+            rotation,
+            translation,
+        });
+        writing.tables.sample_data.push(SampleData {
+            token: token.clone(),
+            sample_token: measured.sample.to_owned(),
+            ego_pose_token: token.clone(),
+            calibrated_sensor_token: writing.tokens.token("calibrated_sensor", sensor as u64),
+            timestamp,
+            fileformat: if is_lidar { "pcd" } else { "jpg" }.into(),
+            is_key_frame: measured.is_key_frame,
+            height: measured.size[1],
+            width: measured.size[0],
+            filename,
+            prev: String::new(),
+            next: String::new(),
+        });
+        token
+    }
+
+    /// Chains the files of each sensor.
+    pub(super) fn link(&self, writing: &mut Writing<'_>) {
+        let mut last: Vec<Option<usize>> = vec![None; self.channels.len()];
+        let rows = &mut writing.tables.sample_data;
+        for i in 0..rows.len() {
+            let sensors = &writing.tables.calibrated_sensor;
+            let sensor = sensors
+                .iter()
+                .position(|s| s.token == rows[i].calibrated_sensor_token);
+            let Some(last) = sensor.map(|sensor| &mut last[sensor]) else {
+                continue;
+            };
+            if let Some(before) = last.replace(i) {
+                rows[before].next = rows[i].token.clone();
+                rows[i].prev = rows[before].token.clone();
+            }
+        }
+    }
+}
+
+/// The sweep of the moment that is shown, on the physical ground.
+fn sweep(now: &Scene, products: &mut dyn Products) -> Result<LidarSweep, FormatError> {
+    let mut sweep = products.sweep()?;
+    let origin_in_ego = now.rig.lidars[0].ego_from_sensor().translation_m;
+    physical::to_physical_ground(&mut sweep, origin_in_ego, now.frame());
+    Ok(sweep)
+}
+
+fn intrinsics(camera: &scene::Camera) -> Vec<[f64; 3]> {
+    let ([fx, fy], [cx, cy]) = (camera.focal_px, camera.center_px);
+    vec![[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]]
+}

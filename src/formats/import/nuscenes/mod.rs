@@ -1,0 +1,205 @@
+//! nuScenes tables: a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
+//!
+//! Read is the first scene by name. The vehicle moves through its poses at the key frames, objects through their annotations,
+//! and both go straight on beyond the first and the last. What is parked, or stays within 5 cm in all key frames, stands
+//! still. Sensors become the rig. Voxels come from Occ3D's `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the
+//! LiDAR sweeps of the key frames with their lidarseg labels; there, points in boxes are left out and boxes drawn as drafts.
+//! The map is inferred from the voxels.
+//!
+//! The world frame is that of the first ego pose (x forward, on the ground), except in folders that Sceneloom wrote: their
+//! `map.json` names the origin that the scene had.
+
+mod objects;
+mod occupancy;
+mod read;
+mod rig;
+mod rows;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec3;
+use scene::message::shortened;
+use scene::{
+    BevLayout, Clip, Conditions, Extent, Frame, Inferred, Key, Motion, Pose, Scene, TimeOfDay, Weather,
+    draft, infer,
+};
+
+use super::{Content, Importer, Loaded, Source};
+use crate::nuscenes::yaw_rad;
+use crate::{FormatError, Holds, input};
+
+/// See the module.
+pub const IMPORTER: Importer = Importer {
+    id: "nuscenes",
+    title: "nuScenes tables",
+    extensions: &[],
+    holds: &[Holds::Boxes, Holds::Points],
+    largest: input::LARGEST_TEXT,
+    recognises: |head| {
+        let text = String::from_utf8_lossy(head);
+        text.contains("\"nbr_samples\"") && text.contains("\"first_sample_token\"")
+    },
+    in_folder: Some(in_folder),
+    read: |source| read_scene(source).map(|loaded| Content::Scene(Box::new(loaded))),
+    #[cfg(test)]
+    sample: tests::sample,
+};
+
+/// How much is left out of a scene, by kind.
+type Skipped = BTreeMap<String, usize>;
+
+fn count(skipped: &mut Skipped, what: &str, how_many: usize) {
+    if how_many > 0 {
+        *skipped.entry(what.to_owned()).or_default() += how_many;
+    }
+}
+
+/// Longest name and description of a scene that is kept, characters.
+const LONGEST_NAME: usize = 120;
+const LONGEST_DESCRIPTION: usize = 2000;
+
+fn in_folder(folder: &Path) -> Option<PathBuf> {
+    let tables = |folder: &Path| {
+        let scene = folder.join("scene.json");
+        (scene.is_file() && folder.join("sample_data.json").is_file()).then_some(scene)
+    };
+    let version = |path: &PathBuf| {
+        let name = path.file_name().map(|n| n.to_string_lossy());
+        name.is_some_and(|n| n.starts_with("v1.0"))
+    };
+    tables(folder).or_else(|| {
+        let entries = std::fs::read_dir(folder).ok()?;
+        let mut versions: Vec<PathBuf> = entries
+            .filter_map(|e| Some(e.ok()?.path()))
+            .filter(version)
+            .collect();
+        versions.sort();
+        versions.iter().find_map(|path| tables(path))
+    })
+}
+
+fn read_scene(source: &Source<'_>) -> Result<Loaded, FormatError> {
+    let mut skipped = Skipped::new();
+    let recording = read::recording(source, &mut skipped)?;
+    let frames = &recording.frames;
+    let poses: Vec<Pose> = frames.iter().map(|f| f.world_from_ego).collect();
+    let extent = extent(&poses).map_err(FormatError::new)?;
+    let things = objects::things(&recording, &mut skipped);
+    let observed = occupancy::observed(source, &recording, &things, extent, &mut skipped);
+    let (layout, voxels, unobserved, inferred) = match observed {
+        Some(o) => (o.layout, o.voxels, o.unobserved, &GUESSED[..]),
+        // Nothing was measured: open ground, as for a list of boxes.
+        None => {
+            let layout = BevLayout::over(extent);
+            let voxels = draft::draft(&layout, things.standing.values());
+            (layout, voxels, None, &[][..])
+        }
+    };
+    let background = match extent == Extent::WINDOW && !inferred.is_empty() {
+        true => infer::background(&voxels, &layout),
+        false => Default::default(),
+    };
+    let frame = Frame {
+        inferred: Inferred {
+            layout: !inferred.is_empty(),
+            background: !background.is_empty(),
+            unobserved,
+            ..Inferred::default()
+        },
+        world_from_ego: poses[0],
+        ..Frame::new(layout, things.standing, voxels)
+    };
+    let clip = Clip {
+        length_s: frames.last().map_or(0.0, |f| f.time_s),
+        ego: ego_motion(&recording),
+        tracks: things.tracks,
+        ..Clip::default()
+    };
+    if let Some(problem) = clip.problem() {
+        return Err(FormatError::new(problem));
+    }
+    let name = match recording.name.as_str() {
+        "" => source.name,
+        name => name,
+    };
+    let mut scene = Scene::single(
+        &shortened(&plain(name), LONGEST_NAME),
+        frame,
+        Arc::new(recording.rig.clone()),
+        0,
+    );
+    let description = plain(&recording.description);
+    scene.conditions = conditions(&description);
+    scene.prompt = shortened(&description, LONGEST_DESCRIPTION).into();
+    scene.background = Arc::new(background);
+    scene.change_clip(|still| *still = clip);
+    Ok(Loaded {
+        scene,
+        inferred,
+        skipped,
+    })
+}
+
+/// What is guessed from the voxels.
+const GUESSED: [&str; 2] = ["layout", "background"];
+
+/// Text of a file without what ends lines.
+fn plain(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
+}
+
+/// Ground within 40 m of the vehicle along x and y, at every key frame.
+fn extent(poses: &[Pose]) -> Result<Extent, String> {
+    let places = poses.iter().map(|p| p.translation_m);
+    let low = places.clone().fold(DVec3::INFINITY, DVec3::min);
+    let high = places.fold(DVec3::NEG_INFINITY, DVec3::max);
+    let reach = Extent::WINDOW.max_m().x;
+    let column = |metres: f64| (metres * 2.5).floor() as i32;
+    let from = [column(low.x - reach), column(low.y - reach)];
+    let to = |metres: f64| ((metres + reach) * 2.5).ceil() as i32;
+    let size = |axis: usize, high: f64| usize::try_from(to(high).saturating_sub(from[axis])).unwrap_or(0);
+    Extent::new(from, [size(0, high.x), size(1, high.y)])
+}
+
+/// How the vehicle drives; `None` if it stands.
+fn ego_motion(recording: &read::Recording) -> Option<Motion> {
+    let frames = &recording.frames;
+    let first = frames.first()?.world_from_ego;
+    let same = |pose: &Pose| {
+        pose.translation_m.distance(first.translation_m) < 1e-9
+            && pose.rotation.dot(first.rotation).abs() > 1.0 - 1e-15
+    };
+    let key = |frame: &read::KeyFrame| Key {
+        time_s: frame.time_s,
+        at_m: frame.world_from_ego.translation_m.truncate(),
+        yaw_deg: yaw_rad(frame.world_from_ego.rotation).to_degrees(),
+    };
+    let moves = frames.iter().any(|f| !same(&f.world_from_ego));
+    moves.then(|| objects::motion(frames.iter().map(key).collect()))
+}
+
+/// Light and air from the words that the devkit's evaluation goes by, and the program's own names of them.
+fn conditions(description: &str) -> Conditions {
+    let words: Vec<String> = description
+        .to_lowercase()
+        .split(|c: char| !c.is_alphanumeric())
+        .map(str::to_owned)
+        .collect();
+    let says = |name: &str| words.iter().any(|w| w == name);
+    let time = TimeOfDay::ALL.into_iter().filter(|t| *t != TimeOfDay::Day);
+    let weather = Weather::ALL.into_iter().filter(|w| *w != Weather::Clear);
+    Conditions::usual(
+        time.clone().find(|t| says(t.name())).unwrap_or_default(),
+        weather.clone().find(|w| says(w.name())).unwrap_or_default(),
+        0,
+    )
+}
+
+#[cfg(test)]
+mod bad_tests;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,82 @@
+//! Calibrated sensors as a rig.
+
+use scene::{Camera, LidarPattern, SensorRig};
+
+use super::read::Kinds;
+use super::{Skipped, count};
+use crate::nuscenes::pose;
+use crate::nuscenes::tables::{CalibratedSensor, SampleData};
+use crate::sensor_names::LIDAR;
+
+/// The sensors that measured something in these key frames, as they were calibrated at the first. Cameras of the known vehicle are in the order of its rig, others in that of the table. The tables do not hold the
+/// beams of a LiDAR: it is the known vehicle's.
+pub(super) fn rig(kinds: &Kinds<'_>, data: &[SampleData], skipped: &mut Skipped) -> SensorRig {
+    let known = SensorRig::default();
+    let mut rig = SensorRig {
+        name: "nuScenes".into(),
+        cameras: Vec::new(),
+        lidars: Vec::new(),
+        ..known.clone()
+    };
+    let (mut cameras, mut taken) = (Vec::new(), Vec::new());
+    for row in data {
+        let Some((calibrated, sensor)) = kinds.of(row) else {
+            continue;
+        };
+        if taken.contains(&&*sensor.channel) {
+            continue;
+        }
+        taken.push(&sensor.channel);
+        match sensor.modality.as_str() {
+            "camera" => match camera(&sensor.channel, calibrated, row) {
+                Some(camera) => cameras.push(camera),
+                None => count(skipped, "cameras without sound intrinsics", 1),
+            },
+            "lidar" => match lidar(&sensor.channel, calibrated, &known) {
+                Some(lidar) => rig.lidars.push(lidar),
+                None => count(skipped, "LiDARs without a sound pose", 1),
+            },
+            _ => count(skipped, "radars", 1),
+        }
+    }
+    let known_place = |c: &Camera| known.cameras.iter().position(|k| k.name == c.name);
+    let all_known = cameras.iter().all(|c| known_place(c).is_some());
+    cameras.sort_by_key(|c| match all_known {
+        true => known_place(c),
+        false => kinds.channels.iter().position(|channel| *channel == c.name),
+    });
+    cameras.truncate(SensorRig::MOST_SENSORS);
+    rig.cameras = cameras;
+    // The first LiDAR is the one that sweeps are made of.
+    rig.lidars.sort_by_key(|l| l.name != LIDAR);
+    rig.lidars.truncate(SensorRig::MOST_SENSORS);
+    rig
+}
+
+fn camera(name: &str, calibrated: &CalibratedSensor, row: &SampleData) -> Option<Camera> {
+    let [[fx, _, cx], [_, fy, cy], _] = *calibrated.camera_intrinsic.first_chunk::<3>()?;
+    let camera = Camera {
+        width: row.width,
+        height: row.height,
+        focal_px: [fx, fy],
+        center_px: [cx, cy],
+        rotation_wxyz: calibrated.rotation,
+        translation_m: calibrated.translation,
+        ..Camera::new(name, 90.0)
+    };
+    let alone = SensorRig {
+        cameras: vec![camera.clone()],
+        ..SensorRig::default()
+    };
+    alone.problem().is_none().then_some(camera)
+}
+
+fn lidar(name: &str, calibrated: &CalibratedSensor, known: &SensorRig) -> Option<LidarPattern> {
+    pose(name, calibrated.rotation, calibrated.translation).ok()?;
+    Some(LidarPattern {
+        name: name.into(),
+        rotation_wxyz: calibrated.rotation,
+        translation_m: calibrated.translation,
+        ..known.lidars.first()?.clone()
+    })
+}
