@@ -92,6 +92,8 @@ pub struct LayoutImport {
     pub background: Background,
     /// How many of these things are bridges.
     pub bridge_count: usize,
+    /// True if the layout is the one that Sceneloom wrote the file from, to the last cell, and not made of the roads.
+    pub is_own: bool,
     /// What the file holds and the import does not, counted by kind.
     pub skipped: Skipped,
     in_junction: Vec<bool>, // columns
@@ -200,16 +202,24 @@ impl RoadNetwork {
         if canvas.budget == 0 {
             count(&mut skipped, "roads beyond the drawing budget");
         }
-        let of_kind = |kind| canvas.lines.iter().filter(|l| l.kind == kind).count();
-        let (lane_count, crossing_count) = (
-            of_kind(PolylineKind::LaneCenter),
-            of_kind(PolylineKind::PedCrossing),
-        );
         let drivable_beside_traffic = canvas.beside_traffic();
         let in_junction = std::mem::take(&mut canvas.in_junction);
         let mut layout = canvas.layout;
         layout.polylines = canvas.lines.into();
+        let own = self.own_layout(extent, at_m, heading_rad);
+        let is_own = own.is_some();
+        if let Some(own) = own {
+            layout = own;
+        } else if self.own.is_some() {
+            count(&mut skipped, "sceneloom's rows for another place or map (its roads are read)");
+        }
+        let of_kind = |kind| layout.polylines.iter().filter(|l| l.kind == kind).count();
+        let (lane_count, crossing_count) = (
+            of_kind(PolylineKind::LaneCenter),
+            of_kind(PolylineKind::PedCrossing),
+        );
         LayoutImport {
+            is_own,
             road_count,
             lane_count,
             crossing_count,
@@ -221,6 +231,21 @@ impl RoadNetwork {
             layout,
             in_junction,
         }
+    }
+}
+
+impl RoadNetwork {
+    /// The map that Sceneloom wrote the file from, if the ego vehicle is where it was then: at the origin, looking along x.
+    pub fn own_extent(&self, at_m: DVec2, heading_rad: f64) -> Option<Extent> {
+        let is_origin = at_m == DVec2::ZERO && heading_rad == 0.0;
+        self.own.as_ref().filter(|_| is_origin).map(|own| own.extent())
+    }
+
+    /// The layout that Sceneloom wrote the file from, if it covers this map.
+    fn own_layout(&self, extent: Extent, at_m: DVec2, heading_rad: f64) -> Option<BevLayout> {
+        let whole = self.own_extent(at_m, heading_rad)?;
+        let covers = whole.overlap(&extent).is_some_and(|o| o.size == [extent.nx(), extent.ny()]);
+        covers.then(|| self.own.as_ref().map(|own| own.layout().crop(extent)))?
     }
 }
 
@@ -323,14 +348,8 @@ impl Canvas {
         let mut seen = false;
         let lanes = section.lanes_left_to_right().zip(grounds);
         for ((lane, ground), sides) in lanes.zip(edges.windows(2)) {
-            let layers: &[BevLayer] = match ground {
-                Ground::Road => &[BevLayer::DrivableArea],
-                Ground::Carpark => &[BevLayer::DrivableArea, BevLayer::CarparkArea],
-                Ground::Walkway => &[BevLayer::Walkway],
-                Ground::Other => &[],
-            };
             let quad = [sides[0][0], sides[0][1], sides[1][1], sides[1][0]];
-            seen |= self.fill(&quad, layers, in_junction);
+            seen |= self.fill(&quad, ground.layers(), in_junction);
             if *ground == Ground::Road {
                 self.note_kind(&quad, lane.kind);
             }
@@ -377,13 +396,17 @@ impl Canvas {
             });
             self.budget = budget;
             for area in areas {
-                if object.kind == ObjectKind::Parking {
-                    self.fill(&area, &[BevLayer::DrivableArea, BevLayer::CarparkArea], false);
-                } else {
-                    self.lines.push(Polyline {
+                match object.kind {
+                    ObjectKind::Parking => {
+                        self.fill(&area, Ground::Carpark.layers(), false);
+                    }
+                    ObjectKind::Area(ground) => {
+                        self.fill(&area, ground.layers(), false);
+                    }
+                    _ => self.lines.push(Polyline {
                         kind: PolylineKind::PedCrossing,
                         points_m: area,
-                    });
+                    }),
                 }
             }
         }

@@ -9,6 +9,7 @@ mod layout;
 mod levels;
 mod lines;
 pub mod objects;
+pub mod own_rows;
 mod parse;
 mod parse_elevation;
 mod parse_lanes;
@@ -19,6 +20,7 @@ mod sampling;
 pub mod standing;
 mod things;
 mod tidy;
+pub mod write;
 mod xml;
 
 pub use layout::LayoutImport;
@@ -26,10 +28,13 @@ pub use parse::read;
 pub use pose::LanePose;
 pub use xml::{OpenDriveError, Skipped};
 
+use std::sync::Arc;
+
 use elevation::SurfaceProfile;
 use geometry::ReferenceLine;
 use lanes::{Cubics, LaneSection};
 use objects::RoadObject;
+use own_rows::OwnLayout;
 
 /// Largest file that is read, bytes.
 pub const LARGEST_FILE: u64 = 256 << 20;
@@ -45,6 +50,8 @@ pub struct RoadNetwork {
     pub junctions: Vec<Junction>,
     /// What the file holds and this reader does not understand or model, counted by kind.
     pub skipped: Skipped,
+    /// The layout that the roads were made of, where Sceneloom wrote the file.
+    pub own: Option<Arc<OwnLayout>>,
     marks_known: bool, // false for a file without any road mark: every lane edge is drawn then
 }
 

@@ -1,5 +1,7 @@
 //! From XML to roads: header, plan view, profiles, links, junctions.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use roxmltree::Node;
 
@@ -8,6 +10,7 @@ use super::xml::{
     OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
     named, number, parse_document, shown,
 };
+use super::own_rows::{self, OwnLayout};
 use super::{Junction, Road, RoadEnd, RoadNetwork, parse_elevation, parse_lanes, parse_objects};
 
 /// Reads the bytes of an `.xodr` file. Nothing of the file is dropped without being counted in
@@ -32,10 +35,20 @@ pub fn read(bytes: &[u8]) -> Result<RoadNetwork> {
             }
             "road" => network.roads.push(road(node, skipped)?),
             "junction" => network.junctions.push(junction(node, skipped)),
+            "userData" if node.attribute("code") == Some(own_rows::CODE) => {
+                // The rows hold for the roads that stand before them.
+                let roads = text.find("<road ").and_then(|from| text.get(from..node.range().start));
+                let roads = roads.unwrap_or_default().trim_end_matches(' ');
+                match OwnLayout::read(node, roads) {
+                    Ok(own) => network.own = Some(Arc::new(own)),
+                    Err(problem) => count(skipped, format!("sceneloom's {problem}")),
+                }
+            }
+            "userData" => count(skipped, "userData"),
             _ => {}
         }
     }
-    count_others(root, &["header", "road", "junction"], skipped);
+    count_others(root, &["header", "road", "junction", "userData"], skipped);
     if network.roads.is_empty() {
         return Err(bad(root, "road", "at least one road", "none"));
     }
