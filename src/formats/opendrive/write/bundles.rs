@@ -61,6 +61,7 @@ pub(super) fn bundled(layout: &BevLayout, chains: &[Chain], near: &Near, zones: 
             owner: chains.iter().map(|c| vec![None; c.len()]).collect(),
             bundles: Vec::new(),
             cuts: Vec::new(),
+            is_last: round == ROUNDS,
         };
         pass.run();
         pass.leftovers();
@@ -82,6 +83,8 @@ struct Pass<'a> {
     owner: Vec<Vec<Option<usize>>>,
     bundles: Vec<Bundle>,
     cuts: Vec<Vec<(usize, usize)>>,
+    /// Whatever parts is left together.
+    is_last: bool,
 }
 
 /// A neighbour beside a sample.
@@ -209,7 +212,7 @@ impl Pass<'_> {
             all.iter().sum::<f64>() / all.len() as f64
         };
         members.sort_by(|a, b| mean(b).total_cmp(&mean(a)));
-        self.trim(&mut samples, &mut members);
+        self.trim(chain, &mut samples, &mut members);
         if samples.len() < SHORTEST {
             // Beyond the map, or hardly on it: looked at no more.
             for k in &samples {
@@ -218,7 +221,7 @@ impl Pass<'_> {
             return;
         }
         let cuts = self.partings(&samples, &members);
-        if cuts.is_empty() {
+        if cuts.is_empty() || self.is_last {
             let id = self.bundles.len();
             for member in &members {
                 self.claim(member, id);
@@ -237,25 +240,36 @@ impl Pass<'_> {
         }
     }
 
-    /// Drops ends at which every lane lies beyond the map.
-    fn trim(&self, samples: &mut Vec<usize>, members: &mut [Member]) {
+    /// Drops ends at which every lane lies beyond the map. Next to a zone as much stays as a road needs.
+    fn trim(&self, chain: usize, samples: &mut Vec<usize>, members: &mut [Member]) {
         let extent = self.layout.extent();
+        let n = samples.len();
         let inside = |i: usize| {
             let mut places = members
                 .iter()
                 .filter_map(|m| Some(self.chains[m.chain].points_m[m.beside[i]?.0]));
             places.any(|p| extent.column_at(p.x, p.y).is_some())
         };
-        let first = (0..samples.len()).find(|i| inside(*i));
-        let last = (0..samples.len()).rev().find(|i| inside(*i));
-        let (Some(first), Some(last)) = (first, last) else {
-            samples.truncate(1);
-            return;
+        let meets = |k: usize, by: isize| {
+            let beyond = self.chains[chain].step(k, by);
+            beyond.is_some_and(|k| self.zones.of(chain, k).is_some())
         };
-        let (first, last) = (first.saturating_sub(1), (last + 1).min(samples.len() - 1));
-        *samples = samples[first..=last].to_vec();
+        let (at_start, at_end) = (meets(samples[0], -1), meets(samples[n - 1], 1));
+        let first = (0..n).find(|i| inside(*i));
+        let last = (0..n).rev().find(|i| inside(*i));
+        let (first, last) = match (first, last, at_start, at_end) {
+            (Some(first), Some(last), ..) => (first, last),
+            (_, _, true, _) => (0, 0),
+            (_, _, _, true) => (n - 1, n - 1),
+            _ => return samples.truncate(1),
+        };
+        let from = if at_start { 0 } else { first.saturating_sub(1) };
+        let to = if at_end { n - 1 } else { (last + 1).min(n - 1) };
+        let from = from.min(to.saturating_sub(SHORTEST));
+        let to = to.max((from + SHORTEST).min(n - 1));
+        *samples = samples[from..=to].to_vec();
         for member in members {
-            member.beside = member.beside[first..=last].to_vec();
+            member.beside = member.beside[from..=to].to_vec();
         }
     }
 

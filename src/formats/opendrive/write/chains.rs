@@ -292,9 +292,9 @@ mod tests {
         ]));
         assert_eq!(chains.len(), 2, "one is drawn twice");
         let ends = |c: &Chain| [c.points_m[0].x, c.points_m[c.len() - 1].x];
-        assert_eq!(ends(&chains[0]), [-52.0, 52.0]);
+        assert_eq!(ends(&chains[0]), [-53.0, 53.0]);
         assert_eq!(ends(&chains[1]), [-20.0, 20.0]);
-        assert!((chains[0].points_m[7].x + 48.5).abs() < 0.01);
+        assert!((chains[0].points_m[7].x + 49.5).abs() < 0.01);
     }
 
     #[test]

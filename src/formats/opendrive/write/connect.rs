@@ -1,11 +1,11 @@
 //! Junctions: connecting roads along the lanes that lead through a zone, and turns between the others.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::DVec2;
 
 use super::bundles::Bundled;
-use super::chains::{Chain, STEP_M, Surface, surface};
+use super::chains::{Chain, Near, STEP_M, Sample, Surface, surface};
 use super::fit::{reference, wrapped};
 use super::roads::{Contact, End, Road, placed};
 use super::strips::{Station, Strip, Strips};
@@ -22,11 +22,20 @@ const STRAIGHT_RAD: f64 = 0.5;
 /// Tightest turn, m.
 const RADIUS_M: f64 = 2.5;
 /// A turn keeps so much paved ground to both sides of its middle, m.
-const ASIDE_M: f64 = 0.8;
+const ASIDE_M: f64 = 1.4;
 /// On this share of its way, at least.
 const PAVED_SHARE: f64 = 0.95;
 /// A vehicle joins or leaves a ring over a way from and to, m.
 const JOIN_M: [f64; 2] = [3.0, 16.0];
+
+/// A lane begins or ends beside another one if it is that near, m, and runs as it does, as a cosine.
+const BESIDE_M: f64 = 1.0;
+const ALIKE_COSINE: f64 = 0.9;
+/// Changes from lane to lane on one way, and ways that are tried from one lane, at most.
+const MOST_CHANGES: usize = 5;
+const MOST_WALKS: usize = 200;
+/// Samples of one way, at most.
+const LONGEST_WALK: usize = 800;
 
 /// A junction that is to be written.
 pub(super) struct Junction {
@@ -71,6 +80,7 @@ struct Gates {
 pub(super) struct Ground<'a> {
     pub layout: &'a BevLayout,
     pub chains: &'a [Chain],
+    pub near: &'a Near,
     pub zones: &'a mut Zones,
     pub left_hand: bool,
 }
@@ -79,11 +89,16 @@ pub(super) struct Ground<'a> {
 /// `next_id` on, junctions those behind.
 pub(super) fn connect(ground: &mut Ground<'_>, bundled: &Bundled, roads: &mut Vec<Road>, next_id: u32) -> Vec<Junction> {
     let gates = gates(ground, bundled, roads);
+    let forks = Forks::find(ground);
     let mut id = next_id;
     let mut junctions = Vec::new();
     for gates in gates.values() {
-        let mut ways = through(ground, gates);
-        turns(ground, gates, &mut ways);
+        let (mut ways, forked) = through(ground, &forks, gates);
+        if !forked {
+            // A layout that has its turns needs no others.
+            turns(ground, gates, &mut ways);
+        }
+        left_alone(ground, gates, &mut ways);
         let mut connections = Vec::new();
         for way in ways {
             let Some(mut road) = connecting(ground, &way) else {
@@ -203,47 +218,136 @@ struct Way {
     points_m: Vec<DVec2>,
 }
 
-/// Ways along lanes that lead through.
-fn through(ground: &Ground<'_>, gates: &Gates) -> Vec<Way> {
-    let mut out = Vec::new();
-    for from in &gates.inward {
-        let chain = &ground.chains[from.chain];
-        for by in [1, -1] {
-            // A lane that is driven both ways is followed from either end.
-            let ahead = DVec2::from_angle(from.contact.heading_rad);
-            let fits = by == 1 || from.two_way;
-            if !fits || chain.direction(from.k).dot(ahead) * f64::from(by) < 0.0 {
+/// Where lanes begin beside others and where they end beside others, in zones.
+struct Forks {
+    /// Lanes that begin beside a sample.
+    begin: HashMap<(usize, usize), Vec<usize>>,
+    /// The sample beside the end of a lane.
+    end: HashMap<usize, (usize, usize)>,
+}
+
+impl Forks {
+    fn find(ground: &Ground<'_>) -> Self {
+        let mut out = Self {
+            begin: HashMap::new(),
+            end: HashMap::new(),
+        };
+        for (i, chain) in ground.chains.iter().enumerate() {
+            if chain.closed || chain.two_way {
                 continue;
             }
-            let mut points = vec![from.contact.at_m];
-            let mut k = from.k;
-            while let Some(next) = chain.step(k, by as isize) {
-                k = next;
-                let to = gates.outward.iter().find(|d| d.chain == from.chain && d.k == k);
-                if let Some(to) = to.filter(|to| to.arm() != from.arm()) {
-                    points.push(to.contact.at_m);
+            // The other lane passes by: it does not begin or end there itself.
+            let passes = |s: &Sample, begins: bool| {
+                let other = &ground.chains[s.chain];
+                other.closed || if begins { s.k >= 2 } else { s.k + 2 < other.len() }
+            };
+            let beside = |k: usize, begins: bool| {
+                let direction = chain.direction(k);
+                let zone = ground.zones.of(i, k)?;
+                let fits = |s: &&Sample| {
+                    s.chain != i
+                        && passes(s, begins)
+                        && s.direction.dot(direction) > ALIKE_COSINE
+                        && ground.zones.of(s.chain, s.k) == Some(zone)
+                };
+                let at_m = chain.points_m[k];
+                let all = ground.near.within(at_m, BESIDE_M).filter(fits);
+                let nearest = all.min_by(|a, b| {
+                    let [a, b] = [a, b].map(|s| s.at_m.distance_squared(at_m));
+                    a.total_cmp(&b)
+                });
+                nearest.map(|s| (s.chain, s.k))
+            };
+            if let Some(host) = beside(0, true) {
+                out.begin.entry(host).or_default().push(i);
+            }
+            if let Some(host) = beside(chain.len() - 1, false) {
+                out.end.insert(i, host);
+            }
+        }
+        out
+    }
+}
+
+/// A walk along lanes of a zone.
+#[derive(Clone)]
+struct Walk {
+    chain: usize,
+    k: usize,
+    points_m: Vec<DVec2>,
+    changes: usize,
+}
+
+/// Ways along lanes that lead through, also over lanes that fork off and join; true if any does.
+fn through(ground: &Ground<'_>, forks: &Forks, gates: &Gates) -> (Vec<Way>, bool) {
+    let mut out: Vec<Way> = Vec::new();
+    let mut forked = false;
+    for from in &gates.inward {
+        let chain = &ground.chains[from.chain];
+        let ahead = DVec2::from_angle(from.contact.heading_rad);
+        // A lane that is driven both ways is followed from either end.
+        let by = if chain.direction(from.k).dot(ahead) < 0.0 { -1 } else { 1 };
+        if by < 0 && !from.two_way {
+            continue;
+        }
+        let mut open = vec![Walk {
+            chain: from.chain,
+            k: from.k,
+            points_m: vec![from.contact.at_m],
+            changes: 0,
+        }];
+        let mut walks = 0;
+        while let Some(mut walk) = open.pop() {
+            walks += 1;
+            for _ in 0..LONGEST_WALK {
+                let chain = &ground.chains[walk.chain];
+                if walk.changes < MOST_CHANGES && walks < MOST_WALKS && by > 0 {
+                    for other in forks.begin.get(&(walk.chain, walk.k)).into_iter().flatten() {
+                        let mut fork = walk.clone();
+                        (fork.chain, fork.k) = (*other, 0);
+                        fork.changes += 1;
+                        open.push(fork);
+                    }
+                }
+                let next = match chain.step(walk.k, by) {
+                    Some(next) => (walk.chain, next),
+                    None => match forks.end.get(&walk.chain) {
+                        Some(host) if walk.changes < MOST_CHANGES => {
+                            walk.changes += 1;
+                            *host
+                        }
+                        _ => break,
+                    },
+                };
+                (walk.chain, walk.k) = next;
+                let is_here = |d: &&Door| (d.chain, d.k) == next && d.arm() != from.arm();
+                if let Some(to) = gates.outward.iter().find(is_here) {
+                    let mut points_m = walk.points_m;
+                    points_m.push(to.contact.at_m);
+                    forked |= walk.changes > 0;
                     out.push(Way {
                         from: *from,
                         to: *to,
-                        points_m: points,
+                        points_m,
                     });
                     break;
                 }
-                points.push(chain.points_m[k]);
-                if k == from.k || points.len() > chain.len() {
+                if next == (from.chain, from.k) {
                     break;
                 }
+                walk.points_m.push(ground.chains[next.0].points_m[next.1]);
             }
         }
     }
-    out.retain(|way| is_apart(way));
-    // Both ways of a lane that is driven both ways are one road.
+    out.retain(is_apart);
+    // The shortest way between two lanes; both ways of a lane that is driven both ways are one road.
+    out.sort_by_key(|way| way.points_m.len());
     let mut seen = BTreeSet::new();
     out.retain(|way| {
         let [a, b] = [way.from, way.to].map(|d| (d.road, d.at_end, d.contact.lane));
-        !way.from.two_way || seen.insert([a.min(b), a.max(b)])
+        seen.insert(if way.from.two_way { [a.min(b), a.max(b)] } else { [a, b] })
     });
-    out
+    (out, forked)
 }
 
 fn is_apart(way: &Way) -> bool {
@@ -290,6 +394,35 @@ fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
         }
     }
     ways.extend(found.into_iter().filter(is_apart));
+}
+
+/// Lanes that no way begins or ends at get the straightest one that can be driven.
+fn left_alone(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
+    let same = |a: &Door, b: &Door| (a.arm(), a.contact.lane) == (b.arm(), b.contact.lane);
+    for from in &gates.inward {
+        if !ways.iter().any(|w| same(&w.from, from)) {
+            ways.extend(straightest(ground, gates.outward.iter().map(|to| (*from, *to))));
+        }
+    }
+    for to in &gates.outward {
+        if !ways.iter().any(|w| same(&w.to, to)) {
+            ways.extend(straightest(ground, gates.inward.iter().map(|from| (*from, *to))));
+        }
+    }
+}
+
+fn straightest(ground: &Ground<'_>, pairs: impl Iterator<Item = (Door, Door)>) -> Option<Way> {
+    let turn = |(from, to): &(Door, Door)| {
+        let turn = wrapped(to.contact.heading_rad - from.contact.heading_rad).abs();
+        turn + 0.01 * from.contact.at_m.distance(to.contact.at_m)
+    };
+    let mut pairs: Vec<(Door, Door)> = pairs.filter(|(from, to)| from.arm() != to.arm()).collect();
+    pairs.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
+    let way = pairs.into_iter().find_map(|(from, to)| {
+        let points_m = curve(from.contact, to.contact).filter(|points| is_drivable(ground, points))?;
+        Some(Way { from, to, points_m })
+    });
+    way.filter(is_apart)
 }
 
 /// True if an arm is a lane that is driven both ways: a way through it counts for both directions.

@@ -8,6 +8,7 @@ mod bundles;
 mod chains;
 mod connect;
 pub(super) mod fit;
+mod middles;
 mod on_road;
 mod profile;
 mod roads;
@@ -24,6 +25,9 @@ use scene::distance::nearest_source;
 use scene::BevLayout;
 pub(crate) use xml::escaped;
 use zones::Zones;
+
+/// Ground beside a way of one lane that is still its own, m.
+const VERGE_M: f64 = 0.6;
 
 /// What a file holds besides Sceneloom's own rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,16 +73,23 @@ pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String 
 
 /// Roads and junctions of a layout.
 fn network(layout: &BevLayout) -> (Vec<Road>, Vec<Junction>) {
-    let chains = chains::of_layout(layout);
-    let near = Near::new(&chains);
-    let mut zones = Zones::find(&chains, &near);
-    let bundled = bundles::bundled(layout, &chains, &near, &mut zones);
+    let mut chains = chains::of_layout(layout);
+    let mut near = Near::new(&chains);
+    let mut found = grouped(layout, &chains, &near);
+    let painted = middles::lanes(layout, &near, is_left_hand(&found.1));
+    if !painted.is_empty() {
+        chains.extend(painted);
+        near = Near::new(&chains);
+        found = grouped(layout, &chains, &near);
+    }
+    let (mut zones, bundled) = found;
     let left_hand = is_left_hand(&bundled);
-    let mut roads = of_bundles(layout, &chains, &zones, &bundled, left_hand);
+    let mut roads = of_bundles(layout, &chains, &near, &bundled, left_hand);
     let next_id = roads.len() as u32 + 1;
     let mut ground = Ground {
         layout,
         chains: &chains,
+        near: &near,
         zones: &mut zones,
         left_hand,
     };
@@ -86,17 +97,23 @@ fn network(layout: &BevLayout) -> (Vec<Road>, Vec<Junction>) {
     (roads, junctions)
 }
 
+fn grouped(layout: &BevLayout, chains: &[Chain], near: &Near) -> (Zones, Bundled) {
+    let mut zones = Zones::find(layout.extent(), chains, near);
+    let bundled = bundles::bundled(layout, chains, near, &mut zones);
+    (zones, bundled)
+}
+
 /// One road for each bundle, with the ids from 1 on.
 fn of_bundles(
     layout: &BevLayout,
     chains: &[Chain],
-    zones: &Zones,
+    near: &Near,
     bundled: &Bundled,
     left_hand: bool,
 ) -> Vec<Road> {
     let extent = layout.extent();
     let mut sample_in = vec![None; extent.columns()];
-    for (c, chain) in chains.iter().enumerate() {
+    for (c, chain) in chains.iter().enumerate().filter(|(_, chain)| !chain.two_way) {
         for (k, p) in chain.points_m.iter().enumerate() {
             if let Some([x, y]) = extent.column_at(p.x, p.y) {
                 sample_in[extent.index(x, y)] = Some((c, k));
@@ -106,8 +123,14 @@ fn of_bundles(
     let nearest = nearest_source(extent, |column| sample_in[column].is_some()).unwrap_or_default();
     let mut out = Vec::new();
     for (id, bundle) in bundled.bundles.iter().enumerate() {
-        // Ground is a road's where one of its lanes is the nearest, in a junction too.
+        let is_member = |chain: usize| bundle.members.iter().any(|m| m.chain == chain);
+        let first = &chains[bundle.chain];
+        // Ground is a road's where one of its lanes is the nearest, in a junction too. A way of one lane has its own width alone.
         let is_own = |p: glam::DVec2| {
+            if let Some(half_m) = first.half_m.filter(|_| first.two_way) {
+                let mut around = near.within(p, half_m + VERGE_M);
+                return around.any(|s| is_member(s.chain));
+            }
             let Some([x, y]) = extent.column_at(p.x, p.y) else {
                 return false;
             };
@@ -115,10 +138,9 @@ fn of_bundles(
             let Some((chain, k)) = source.flatten() else {
                 return true;
             };
-            let is_member = || bundle.members.iter().any(|m| m.chain == chain);
             match bundled.owner[chain][k] {
                 Some(owner) if owner != usize::MAX => owner == id,
-                _ => zones.of(chain, k).is_some() && is_member() || is_member(),
+                _ => is_member(chain),
             }
         };
         if let Some(mut road) = Road::of_bundle(layout, chains, bundle, left_hand, is_own) {

@@ -56,7 +56,7 @@ fn nearest(roads: &[Road], p: DVec2) -> Option<Place> {
 }
 
 /// An object with an outline, at its middle. `kind` are its attributes and `outline` those of the outline.
-fn add_outline(roads: &mut [Road], id: &str, kind: &str, outline: &str, points: &[DVec2]) {
+fn add_outline(roads: &mut [Road], id: &str, kind: &str, outline: &str, points: &[DVec2], inner: &str) {
     let middle = points.iter().sum::<DVec2>() / points.len() as f64;
     let Some(place) = nearest(roads, middle) else { return };
     let road = &mut roads[place.road];
@@ -67,9 +67,10 @@ fn add_outline(roads: &mut [Road], id: &str, kind: &str, outline: &str, points: 
     let low = local.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let high = local.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
     let size = (high - low).max(DVec2::splat(0.01));
+    // One outline without a list around it, as in OpenDRIVE 1.4: 1.8 allows it, and more readers know it.
     let mut text = format!(
         "      <object id=\"{id}\" {kind} s=\"{}\" t=\"{}\" zOffset=\"0\" hdg=\"0\" orientation=\"none\" length=\"{}\" \
-         width=\"{}\" height=\"0\">\n        <outlines>\n          <outline id=\"0\" closed=\"true\" outer=\"true\"{outline}>\n",
+         width=\"{}\" height=\"0\">\n        <outline id=\"0\" closed=\"true\" outer=\"true\"{outline}>\n",
         number(place.s_m),
         number(place.t_m),
         number(size.x),
@@ -78,12 +79,12 @@ fn add_outline(roads: &mut [Road], id: &str, kind: &str, outline: &str, points: 
     for (i, p) in local.iter().enumerate() {
         let _ = writeln!(
             text,
-            "            <cornerLocal id=\"{i}\" u=\"{}\" v=\"{}\" z=\"0\" height=\"0\"/>",
+            "          <cornerLocal id=\"{i}\" u=\"{}\" v=\"{}\" z=\"0\" height=\"0\"/>",
             number(p.x),
             number(p.y)
         );
     }
-    text.push_str("          </outline>\n        </outlines>\n      </object>\n");
+    let _ = writeln!(text, "        </outline>{inner}\n      </object>");
     road.objects.push(text);
 }
 
@@ -101,7 +102,14 @@ pub(super) fn crossings(roads: &mut [Road], layout: &BevLayout) {
     }
     all.extend(outlines(extent, |c| open[c]));
     for (i, points) in all.iter().enumerate() {
-        add_outline(roads, &format!("crossing{i}"), "type=\"crosswalk\" name=\"crosswalk\"", "", points);
+        add_outline(
+            roads,
+            &format!("crossing{i}"),
+            "type=\"crosswalk\" name=\"crosswalk\"",
+            "",
+            points,
+            "",
+        );
     }
 }
 
@@ -150,7 +158,7 @@ pub(super) fn stop_lines(roads: &mut [Road], layout: &BevLayout) {
 pub(super) fn areas(roads: &mut [Road], layout: &BevLayout, found: &BevLayout) {
     let kinds = [
         (BevLayer::DrivableArea, "driving", "roadSurface"),
-        (BevLayer::CarparkArea, "parking", "roadSurface"),
+        (BevLayer::CarparkArea, "parking", "parkingSpace"),
         (BevLayer::Walkway, "sidewalk", "roadSurface"),
     ];
     let carpark = BevLayer::CarparkArea.bit();
@@ -165,7 +173,11 @@ pub(super) fn areas(roads: &mut [Road], layout: &BevLayout, found: &BevLayout) {
         for (i, points) in outlines(layout.extent(), missing).iter().enumerate() {
             let attributes = format!("type=\"{kind}\" name=\"{}\"", layer.name());
             let outline = format!(" laneType=\"{lane}\"");
-            add_outline(roads, &format!("{lane}{i}"), &attributes, &outline, points);
+            let inner = match bit == carpark {
+                true => "\n        <parkingSpace access=\"all\"/>",
+                false => "",
+            };
+            add_outline(roads, &format!("{lane}{i}"), &attributes, &outline, points, inner);
         }
     }
 }

@@ -11,6 +11,8 @@ pub(super) struct Record {
     pub k: [f64; 4],
 }
 
+/// Pieces whose slopes differ by less are one.
+const SAME_SLOPE: f64 = 2e-6;
 /// Heights are kept to this, m.
 const HEIGHT_M: f64 = 0.01;
 /// Tilts are kept to this, and smaller ones are none, rad.
@@ -37,7 +39,15 @@ pub(super) fn straight(s_m: &[f64], values: &[f64], near: f64) -> Vec<Record> {
             k: [values[from], slope, 0.0, 0.0],
         }
     });
-    pieces.collect()
+    let mut out: Vec<Record> = Vec::new();
+    for piece in pieces {
+        // One that goes on as the last one does is no other.
+        let same = |last: &Record| (last.k[1] - piece.k[1]).abs() < SAME_SLOPE;
+        if !out.last().is_some_and(same) {
+            out.push(piece);
+        }
+    }
+    out
 }
 
 /// Heights of the ground under the reference line of a road; none where all of it is at 0.

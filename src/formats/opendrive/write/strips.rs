@@ -7,7 +7,7 @@ use super::chains::{Surface, surface};
 use scene::BevLayout;
 
 /// Paved ground belongs to a road up to this far from its lanes, m.
-const PAVED_M: f64 = 6.0;
+const PAVED_M: f64 = 10.0;
 /// A car park as far beyond that, m.
 const CARPARK_M: f64 = 8.0;
 /// A walkway begins at most this far from the paved ground, m.
@@ -16,8 +16,8 @@ const VERGE_M: f64 = 3.0;
 const WALKWAY_M: f64 = 8.0;
 /// Distance between two looks at the ground, m.
 const LOOK_M: f64 = 0.1;
-/// A strip that is nowhere wider is none, m.
-const NARROWEST_M: f64 = 0.25;
+/// A strip that is nowhere wider is none, m: it holds no centre of a cell.
+const NARROWEST_M: f64 = 0.15;
 /// Widths are medians over so many stations to both sides: cells leave steps where a road runs at a slant.
 const AROUND: usize = 3;
 

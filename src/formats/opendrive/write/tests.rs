@@ -80,7 +80,7 @@ fn measure() {
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("a folder")
         .map(|e| e.expect("an entry").path())
-        .filter(|p| p.extension().is_some_and(|e| e == "loom"))
+        .filter(|p| p.extension().is_some_and(|e| e == "loom" || e == "xodr"))
         .collect();
     files.sort();
     let only = std::env::var("SCENELOOM_ONLY").unwrap_or_default();
@@ -91,8 +91,16 @@ fn measure() {
         if !name.contains(&only) {
             continue;
         }
-        let scene = loom::from_bytes(&std::fs::read(path).expect("read")).expect("a scene");
-        let layout = &scene.canvas().layout;
+        let bytes = std::fs::read(path).expect("read");
+        let layout = match loom::from_bytes(&bytes) {
+            Ok(scene) => scene.canvas().layout.clone(),
+            Err(_) => {
+                let network = crate::opendrive::read(&bytes).expect("roads");
+                let (at_m, heading_rad) = network.suggest_pose();
+                network.to_layout(at_m, heading_rad).layout
+            }
+        };
+        let layout = &layout;
         let own = read_back(layout, Detail::Rows);
         equal += usize::from(own.is_own && own.layout == *layout);
         let both = [Detail::Roads, Detail::Areas].map(|detail| {

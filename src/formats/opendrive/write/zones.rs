@@ -1,6 +1,9 @@
 //! Where lanes cross, meet or part: zones that become junctions. Every sample of every chain is free or in one zone.
 
+use glam::DVec2;
+
 use super::chains::{Chain, Near, STEP_M};
+use scene::Extent;
 
 /// Lanes that run along each other are in one another's way when they are closer, m.
 const ALONG_M: f64 = 1.7;
@@ -56,14 +59,15 @@ impl Zones {
         }
     }
 
-    /// Where the lanes are in one another's way.
-    pub fn find(chains: &[Chain], near: &Near) -> Self {
+    /// Where the lanes are in one another's way, on the map: beyond it they only go straight on.
+    pub fn find(extent: Extent, chains: &[Chain], near: &Near) -> Self {
         let mut zones = Self::none(chains);
+        let beyond = |p: DVec2| extent.column_at(p.x, p.y).is_none();
         for (i, chain) in chains.iter().enumerate() {
             for (k, p) in chain.points_m.iter().enumerate() {
                 let direction = chain.direction(k);
                 for other in near.within(*p, CROSSING_M) {
-                    if (other.chain, other.k) <= (i, k) {
+                    if (other.chain, other.k) <= (i, k) || beyond(*p) && beyond(other.at_m) {
                         continue;
                     }
                     let apart = other.k.abs_diff(k);
@@ -94,11 +98,6 @@ impl Zones {
     pub fn of(&self, chain: usize, k: usize) -> Option<usize> {
         let label = self.label[chain][k];
         (label != FREE).then(|| self.root(label) as usize)
-    }
-
-    /// Number of labels; a zone's is below it.
-    pub fn count(&self) -> usize {
-        self.parent.len()
     }
 
     fn root(&self, mut label: u32) -> u32 {
@@ -226,8 +225,6 @@ pub(super) fn runs(of: &Chain, chain: usize, holds: impl Fn(usize) -> bool) -> V
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
 
     fn straight(from: [f64; 2], to: [f64; 2]) -> Chain {
@@ -235,7 +232,7 @@ mod tests {
     }
 
     fn zones(chains: &[Chain]) -> Zones {
-        Zones::find(chains, &Near::new(chains))
+        Zones::find(Extent::WINDOW, chains, &Near::new(chains))
     }
 
     #[test]
