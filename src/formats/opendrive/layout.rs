@@ -211,7 +211,10 @@ impl RoadNetwork {
         if let Some(own) = own {
             layout = own;
         } else if self.own.is_some() {
-            count(&mut skipped, "sceneloom's rows for another place or map (its roads are read)");
+            count(
+                &mut skipped,
+                "sceneloom's rows for another place or map (its roads are read)",
+            );
         }
         let of_kind = |kind| layout.polylines.iter().filter(|l| l.kind == kind).count();
         let (lane_count, crossing_count) = (
@@ -244,7 +247,9 @@ impl RoadNetwork {
     /// The layout that Sceneloom wrote the file from, if it covers this map.
     fn own_layout(&self, extent: Extent, at_m: DVec2, heading_rad: f64) -> Option<BevLayout> {
         let whole = self.own_extent(at_m, heading_rad)?;
-        let covers = whole.overlap(&extent).is_some_and(|o| o.size == [extent.nx(), extent.ny()]);
+        let covers = whole
+            .overlap(&extent)
+            .is_some_and(|o| o.size == [extent.nx(), extent.ny()]);
         covers.then(|| self.own.as_ref().map(|own| own.layout().crop(extent)))?
     }
 }

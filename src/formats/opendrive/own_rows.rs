@@ -78,7 +78,9 @@ impl OwnLayout {
                 .collect();
             numbers.ok()?.try_into().ok()
         };
-        let (from, columns) = pair("from").zip(pair("columns")).ok_or("rows without an extent")?;
+        let (from, columns) = pair("from")
+            .zip(pair("columns"))
+            .ok_or("rows without an extent")?;
         let from = from.map(i32::try_from);
         let columns = columns.map(usize::try_from);
         let extent = match (from, columns) {
@@ -118,7 +120,9 @@ pub(super) fn write(layout: &BevLayout, roads: &str) -> String {
     pack(&mut out, "cells", extent, layout.cells(), |a, b| a == b);
     let relief = layout.relief.crop(extent);
     if let Some(heights) = relief.heights_m() {
-        pack(&mut out, "heights", extent, heights, |a, b| a.to_bits() == b.to_bits());
+        pack(&mut out, "heights", extent, heights, |a, b| {
+            a.to_bits() == b.to_bits()
+        });
     }
     for line in layout.polylines.iter() {
         let kind = KINDS.iter().find(|(_, kind)| *kind == line.kind);
@@ -146,7 +150,12 @@ fn pack<T: std::fmt::Display>(
     for rows in rows.chunk_by(equal) {
         let runs = rows[0].chunk_by(&same);
         let runs: Vec<String> = runs.map(|run| format!("{}*{}", run[0], run.len())).collect();
-        let _ = writeln!(out, "    <{name} rows=\"{}\">{}</{name}>", rows.len(), runs.join(" "));
+        let _ = writeln!(
+            out,
+            "    <{name} rows=\"{}\">{}</{name}>",
+            rows.len(),
+            runs.join(" ")
+        );
     }
 }
 
@@ -204,7 +213,10 @@ fn line(node: Node<'_, '_>) -> Option<Polyline> {
     let name = node.attribute("kind")?;
     let (_, kind) = KINDS.iter().find(|(known, _)| *known == name)?;
     let text = node.text().unwrap_or_default();
-    let numbers = text.split(' ').filter(|n| !n.is_empty()).map(|n| n.parse::<f64>());
+    let numbers = text
+        .split(' ')
+        .filter(|n| !n.is_empty())
+        .map(|n| n.parse::<f64>());
     let numbers: Vec<f64> = numbers.collect::<Result<_, _>>().ok()?;
     let points = numbers.chunks(2).map(|p| match p {
         [x, y] if x.is_finite() && y.is_finite() => Some(DVec2::new(*x, *y)),

@@ -6,11 +6,11 @@ use glam::DVec2;
 use roxmltree::Node;
 
 use super::geometry::{Geometry, MAX_COORDINATE_M, MAX_LENGTH_M, ReferenceLine, Shape};
+use super::own_rows::{self, OwnLayout};
 use super::xml::{
     OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
     named, number, parse_document, shown,
 };
-use super::own_rows::{self, OwnLayout};
 use super::{Junction, Road, RoadEnd, RoadNetwork, parse_elevation, parse_lanes, parse_objects};
 
 /// Reads the bytes of an `.xodr` file. Nothing of the file is dropped without being counted in
@@ -37,7 +37,9 @@ pub fn read(bytes: &[u8]) -> Result<RoadNetwork> {
             "junction" => network.junctions.push(junction(node, skipped)),
             "userData" if node.attribute("code") == Some(own_rows::CODE) => {
                 // The rows hold for the roads that stand before them.
-                let roads = text.find("<road ").and_then(|from| text.get(from..node.range().start));
+                let roads = text
+                    .find("<road ")
+                    .and_then(|from| text.get(from..node.range().start));
                 let roads = roads.unwrap_or_default().trim_end_matches(' ');
                 match OwnLayout::read(node, roads) {
                     Ok(own) => network.own = Some(Arc::new(own)),

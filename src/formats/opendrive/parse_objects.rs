@@ -68,7 +68,9 @@ fn ground(node: Node<'_, '_>) -> Option<Ground> {
 
 /// Outlines in their list and, as in OpenDRIVE 1.4, without one.
 fn outlines<'a, 'i: 'a>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
-    let listed = child(node, "outlines").into_iter().flat_map(|list| named(list, "outline"));
+    let listed = child(node, "outlines")
+        .into_iter()
+        .flat_map(|list| named(list, "outline"));
     listed.chain(named(node, "outline"))
 }
 

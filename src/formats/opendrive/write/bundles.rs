@@ -188,7 +188,10 @@ impl Pass<'_> {
     fn bundle(&mut self, chain: usize, mut samples: Vec<usize>) {
         let mut others: BTreeMap<usize, Member> = BTreeMap::new();
         for (i, k) in samples.iter().enumerate() {
-            for hit in [1.0, -1.0].iter().flat_map(|side| self.neighbours(chain, *k, *side)) {
+            for hit in [1.0, -1.0]
+                .iter()
+                .flat_map(|side| self.neighbours(chain, *k, *side))
+            {
                 let member = others.entry(hit.chain).or_insert_with(|| Member {
                     chain: hit.chain,
                     along: hit.along,
@@ -310,13 +313,18 @@ impl Pass<'_> {
         let (mut from, mut to) = (i.saturating_sub(PART), (i + PART).min(n - 1));
         let mut out = Vec::new();
         if ahead && n - i < RAGGED {
-            if let Some(k) = chain.step(samples[n - 1], 1).filter(|k| self.zones.of(own, *k).is_some()) {
+            if let Some(k) = chain
+                .step(samples[n - 1], 1)
+                .filter(|k| self.zones.of(own, *k).is_some())
+            {
                 (from, to) = (i, n - 1);
                 out.push((own, k));
             }
         } else if !ahead
             && i < RAGGED
-            && let Some(k) = chain.step(samples[0], -1).filter(|k| self.zones.of(own, *k).is_some())
+            && let Some(k) = chain
+                .step(samples[0], -1)
+                .filter(|k| self.zones.of(own, *k).is_some())
         {
             (from, to) = (0, i);
             out.push((own, k));
@@ -358,7 +366,10 @@ impl Pass<'_> {
             for run in runs(chain, i, |k| self.is_open(i, k)) {
                 let last = (run.from + run.len - 1) % chain.len();
                 let ends = [chain.step(run.from, -1), chain.step(last, 1)];
-                let zone = ends.into_iter().flatten().find(|k| self.zones.of(i, *k).is_some());
+                let zone = ends
+                    .into_iter()
+                    .flatten()
+                    .find(|k| self.zones.of(i, *k).is_some());
                 if let Some(zone) = zone.filter(|_| run.len < RAGGED) {
                     let mut cut: Vec<(usize, usize)> = run.samples(chain).map(|k| (i, k)).collect();
                     cut.push((i, zone));
@@ -383,7 +394,11 @@ impl Pass<'_> {
     fn around(&self, bundle: usize, chain: usize, k: usize) -> Vec<(usize, usize)> {
         let bundle = &self.bundles[bundle];
         let member = bundle.members.iter().find(|m| m.chain == chain);
-        let at = member.and_then(|m| m.beside.iter().position(|b| b.is_some_and(|b| b.0.abs_diff(k) <= 1)));
+        let at = member.and_then(|m| {
+            m.beside
+                .iter()
+                .position(|b| b.is_some_and(|b| b.0.abs_diff(k) <= 1))
+        });
         let Some(at) = at else {
             return vec![(chain, k)];
         };

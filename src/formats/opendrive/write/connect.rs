@@ -8,7 +8,7 @@ use super::bundles::Bundled;
 use super::chains::{Chain, Near, STEP_M, Sample, Surface, surface};
 use super::fit::{reference, wrapped};
 use super::roads::{Contact, End, Road, placed};
-use super::strips::{Station, Strip, Strips};
+use super::strips::{PAVED_IN_JUNCTION_M, Station, Strip, Strips};
 use super::zones::Zones;
 use scene::BevLayout;
 use scene::road_map::resampled;
@@ -87,7 +87,12 @@ pub(super) struct Ground<'a> {
 
 /// Adds connecting roads and answers the junctions. Roads are those of the bundles, with ids; new ones get the ids from
 /// `next_id` on, junctions those behind.
-pub(super) fn connect(ground: &mut Ground<'_>, bundled: &Bundled, roads: &mut Vec<Road>, next_id: u32) -> Vec<Junction> {
+pub(super) fn connect(
+    ground: &mut Ground<'_>,
+    bundled: &Bundled,
+    roads: &mut Vec<Road>,
+    next_id: u32,
+) -> Vec<Junction> {
     let gates = gates(ground, bundled, roads);
     let forks = Forks::find(ground);
     let mut id = next_id;
@@ -104,7 +109,11 @@ pub(super) fn connect(ground: &mut Ground<'_>, bundled: &Bundled, roads: &mut Ve
             let Some(mut road) = connecting(ground, &way) else {
                 continue;
             };
-            let lane = road.strips.kinds.iter().position(|k| matches!(k, Strip::Lane { .. }));
+            let lane = road
+                .strips
+                .kinds
+                .iter()
+                .position(|k| matches!(k, Strip::Lane { .. }));
             let Some(lane) = lane else { continue };
             road.id = id;
             id += 1;
@@ -190,7 +199,9 @@ fn gates(ground: &mut Ground<'_>, bundled: &Bundled, roads: &[Road]) -> BTreeMap
     }
     let mut out: BTreeMap<usize, Gates> = BTreeMap::new();
     for (door, inward, chain, k) in doors {
-        let Some(zone) = ground.zones.of(chain, k) else { continue };
+        let Some(zone) = ground.zones.of(chain, k) else {
+            continue;
+        };
         let gates = out.entry(zone).or_default();
         let back = || {
             let mut back = door;
@@ -286,7 +297,11 @@ fn through(ground: &Ground<'_>, forks: &Forks, gates: &Gates) -> (Vec<Way>, bool
         let chain = &ground.chains[from.chain];
         let ahead = DVec2::from_angle(from.contact.heading_rad);
         // A lane that is driven both ways is followed from either end.
-        let by = if chain.direction(from.k).dot(ahead) < 0.0 { -1 } else { 1 };
+        let by = if chain.direction(from.k).dot(ahead) < 0.0 {
+            -1
+        } else {
+            1
+        };
         if by < 0 && !from.two_way {
             continue;
         }
@@ -345,7 +360,11 @@ fn through(ground: &Ground<'_>, forks: &Forks, gates: &Gates) -> (Vec<Way>, bool
     let mut seen = BTreeSet::new();
     out.retain(|way| {
         let [a, b] = [way.from, way.to].map(|d| (d.road, d.at_end, d.contact.lane));
-        seen.insert(if way.from.two_way { [a.min(b), a.max(b)] } else { [a, b] })
+        seen.insert(if way.from.two_way {
+            [a.min(b), a.max(b)]
+        } else {
+            [a, b]
+        })
     });
     (out, forked)
 }
@@ -372,7 +391,8 @@ fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
     let mut found = Vec::new();
     for from in arms(&gates.inward) {
         for to in arms(&gates.outward) {
-            if from == to || joined.contains(&(from, to)) || joined.contains(&(to, from)) && both(gates, from) {
+            if from == to || joined.contains(&(from, to)) || joined.contains(&(to, from)) && both(gates, from)
+            {
                 continue;
             }
             let (inward, outward) = (of(&gates.inward, from), of(&gates.outward, to));
@@ -478,7 +498,11 @@ fn is_drivable(ground: &Ground<'_>, points: &[DVec2]) -> bool {
 fn around(ground: &Ground<'_>, from: Door, to: Door) -> Option<Vec<DVec2>> {
     let first = ground.chains[from.chain].step(from.k, 1).unwrap_or(from.k);
     let zone = (0..NEAR_ZONE as isize)
-        .filter_map(|n| ground.zones.of(from.chain, ground.chains[from.chain].step(first, n)?))
+        .filter_map(|n| {
+            ground
+                .zones
+                .of(from.chain, ground.chains[from.chain].step(first, n)?)
+        })
         .next()?;
     let mut best: Option<(f64, Vec<DVec2>)> = None;
     for (c, chain) in ground.chains.iter().enumerate() {
@@ -506,14 +530,26 @@ fn around(ground: &Ground<'_>, from: Door, to: Door) -> Option<Vec<DVec2>> {
         for (a, first) in &onto {
             for (b, last) in &off {
                 let n = (b + chain.len() - a) % chain.len();
-                if n < 2 || n > chain.len() - 4 || !(0..n).all(|i| ground.zones.of(c, (a + i) % chain.len()) == Some(zone)) {
+                if n < 2
+                    || n > chain.len() - 4
+                    || !(0..n).all(|i| ground.zones.of(c, (a + i) % chain.len()) == Some(zone))
+                {
                     continue;
                 }
-                let [join_m, leave_m] = [first, last].map(|l| l.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>());
+                let [join_m, leave_m] =
+                    [first, last].map(|l| l.windows(2).map(|w| w[0].distance(w[1])).sum::<f64>());
                 let way_m = join_m + leave_m + n as f64 * STEP_M;
                 if best.as_ref().is_none_or(|(shortest, _)| way_m < *shortest) {
                     let ring = (1..n).map(|i| chain.points_m[(a + i) % chain.len()]);
-                    best = Some((way_m, first.iter().copied().chain(ring).chain(last.iter().copied()).collect()));
+                    best = Some((
+                        way_m,
+                        first
+                            .iter()
+                            .copied()
+                            .chain(ring)
+                            .chain(last.iter().copied())
+                            .collect(),
+                    ));
                 }
             }
         }
@@ -562,7 +598,7 @@ fn connecting(ground: &Ground<'_>, way: &Way) -> Option<Road> {
         ],
         center: usize::from(ground.left_hand),
     };
-    let mut strips = lane.with_sides(ground.layout, &stations, |_| true);
+    let mut strips = lane.with_sides(ground.layout, &stations, PAVED_IN_JUNCTION_M, |_| true);
     let (s_m, off_m) = placed(&reference, &line);
     strips.seen_from(|i| side * half(i) - off_m[i]);
     Some(Road {

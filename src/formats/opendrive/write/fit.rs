@@ -33,10 +33,16 @@ pub(in super::super) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) 
     let mut records: Vec<Geometry> = Vec::new();
     while let Some((from, to)) = stack.pop() {
         match line.record(from, to) {
-            Some(record) => {
-                let s_m = records.last().map_or(0.0, Geometry::end_s_m);
-                records.push(record.at_s(s_m));
-            }
+            Some(record) => match records.last().and_then(|last| one(last, &record)) {
+                Some(both) => {
+                    records.pop();
+                    records.push(both);
+                }
+                None => {
+                    let s_m = records.last().map_or(0.0, Geometry::end_s_m);
+                    records.push(record.at_s(s_m));
+                }
+            },
             None => {
                 let middle = usize::midpoint(from, to);
                 stack.push((middle, to));
@@ -45,6 +51,26 @@ pub(in super::super) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) 
         }
     }
     ReferenceLine::new(records)
+}
+
+/// Two straight records in one direction are one.
+fn one(last: &Geometry, next: &Geometry) -> Option<Geometry> {
+    let straight = |g: &Geometry| *g.shape() == Shape::Line;
+    let [a, b] = [last.at(0.0), next.at(next.length_m)];
+    let alike = straight(last)
+        && straight(next)
+        && wrapped(a.heading_rad - b.heading_rad).abs() < STRAIGHT_RAD / 10.0;
+    let chord = b.position_m - a.position_m;
+    let both = || {
+        Geometry::new(
+            last.s_m,
+            a.position_m,
+            chord.to_angle(),
+            chord.length(),
+            Shape::Line,
+        )
+    };
+    alike.then(both)?.ok()
 }
 
 /// Points with the way to each and the heading at each.
@@ -175,7 +201,8 @@ fn arc_length(u: &[f64; 4], v: &[f64; 4]) -> f64 {
     let half = 0.5 / PIECES as f64;
     let pieces = (0..PIECES).flat_map(|i| {
         let middle = (2 * i + 1) as f64 * half;
-        NODES.map(|(node, weight)| weight * rate(u, middle + half * node).hypot(rate(v, middle + half * node)))
+        NODES
+            .map(|(node, weight)| weight * rate(u, middle + half * node).hypot(rate(v, middle + half * node)))
     });
     pieces.sum::<f64>() * half
 }

@@ -45,7 +45,10 @@ pub(super) fn lanes(layout: &BevLayout, near: &Near, left_hand: bool) -> Vec<Cha
     if !open.contains(&true) {
         return Vec::new();
     }
-    let depth: Vec<f32> = signed_distance_m(extent, |c| open[c]).iter().map(|m| -m).collect();
+    let depth: Vec<f32> = signed_distance_m(extent, |c| open[c])
+        .iter()
+        .map(|m| -m)
+        .collect();
     let paved = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
     let whole = signed_distance_m(extent, |c| layout.cells()[c] & paved != 0);
     let whole: Vec<f32> = whole.iter().map(|m| -m).collect();
@@ -85,7 +88,16 @@ struct Line {
 }
 
 /// The eight neighbours, counter-clockwise.
-const AROUND: [(i64, i64); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
+const AROUND: [(i64, i64); 8] = [
+    (1, 0),
+    (1, 1),
+    (0, 1),
+    (-1, 1),
+    (-1, 0),
+    (-1, -1),
+    (0, -1),
+    (1, -1),
+];
 
 impl Skeleton<'_> {
     fn neighbour(&self, cell: usize, (dx, dy): (i64, i64)) -> Option<usize> {
@@ -211,7 +223,7 @@ impl Skeleton<'_> {
                 let branch = line.cells.iter().filter(|c| **c != fork);
                 branch.for_each(|c| self.set[*c] = false);
                 any = true;
-                        }
+            }
         }
         any
     }
@@ -230,9 +242,17 @@ fn of_line(layout: &BevLayout, near: &Near, depths: [&[f32]; 2], line: &Line, le
     let closed = line.cells.len() > 8 && line.cells[0] == line.cells[line.cells.len() - 1];
     // Free ends run into corners; the middle is read from where the ground is as wide as it mostly is.
     let wide = |c: &usize| f64::from(depth[*c]) >= 0.8 * half_m;
-    let first = if line.free[0] { line.cells.iter().position(wide).unwrap_or(0) } else { 0 };
+    let first = if line.free[0] {
+        line.cells.iter().position(wide).unwrap_or(0)
+    } else {
+        0
+    };
     let last = line.cells.len() - 1;
-    let last = if line.free[1] { line.cells.iter().rposition(wide).unwrap_or(last) } else { last };
+    let last = if line.free[1] {
+        line.cells.iter().rposition(wide).unwrap_or(last)
+    } else {
+        last
+    };
     let points = line.cells[first..=last.max(first)].iter().map(|c| {
         let [x, y] = extent.column(*c);
         extent.center(x, y, 0).truncate()
@@ -291,7 +311,10 @@ fn extend(layout: &BevLayout, near: &Near, points: &mut Vec<DVec2>, join: bool) 
     while reach_m < REACH_M {
         let p = end + ahead * (reach_m + 0.2);
         let paved = matches!(surface(layout, extent, p), Surface::Road | Surface::Carpark);
-        let met = near.within(p, if join { 1.0 } else { COVERED_M - 1.0 }).next().is_some();
+        let met = near
+            .within(p, if join { 1.0 } else { COVERED_M - 1.0 })
+            .next()
+            .is_some();
         if !paved || met {
             break;
         }

@@ -21,9 +21,8 @@ use bundles::Bundled;
 use chains::{Chain, Near};
 use connect::{Ground, Junction};
 use roads::Road;
-use scene::distance::nearest_source;
 use scene::BevLayout;
-pub(crate) use xml::escaped;
+use scene::distance::nearest_source;
 use zones::Zones;
 
 /// Ground beside a way of one lane that is still its own, m.
@@ -59,7 +58,9 @@ pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String 
         // What a reader makes of the roads shows what is missing.
         let text = format!("{header}{body}</OpenDRIVE>\n");
         if let Ok(read) = super::read(text.as_bytes()) {
-            let found = read.to_layout_over(layout.extent(), glam::DVec2::ZERO, 0.0).layout;
+            let found = read
+                .to_layout_over(layout.extent(), glam::DVec2::ZERO, 0.0)
+                .layout;
             on_road::areas(&mut roads, layout, &found);
             body = xml::network(&roads, &junctions, layout);
         }

@@ -30,7 +30,10 @@ fn nearest(roads: &[Road], p: DVec2) -> Option<Place> {
     for (r, road) in roads.iter().enumerate() {
         let far = |i: &usize| road.reference.at(road.s_m[*i]).position_m.distance_squared(p);
         let n = road.s_m.len();
-        let rough = (0..n).step_by(EVERY).chain([n - 1]).min_by(|a, b| far(a).total_cmp(&far(b)));
+        let rough = (0..n)
+            .step_by(EVERY)
+            .chain([n - 1])
+            .min_by(|a, b| far(a).total_cmp(&far(b)));
         let around = |i: usize| i.saturating_sub(EVERY)..(i + EVERY).min(n);
         let Some(i) = rough.and_then(|i| around(i).min_by(|a, b| far(a).total_cmp(&far(b)))) else {
             continue;
@@ -58,7 +61,9 @@ fn nearest(roads: &[Road], p: DVec2) -> Option<Place> {
 /// An object with an outline, at its middle. `kind` are its attributes and `outline` those of the outline.
 fn add_outline(roads: &mut [Road], id: &str, kind: &str, outline: &str, points: &[DVec2], inner: &str) {
     let middle = points.iter().sum::<DVec2>() / points.len() as f64;
-    let Some(place) = nearest(roads, middle) else { return };
+    let Some(place) = nearest(roads, middle) else {
+        return;
+    };
     let road = &mut roads[place.road];
     let base = road.reference.at(place.s_m);
     let origin = base.offset(place.t_m);
@@ -94,7 +99,11 @@ pub(super) fn crossings(roads: &mut [Road], layout: &BevLayout) {
     let bit = BevLayer::PedCrossing.bit();
     let mut open: Vec<bool> = layout.cells().iter().map(|c| c & bit != 0).collect();
     let mut all: Vec<Vec<DVec2>> = Vec::new();
-    for line in layout.polylines.iter().filter(|l| l.kind == PolylineKind::PedCrossing) {
+    for line in layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::PedCrossing)
+    {
         if line.points_m.len() >= 3 && line.points_m.iter().all(|p| p.is_finite()) {
             scene::raster::polygon_cells(extent, &line.points_m, |x, y| open[extent.index(x, y)] = false);
             all.push(line.points_m.clone());
@@ -115,7 +124,10 @@ pub(super) fn crossings(roads: &mut [Road], layout: &BevLayout) {
 
 /// Stop lines, as signals for the lanes that they lie across.
 pub(super) fn stop_lines(roads: &mut [Road], layout: &BevLayout) {
-    let lines = layout.polylines.iter().filter(|l| l.kind == PolylineKind::StopLine);
+    let lines = layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::StopLine);
     for (i, line) in lines.enumerate() {
         let (Some(a), Some(b)) = (line.points_m.first(), line.points_m.last()) else {
             continue;
@@ -128,7 +140,10 @@ pub(super) fn stop_lines(roads: &mut [Road], layout: &BevLayout) {
             continue;
         };
         let road = &mut roads[place.road];
-        let at = road.s_m.partition_point(|s| *s < place.s_m).min(road.s_m.len() - 1);
+        let at = road
+            .s_m
+            .partition_point(|s| *s < place.s_m)
+            .min(road.s_m.len() - 1);
         let strips = &road.strips;
         let away_m = |strip: &usize| {
             let [l, r] = [strip, &(strip + 1)].map(|b| strips.borders_m[*b][at]);
@@ -205,4 +220,3 @@ pub(super) fn nowhere(layout: &BevLayout) -> Road {
         signals: Vec::new(),
     }
 }
-

@@ -122,7 +122,10 @@ mod tests {
     #[test]
     fn few_pieces_stay_near_all_values() {
         let s: Vec<f64> = (0..100).map(f64::from).collect();
-        let v: Vec<f64> = s.iter().map(|s| if *s < 40.0 { 3.0 } else { 3.0 + 0.1 * (s - 40.0) }).collect();
+        let v: Vec<f64> = s
+            .iter()
+            .map(|s| if *s < 40.0 { 3.0 } else { 3.0 + 0.1 * (s - 40.0) })
+            .collect();
         let pieces = straight(&s, &v, 0.01);
         assert_eq!(pieces.len(), 2, "{pieces:?}");
         assert_eq!(pieces[1].s_m, 40.0);

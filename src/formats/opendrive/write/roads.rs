@@ -6,7 +6,7 @@ use super::super::geometry::ReferenceLine;
 use super::bundles::{Bundle, Member};
 use super::chains::{Chain, Surface, surface};
 use super::fit::reference;
-use super::strips::{Station, Strip, Strips, median};
+use super::strips::{PAVED_M, Station, Strip, Strips, median};
 use scene::BevLayout;
 
 /// Narrowest and widest half of a lane without neighbours, m.
@@ -118,9 +118,10 @@ impl Road {
         let shift_m = middle[middle.len() / 2];
         let line: Vec<DVec2> = stations.iter().map(|s| s.at_m + s.left * shift_m).collect();
         let reference = reference(&line, [None, None])?;
-        let mut strips = lanes.with_sides(layout, &stations, is_own);
+        let mut strips = lanes.with_sides(layout, &stations, PAVED_M, is_own);
         let (s_m, off_m) = placed(&reference, &line);
         strips.seen_from(|i| shift_m - off_m[i]);
+        strips.straighten();
         Some(Self {
             id: 0,
             junction: None,
@@ -191,7 +192,9 @@ fn lanes(
     let alone = alone_half_m(layout, &chains[bundle.chain], stations, is_own);
     let there = |i: usize| -> Vec<(usize, f64)> {
         let members = bundle.members.iter().enumerate();
-        members.filter_map(|(m, member)| Some((m, member.beside[i]?.1))).collect()
+        members
+            .filter_map(|(m, member)| Some((m, member.beside[i]?.1)))
+            .collect()
     };
     let all: Vec<Vec<(usize, f64)>> = (0..stations.len()).map(there).collect();
     let fair = all.iter().filter(|lanes| shared(lanes, 0.0).is_some()).count();
@@ -222,7 +225,10 @@ fn lanes(
     };
     for (m, member) in bundle.members.iter().enumerate() {
         if m > 0 {
-            let gap = edges[m - 1].iter().zip(&edges[m]).any(|(a, b)| a[1] - b[0] > SHARED_M);
+            let gap = edges[m - 1]
+                .iter()
+                .zip(&edges[m])
+                .any(|(a, b)| a[1] - b[0] > SHARED_M);
             if gap {
                 out.kinds.push(Strip::Between);
                 out.borders_m.push(edges[m].iter().map(|e| e[0]).collect());
@@ -299,9 +305,15 @@ fn shared(lanes: &[(usize, f64)], alone_m: f64) -> Option<Vec<[f64; 2]>> {
     let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
     let middle = |i: usize| (lanes[i - 1].1 + lanes[i].1) / 2.0;
     let inner = 1..lanes.len();
-    let free = inner.clone().map(|i| sign(i) * (middle(i) - constant[i])).sum::<f64>() / inner.len() as f64;
+    let free = inner
+        .clone()
+        .map(|i| sign(i) * (middle(i) - constant[i]))
+        .sum::<f64>()
+        / inner.len() as f64;
     let border = |i: usize| sign(i) * free + constant[i];
-    let near = inner.clone().all(|i| (border(i) - middle(i)).abs() < OFF_MIDDLE_M);
+    let near = inner
+        .clone()
+        .all(|i| (border(i) - middle(i)).abs() < OFF_MIDDLE_M);
     let wide = (0..lanes.len()).all(|i| (LANE_M[0]..=LANE_M[1]).contains(&(border(i) - border(i + 1))));
     (near && wide).then(|| (0..lanes.len()).map(|i| [border(i), border(i + 1)]).collect())
 }
@@ -349,7 +361,10 @@ mod tests {
         let parted = [(0, 9.5), (1, 6.0), (2, 0.0), (3, -3.5)];
         assert!(shared(&parted, 0.0).is_none());
         let borders = halves(&parted, 0.0);
-        assert_eq!(borders, [[11.25, 7.75], [7.75, 4.25], [1.75, -1.75], [-1.75, -5.25]]);
+        assert_eq!(
+            borders,
+            [[11.25, 7.75], [7.75, 4.25], [1.75, -1.75], [-1.75, -5.25]]
+        );
     }
 
     #[test]

@@ -25,14 +25,23 @@ fn iou(a: &BevLayout, b: &BevLayout, bits: u32) -> f64 {
         both += usize::from(a && b);
         either += usize::from(a || b);
     }
-    if either == 0 { 1.0 } else { both as f64 / either as f64 }
+    if either == 0 {
+        1.0
+    } else {
+        both as f64 / either as f64
+    }
 }
 
 fn lanes(layout: &BevLayout) -> Vec<Vec<DVec2>> {
     let extent = layout.extent();
     let corners = (extent.min_m().truncate(), extent.max_m().truncate());
-    let lines = layout.polylines.iter().filter(|l| l.kind == PolylineKind::LaneCenter);
-    lines.flat_map(|l| crate::opendrive::lines::clipped(&l.points_m, corners)).collect()
+    let lines = layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::LaneCenter);
+    lines
+        .flat_map(|l| crate::opendrive::lines::clipped(&l.points_m, corners))
+        .collect()
 }
 
 /// Share of the length of lines that lies within half a metre of others that run as they do.
@@ -113,7 +122,9 @@ fn measure() {
             figures(layout, &found.layout)
         });
         println!("{name}: {both:.3?}");
-        let kind = name.rsplit_once('-').map_or(name.clone(), |(kind, _)| kind.to_owned());
+        let kind = name
+            .rsplit_once('-')
+            .map_or(name.clone(), |(kind, _)| kind.to_owned());
         of_kind.entry(kind).or_default().push(both);
     }
     println!("{equal} of {} came back to the last bit", files.len());
@@ -183,3 +194,22 @@ fn picture(path: &std::path::Path, layout: &BevLayout, found: &BevLayout) {
 
 #[allow(dead_code)]
 fn unused(_: &Polyline) {}
+
+#[test]
+#[ignore = "to look at"]
+fn look() {
+    let bytes = std::fs::read("/work/shared/data/roads/opendrive/Town03.xodr").expect("read");
+    let network = crate::opendrive::read(&bytes).expect("roads");
+    let (at_m, heading_rad) = network.suggest_pose();
+    let layout = network.to_layout(at_m, heading_rad).layout;
+    let row = |l: &BevLayout| {
+        (60..140)
+            .map(|y| format!("{:x}", l.cell(60, y) & 0x1f))
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    println!("{}", row(&layout));
+    println!("{}", row(&read_back(&layout, Detail::Roads).layout));
+    let text = to_text("x", &layout, Detail::Roads);
+    println!("{}", &text[..3000]);
+}

@@ -183,7 +183,10 @@ fn lanes(out: &mut String, road: &Road, layout: &BevLayout) {
         records(out, "      ", "laneOffset", "s", &list, 0.0);
     }
     out.push_str("      <laneSection s=\"0\">\n");
-    let sides = [("left", 0..strips.center), ("right", strips.center..strips.kinds.len())];
+    let sides = [
+        ("left", 0..strips.center),
+        ("right", strips.center..strips.kinds.len()),
+    ];
     for (name, range) in sides {
         if name == "right" {
             out.push_str("        <center>\n          <lane id=\"0\" type=\"none\" level=\"false\">\n");
@@ -242,7 +245,11 @@ fn lane(out: &mut String, road: &Road, strip: usize, layout: &BevLayout) {
     let near = if is_lane { LANE_M } else { BESIDE_M };
     let list = straight(&road.s_m, &width, near);
     records(out, "            ", "width", "sOffset", &list, 0.0);
-    let outer = if strip < road.strips.center { strip } else { strip + 1 };
+    let outer = if strip < road.strips.center {
+        strip
+    } else {
+        strip + 1
+    };
     marks(out, road, outer, layout);
     out.push_str("          </lane>\n");
 }
@@ -316,7 +323,11 @@ fn paint(road: &Road, border: usize, layout: &BevLayout) -> Vec<(f64, &'static s
 }
 
 fn junction(out: &mut String, junction: &Junction) {
-    let _ = writeln!(out, "  <junction name=\"\" id=\"{}\" type=\"default\">", junction.id);
+    let _ = writeln!(
+        out,
+        "  <junction name=\"\" id=\"{}\" type=\"default\">",
+        junction.id
+    );
     for (i, c) in junction.connections.iter().enumerate() {
         let _ = writeln!(
             out,

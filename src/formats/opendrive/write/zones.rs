@@ -255,7 +255,10 @@ mod tests {
         assert_eq!(zones.free(&chains, 0).len(), 2);
         // Up to 3 m in the way, and a margin of 3 m.
         let first = zones.free(&chains, 0)[0];
-        assert!((first.len as f64 * STEP_M - (45.0 - 6.0)).abs() < 1.0, "{first:?}");
+        assert!(
+            (first.len as f64 * STEP_M - (45.0 - 6.0)).abs() < 1.0,
+            "{first:?}"
+        );
     }
 
     #[test]
