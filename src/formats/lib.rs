@@ -12,10 +12,12 @@ pub mod multi_plane;
 pub mod npz;
 pub mod occ3d;
 pub mod opendrive;
+pub mod openscenario;
 pub mod png;
 #[cfg(test)]
 mod table_tests;
 pub mod video;
+mod xml_text;
 
 pub use error::FormatError;
 

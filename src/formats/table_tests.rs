@@ -78,7 +78,7 @@ pub(crate) fn random_scene(seed: u64) -> Scene {
 }
 
 /// Products of two cameras of four pixels and a sweep of one point.
-struct Small;
+pub(crate) struct Small;
 
 impl Products for Small {
     fn show(&mut self, _time_s: f64) -> Result<(), FormatError> {

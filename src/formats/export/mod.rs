@@ -6,6 +6,8 @@ pub mod depth;
 pub mod loom;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod opendrive;
+pub mod openscenario;
 pub mod pictures;
 pub mod ply;
 pub mod semantic;
@@ -19,7 +21,7 @@ use scene::{BoxId, CameraMaps, LidarSweep, Scene};
 use super::{FormatError, Holds, png};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 8] = [
+const TABLE: [&Exporter; 10] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
@@ -28,6 +30,8 @@ const TABLE: [&Exporter; 8] = [
     &depth::EXPORTER,
     &pictures::EXPORTER,
     &view::EXPORTER,
+    &opendrive::EXPORTER,
+    &openscenario::EXPORTER,
 ];
 
 /// A format that is written.

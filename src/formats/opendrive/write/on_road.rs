@@ -8,7 +8,7 @@ use super::areas::outlines;
 use super::fit::reference;
 use super::roads::Road;
 use super::strips::{Strip, Strips};
-use super::xml::number;
+use crate::xml_text::number;
 use scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A stop line farther from a lane holds for nobody, m.

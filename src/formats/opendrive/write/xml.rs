@@ -7,6 +7,7 @@ use super::profile::{Record, elevation, straight, superelevation};
 use super::roads::{End, Road};
 use super::strips::Strip;
 use crate::opendrive::geometry::{Geometry, Shape};
+use crate::xml_text::{escaped, number};
 use scene::{BevLayer, BevLayout, Relief};
 
 /// Widths of lanes are kept to this, m.
@@ -19,33 +20,6 @@ const CENTER_M: f64 = 0.004;
 const PAINT_M: [f64; 5] = [0.0, -0.2, 0.2, -0.4, 0.4];
 /// A painted line, or a gap in one, is not shorter, m.
 const PAINT_RUN_M: f64 = 3.0;
-
-/// A number with at most nine decimals, none of them for show.
-pub(super) fn number(value: f64) -> String {
-    let text = format!("{value:.9}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    match text {
-        "-0" | "" => "0".into(),
-        text => text.into(),
-    }
-}
-
-/// Text as the value of an attribute.
-pub(crate) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            // Characters that XML 1.0 has no place for, and those that readers turn into blanks.
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
-}
 
 /// The header; bounds are those of the map, m.
 pub(super) fn header(name: &str, layout: &BevLayout) -> String {
