@@ -42,11 +42,19 @@ pub(super) fn write(out: &mut String, conditions: &Conditions) {
     if let Some(sun) = conditions.sun {
         // From north over east; x of the world frame is east.
         let azimuth = (90.0 - sun.azimuth_deg).rem_euclid(360.0).to_radians();
+        let elevation = sun.elevation_deg.to_radians();
+        // Lux: the sun from straight above under a clear sky, a seventh of it through clouds; the full moon.
+        let from_above = match (conditions.time, conditions.weather) {
+            (TimeOfDay::Night, _) => 0.25,
+            (_, Weather::Clear) => 100_000.0,
+            _ => 15_000.0,
+        };
         let _ = writeln!(
             out,
-            "                <Sun azimuth=\"{}\" elevation=\"{}\"/>",
+            "                <Sun azimuth=\"{}\" elevation=\"{}\" illuminance=\"{}\"/>",
             number(azimuth),
-            number(sun.elevation_deg.to_radians())
+            number(elevation),
+            number(from_above * elevation.sin())
         );
     }
     let _ = writeln!(
