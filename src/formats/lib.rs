@@ -7,6 +7,7 @@ pub mod error;
 pub mod export;
 pub mod import;
 pub mod input;
+mod lanelets;
 pub mod loom;
 pub mod multi_plane;
 pub mod npz;

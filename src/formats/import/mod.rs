@@ -3,6 +3,12 @@
 
 pub mod boxes;
 mod cloud;
+pub mod commonroad;
+#[cfg(test)]
+mod commonroad_tests;
+pub mod lanelet2;
+#[cfg(test)]
+mod lanelet2_tests;
 pub mod loom;
 pub mod occ3d;
 pub mod opendrive;
@@ -18,11 +24,13 @@ use super::opendrive::RoadNetwork;
 use super::{FormatError, Holds, input};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
-const TABLE: [&Importer; 5] = [
+const TABLE: [&Importer; 7] = [
     &loom::IMPORTER,
     &occ3d::IMPORTER,
     &pcd::IMPORTER,
     &boxes::IMPORTER,
+    &lanelet2::IMPORTER,
+    &commonroad::IMPORTER,
     &opendrive::IMPORTER,
 ];
 

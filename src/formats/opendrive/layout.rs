@@ -14,7 +14,7 @@ use super::relief;
 use super::sampling::{BUDGET, Row, walk};
 use super::things::Things;
 use super::xml::{Skipped, count};
-use super::{Road, RoadNetwork, tidy};
+use super::{Drawn, Road, RoadNetwork, tidy};
 use scene::raster::{draw_polyline, polygon_cells};
 use scene::{Background, BevLayer, BevLayout, Extent, Form, Polyline, PolylineKind, Window};
 
@@ -169,6 +169,7 @@ impl RoadNetwork {
                 road_count += usize::from(canvas.road(index, road, self.marks_known));
                 canvas.objects(index, road, &mut skipped);
             }
+            canvas.drawn(&self.drawn);
         } else {
             count(&mut skipped, "window at no finite place");
         }
@@ -414,6 +415,36 @@ impl Canvas {
                     }),
                 }
             }
+        }
+    }
+
+    /// What lies on the ground besides the roads.
+    fn drawn(&mut self, drawn: &Drawn) {
+        let to_ego = |canvas: &Self, points: &[DVec2]| -> Vec<DVec2> {
+            points.iter().map(|p| canvas.to_ego(*p)).collect()
+        };
+        for (ground, outline) in &drawn.areas {
+            let area = to_ego(self, outline);
+            self.fill(&area, ground.layers(), false);
+        }
+        for line in &drawn.lines {
+            let points = to_ego(self, &line.points_m);
+            if line.kind == PolylineKind::PedCrossing {
+                let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+                let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+                if self.window.meets(low, high) {
+                    self.lines.push(Polyline {
+                        kind: line.kind,
+                        points_m: points,
+                    });
+                }
+                continue;
+            }
+            let parts = self.window.clipped(&points, 0.0).into_iter();
+            self.lines.extend(parts.map(|points_m| Polyline {
+                kind: line.kind,
+                points_m,
+            }));
         }
     }
 

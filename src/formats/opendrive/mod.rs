@@ -21,7 +21,7 @@ pub mod standing;
 mod things;
 mod tidy;
 pub mod write;
-mod xml;
+pub(crate) mod xml;
 
 pub use layout::LayoutImport;
 pub use parse::read;
@@ -32,9 +32,11 @@ use std::sync::Arc;
 
 use elevation::SurfaceProfile;
 use geometry::ReferenceLine;
-use lanes::{Cubics, LaneSection};
+use glam::DVec2;
+use lanes::{Cubics, Ground, LaneSection};
 use objects::RoadObject;
 use own_rows::OwnLayout;
+use scene::Polyline;
 
 /// Largest file that is read, bytes.
 pub const LARGEST_FILE: u64 = 256 << 20;
@@ -52,7 +54,20 @@ pub struct RoadNetwork {
     pub skipped: Skipped,
     /// The layout that the roads were made of, where Sceneloom wrote the file.
     pub own: Option<Arc<OwnLayout>>,
+    /// What lies on the ground besides the roads; empty for OpenDRIVE.
+    pub drawn: Drawn,
+    /// Where the file says that the ego vehicle begins: place in m and heading in rad, in the file's frame.
+    pub start: Option<(DVec2, f64)>,
     marks_known: bool, // false for a file without any road mark: every lane edge is drawn then
+}
+
+/// Lines and areas that belong to no road, in the file's frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// Dividers, stop lines, and outlines of crossings.
+    pub lines: Vec<Polyline>,
+    /// Outlines of ground, m.
+    pub areas: Vec<(Ground, Vec<DVec2>)>,
 }
 
 /// A road: a reference line with lanes on both sides.
@@ -114,6 +129,27 @@ impl Road {
 }
 
 impl RoadNetwork {
+    /// Roads that were made of lanelets.
+    pub(crate) fn of_lanelets(
+        name: String,
+        roads: Vec<Road>,
+        junctions: Vec<Junction>,
+        drawn: Drawn,
+        start: Option<(DVec2, f64)>,
+        skipped: Skipped,
+    ) -> Self {
+        Self {
+            name,
+            roads,
+            junctions,
+            skipped,
+            drawn,
+            start,
+            own: None,
+            marks_known: true,
+        }
+    }
+
     /// Length of all roads together, connecting roads included, m.
     pub fn length_m(&self) -> f64 {
         self.roads.iter().map(Road::length_m).sum()

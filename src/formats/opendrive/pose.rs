@@ -36,6 +36,9 @@ impl RoadNetwork {
         if self.own.is_some() {
             return (DVec2::ZERO, 0.0); // where the ego vehicle was when Sceneloom wrote the file
         }
+        if let Some(start) = self.start {
+            return start;
+        }
         let mut junctions: Vec<&Junction> = self.junctions.iter().collect();
         junctions.sort_by_key(|j| std::cmp::Reverse(j.incoming.len())); // stable: file order on a tie
         let near_junction = junctions.iter().find_map(|junction| {

@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use super::bundles::Bundled;
 use super::chains::{Chain, Near, STEP_M, Sample, Surface, surface};
-use super::fit::{reference, wrapped};
-use super::roads::{Contact, End, Road, placed};
+use super::fit::{placed, reference, wrapped};
+use super::roads::{Contact, End, Road};
 use super::strips::{PAVED_IN_JUNCTION_M, Station, Strip, Strips};
 use super::zones::Zones;
 use scene::BevLayout;

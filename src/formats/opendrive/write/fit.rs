@@ -18,7 +18,7 @@ const OVER_M: f64 = 1.5;
 
 /// Through points at most a metre or so apart, from the first to the last; headings (rad) at the ends where they are given.
 /// `None` for fewer than two points or a line without length.
-pub(in super::super) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<ReferenceLine> {
+pub(crate) fn reference(points: &[DVec2], ends_rad: [Option<f64>; 2]) -> Option<ReferenceLine> {
     let mut clean: Vec<DVec2> = Vec::with_capacity(points.len());
     for p in points.iter().filter(|p| p.is_finite()) {
         if clean.last().is_none_or(|last| last.distance(*p) > 1e-3) {
@@ -214,8 +214,38 @@ fn away_m(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     p.distance(a + d * t)
 }
 
+/// Where points that a line was made of lie along it, and how far to its left, m. The ways begin at 0, grow and end with the line.
+pub(crate) fn placed(line: &ReferenceLine, points: &[DVec2]) -> (Vec<f64>, Vec<f64>) {
+    let (end, last) = (line.end_s_m(), points.len() - 1);
+    let (mut s_m, mut off_m) = (Vec::with_capacity(points.len()), Vec::with_capacity(points.len()));
+    for (i, p) in points.iter().enumerate() {
+        let before = s_m.last().copied().unwrap_or(0.0);
+        let mut s = match i {
+            0 => 0.0,
+            i => before + points[i - 1].distance(*p),
+        };
+        for _ in 0..4 {
+            let base = line.at(s);
+            let tangent = DVec2::from_angle(base.heading_rad);
+            s = (s + (*p - base.position_m).dot(tangent)).clamp(0.0, end);
+        }
+        // A step of a hundredth is left for each point to come.
+        let least = if i == 0 { 0.0 } else { before + end * 1e-5 };
+        let most = end - end * 1e-5 * (last - i) as f64;
+        s = s.max(least).min(most);
+        if i == last {
+            s = end;
+        }
+        let base = line.at(s);
+        let left = DVec2::from_angle(base.heading_rad).perp();
+        s_m.push(s);
+        off_m.push((*p - base.position_m).dot(left));
+    }
+    (s_m, off_m)
+}
+
 /// An angle from -pi to pi.
-pub(in super::super) fn wrapped(rad: f64) -> f64 {
+pub(crate) fn wrapped(rad: f64) -> f64 {
     (rad + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI
 }
 
@@ -282,5 +312,17 @@ mod tests {
         for bad in [&points[..1], &[DVec2::NAN, DVec2::ONE], &[DVec2::ONE; 3]] {
             assert!(reference(bad, [None, None]).is_none());
         }
+    }
+
+    #[test]
+    fn ways_along_a_line_grow_from_0_to_its_end() {
+        let points: Vec<DVec2> = (0..50)
+            .map(|i| DVec2::from_angle(f64::from(i) * 0.05) * 10.0)
+            .collect();
+        let line = reference(&points, [None, None]).expect("an arc");
+        let (s, off) = placed(&line, &points);
+        assert_eq!((s[0], s[49]), (0.0, line.end_s_m()));
+        assert!(s.windows(2).all(|w| w[0] < w[1]));
+        assert!(off.iter().all(|m| m.abs() < 0.03));
     }
 }

@@ -7,7 +7,7 @@ mod areas;
 mod bundles;
 mod chains;
 mod connect;
-pub(super) mod fit;
+pub(crate) mod fit;
 mod middles;
 mod on_road;
 mod profile;
@@ -171,3 +171,5 @@ fn is_left_hand(bundled: &Bundled) -> bool {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(crate) use tests::picture;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::super::geometry::ReferenceLine;
 use super::bundles::{Bundle, Member};
 use super::chains::{Chain, Surface, surface};
-use super::fit::reference;
+use super::fit::{placed, reference};
 use super::strips::{PAVED_M, Station, Strip, Strips, median};
 use scene::BevLayout;
 
@@ -147,36 +147,6 @@ fn station(chain: &Chain, k: usize) -> Station {
         at_m: chain.points_m[k],
         left: ahead.normalize_or(DVec2::X).perp(),
     }
-}
-
-/// Where points that a line was made of lie along it, and how far to its left, m. The ways begin at 0, grow and end with the line.
-pub(super) fn placed(line: &ReferenceLine, points: &[DVec2]) -> (Vec<f64>, Vec<f64>) {
-    let (end, last) = (line.end_s_m(), points.len() - 1);
-    let (mut s_m, mut off_m) = (Vec::with_capacity(points.len()), Vec::with_capacity(points.len()));
-    for (i, p) in points.iter().enumerate() {
-        let before = s_m.last().copied().unwrap_or(0.0);
-        let mut s = match i {
-            0 => 0.0,
-            i => before + points[i - 1].distance(*p),
-        };
-        for _ in 0..4 {
-            let base = line.at(s);
-            let tangent = DVec2::from_angle(base.heading_rad);
-            s = (s + (*p - base.position_m).dot(tangent)).clamp(0.0, end);
-        }
-        // A step of a hundredth is left for each point to come.
-        let least = if i == 0 { 0.0 } else { before + end * 1e-5 };
-        let most = end - end * 1e-5 * (last - i) as f64;
-        s = s.max(least).min(most);
-        if i == last {
-            s = end;
-        }
-        let base = line.at(s);
-        let left = DVec2::from_angle(base.heading_rad).perp();
-        s_m.push(s);
-        off_m.push((*p - base.position_m).dot(left));
-    }
-    (s_m, off_m)
 }
 
 /// The lanes of a bundle as strips, seen from its first lane.
@@ -365,17 +335,5 @@ mod tests {
             borders,
             [[11.25, 7.75], [7.75, 4.25], [1.75, -1.75], [-1.75, -5.25]]
         );
-    }
-
-    #[test]
-    fn ways_along_a_line_grow_from_0_to_its_end() {
-        let points: Vec<DVec2> = (0..50)
-            .map(|i| DVec2::from_angle(f64::from(i) * 0.05) * 10.0)
-            .collect();
-        let line = reference(&points, [None, None]).expect("an arc");
-        let (s, off) = placed(&line, &points);
-        assert_eq!((s[0], s[49]), (0.0, line.end_s_m()));
-        assert!(s.windows(2).all(|w| w[0] < w[1]));
-        assert!(off.iter().all(|m| m.abs() < 0.03));
     }
 }

@@ -6,7 +6,7 @@ use glam::DVec2;
 use super::*;
 use crate::loom;
 use scene::road_map::{project, resampled};
-use scene::{BevLayer, Polyline, PolylineKind};
+use scene::{BevLayer, PolylineKind};
 
 /// What came back of a layout.
 #[derive(Clone, Copy, Debug, Default)]
@@ -144,7 +144,7 @@ fn measure() {
 }
 
 /// Red what is missing, blue what is too much, grey what agrees; lanes of the layout dark, those that came back green.
-fn picture(path: &std::path::Path, layout: &BevLayout, found: &BevLayout) {
+pub(crate) fn picture(path: &std::path::Path, layout: &BevLayout, found: &BevLayout) {
     let extent = layout.extent();
     let scale = 4;
     let (w, h) = (extent.nx() * scale, extent.ny() * scale);
@@ -190,26 +190,4 @@ fn picture(path: &std::path::Path, layout: &BevLayout, found: &BevLayout) {
     draw(&lanes(layout), [60, 60, 60]);
     draw(&lanes(found), [0, 150, 0]);
     image.save(path).expect("written");
-}
-
-#[allow(dead_code)]
-fn unused(_: &Polyline) {}
-
-#[test]
-#[ignore = "to look at"]
-fn look() {
-    let bytes = std::fs::read("/work/shared/data/roads/opendrive/Town03.xodr").expect("read");
-    let network = crate::opendrive::read(&bytes).expect("roads");
-    let (at_m, heading_rad) = network.suggest_pose();
-    let layout = network.to_layout(at_m, heading_rad).layout;
-    let row = |l: &BevLayout| {
-        (60..140)
-            .map(|y| format!("{:x}", l.cell(60, y) & 0x1f))
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
-    println!("{}", row(&layout));
-    println!("{}", row(&read_back(&layout, Detail::Roads).layout));
-    let text = to_text("x", &layout, Detail::Roads);
-    println!("{}", &text[..3000]);
 }
