@@ -1,11 +1,12 @@
-//! CommonRoad scenarios (Althoff and others 2017), versions 2018b and 2020a: lanelets with bounds, stop lines, crossings. Traffic
-//! signs, lights and obstacles are counted.
+//! CommonRoad scenarios (Althoff and others 2017), versions 2018b and 2020a: lanelets with bounds, stop lines, crossings, and
+//! obstacles where they are at the start. Traffic signs and lights are counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 use roxmltree::Node;
 
+use super::commonroad_obstacles::obstacle;
 use super::{Content, Importer};
 use crate::lanelets::{self, Between, Lanelet, LaneletMap, MOST_POINTS, Use};
 use crate::opendrive::lanes::Ground;
@@ -14,13 +15,14 @@ use crate::opendrive::xml::{
 };
 use crate::opendrive::{self, RoadNetwork, Skipped};
 use crate::{FormatError, Holds};
+use scene::Frame;
 
-/// Roads, and the place of the planning problem as the one where a scene begins.
+/// Roads, obstacles, and the place of the planning problem as the one where a scene begins.
 pub const IMPORTER: Importer = Importer {
     id: "commonroad",
     title: "CommonRoad scenarios",
     extensions: &["xml"],
-    holds: &[Holds::Roads],
+    holds: &[Holds::Roads, Holds::Boxes],
     largest: opendrive::LARGEST_FILE,
     recognises: |head| String::from_utf8_lossy(head).contains("<commonRoad"),
     in_folder: None,
@@ -70,9 +72,9 @@ fn map(bytes: &[u8], name: &str) -> Result<LaneletMap> {
             }
             "planningProblem" if out.start.is_none() => out.start = start(node)?,
             "planningProblem" => count(&mut out.skipped, "further planning problem"),
-            kind @ ("staticObstacle" | "dynamicObstacle" | "obstacle") => {
-                let of = child(node, "type").and_then(|n| n.text()).unwrap_or("unknown");
-                count(&mut out.skipped, format!("{kind} {}", shown(of.trim(), 30)));
+            "staticObstacle" | "dynamicObstacle" | "obstacle" if out.boxes.len() < Frame::MAX_BOXES => {
+                let id = out.boxes.len() as u32 + 1;
+                out.boxes.extend(obstacle(node, id, &mut out.skipped)?);
             }
             // They say nothing that a layout shows.
             "location" | "scenarioTags" | "intersection" => {}
@@ -83,7 +85,7 @@ fn map(bytes: &[u8], name: &str) -> Result<LaneletMap> {
     Ok(out)
 }
 
-fn number(node: Node<'_, '_>) -> Result<f64> {
+pub(super) fn number(node: Node<'_, '_>) -> Result<f64> {
     let text = node.text().unwrap_or_default();
     match text.trim().parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -91,7 +93,7 @@ fn number(node: Node<'_, '_>) -> Result<f64> {
     }
 }
 
-fn point(node: Node<'_, '_>) -> Result<DVec3> {
+pub(super) fn point(node: Node<'_, '_>) -> Result<DVec3> {
     let coordinate = |name: &'static str| match child(node, name) {
         Some(value) => number(value),
         None if name == "z" => Ok(0.0),

@@ -1,5 +1,5 @@
 use glam::DVec2;
-use scene::{BevLayer, PolylineKind};
+use scene::{BevLayer, Class, PolylineKind};
 
 use super::commonroad::read;
 
@@ -73,7 +73,10 @@ pub(super) fn street() -> String {
     format!(
         "<?xml version='1.0'?>\n<commonRoad timeStepSize=\"0.1\" commonRoadVersion=\"2020a\" benchmarkID=\"ZAM_Own-1_1_T-1\">\n{}\
          <trafficSign id=\"90\"><trafficSignElement><trafficSignID>206</trafficSignID></trafficSignElement></trafficSign>\n\
-         <dynamicObstacle id=\"91\"><type>car</type></dynamicObstacle>\n\
+         <dynamicObstacle id=\"91\"><type>truck</type><shape><rectangle><length>7.5</length><width>2.2</width></rectangle></shape>\
+         <initialState><position><point><x>0.75</x><y>30.0</y></point></position><orientation><exact>1.6707963267948966</exact>\
+         </orientation><velocity><exact>5</exact></velocity></initialState><trajectory/></dynamicObstacle>\n\
+         <staticObstacle id=\"93\"><type>train</type></staticObstacle>\n\
          <planningProblem id=\"92\"><initialState><position><point><x>1.75</x><y>10.0</y></point></position><orientation>\
          <exact>1.5707963267948966</exact></orientation></initialState></planningProblem>\n</commonRoad>\n",
         lanelets.concat()
@@ -118,7 +121,18 @@ fn a_street_lies_where_it_is_seen_from_the_planning_problem() {
     );
     assert_eq!(network.junctions.len(), 1);
     assert_eq!(network.junctions[0].incoming, ["1"]);
-    assert_eq!(network.skipped.get("dynamicObstacle car"), Some(&1));
+    // A truck 20 m ahead and 1 m to the left, turned a little to the left.
+    let boxes = network.to_layout(at_m, heading_rad).boxes;
+    let truck = boxes.values().next().expect("one box");
+    assert_eq!((boxes.len(), truck.class), (1, Class::Truck));
+    assert!(
+        truck.center_m.truncate().distance(DVec2::new(20.0, 1.0)) < 1e-9,
+        "{truck:?}"
+    );
+    assert_eq!(truck.size_m.truncate(), DVec2::new(7.5, 2.2));
+    assert!((truck.yaw_rad - 0.1).abs() < 1e-9);
+    assert!(truck.velocity_mps.distance(DVec2::from_angle(0.1) * 5.0) < 1e-9);
+    assert_eq!(network.skipped.get("obstacle train"), Some(&1));
     assert_eq!(network.skipped.get("trafficSign"), Some(&1));
 }
 

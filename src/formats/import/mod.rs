@@ -4,6 +4,7 @@
 pub mod boxes;
 mod cloud;
 pub mod commonroad;
+mod commonroad_obstacles;
 #[cfg(test)]
 mod commonroad_tests;
 pub mod lanelet2;

@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 use crate::opendrive::lanes::{Ground, LaneKind};
 use crate::opendrive::{Drawn, RoadNetwork, Skipped};
-use scene::{Polyline, PolylineKind};
+use scene::{Polyline, PolylineKind, SceneBox};
 
 /// Points of all bounds together, at most; a city has about a million.
 pub(crate) const MOST_POINTS: usize = 4_000_000;
@@ -67,6 +67,8 @@ pub(crate) struct LaneletMap {
     pub stop_lines: Vec<Vec<DVec2>>,
     /// Outlines of ground without lanelets.
     pub areas: Vec<(Ground, Vec<DVec2>)>,
+    /// What stands on the roads or drives there, on ground at 0.
+    pub boxes: Vec<SceneBox>,
     /// Where the file says that the ego vehicle begins: place in m, heading in rad.
     pub start: Option<(DVec2, f64)>,
     pub skipped: Skipped,
@@ -140,6 +142,7 @@ pub(crate) fn network(map: LaneletMap) -> Result<RoadNetwork, String> {
         between,
         stop_lines,
         areas,
+        boxes,
         start,
         mut skipped,
     } = map;
@@ -203,6 +206,7 @@ pub(crate) fn network(map: LaneletMap) -> Result<RoadNetwork, String> {
         roads,
         of.junctions,
         drawn,
+        boxes,
         start,
         skipped,
     ))

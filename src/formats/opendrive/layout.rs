@@ -16,7 +16,7 @@ use super::things::Things;
 use super::xml::{Skipped, count};
 use super::{Drawn, Road, RoadNetwork, tidy};
 use scene::raster::{draw_polyline, polygon_cells};
-use scene::{Background, BevLayer, BevLayout, Extent, Form, Polyline, PolylineKind, Window};
+use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, Polyline, PolylineKind, SceneBox, Window};
 
 /// The map that is cut out, and where it lies in the file.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +92,8 @@ pub struct LayoutImport {
     pub background: Background,
     /// How many of these things are bridges.
     pub bridge_count: usize,
+    /// What the file says to stand or drive on the roads of the map, in the ego frame.
+    pub boxes: BTreeMap<BoxId, SceneBox>,
     /// True if the layout is the one that Sceneloom wrote the file from, to the last cell, and not made of the roads.
     pub is_own: bool,
     /// What the file holds and the import does not, counted by kind.
@@ -223,6 +225,7 @@ impl RoadNetwork {
             of_kind(PolylineKind::PedCrossing),
         );
         LayoutImport {
+            boxes: self.boxes_on(&window, &layout),
             is_own,
             road_count,
             lane_count,
@@ -243,6 +246,20 @@ impl RoadNetwork {
     pub fn own_extent(&self, at_m: DVec2, heading_rad: f64) -> Option<Extent> {
         let is_origin = at_m == DVec2::ZERO && heading_rad == 0.0;
         self.own.as_ref().filter(|_| is_origin).map(|own| own.extent())
+    }
+
+    /// The boxes of the file that stand on a map, on its ground.
+    fn boxes_on(&self, window: &MapCut, layout: &BevLayout) -> BTreeMap<BoxId, SceneBox> {
+        let moved = self.boxes.iter().map(|b| {
+            let at = window.to_ego(b.center_m.truncate());
+            let mut b = *b;
+            b.center_m = at.extend(b.center_m.z + layout.relief.height_m(at));
+            b.yaw_rad = window.heading_to_ego(b.yaw_rad);
+            b.velocity_mps = window.ego_from_file.rotate(b.velocity_mps);
+            b
+        });
+        let on_map = moved.filter(|b| window.holds(b.center_m.truncate(), 0.0) && b.problem().is_none());
+        on_map.map(|b| (b.id, b)).collect()
     }
 
     /// The layout that Sceneloom wrote the file from, if it covers this map.

@@ -36,7 +36,7 @@ use glam::DVec2;
 use lanes::{Cubics, Ground, LaneSection};
 use objects::RoadObject;
 use own_rows::OwnLayout;
-use scene::Polyline;
+use scene::{Polyline, SceneBox};
 
 /// Largest file that is read, bytes.
 pub const LARGEST_FILE: u64 = 256 << 20;
@@ -56,6 +56,8 @@ pub struct RoadNetwork {
     pub own: Option<Arc<OwnLayout>>,
     /// What lies on the ground besides the roads; empty for OpenDRIVE.
     pub drawn: Drawn,
+    /// What the file says to stand or drive on the roads, in its frame, on ground at 0; empty for OpenDRIVE.
+    pub boxes: Vec<SceneBox>,
     /// Where the file says that the ego vehicle begins: place in m and heading in rad, in the file's frame.
     pub start: Option<(DVec2, f64)>,
     marks_known: bool, // false for a file without any road mark: every lane edge is drawn then
@@ -135,6 +137,7 @@ impl RoadNetwork {
         roads: Vec<Road>,
         junctions: Vec<Junction>,
         drawn: Drawn,
+        boxes: Vec<SceneBox>,
         start: Option<(DVec2, f64)>,
         skipped: Skipped,
     ) -> Self {
@@ -144,6 +147,7 @@ impl RoadNetwork {
             junctions,
             skipped,
             drawn,
+            boxes,
             start,
             own: None,
             marks_known: true,

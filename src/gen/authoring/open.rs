@@ -192,7 +192,7 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     ))
 }
 
-/// A scene on a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
+/// A scene on a road network: its layout with relief and the file's traffic, seeded if it has none, as a complete world. What stands beside the road is
 /// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
 /// scenery out, and the occupancy is the draft until it is generated.
 pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Imported {
@@ -211,7 +211,10 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         traffic::TrafficSpec::NORMAL
     };
     let seed = placement.seed;
-    let boxes = traffic::place(&import.without_lanes_of_junctions(), seed, &spec);
+    let boxes = match import.boxes.is_empty() || placement.empty {
+        true => traffic::place(&import.without_lanes_of_junctions(), seed, &spec),
+        false => import.boxes.clone(), // the file's own
+    };
     let things_of_file = import.background.len() - import.bridge_count;
     let mut scene = if placement.bare {
         let occupancy = draft::draft(&import.layout, boxes.values());
