@@ -116,6 +116,11 @@ fn extend(points: &mut Vec<DVec2>, (low, high): (DVec2, DVec2)) {
     }
     let total: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     let ahead = (end - at_along(points, total - 2.0)).normalize_or_zero();
+    // Outward only: a lane may also begin just beyond the border and lead onto the map.
+    let outside = |p: DVec2| (low - p).max(p - high).max_element();
+    if outside(end + ahead) <= outside(end) {
+        return;
+    }
     let mut reach_m = 0.0;
     while ahead != DVec2::ZERO && reach_m < 2.0 * BEYOND_M && !beyond(end + ahead * reach_m, BEYOND_M) {
         reach_m += 1.0;

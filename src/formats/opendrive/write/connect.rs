@@ -24,7 +24,7 @@ const RADIUS_M: f64 = 2.5;
 /// A turn keeps so much paved ground to both sides of its middle, m.
 const ASIDE_M: f64 = 1.4;
 /// On this share of its way, at least.
-const PAVED_SHARE: f64 = 0.95;
+const PAVED_SHARE: f64 = 0.98;
 /// A vehicle joins or leaves a ring over a way from and to, m.
 const JOIN_M: [f64; 2] = [3.0, 16.0];
 
