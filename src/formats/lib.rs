@@ -13,6 +13,7 @@ pub mod import;
 pub mod input;
 pub mod jpeg;
 pub mod kitti;
+mod lanelets;
 pub mod las;
 pub mod loom;
 mod lzf;
@@ -23,6 +24,7 @@ pub mod npz;
 pub mod nuscenes;
 pub mod occ3d;
 pub mod opendrive;
+pub mod openscenario;
 mod physical;
 pub mod png;
 #[cfg(test)]
@@ -38,6 +40,7 @@ pub mod video;
 mod vox;
 mod voxels;
 pub mod world_scenario;
+mod xml_text;
 
 pub use error::FormatError;
 

@@ -138,6 +138,7 @@ impl Import {
             "boxes": frame.boxes.len(),
             "roads": imported.roads,
             "lanes": imported.lanes,
+            "own_layout": imported.is_own,
             "bridges": imported.bridges,
             "things": imported.scene.background.len(),
             "things_of_file": imported.things_of_file,
@@ -154,10 +155,13 @@ impl Import {
             .map(|(kind, columns)| format!("{columns} columns of {kind} lanes"))
             .collect();
         output::report(&self.common, &report, || {
-            let note = match beside.is_empty() {
+            let mut note = match beside.is_empty() {
                 true => String::new(),
                 false => format!("; counted as drivable: {}", beside.join(", ")),
             };
+            if imported.is_own {
+                note.push_str("; the layout is the one that sceneloom wrote, to the last cell");
+            }
             format!(
                 "{}: {} roads, {} lanes, {} bridges, {} boxes, {} things beside the road ({} of the file), ground {:.1} to \
                  {:.1} m; ego at {:.1}, {:.1} heading {:.1} deg; not understood: {}{note}",

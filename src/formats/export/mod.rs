@@ -12,8 +12,10 @@ pub mod mcap;
 pub mod nuscenes;
 pub mod nuscenes_lidar;
 pub mod occ3d;
+pub mod opendrive;
 pub mod openlabel;
 pub mod openoccupancy;
+pub mod openscenario;
 pub mod pcd;
 pub mod pictures;
 pub mod ply;
@@ -58,6 +60,8 @@ const TABLE: &[&Exporter] = &[
     &nuscenes::EXPORTER,
     &mcap::EXPORTER,
     &openlabel::EXPORTER,
+    &opendrive::EXPORTER,
+    &openscenario::EXPORTER,
 ];
 
 /// A format that is written.

@@ -3,8 +3,15 @@
 
 pub mod boxes;
 mod cloud;
+pub mod commonroad;
+mod commonroad_obstacles;
+#[cfg(test)]
+mod commonroad_tests;
 pub mod glb;
 pub mod kitti;
+pub mod lanelet2;
+#[cfg(test)]
+mod lanelet2_tests;
 pub mod las;
 pub mod loom;
 pub mod nuscenes;
@@ -45,6 +52,8 @@ const TABLE: &[&Importer] = &[
     &picture::IMPORTER,
     &glb::IMPORTER,
     &nuscenes::IMPORTER,
+    &lanelet2::IMPORTER,
+    &commonroad::IMPORTER,
     &opendrive::IMPORTER,
 ];
 

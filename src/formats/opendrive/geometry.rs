@@ -155,6 +155,12 @@ impl Geometry {
         })
     }
 
+    /// The same record at another place of its road.
+    pub(super) fn at_s(mut self, s_m: f64) -> Self {
+        self.s_m = s_m;
+        self
+    }
+
     /// The kind of the record.
     pub fn shape(&self) -> &Shape {
         &self.shape

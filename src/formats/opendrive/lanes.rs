@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::elevation::LaneHeight;
 use super::geometry::cubic;
+use scene::BevLayer;
 
 /// Widest lane that is believed, m; wider values are cut to it.
 const MAX_WIDTH_M: f64 = 1000.0;
@@ -111,6 +112,16 @@ impl LaneKind {
         })
     }
 
+    /// The ground of an area of this kind that lies by itself; `None` where it is of no layer.
+    pub fn ground_alone(self) -> Option<Ground> {
+        match self {
+            Self::Parking => Some(Ground::Carpark),
+            Self::Sidewalk | Self::Biking => Some(Ground::Walkway),
+            paved if paved.is_paved() => Some(Ground::Road),
+            _ => None,
+        }
+    }
+
     fn is_paved(self) -> bool {
         self.carries_traffic()
             || matches!(
@@ -216,6 +227,18 @@ pub enum Ground {
     Walkway,
     /// Neither; stated so by the file (median, border, none).
     Other,
+}
+
+impl Ground {
+    /// The layers of a map that it sets.
+    pub(super) fn layers(self) -> &'static [BevLayer] {
+        match self {
+            Self::Road => &[BevLayer::DrivableArea],
+            Self::Carpark => &[BevLayer::DrivableArea, BevLayer::CarparkArea],
+            Self::Walkway => &[BevLayer::Walkway],
+            Self::Other => &[],
+        }
+    }
 }
 
 impl LaneSection {

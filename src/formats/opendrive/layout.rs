@@ -14,9 +14,9 @@ use super::relief;
 use super::sampling::{BUDGET, Row, walk};
 use super::things::Things;
 use super::xml::{Skipped, count};
-use super::{Road, RoadNetwork, tidy};
+use super::{Drawn, Road, RoadNetwork, tidy};
 use scene::raster::{draw_polyline, polygon_cells};
-use scene::{Background, BevLayer, BevLayout, Extent, Form, Polyline, PolylineKind, Window};
+use scene::{Background, BevLayer, BevLayout, BoxId, Extent, Form, Polyline, PolylineKind, SceneBox, Window};
 
 /// The map that is cut out, and where it lies in the file.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +92,10 @@ pub struct LayoutImport {
     pub background: Background,
     /// How many of these things are bridges.
     pub bridge_count: usize,
+    /// What the file says to stand or drive on the roads of the map, in the ego frame.
+    pub boxes: BTreeMap<BoxId, SceneBox>,
+    /// True if the layout is the one that Sceneloom wrote the file from, to the last cell, and not made of the roads.
+    pub is_own: bool,
     /// What the file holds and the import does not, counted by kind.
     pub skipped: Skipped,
     in_junction: Vec<bool>, // columns
@@ -167,6 +171,7 @@ impl RoadNetwork {
                 road_count += usize::from(canvas.road(index, road, self.marks_known));
                 canvas.objects(index, road, &mut skipped);
             }
+            canvas.drawn(&self.drawn);
         } else {
             count(&mut skipped, "window at no finite place");
         }
@@ -200,16 +205,28 @@ impl RoadNetwork {
         if canvas.budget == 0 {
             count(&mut skipped, "roads beyond the drawing budget");
         }
-        let of_kind = |kind| canvas.lines.iter().filter(|l| l.kind == kind).count();
-        let (lane_count, crossing_count) = (
-            of_kind(PolylineKind::LaneCenter),
-            of_kind(PolylineKind::PedCrossing),
-        );
         let drivable_beside_traffic = canvas.beside_traffic();
         let in_junction = std::mem::take(&mut canvas.in_junction);
         let mut layout = canvas.layout;
         layout.polylines = canvas.lines.into();
+        let own = self.own_layout(extent, at_m, heading_rad);
+        let is_own = own.is_some();
+        if let Some(own) = own {
+            layout = own;
+        } else if self.own.is_some() {
+            count(
+                &mut skipped,
+                "sceneloom's rows for another place or map (its roads are read)",
+            );
+        }
+        let of_kind = |kind| layout.polylines.iter().filter(|l| l.kind == kind).count();
+        let (lane_count, crossing_count) = (
+            of_kind(PolylineKind::LaneCenter),
+            of_kind(PolylineKind::PedCrossing),
+        );
         LayoutImport {
+            boxes: self.boxes_on(&window, &layout),
+            is_own,
             road_count,
             lane_count,
             crossing_count,
@@ -221,6 +238,37 @@ impl RoadNetwork {
             layout,
             in_junction,
         }
+    }
+}
+
+impl RoadNetwork {
+    /// The map that Sceneloom wrote the file from, if the ego vehicle is where it was then: at the origin, looking along x.
+    pub fn own_extent(&self, at_m: DVec2, heading_rad: f64) -> Option<Extent> {
+        let is_origin = at_m == DVec2::ZERO && heading_rad == 0.0;
+        self.own.as_ref().filter(|_| is_origin).map(|own| own.extent())
+    }
+
+    /// The boxes of the file that stand on a map, on its ground.
+    fn boxes_on(&self, window: &MapCut, layout: &BevLayout) -> BTreeMap<BoxId, SceneBox> {
+        let moved = self.boxes.iter().map(|b| {
+            let at = window.to_ego(b.center_m.truncate());
+            let mut b = *b;
+            b.center_m = at.extend(b.center_m.z + layout.relief.height_m(at));
+            b.yaw_rad = window.heading_to_ego(b.yaw_rad);
+            b.velocity_mps = window.ego_from_file.rotate(b.velocity_mps);
+            b
+        });
+        let on_map = moved.filter(|b| window.holds(b.center_m.truncate(), 0.0) && b.problem().is_none());
+        on_map.map(|b| (b.id, b)).collect()
+    }
+
+    /// The layout that Sceneloom wrote the file from, if it covers this map.
+    fn own_layout(&self, extent: Extent, at_m: DVec2, heading_rad: f64) -> Option<BevLayout> {
+        let whole = self.own_extent(at_m, heading_rad)?;
+        let covers = whole
+            .overlap(&extent)
+            .is_some_and(|o| o.size == [extent.nx(), extent.ny()]);
+        covers.then(|| self.own.as_ref().map(|own| own.layout().crop(extent)))?
     }
 }
 
@@ -323,14 +371,8 @@ impl Canvas {
         let mut seen = false;
         let lanes = section.lanes_left_to_right().zip(grounds);
         for ((lane, ground), sides) in lanes.zip(edges.windows(2)) {
-            let layers: &[BevLayer] = match ground {
-                Ground::Road => &[BevLayer::DrivableArea],
-                Ground::Carpark => &[BevLayer::DrivableArea, BevLayer::CarparkArea],
-                Ground::Walkway => &[BevLayer::Walkway],
-                Ground::Other => &[],
-            };
             let quad = [sides[0][0], sides[0][1], sides[1][1], sides[1][0]];
-            seen |= self.fill(&quad, layers, in_junction);
+            seen |= self.fill(&quad, ground.layers(), in_junction);
             if *ground == Ground::Road {
                 self.note_kind(&quad, lane.kind);
             }
@@ -377,15 +419,49 @@ impl Canvas {
             });
             self.budget = budget;
             for area in areas {
-                if object.kind == ObjectKind::Parking {
-                    self.fill(&area, &[BevLayer::DrivableArea, BevLayer::CarparkArea], false);
-                } else {
-                    self.lines.push(Polyline {
+                match object.kind {
+                    ObjectKind::Parking => {
+                        self.fill(&area, Ground::Carpark.layers(), false);
+                    }
+                    ObjectKind::Area(ground) => {
+                        self.fill(&area, ground.layers(), false);
+                    }
+                    _ => self.lines.push(Polyline {
                         kind: PolylineKind::PedCrossing,
                         points_m: area,
-                    });
+                    }),
                 }
             }
+        }
+    }
+
+    /// What lies on the ground besides the roads.
+    fn drawn(&mut self, drawn: &Drawn) {
+        let to_ego = |canvas: &Self, points: &[DVec2]| -> Vec<DVec2> {
+            points.iter().map(|p| canvas.to_ego(*p)).collect()
+        };
+        for (ground, outline) in &drawn.areas {
+            let area = to_ego(self, outline);
+            self.fill(&area, ground.layers(), false);
+        }
+        for line in &drawn.lines {
+            let points = to_ego(self, &line.points_m);
+            if line.kind == PolylineKind::PedCrossing {
+                let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+                let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+                if self.window.meets(low, high) {
+                    self.lines.push(Polyline {
+                        kind: line.kind,
+                        points_m: points,
+                    });
+                }
+                continue;
+            }
+            let parts = self.window.clipped(&points, 0.0).into_iter();
+            self.lines.extend(parts.map(|points_m| Polyline {
+                kind: line.kind,
+                points_m,
+            }));
         }
     }
 

@@ -12,6 +12,8 @@ const NARROWEST_M: f64 = 0.4;
 const DRIVABLE_M: f64 = 1.5;
 /// Two lanes farther apart than this have two lines between them, not one, m.
 const APART_M: f64 = 0.6;
+/// Ways along a road that differ by less are one place, m.
+const SAME_PLACE_M: f64 = 1e-6;
 /// What a line may jump from one section to the next and still be the same, m.
 const JUMP_M: f64 = 0.3;
 /// A dropped vertex lies within this of the line that is kept, m.
@@ -116,7 +118,9 @@ impl Follower {
     /// Goes one step along the road. `budget` pays for finding out which line continues which.
     pub fn step(&mut self, tracks: &[Track], from: &Row, to: &Row, budget: &mut usize) {
         let ends = |t: &Track| [from, to].map(|row| row.between(t.edges[0], t.edges[1]));
-        let same = self.end_s_m == from.s_m
+        // Records of different kinds may begin at places that differ by rounding.
+        let goes_on = (self.end_s_m - from.s_m).abs() < SAME_PLACE_M;
+        let same = goes_on
             && self.open.len() == tracks.len()
             && self.open.iter().zip(tracks).all(|((old, points), new)| {
                 old == new && points.last().is_some_and(|p| p.distance(ends(new)[0]) < JUMP_M)
@@ -128,7 +132,6 @@ impl Follower {
         } else {
             *budget = budget.saturating_sub(self.open.len() * tracks.len());
             let mut old = std::mem::take(&mut self.open);
-            let goes_on = self.end_s_m == from.s_m;
             for track in tracks {
                 let [start, end] = ends(track);
                 let nearest = old

@@ -9,6 +9,7 @@ mod layout;
 mod levels;
 mod lines;
 pub mod objects;
+pub mod own_rows;
 mod parse;
 mod parse_elevation;
 mod parse_lanes;
@@ -19,17 +20,23 @@ mod sampling;
 pub mod standing;
 mod things;
 mod tidy;
-mod xml;
+pub mod write;
+pub(crate) mod xml;
 
 pub use layout::LayoutImport;
 pub use parse::read;
 pub use pose::LanePose;
 pub use xml::{OpenDriveError, Skipped};
 
+use std::sync::Arc;
+
 use elevation::SurfaceProfile;
 use geometry::ReferenceLine;
-use lanes::{Cubics, LaneSection};
+use glam::DVec2;
+use lanes::{Cubics, Ground, LaneSection};
 use objects::RoadObject;
+use own_rows::OwnLayout;
+use scene::{Polyline, SceneBox};
 
 /// Largest file that is read, bytes.
 pub const LARGEST_FILE: u64 = 256 << 20;
@@ -45,7 +52,24 @@ pub struct RoadNetwork {
     pub junctions: Vec<Junction>,
     /// What the file holds and this reader does not understand or model, counted by kind.
     pub skipped: Skipped,
+    /// The layout that the roads were made of, where Sceneloom wrote the file.
+    pub own: Option<Arc<OwnLayout>>,
+    /// What lies on the ground besides the roads; empty for OpenDRIVE.
+    pub drawn: Drawn,
+    /// What the file says to stand or drive on the roads, in its frame, on ground at 0; empty for OpenDRIVE.
+    pub boxes: Vec<SceneBox>,
+    /// Where the file says that the ego vehicle begins: place in m and heading in rad, in the file's frame.
+    pub start: Option<(DVec2, f64)>,
     marks_known: bool, // false for a file without any road mark: every lane edge is drawn then
+}
+
+/// Lines and areas that belong to no road, in the file's frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawn {
+    /// Dividers, stop lines, and outlines of crossings.
+    pub lines: Vec<Polyline>,
+    /// Outlines of ground, m.
+    pub areas: Vec<(Ground, Vec<DVec2>)>,
 }
 
 /// A road: a reference line with lanes on both sides.
@@ -107,6 +131,29 @@ impl Road {
 }
 
 impl RoadNetwork {
+    /// Roads that were made of lanelets.
+    pub(crate) fn of_lanelets(
+        name: String,
+        roads: Vec<Road>,
+        junctions: Vec<Junction>,
+        drawn: Drawn,
+        boxes: Vec<SceneBox>,
+        start: Option<(DVec2, f64)>,
+        skipped: Skipped,
+    ) -> Self {
+        Self {
+            name,
+            roads,
+            junctions,
+            skipped,
+            drawn,
+            boxes,
+            start,
+            own: None,
+            marks_known: true,
+        }
+    }
+
     /// Length of all roads together, connecting roads included, m.
     pub fn length_m(&self) -> f64 {
         self.roads.iter().map(Road::length_m).sum()

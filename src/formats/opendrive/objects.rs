@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::geometry::ReferenceLine;
+use super::lanes::Ground;
 use super::standing::Standing;
 use super::xml::{Skipped, count};
 
@@ -18,6 +19,8 @@ pub enum ObjectKind {
         /// Traffic it holds for: true against the reference line, false along it, `None` both.
         against_line: Option<bool>,
     },
+    /// Ground of the kind of lane that its outline names.
+    Area(Ground),
     /// Something that stands beside the road.
     Standing(Standing),
 }

@@ -1,9 +1,12 @@
 //! From XML to roads: header, plan view, profiles, links, junctions.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use roxmltree::Node;
 
 use super::geometry::{Geometry, MAX_COORDINATE_M, MAX_LENGTH_M, ReferenceLine, Shape};
+use super::own_rows::{self, OwnLayout};
 use super::xml::{
     OpenDriveError, Result, Skipped, ascending, bad, child, count, count_others, decode, elements, four,
     named, number, parse_document, shown,
@@ -32,10 +35,22 @@ pub fn read(bytes: &[u8]) -> Result<RoadNetwork> {
             }
             "road" => network.roads.push(road(node, skipped)?),
             "junction" => network.junctions.push(junction(node, skipped)),
+            "userData" if node.attribute("code") == Some(own_rows::CODE) => {
+                // The rows hold for the roads that stand before them.
+                let roads = text
+                    .find("<road ")
+                    .and_then(|from| text.get(from..node.range().start));
+                let roads = roads.unwrap_or_default().trim_end_matches(' ');
+                match OwnLayout::read(node, roads) {
+                    Ok(own) => network.own = Some(Arc::new(own)),
+                    Err(problem) => count(skipped, format!("sceneloom's {problem}")),
+                }
+            }
+            "userData" => count(skipped, "userData"),
             _ => {}
         }
     }
-    count_others(root, &["header", "road", "junction"], skipped);
+    count_others(root, &["header", "road", "junction", "userData"], skipped);
     if network.roads.is_empty() {
         return Err(bad(root, "road", "at least one road", "none"));
     }

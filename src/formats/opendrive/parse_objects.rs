@@ -3,6 +3,7 @@
 
 use roxmltree::Node;
 
+use super::lanes::{Ground, LaneKind};
 use super::objects::{Corners, ObjectKind, Repeat, RoadObject};
 use super::standing::Standing;
 use super::xml::{
@@ -59,6 +60,20 @@ fn standing(node: Node<'_, '_>) -> Option<Standing> {
     Standing::from_names(&kind, &subtype, &name)
 }
 
+/// The ground that an outline says to be of a kind of lane (OpenDRIVE 1.5 and later).
+fn ground(node: Node<'_, '_>) -> Option<Ground> {
+    let mut kinds = outlines(node).filter_map(|outline| LaneKind::from_name(outline.attribute("laneType")?));
+    kinds.next()?.ground_alone()
+}
+
+/// Outlines in their list and, as in OpenDRIVE 1.4, without one.
+fn outlines<'a, 'i: 'a>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
+    let listed = child(node, "outlines")
+        .into_iter()
+        .flat_map(|list| named(list, "outline"));
+    listed.chain(named(node, "outline"))
+}
+
 fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject>> {
     let [kind, subtype, name] = names(node);
     let kind = if kind == "crosswalk" || (kind.is_empty() && name.contains("crosswalk")) {
@@ -69,6 +84,8 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
         return stop_line(node).map(Some);
     } else if let Some(standing) = standing(node) {
         ObjectKind::Standing(standing)
+    } else if let Some(ground) = ground(node) {
+        ObjectKind::Area(ground)
     } else {
         let label = node
             .attribute("type")
@@ -87,11 +104,6 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
         "material",
     ];
     count_others(node, &known, skipped);
-    let outlines: Vec<Node<'_, '_>> = child(node, "outlines")
-        .into_iter()
-        .flat_map(|list| named(list, "outline"))
-        .chain(named(node, "outline"))
-        .collect();
     let mut corners = Vec::new();
     // Sizes upward matter only for what stands.
     let stands = matches!(kind, ObjectKind::Standing(_));
@@ -103,7 +115,7 @@ fn object(node: Node<'_, '_>, skipped: &mut Skipped) -> Result<Option<RoadObject
         }
     };
     let mut height_m = upward(node, "height")?;
-    for outline in outlines {
+    for outline in outlines(node) {
         if outline.attribute("outer").is_some_and(|v| v.trim() == "false") {
             count(skipped, "hole in an object's outline");
             continue;

@@ -33,6 +33,12 @@ impl RoadNetwork {
     /// the most approaches; without a junction, half way along the longest road. Position in m and
     /// heading in rad, in the file's frame.
     pub fn suggest_pose(&self) -> (DVec2, f64) {
+        if self.own.is_some() {
+            return (DVec2::ZERO, 0.0); // where the ego vehicle was when Sceneloom wrote the file
+        }
+        if let Some(start) = self.start {
+            return start;
+        }
         let mut junctions: Vec<&Junction> = self.junctions.iter().collect();
         junctions.sort_by_key(|j| std::cmp::Reverse(j.incoming.len())); // stable: file order on a tie
         let near_junction = junctions.iter().find_map(|junction| {

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use roxmltree::{Document, Node};
-pub(super) use scene::message::quoted as shown;
+pub(crate) use scene::message::quoted as shown;
 
 /// Why a file was refused. Each is shown as one line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -45,13 +45,13 @@ pub enum OpenDriveError {
     },
 }
 
-pub(super) type Result<T> = std::result::Result<T, OpenDriveError>;
+pub(crate) type Result<T> = std::result::Result<T, OpenDriveError>;
 
 /// What was not understood or is not modelled, counted by kind.
 pub type Skipped = BTreeMap<String, usize>;
 
 /// The text of a file: UTF-8, UTF-16 with a byte order mark, or Latin-1 where the header says so.
-pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
+pub(crate) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
     let utf16 = |of: fn([u8; 2]) -> u16| {
         char::decode_utf16(bytes[2..].chunks_exact(2).map(|c| of([c[0], c[1]])))
             .map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER))
@@ -79,7 +79,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
     }
 }
 
-pub(super) fn parse_document(text: &str) -> Result<Document<'_>> {
+pub(crate) fn parse_document(text: &str) -> Result<Document<'_>> {
     super::bounds::check(text)?;
     Document::parse(text).map_err(|error| OpenDriveError::NotXml {
         detail: shown(&error.to_string(), 160),
@@ -87,12 +87,12 @@ pub(super) fn parse_document(text: &str) -> Result<Document<'_>> {
 }
 
 /// Element children.
-pub(super) fn elements<'a, 'i: 'a>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
+pub(crate) fn elements<'a, 'i: 'a>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(Node::is_element)
 }
 
 /// Element children of one name.
-pub(super) fn named<'a, 'i: 'a>(
+pub(crate) fn named<'a, 'i: 'a>(
     node: Node<'a, 'i>,
     name: &'static str,
 ) -> impl Iterator<Item = Node<'a, 'i>> {
@@ -100,12 +100,12 @@ pub(super) fn named<'a, 'i: 'a>(
 }
 
 /// The first element child of that name.
-pub(super) fn child<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
+pub(crate) fn child<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'static str) -> Option<Node<'a, 'i>> {
     named(node, name).next()
 }
 
 /// `road "3", lane "-1", width 2 (line 40)`: the element and those around it that have an id or a number.
-pub(super) fn place(node: Node<'_, '_>) -> String {
+pub(crate) fn place(node: Node<'_, '_>) -> String {
     const CONTAINERS: [&str; 10] = [
         "OpenDRIVE",
         "planView",
@@ -141,7 +141,7 @@ pub(super) fn place(node: Node<'_, '_>) -> String {
 }
 
 /// The error for a field of this element.
-pub(super) fn bad(
+pub(crate) fn bad(
     node: Node<'_, '_>,
     field: &str,
     expected: impl Into<String>,
@@ -156,7 +156,7 @@ pub(super) fn bad(
 }
 
 /// A finite number; `None` if the attribute is absent.
-pub(super) fn number_or_none(node: Node<'_, '_>, field: &str) -> Result<Option<f64>> {
+pub(crate) fn number_or_none(node: Node<'_, '_>, field: &str) -> Result<Option<f64>> {
     let Some(text) = node.attribute(field) else {
         return Ok(None);
     };
@@ -167,17 +167,17 @@ pub(super) fn number_or_none(node: Node<'_, '_>, field: &str) -> Result<Option<f
 }
 
 /// A finite number that has to be there.
-pub(super) fn number(node: Node<'_, '_>, field: &str) -> Result<f64> {
+pub(crate) fn number(node: Node<'_, '_>, field: &str) -> Result<f64> {
     number_or_none(node, field)?.ok_or_else(|| bad(node, field, "a finite number", "no such attribute"))
 }
 
 /// A finite number, or the given one if the attribute is absent.
-pub(super) fn number_or(node: Node<'_, '_>, field: &str, otherwise: f64) -> Result<f64> {
+pub(crate) fn number_or(node: Node<'_, '_>, field: &str, otherwise: f64) -> Result<f64> {
     Ok(number_or_none(node, field)?.unwrap_or(otherwise))
 }
 
 /// Four coefficients, from the constant up.
-pub(super) fn four(node: Node<'_, '_>, fields: [&str; 4]) -> Result<[f64; 4]> {
+pub(crate) fn four(node: Node<'_, '_>, fields: [&str; 4]) -> Result<[f64; 4]> {
     let mut out = [0.0; 4];
     for (value, field) in out.iter_mut().zip(fields) {
         *value = number(node, field)?;
@@ -186,7 +186,7 @@ pub(super) fn four(node: Node<'_, '_>, fields: [&str; 4]) -> Result<[f64; 4]> {
 }
 
 /// Refuses a start that lies before the one of the record before.
-pub(super) fn ascending(node: Node<'_, '_>, field: &str, s: f64, before: Option<f64>) -> Result<()> {
+pub(crate) fn ascending(node: Node<'_, '_>, field: &str, s: f64, before: Option<f64>) -> Result<()> {
     match before {
         Some(b) if s < b => Err(bad(
             node,
@@ -200,7 +200,7 @@ pub(super) fn ascending(node: Node<'_, '_>, field: &str, s: f64, before: Option<
 
 /// Counts the element children that are not named in `known`, as `parent/child`. One without
 /// attributes and children holds nothing that could be lost.
-pub(super) fn count_others(node: Node<'_, '_>, known: &[&str], skipped: &mut Skipped) {
+pub(crate) fn count_others(node: Node<'_, '_>, known: &[&str], skipped: &mut Skipped) {
     for n in elements(node) {
         let name = n.tag_name().name();
         if known.contains(&name) || (n.attributes().len() == 0 && elements(n).next().is_none()) {
@@ -215,6 +215,6 @@ pub(super) fn count_others(node: Node<'_, '_>, known: &[&str], skipped: &mut Ski
 }
 
 /// One more of a kind.
-pub(super) fn count(skipped: &mut Skipped, kind: impl Into<String>) {
+pub(crate) fn count(skipped: &mut Skipped, kind: impl Into<String>) {
     *skipped.entry(kind.into()).or_default() += 1;
 }

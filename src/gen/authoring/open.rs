@@ -92,6 +92,12 @@ impl Placement {
     /// The map in the ego frame: around the ego vehicle, most of a long one ahead of it; or all of the network, seen from a
     /// place and heading (m, rad) of its frame.
     pub fn extent(&self, network: &RoadNetwork, from: (DVec2, f64)) -> Extent {
+        // A file that Sceneloom wrote says itself which map it was.
+        if self.size_m.is_none()
+            && let Some(own) = network.own_extent(from.0, from.1)
+        {
+            return own;
+        }
         if self.whole {
             return whole_extent(network, from).unwrap_or(Extent::WINDOW);
         }
@@ -159,6 +165,8 @@ pub struct Imported {
     pub lanes: usize,
     /// Columns that are drivable although no traffic lane lies there, by the kind of lane.
     pub drivable_beside_traffic: BTreeMap<String, usize>,
+    /// True if the layout is the one that Sceneloom wrote the file from, to the last cell.
+    pub is_own: bool,
     /// Bridges: roads of the file that cross above the ground.
     pub bridges: usize,
     /// Things that the file puts beside the road, bridges not counted.
@@ -186,7 +194,7 @@ pub fn import(path: &Path, placement: &Placement) -> anyhow::Result<Imported> {
     ))
 }
 
-/// A scene on a road network: its layout with relief and seeded traffic, as a complete world. What stands beside the road is
+/// A scene on a road network: its layout with relief and the file's traffic, seeded if it has none, as a complete world. What stands beside the road is
 /// the file's; procedural scenery is drawn around it if the file has hardly anything there. [`Placement::bare`] leaves
 /// scenery out, and the occupancy is the draft until it is generated.
 pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Imported {
@@ -205,7 +213,10 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         traffic::TrafficSpec::NORMAL
     };
     let seed = placement.seed;
-    let boxes = traffic::place(&import.without_lanes_of_junctions(), seed, &spec);
+    let boxes = match import.boxes.is_empty() || placement.empty {
+        true => traffic::place(&import.without_lanes_of_junctions(), seed, &spec),
+        false => import.boxes.clone(), // the file's own
+    };
     let things_of_file = import.background.len() - import.bridge_count;
     let mut scene = if placement.bare {
         let occupancy = draft::draft(&import.layout, boxes.values());
@@ -245,6 +256,7 @@ pub fn on_roads(network: RoadNetwork, name: &str, placement: &Placement) -> Impo
         roads: import.road_count,
         lanes: import.lane_count,
         drivable_beside_traffic: import.drivable_beside_traffic,
+        is_own: import.is_own,
         bridges: import.bridge_count,
         things_of_file,
         skipped: import.skipped,

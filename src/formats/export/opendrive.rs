@@ -1,0 +1,20 @@
+//! Roads as OpenDRIVE.
+
+use super::{Exporter, OutFile, Span};
+use crate::{Holds, opendrive};
+
+/// See [`opendrive::write`].
+pub const EXPORTER: Exporter = Exporter {
+    id: "opendrive",
+    title: "Roads: OpenDRIVE 1.8 with lanes, junctions, crossings, heights",
+    file_name: Some("map.xodr"),
+    holds: &[Holds::Roads],
+    lost: "",
+    // Roads stand still: they are written as they lie in the world frame.
+    span: Span::Clip,
+    needs: &[],
+    write: |scene, _| {
+        let bytes = opendrive::write::to_bytes(&scene.name, &scene.canvas().layout);
+        Ok(vec![OutFile::new("map.xodr", bytes)])
+    },
+};
