@@ -1,4 +1,4 @@
-# packages: mcp==2.3.0 jsonschema==4.26.0 numpy
+# packages: mcp==2.3.0 jsonschema==4.26.0 numpy==2.4.6
 """Builds a scene over MCP with the protocol's own Python client, from what the tool list says alone.
 
 python mcp_client.py [TRANSCRIPT.md]; the program is that of SCENELOOM, else `sceneloom`. Prints one line of JSON.
