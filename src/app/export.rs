@@ -251,7 +251,6 @@ impl Products for Making<'_> {
         Ok(Seen {
             lidar_returns: seen.lidar_returns,
             camera_pixels: seen.camera_pixels,
-            visible: None,
         })
     }
 
@@ -387,7 +386,7 @@ mod tests {
         });
         assert!(written.is_err() && !path.exists(), "{written:?}");
         let of_cameras = |f: &&Format| {
-            let pictures = [Product::CameraMaps, Product::Pictures];
+            let pictures = [Product::CameraMaps, Product::Pictures, Product::Truth];
             f.needs.iter().any(|product| pictures.contains(product))
         };
         let counted = formats.iter().filter(of_cameras).count();

@@ -5,13 +5,15 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use scene::clip::ObjectVoxels;
+use scene::truth::SeenBox;
 use scene::{
-    BevLayer, BoxId, CameraMaps, Class, Key, LidarPoint, LidarSweep, Motion, Polyline, PolylineKind, Scene,
-    SceneBox, Track,
+    BevLayer, BoxId, CameraMaps, CameraTruth, Class, Key, LidarPoint, LidarSweep, Motion, Polyline,
+    PolylineKind, Pose, Scene, SceneBox, Track,
 };
 
 use crate::FormatError;
 use crate::export::{Picture, Products, Seen};
+use crate::recipe::Recipe;
 use crate::table_tests::random_scene;
 
 /// Where labels have the ground under the vehicle, m.
@@ -95,6 +97,7 @@ pub(crate) fn point(position_in_ego: [f32; 3], class: Class) -> LidarPoint {
 /// Sensors of a scene at the moment that was asked for.
 pub(crate) struct Plain {
     scene: Scene,
+    recipe: Recipe,
     /// Every so many columns of the LiDAR are cast.
     pub(crate) every: u32,
     /// Pixels of pictures.
@@ -105,6 +108,7 @@ impl Plain {
     pub(crate) fn of(scene: &Scene) -> Self {
         Self {
             scene: scene.clone(),
+            recipe: Recipe::of(scene),
             every: 18,
             size: [32, 18],
         }
@@ -140,11 +144,9 @@ impl Products for Plain {
 
     fn seen(&mut self) -> Result<Seen, FormatError> {
         let ids = self.scene.frame().boxes.keys();
-        let share = |id: &BoxId| (*id, f64::from(id.0 % 5) / 4.0);
         Ok(Seen {
-            lidar_returns: Some(ids.clone().map(|id| (*id, id.0 * 3)).collect()),
+            lidar_returns: Some(ids.map(|id| (*id, id.0 * 3)).collect()),
             camera_pixels: None,
-            visible: Some(ids.map(share).collect()),
         })
     }
 
@@ -199,6 +201,53 @@ impl Products for Plain {
             })?;
         }
         Ok(())
+    }
+
+    /// The pictures; the first two cameras see a quarter of each box for each of the last digits of its id in base 5.
+    fn truth(
+        &mut self,
+        take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
+    ) -> Result<(), FormatError> {
+        let (cameras, boxes) = (self.scene.rig.cameras.clone(), self.boxes());
+        let [width, height] = self.size;
+        let mut next = 0;
+        self.pictures(&mut |picture| {
+            let camera = cameras[next].resized(width as u32, height as u32);
+            next += 1;
+            let seen = |b: &SceneBox| SeenBox {
+                of: *b,
+                center_in_camera_m: DVec3::Z,
+                corners_px: [None; 8],
+                visible_px: 0,
+                whole_px: 20 * next as u32,
+                visibility: f64::from(b.id.0 % 5) / 4.0,
+                in_picture: 1.0,
+                visible_bounds_px: None,
+                whole_bounds_px: [0.0; 4],
+            };
+            let boxes = if next > 2 {
+                Vec::new()
+            } else {
+                boxes.iter().map(seen).collect()
+            };
+            let truth = CameraTruth {
+                camera,
+                width,
+                height,
+                pixels: Vec::new(),
+                flow_s: None,
+                boxes,
+            };
+            take(picture, truth)
+        })
+    }
+
+    fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    fn world_from_ego(&self) -> Pose {
+        self.scene.frame().world_from_ego
     }
 
     fn view(&mut self) -> Result<Picture, FormatError> {

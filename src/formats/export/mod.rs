@@ -24,7 +24,7 @@ use super::recipe::Recipe;
 use super::{FormatError, Holds};
 
 /// Every format for other programs, in the order of lists. The program's own, [`loom::EXPORTER`], is what saving writes.
-const TABLE: [&Exporter; 11] = [
+const TABLE: [&Exporter; 12] = [
     &occ3d::EXPORTER,
     &boxes::EXPORTER,
     &nuscenes_lidar::EXPORTER,
@@ -149,8 +149,6 @@ pub struct Seen {
     pub lidar_returns: Option<BTreeMap<BoxId, u32>>,
     /// Pixels of all cameras.
     pub camera_pixels: Option<BTreeMap<BoxId, u32>>,
-    /// Share of each box's pixels, whatever hides them, that cameras see, 0 to 1; `None` also where nobody counted.
-    pub visible: Option<BTreeMap<BoxId, f64>>,
 }
 
 /// A picture to be written.

@@ -58,6 +58,9 @@ pub struct Log {
     /// `boston-seaport` or one of three places in Singapore.
     #[serde(default)]
     pub location: String,
+    /// Not in the schema: how the files came to be ([`crate::recipe`]). Only in folders that Sceneloom wrote.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recipe: Option<serde_json::Value>,
 }
 
 /// A map that logs were driven on.

@@ -2,8 +2,8 @@
 //!
 //! Every moment of the clip's rate has, with its time in the clip as log time: `/tf` (`map` to `base_link`, the ego frame, and
 //! that to each sensor), `/pose`, `/markers/annotations` (boxes), `/occupancy` (voxels around the vehicle), `/lidar_top`, and
-//! for each camera `/NAME/camera_info` and `/NAME/image_rect_compressed`. `/drivable_area` and `/semantic_map` are there once.
-//! Chunks are compressed by lz4.
+//! for each camera `/NAME/camera_info` and `/NAME/image_rect_compressed` (`image_compressed` where its lens is no pinhole).
+//! `/drivable_area` and `/semantic_map` are there once; the recipe is metadata. Chunks are compressed by lz4.
 
 mod grids;
 mod messages;
@@ -15,9 +15,10 @@ use glam::{DQuat, DVec3};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use prost::Message;
-use scene::{Camera, LidarPattern, LidarSweep, Pose, Scene, SceneBox};
+use scene::{Camera, Lens, LidarPattern, LidarSweep, Pose, Scene, SceneBox};
 
 use super::{Exporter, OutFile, Picture, Product, Products, Span};
+use crate::recipe::{self, Recipe};
 use crate::sensor_names::{self, LIDAR};
 use crate::{FormatError, Holds, jpeg, moments, physical};
 use messages::{
@@ -50,7 +51,7 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
     if let Some(problem) = scene.rig.problem() {
         return Err(FormatError::new(problem));
     }
-    let mut log = Log::new(scene)?;
+    let mut log = Log::new(products.recipe())?;
     let cameras = sensor_names::cameras(&scene.rig);
     let times_s = moments::times_s(scene, scene.clip().rate_hz);
     for (i, &time_s) in times_s.iter().enumerate() {
@@ -102,22 +103,17 @@ struct Log {
 }
 
 impl Log {
-    fn new(scene: &Scene) -> Result<Self, FormatError> {
+    fn new(recipe: &Recipe) -> Result<Self, FormatError> {
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .library(concat!("sceneloom ", env!("CARGO_PKG_VERSION")));
         let mut writer = options
             .create(Cursor::new(Vec::new()))
             .map_err(FormatError::new)?;
-        let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+        let told = serde_json::to_string(recipe).map_err(FormatError::new)?;
         let about = mcap::records::Metadata {
-            name: "scene".into(),
-            metadata: BTreeMap::from([
-                text("name", &scene.name),
-                text("prompt", &scene.prompt),
-                text("time_of_day", scene.conditions.time.name()),
-                text("weather", scene.conditions.weather.name()),
-            ]),
+            name: recipe::NAME.into(),
+            metadata: BTreeMap::from([(recipe::NAME.into(), told)]),
         };
         writer.write_metadata(&about).map_err(FormatError::new)?;
         Ok(Self {
@@ -290,24 +286,38 @@ fn pictures(
             format: "jpeg".into(),
             frame_id: names[i].clone(),
         };
-        log.put(
-            &format!("{topic}/image_rect_compressed"),
-            "CompressedImage",
-            &image,
-        )
+        let rectified = if cameras[i].lens == Lens::Pinhole {
+            "_rect"
+        } else {
+            ""
+        };
+        let topic = format!("{topic}/image{rectified}_compressed");
+        log.put(&topic, "CompressedImage", &image)
     })
 }
 
-/// At the size of the picture, without distortion: pictures are rectified.
+/// At the size of the picture. Distortion as OpenCV lists it; f-theta, which the schema does not know, by its name.
 fn calibration(camera: &Camera, name: &str, picture: &Picture, timestamp: Option<Time>) -> CameraCalibration {
     let camera = camera.resized(picture.width as u32, picture.height as u32);
     let ([fx, fy], [cx, cy]) = (camera.focal_px, camera.center_px);
+    let (model, distortion) = match camera.lens {
+        Lens::Pinhole => ("", Vec::new()),
+        Lens::Distorted { k, p } => match k[3..] == [0.0; 3] {
+            true => ("plumb_bob", vec![k[0], k[1], p[0], p[1], k[2]]),
+            false => {
+                let all = vec![k[0], k[1], p[0], p[1], k[2], k[3], k[4], k[5]];
+                ("rational_polynomial", all)
+            }
+        },
+        Lens::Fisheye { k, .. } => ("kannala_brandt", k.to_vec()),
+        Lens::FTheta { c, .. } => ("f_theta", c.to_vec()),
+    };
     CameraCalibration {
         timestamp,
         width: camera.width,
         height: camera.height,
-        distortion_model: String::new(),
-        distortion: Vec::new(),
+        distortion_model: model.into(),
+        distortion,
         intrinsic: vec![fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0],
         rectification: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         projection: vec![fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],

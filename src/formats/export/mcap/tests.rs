@@ -125,6 +125,43 @@ fn points_stand_on_the_ground_and_pictures_have_their_calibration() {
 }
 
 #[test]
+fn lenses_have_their_coefficients_in_the_order_of_opencv() {
+    let mut scene = crate::table_tests::scene();
+    let rig = std::sync::Arc::make_mut(&mut scene.rig);
+    let p = [0.01, 0.02];
+    rig.cameras[0].lens = Lens::Distorted {
+        k: [0.1, 0.2, 0.3, 0.0, 0.0, 0.0],
+        p,
+    };
+    rig.cameras[1].lens = Lens::Distorted {
+        k: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+        p,
+    };
+    rig.cameras[2].lens = Lens::Fisheye {
+        k: [0.1, 0.2, 0.3, 0.4],
+        max_angle_deg: 95.0,
+    };
+    let (_, messages) = written(&scene);
+    let of = |camera: &str| -> (String, Vec<f64>) {
+        let info: CameraCalibration = decode(&messages, &format!("/{camera}/camera_info"), 0);
+        (info.distortion_model, info.distortion)
+    };
+    assert_eq!(
+        of("cam_front_left"),
+        ("plumb_bob".into(), vec![0.1, 0.2, 0.01, 0.02, 0.3])
+    );
+    let all = vec![0.1, 0.2, 0.01, 0.02, 0.3, 0.4, 0.5, 0.6];
+    assert_eq!(of("cam_front"), ("rational_polynomial".into(), all));
+    assert_eq!(
+        of("cam_front_right"),
+        ("kannala_brandt".into(), vec![0.1, 0.2, 0.3, 0.4])
+    );
+    assert_eq!(of("cam_back"), (String::new(), Vec::new()));
+    assert!(messages.contains_key("/cam_front/image_compressed"));
+    assert!(messages.contains_key("/cam_back/image_rect_compressed"));
+}
+
+#[test]
 fn grids_have_x_along_columns_and_z_along_slices() {
     let scene = clip_scene(7);
     let (_, messages) = written(&scene);

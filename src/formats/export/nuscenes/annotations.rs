@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use scene::{BoxId, Class, Scene, SceneBox, TimeOfDay, Weather};
 
 use super::Writing;
+use super::sensors::Visible;
 use crate::export::Seen;
 use crate::nuscenes::tables::{Attribute, Instance, SampleAnnotation, Visibility};
 use crate::nuscenes::tokens::Tokens;
@@ -66,7 +67,7 @@ impl Annotations {
         writing: &mut Writing<'_>,
         key_frame: usize,
         now: &Scene,
-        seen: &Seen,
+        (seen, visible): (&Seen, &Visible),
     ) {
         let frame = now.frame();
         for b in frame.boxes.values() {
@@ -87,7 +88,7 @@ impl Annotations {
                     .token("sample_annotation", (key_frame as u64) << 32 | id),
                 sample_token: writing.sample_token(key_frame),
                 instance_token: writing.tokens.token("instance", id),
-                visibility_token: (1 + bin(seen, b.id)).to_string(),
+                visibility_token: (1 + bin(visible, b.id)).to_string(),
                 attribute_tokens: attributes.into_iter().collect(),
                 translation: writing.global(b.center_m),
                 size: [b.size_m.y, b.size_m.x, b.size_m.z],
@@ -121,11 +122,9 @@ impl Annotations {
     }
 }
 
-/// Bin of the share that cameras see; where nobody knows it, all of what any camera sees.
-fn bin(seen: &Seen, id: BoxId) -> usize {
-    let counted = seen.visible.as_ref().map(|v| v.get(&id).copied().unwrap_or(0.0));
-    let pixels = || seen.camera_pixels.as_ref()?.get(&id).copied();
-    let share = counted.unwrap_or_else(|| if pixels().unwrap_or(0) > 0 { 1.0 } else { 0.0 });
+/// Bin of the share of a box that cameras see; the first if they see none of it.
+fn bin(visible: &Visible, id: BoxId) -> usize {
+    let share = visible.get(&id).copied().unwrap_or(0.0);
     BINS.iter().rposition(|(from, ..)| share >= *from).unwrap_or(0)
 }
 
@@ -195,20 +194,11 @@ mod tests {
     use scene::Conditions;
 
     #[test]
-    fn shares_fall_into_bins_and_pixels_stand_in_for_them() {
-        let share = |share: f64| Seen {
-            visible: Some([(BoxId(1), share)].into()),
-            ..Seen::default()
-        };
-        let bins = [0.0, 0.39, 0.4, 0.6, 0.79, 0.8, 1.0].map(|s| bin(&share(s), BoxId(1)));
+    fn shares_fall_into_bins() {
+        let of = |share: f64| bin(&[(BoxId(1), share)].into(), BoxId(1));
+        let bins = [0.0, 0.39, 0.4, 0.6, 0.79, 0.8, 1.0].map(of);
         assert_eq!(bins, [0, 0, 1, 2, 2, 3, 3]);
-        assert_eq!(bin(&share(1.0), BoxId(2)), 0, "not seen at all");
-        let pixels = Seen {
-            camera_pixels: Some([(BoxId(1), 4), (BoxId(2), 0)].into()),
-            ..Seen::default()
-        };
-        assert_eq!([1, 2, 3].map(|id| bin(&pixels, BoxId(id))), [3, 0, 0]);
-        assert_eq!(bin(&Seen::default(), BoxId(1)), 0);
+        assert_eq!(bin(&[(BoxId(1), 1.0)].into(), BoxId(2)), 0, "not seen at all");
     }
 
     #[test]

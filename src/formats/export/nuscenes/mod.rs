@@ -3,7 +3,7 @@
 //!
 //! Key frames are every 0.5 s from the start of the clip; a scene that stands still is one. Between them are LiDAR sweeps at
 //! 10 Hz, in clips of up to a minute. The global frame is the world frame, moved so that the map lies where x and y are
-//! positive, as map masks want it; `map.json` says by how much.
+//! positive, as map masks want it; `map.json` says by how much. `log.json` has the recipe.
 
 mod annotations;
 mod expansion;
@@ -22,6 +22,7 @@ use crate::nuscenes::tables::{
 };
 use crate::nuscenes::tokens::Tokens;
 use crate::nuscenes::{KEY_FRAMES_HZ, categories};
+use crate::recipe::Recipe;
 use crate::{FormatError, Holds, moments};
 
 /// See the module.
@@ -31,10 +32,10 @@ pub const EXPORTER: Exporter = Exporter {
     file_name: None,
     holds: &[Holds::Boxes, Holds::Points, Holds::Pictures],
     lost: "what happens between key frames and after the last one, names and paint of boxes, velocities of a scene that \
-           stands still, slopes of the ground, beams of the LiDAR and further LiDARs, size of the own vehicle; voxels, map \
+           stands still, slopes of the ground, beams of the LiDAR and further LiDARs, distortion and shutters of cameras, size of the own vehicle; voxels, map \
            and scenery are inferred anew from the LiDAR",
     span: Span::Clip,
-    needs: &[Product::Seen, Product::Sweep, Product::Pictures],
+    needs: &[Product::Seen, Product::Sweep, Product::Truth],
     write,
 };
 
@@ -96,8 +97,8 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
         if let Some(problem) = now.frame().boxes.values().find_map(SceneBox::problem) {
             return Err(FormatError::new(problem));
         }
-        sensors.key_frame(&mut writing, products, &sample, &now)?;
-        boxes.key_frame(&mut writing, i, &now, &products.seen()?);
+        let visible = sensors.key_frame(&mut writing, products, &sample, &now)?;
+        boxes.key_frame(&mut writing, i, &now, (&products.seen()?, &visible));
         let neighbour = |other: Option<usize>| {
             other
                 .filter(|i| *i < times_s.len())
@@ -115,7 +116,7 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
     sensors.link(&mut writing);
     boxes.finish(&mut writing);
     map::write(&mut writing)?;
-    writing.finish()
+    writing.finish(products.recipe())
 }
 
 /// Times of the tables; they count from the start of the clip.
@@ -161,7 +162,7 @@ impl Writing<'_> {
     }
 
     /// The tables as files, after those that they name.
-    fn finish(mut self) -> Result<Vec<OutFile>, FormatError> {
+    fn finish(mut self, recipe: &Recipe) -> Result<Vec<OutFile>, FormatError> {
         let tables = std::mem::take(&mut self.tables);
         let log = self.tokens.token("log", 0);
         let first_and_last = [tables.sample.first(), tables.sample.last()];
@@ -182,6 +183,7 @@ impl Writing<'_> {
             vehicle: VEHICLE.into(),
             date_captured: DATE.into(),
             location: LOCATION.into(),
+            recipe: Some(serde_json::to_value(recipe).map_err(FormatError::new)?),
         };
         self.table("log", &[row])?;
         let row = Map {

@@ -1,8 +1,9 @@
 //! Sweeps and pictures, where the sensors are, and where the vehicle was.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use scene::{LidarSweep, Scene};
+use scene::{BoxId, LidarSweep, Scene};
 
 use super::{Writing, log_name, timestamp_us};
 use crate::export::{Picture, Products, nuscenes_lidar};
@@ -28,6 +29,9 @@ pub(super) struct Sensors {
     log: String,
     has_sweeps: bool,
 }
+
+/// Share of each box that cameras see of what they would see if nothing stood in front, 0 to 1, all cameras together.
+pub(super) type Visible = BTreeMap<BoxId, f64>;
 
 /// A file of a sensor.
 struct Measured<'a> {
@@ -73,14 +77,14 @@ impl Sensors {
         }
     }
 
-    /// Sweep and pictures of a key frame.
+    /// Sweep and pictures of a key frame. Returns how much of each box the cameras see.
     pub(super) fn key_frame(
         &mut self,
         writing: &mut Writing<'_>,
         products: &mut dyn Products,
         sample: &str,
         now: &Scene,
-    ) -> Result<(), FormatError> {
+    ) -> Result<Visible, FormatError> {
         if self.has_lidar {
             let sweep = sweep(now, products)?;
             let token = self.add_sweep(writing, &sweep, sample, now, true);
@@ -97,19 +101,30 @@ impl Sensors {
                 filename,
             });
         }
+        let mut visible = Visible::new();
         if now.rig.cameras.is_empty() {
-            return Ok(());
+            return Ok(visible);
         }
+        // Pixels that show a box, and those that would if nothing stood in front.
+        let mut pixels: BTreeMap<BoxId, [f64; 2]> = BTreeMap::new();
         let mut next = 0;
-        products.pictures(&mut |picture| {
+        products.truth(&mut |picture, truth| {
             // In the order of the rig, of which a name may stand for several.
             let same = |i: &usize| now.rig.cameras[*i].name == picture.camera;
             let Some(camera) = (next..now.rig.cameras.len()).find(same) else {
                 return Ok(());
             };
             next = camera + 1;
+            for seen in &truth.boxes {
+                let [shown, whole] = pixels.entry(seen.of.id).or_default();
+                *shown += seen.visibility * f64::from(seen.whole_px);
+                *whole += f64::from(seen.whole_px);
+            }
             self.add_picture(writing, &picture, camera, sample, now)
-        })
+        })?;
+        let seen = pixels.into_iter().filter(|(_, [_, whole])| *whole > 0.0);
+        visible.extend(seen.map(|(id, [shown, whole])| (id, shown / whole)));
+        Ok(visible)
     }
 
     /// Sweeps between two key frames, without these.

@@ -5,12 +5,12 @@
 //! a quaternion x, y, z, w, then length, width, height in m. Matrices are row-major and take points of the inner system to the
 //! outer one. Intrinsics are at the rig's own size. The prompt, time of day and weather are tags.
 
-use scene::{Camera, Pose, Scene, SceneBox};
+use scene::{Camera, Lens, Pose, Scene, SceneBox};
 use serde_json::{Map, Value, json};
 
 use super::{Exporter, OutFile, Products, Span};
 use crate::sensor_names::{self, LIDAR};
-use crate::{FormatError, Holds, moments};
+use crate::{FormatError, Holds, moments, recipe};
 
 /// See the module.
 pub const EXPORTER: Exporter = Exporter {
@@ -71,6 +71,7 @@ fn to_bytes(scene: &Scene, products: &mut dyn Products) -> Result<Vec<u8>, Forma
             "name": &*scene.name,
             "annotator": concat!("sceneloom ", env!("CARGO_PKG_VERSION")),
             "comment": "a scene that was made, not measured",
+            (recipe::NAME): products.recipe(),
         },
         "ontologies": {ONTOLOGY: "urn:sceneloom:nuscenes-classes"},
         "coordinate_systems": coordinate_systems(scene, &cameras),
@@ -159,14 +160,31 @@ fn coordinate_systems(scene: &Scene, cameras: &[String]) -> Value {
 fn streams(scene: &Scene, cameras: &[String]) -> Value {
     let camera = |(camera, name): (&Camera, &String)| {
         let ([fx, fy], [cx, cy]) = (camera.focal_px, camera.center_px);
-        let pinhole = json!({
-            "width_px": camera.width,
-            "height_px": camera.height,
-            "camera_matrix": [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
-            "distortion_coeffs": [0.0, 0.0, 0.0, 0.0, 0.0],
-        });
+        let size = |mut intrinsics: Value| {
+            intrinsics["width_px"] = camera.width.into();
+            intrinsics["height_px"] = camera.height.into();
+            intrinsics
+        };
+        // Of OpenCV's order, in which p1 and p2 come after k2.
+        let matrix = |k: [f64; 6], p: [f64; 2]| {
+            let intrinsics = json!({
+                "camera_matrix": [fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0],
+                "distortion_coeffs": [k[0], k[1], p[0], p[1], k[2], k[3], k[4], k[5]],
+            });
+            json!({"intrinsics_pinhole": size(intrinsics)})
+        };
+        let properties = match camera.lens {
+            Lens::Pinhole => matrix([0.0; 6], [0.0; 2]),
+            Lens::Distorted { k, p } => matrix(k, p),
+            Lens::Fisheye { k, .. } => json!({"intrinsics_fisheye": size(json!({
+                "center_x_px": cx, "center_y_px": cy, "focal_length_x": fx, "focal_length_y": fy, "lens_coeffs": k,
+            }))}),
+            Lens::FTheta { c, .. } => json!({"intrinsics_custom": size(json!({
+                "model": "f_theta", "center_px": [cx, cy], "focal_px": [fx, fy], "coefficients": c,
+            }))}),
+        };
         let stream = json!({
-            "type": "camera", "description": "", "uri": "", "stream_properties": {"intrinsics_pinhole": pinhole},
+            "type": "camera", "description": "", "uri": "", "stream_properties": properties,
         });
         (name.clone(), stream)
     };

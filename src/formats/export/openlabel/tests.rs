@@ -108,6 +108,36 @@ fn sensors_hang_on_the_vehicle() {
     let pinhole = &file["streams"]["CAM_FRONT"]["stream_properties"]["intrinsics_pinhole"];
     assert_eq!(numbers(&pinhole["camera_matrix"])[5], camera.focal_px[1]);
     assert_eq!(file["streams"]["LIDAR_TOP"]["type"], "lidar");
+    assert_eq!(file["metadata"]["recipe"]["scene"], "random");
+}
+
+#[test]
+fn lenses_have_their_coefficients() {
+    let mut scene = crate::table_tests::scene();
+    let rig = std::sync::Arc::make_mut(&mut scene.rig);
+    rig.cameras[0].lens = Lens::Distorted {
+        k: [0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+        p: [0.01, 0.02],
+    };
+    rig.cameras[1].lens = Lens::Fisheye {
+        k: [0.1, 0.2, 0.3, 0.4],
+        max_angle_deg: 95.0,
+    };
+    rig.cameras[2].lens = Lens::FTheta {
+        c: [1.0, 0.0, 0.1, 0.0, 0.0, 0.0],
+        max_angle_deg: 95.0,
+    };
+    let file = written(&scene);
+    let of = |camera: &str| &file["streams"][camera]["stream_properties"];
+    let pinhole = &of("CAM_FRONT_LEFT")["intrinsics_pinhole"];
+    assert_eq!(
+        numbers(&pinhole["distortion_coeffs"]),
+        [0.1, 0.2, 0.01, 0.02, 0.3, 0.4, 0.5, 0.6]
+    );
+    let fisheye = &of("CAM_FRONT")["intrinsics_fisheye"];
+    assert_eq!(numbers(&fisheye["lens_coeffs"]), [0.1, 0.2, 0.3, 0.4]);
+    assert_eq!(fisheye["width_px"], 1600);
+    assert_eq!(of("CAM_FRONT_RIGHT")["intrinsics_custom"]["coefficients"][2], 0.1);
 }
 
 #[test]

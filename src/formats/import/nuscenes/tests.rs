@@ -26,7 +26,7 @@ pub(super) fn written(scene: &Scene) -> TempDir {
 pub(super) fn read(folder: &Path) -> Result<Loaded, FormatError> {
     match import::read(folder)?.1 {
         Content::Scene(loaded) => Ok(*loaded),
-        Content::Roads(_) => panic!("roads"),
+        other => panic!("{other:?}"),
     }
 }
 
