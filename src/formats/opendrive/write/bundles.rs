@@ -429,9 +429,9 @@ fn fill(beside: &mut [Option<(usize, f64)>]) {
             && (2..=SHORT).contains(&(i - from))
             && let Some((k, before_m)) = beside[from]
         {
-            for n in from + 1..i {
-                let share = (n - from) as f64 / (i - from) as f64;
-                beside[n] = Some((k, before_m + (here_m - before_m) * share));
+            for (n, gap) in beside[from + 1..i].iter_mut().enumerate() {
+                let share = (n + 1) as f64 / (i - from) as f64;
+                *gap = Some((k, before_m + (here_m - before_m) * share));
             }
         }
         last = Some(i);
