@@ -208,7 +208,7 @@ fn read(importer: &Importer, bytes: &[u8]) -> Result<Content, FormatError> {
         FOLDERS.with_borrow_mut(|folders| {
             let (_, path) = folders.entry(importer.id).or_insert_with(|| {
                 let exporter = export::from_id(importer.id).expect("it is written too");
-                let files = (exporter.write)(&scene(), &mut Small(Recipe::of(&scene()))).expect(exporter.id);
+                let files = (exporter.write)(&scene(), &mut Small).expect(exporter.id);
                 let folder = in_folder(&files);
                 let first = first(folder.path()).expect("the format knows its own folder");
                 (folder, first)
