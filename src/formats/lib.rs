@@ -8,7 +8,7 @@ pub mod calibration;
 mod clip_tests;
 pub mod error;
 pub mod export;
-mod glb;
+pub mod glb;
 pub mod import;
 pub mod input;
 pub mod jpeg;

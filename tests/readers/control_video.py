@@ -1,4 +1,4 @@
-# packages: av numpy
+# packages: av==18.1.0 numpy==2.4.6
 """Decodes the control videos of a folder with PyAV (FFmpeg): pictures, rate, size, and the colours that are drawn."""
 
 import json

@@ -21,7 +21,7 @@ pub const EXPORTER: Exporter = Exporter {
     title: "Control video: MP4 for each camera with boxes, lanes and crossings as Cosmos-Transfer takes them",
     file_name: None,
     holds: &[Holds::Pictures],
-    lost: "it is not read again",
+    lost: "",
     span: Span::Clip,
     needs: &[],
     write,

@@ -10,9 +10,8 @@ use serde::Serialize;
 
 use super::{Exporter, OutFile, Span};
 use crate::glb::mesh::{Mesh, meshes};
-use crate::glb::{
-    BoxExtras, CLASS_MAP, ClassExtras, Recipe, SceneExtras, VERSION, container, y_up_from_z_up,
-};
+use crate::glb::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, Told, VERSION, container, y_up_from_z_up};
+use crate::recipe::Recipe;
 use crate::{FormatError, Holds};
 
 /// See [`crate::glb`].
@@ -24,11 +23,14 @@ pub const EXPORTER: Exporter = Exporter {
     lost: "",
     span: Span::Moment,
     needs: &[],
-    write: |scene, _| Ok(vec![OutFile::new("scene.glb", to_bytes(scene)?)]),
+    write: |scene, products| {
+        let bytes = to_bytes(scene, products.recipe())?;
+        Ok(vec![OutFile::new("scene.glb", bytes)])
+    },
 };
 
-/// The scene of the moment as a GLB file.
-pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, FormatError> {
+/// The scene of the moment as a GLB file, with how it came to be.
+pub fn to_bytes(scene: &Scene, recipe: &Recipe) -> Result<Vec<u8>, FormatError> {
     let frame = scene.frame();
     if let Some(problem) = frame.boxes.values().find_map(SceneBox::problem) {
         return Err(FormatError::new(problem));
@@ -74,25 +76,22 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, FormatError> {
         children,
         rotation: Some(turn.to_array()),
         extras: Some(Extras::Scene(SceneExtras {
-            sceneloom: recipe(scene),
+            sceneloom: told(scene),
+            recipe: serde_json::to_value(recipe).map_err(FormatError::new)?,
         })),
         ..Node::default()
     });
     document.finish(&scene.name, root)
 }
 
-fn recipe(scene: &Scene) -> Recipe {
-    Recipe {
+fn told(scene: &Scene) -> Told {
+    Told {
         version: VERSION,
-        scene: scene.name.to_string(),
-        prompt: scene.prompt.to_string(),
         seed: scene.seed.to_string(),
-        time_s: scene.time_s(),
         class_map: CLASS_MAP.to_owned(),
         extent: scene.frame().extent().into(),
         voxel_m: Extent::VOXEL_M,
         frame: "ego: x forward, y left, z up, m".to_owned(),
-        program: concat!("sceneloom ", env!("CARGO_PKG_VERSION")).to_owned(),
     }
 }
 

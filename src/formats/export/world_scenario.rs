@@ -10,7 +10,7 @@ pub const EXPORTER: Exporter = Exporter {
     title: "World scenario: parquet tables for Cosmos-Transfer, boxes, ego motion, cameras and map",
     file_name: None,
     holds: &[Holds::Boxes, Holds::Roads],
-    lost: "it is not read again",
+    lost: "",
     span: Span::Clip,
     needs: &[],
     write: |scene, _| {

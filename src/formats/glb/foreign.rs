@@ -6,26 +6,19 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec2, DVec3};
-use scene::raster::box_cells;
-use scene::solid::fill::{SMEAR, smear_down};
-use scene::{
-    BevLayout, BoxId, BoxName, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, draft,
-    infer,
-};
+use glam::{DVec2, DVec3};
+use scene::{BoxId, Class, Extent, Frame, Inferred, Scene, SensorRig, VoxelGrid, infer};
 
 use super::class_words::{Said, said};
+use super::columns::{Heights, Statics};
 use super::document::{Document, LeftOut};
 use super::model::{Outline, class_by_size, may_be_one};
-use super::own;
-use super::surface::Surface;
+use super::{own, single};
 use crate::FormatError;
 use crate::import::Loaded;
 
 /// A single model is smaller than this, seen from above, m.
 const MODEL_M: f64 = 25.0;
-/// A model around the origin, where the ego vehicle is, is put so far ahead, m.
-const AHEAD_M: f64 = 8.0;
 /// Most columns of a foreign map along a side: 819 m.
 const MOST_SIDE: i32 = 2048;
 /// Something without a telling name is ground if it is lower than the first and longer than the second, m.
@@ -36,21 +29,21 @@ const LARGE_M: f64 = 2.5;
 
 /// The corners of a box along the axes; empty if the first is above the second.
 #[derive(Clone, Copy)]
-struct Bounds {
-    low: DVec3,
-    high: DVec3,
+pub(super) struct Bounds {
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
 }
 
 /// What is known of a node before its voxels are made.
-struct About {
-    said: Said,
+pub(super) struct About {
+    pub(super) said: Said,
     /// Around its own mesh, and around all below it.
-    own: Bounds,
-    all: Bounds,
+    pub(super) own: Bounds,
+    pub(super) all: Bounds,
     /// The thing that it is a part of.
-    thing: Option<usize>,
+    pub(super) thing: Option<usize>,
     /// A class that an ancestor's name tells.
-    around: Option<Class>,
+    pub(super) around: Option<Class>,
 }
 
 /// A thing that becomes a box.
@@ -71,7 +64,7 @@ pub(crate) fn scene(document: &Document<'_>, name: &str) -> Result<Loaded, Forma
         return Err(FormatError::new("no triangles, expected meshes"));
     }
     match model(document, &abouts, &things, &all, name) {
-        Some(class) => one_model(document, &abouts, &all, class, name, left_out),
+        Some(class) => single::scene(document, &abouts, &all, class, name, left_out),
         None => map(document, &abouts, &things, &all, name, left_out),
     }
 }
@@ -194,97 +187,6 @@ fn by_extent(high: &DVec3, low: &DVec3) -> Class {
     }
 }
 
-/// A single model on open ground.
-fn one_model(
-    document: &Document<'_>,
-    abouts: &[About],
-    all: &Bounds,
-    (class, is_guess): (Class, bool),
-    name: &str,
-    left_out: LeftOut,
-) -> Result<Loaded, FormatError> {
-    let shown = abouts.iter().position(|a| !a.own.is_empty()).unwrap_or(0);
-    let first = std::iter::successors(Some(shown), |i| document.nodes[*i].parent)
-        .last()
-        .unwrap_or(shown);
-    let mut outline = Outline::new(&document.nodes[first].world_from_node);
-    each_triangle(document, |_, _, corners| {
-        corners.into_iter().for_each(|p| outline.add(p))
-    })?;
-    let id = BoxId(1);
-    let b = outline
-        .to_box(id, if class.is_object() { class } else { Class::Car })
-        .ok_or_else(|| FormatError::new("a model without extent, or farther than 10 km away"))?;
-    // On the ground, on the map, and not where the ego vehicle is.
-    let extent = Extent::WINDOW;
-    let reach = DVec2::splat(all.radius_m()) + b.center_m.truncate().abs();
-    let is_on_map = reach.cmple(extent.max_m().truncate()).all();
-    let is_at_ego = !is_on_map || b.contains(DVec3::new(0.0, 0.0, b.center_m.z), 0.0);
-    let up = DVec3::Z * (b.size_m.z / 2.0 - b.center_m.z);
-    let place = match is_at_ego {
-        true => {
-            let to = DVec3::new(AHEAD_M + b.size_m.x / 2.0, 0.0, b.center_m.z) + up;
-            DAffine3::from_translation(to)
-                * DAffine3::from_rotation_z(-b.yaw_rad)
-                * DAffine3::from_translation(-b.center_m)
-        }
-        false => DAffine3::from_translation(up),
-    };
-    let b = SceneBox {
-        center_m: place.transform_point3(b.center_m),
-        yaw_rad: if is_at_ego { 0.0 } else { b.yaw_rad },
-        label: scene::BoxLabel {
-            name: label(name, class),
-            paint: None,
-        },
-        ..b
-    };
-    let layout = BevLayout::over(extent);
-    let mut occupancy = draft::draft(&layout, std::iter::empty());
-    let mut boxes = BTreeMap::new();
-    if class.is_object() {
-        let mut heights = Heights::new(extent);
-        each_triangle(document, |_, _, corners| {
-            heights.add(corners.map(|p| place.transform_point3(p)))
-        })?;
-        heights.fill(&b, &mut occupancy)?;
-        boxes.insert(id, b);
-    } else {
-        let mut solid = Statics::new(extent);
-        each_triangle(document, |node, primitive, corners| {
-            let told = static_class(document, abouts, node, primitive).unwrap_or(class);
-            let told = if told.is_object() { class } else { told };
-            solid.add(told, corners.map(|p| place.transform_point3(p)));
-        })?;
-        solid.finish(&mut occupancy)?;
-    }
-    let guesses = if is_guess {
-        boxes.keys().copied().collect()
-    } else {
-        Default::default()
-    };
-    let frame = Frame {
-        inferred: Inferred {
-            boxes: guesses,
-            ..Inferred::default()
-        },
-        ..Frame::new(layout, boxes, occupancy)
-    };
-    Ok(Loaded {
-        scene: Scene::single(name, frame, Arc::new(SensorRig::default()), 0),
-        inferred: if is_guess { &["boxes"] } else { &[] },
-        skipped: left_out.report(),
-    })
-}
-
-/// A model's name for its box, unless it only says the class.
-fn label(name: &str, class: Class) -> BoxName {
-    match name == class.name() {
-        true => BoxName::default(),
-        false => BoxName::new(name),
-    }
-}
-
 /// A whole scene.
 fn map(
     document: &Document<'_>,
@@ -363,7 +265,12 @@ fn map(
 
 /// Class of a part of what stands still: by its node's name, its material, its mesh and what is around it. `None` where none
 /// of them tells.
-fn static_class(document: &Document<'_>, abouts: &[About], node: usize, primitive: usize) -> Option<Class> {
+pub(super) fn static_class(
+    document: &Document<'_>,
+    abouts: &[About],
+    node: usize,
+    primitive: usize,
+) -> Option<Class> {
     let about = &abouts[node];
     let mesh = document.nodes[node].mesh?;
     let material = said(document.names(mesh, primitive)[1]).class;
@@ -374,7 +281,7 @@ fn static_class(document: &Document<'_>, abouts: &[About], node: usize, primitiv
 }
 
 /// Visits every triangle with its node and primitive, in our axes, m.
-fn each_triangle(
+pub(super) fn each_triangle(
     document: &Document<'_>,
     mut visit: impl FnMut(usize, usize, [DVec3; 3]),
 ) -> Result<(), FormatError> {
@@ -419,129 +326,6 @@ fn extent(all: &Bounds) -> (Extent, DVec3) {
     (extent, level.extend(up))
 }
 
-/// The surfaces of what stands still, as they are measured; ground apart.
-struct Statics {
-    surface: Surface,
-    stands: VoxelGrid,
-    ground: VoxelGrid,
-}
-
-impl Statics {
-    fn new(extent: Extent) -> Self {
-        Self {
-            surface: Surface::new(extent),
-            stands: VoxelGrid::over(extent),
-            ground: VoxelGrid::over(extent),
-        }
-    }
-
-    /// Adds a triangle (m). False if it touches no voxel.
-    fn add(&mut self, class: Class, corners: [DVec3; 3]) -> bool {
-        let grid = if class.is_ground() {
-            &mut self.ground
-        } else {
-            &mut self.stands
-        };
-        let mut touched = false;
-        self.surface.visit(corners, |[x, y], [low, high]| {
-            let top = Extent::NZ as f64;
-            if high >= 0.0 && low < top {
-                touched = true;
-                // Of ground its highest voxel in the column is enough: it has no sides.
-                let from = if class.is_ground() {
-                    high.min(top - 1.0)
-                } else {
-                    low.max(0.0)
-                };
-                (from as usize..=high.min(top - 1.0) as usize).for_each(|z| grid.set(x, y, z, class.id()));
-            }
-        });
-        touched
-    }
-
-    /// Puts all into a grid in the convention of the labels: ground two bins lower, what stands on it reaching down to it.
-    fn finish(self, grid: &mut VoxelGrid) -> Result<(), FormatError> {
-        self.surface.finish()?;
-        for [x, y] in grid.extent().all_columns() {
-            let (mut column, ground) = (*self.stands.column(x, y), self.ground.column(x, y));
-            if column.iter().chain(ground).all(|label| *label == Class::FREE) {
-                continue;
-            }
-            smear_down(&mut column);
-            let mut lowest = None;
-            for (z, class) in ground
-                .iter()
-                .enumerate()
-                .filter(|(_, class)| **class != Class::FREE)
-            {
-                let bin = z.saturating_sub(SMEAR);
-                lowest.get_or_insert(bin);
-                if column[bin] == Class::FREE {
-                    column[bin] = *class;
-                }
-            }
-            column[..lowest.unwrap_or(0)].fill(Class::FREE);
-            let out = grid.column_mut(x, y);
-            for (to, label) in out
-                .iter_mut()
-                .zip(column)
-                .filter(|(_, label)| *label != Class::FREE)
-            {
-                *to = label;
-            }
-        }
-        Ok(())
-    }
-}
-
-/// How high a thing is in each column that it touches.
-struct Heights {
-    surface: Surface,
-    top: BTreeMap<[usize; 2], f64>,
-}
-
-impl Heights {
-    fn new(extent: Extent) -> Self {
-        Self {
-            surface: Surface::new(extent),
-            top: BTreeMap::new(),
-        }
-    }
-
-    fn add(&mut self, corners: [DVec3; 3]) {
-        let top = &mut self.top;
-        self.surface.visit(corners, |column, [_, high]| {
-            let known = top.entry(column).or_insert(high);
-            *known = known.max(high);
-        });
-    }
-
-    /// Fills the columns of the box from the ground to what was found there. As in the draft of a box, a voxel counts once a
-    /// sixth of it is filled.
-    fn fill(self, b: &SceneBox, grid: &mut VoxelGrid) -> Result<(), FormatError> {
-        self.surface.finish()?;
-        let extent = grid.extent();
-        let bottom = extent
-            .to_voxel_units(b.center_m - DVec3::Z * (b.size_m.z / 2.0))
-            .z;
-        let mut columns = Vec::new();
-        box_cells(extent, b, 0.0, |x, y| columns.push([x, y]));
-        for [x, y] in columns {
-            let Some(top) = self.top.get(&[x, y]) else {
-                continue;
-            };
-            let column = grid.column_mut(x, y);
-            let ground = |label: &u8| Class::from_id(*label).is_some_and(Class::is_ground);
-            let base = column.iter().position(ground);
-            let below = (bottom.floor().clamp(0.0, Extent::NZ as f64 - 1.0) as usize).saturating_sub(SMEAR);
-            let base = base.filter(|base| *base <= below + 1).unwrap_or(below);
-            let layers = ((top - 1.0 / 6.0).floor() + 1.0).clamp(0.0, Extent::NZ as f64) as usize;
-            column[base..layers.max(base + 1)].fill(b.class.id());
-        }
-        Ok(())
-    }
-}
-
 impl Bounds {
     const NONE: Self = Self {
         low: DVec3::INFINITY,
@@ -555,17 +339,17 @@ impl Bounds {
         }
     }
 
-    fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.low.x > self.high.x
     }
 
     /// The longer side, seen from above, m.
-    fn long_m(&self) -> f64 {
+    pub(super) fn long_m(&self) -> f64 {
         (self.high - self.low).truncate().max_element()
     }
 
     /// Half of the diagonal, m.
-    fn radius_m(&self) -> f64 {
+    pub(super) fn radius_m(&self) -> f64 {
         (self.high - self.low).length() / 2.0
     }
 }

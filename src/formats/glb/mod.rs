@@ -1,17 +1,19 @@
 //! glTF 2.0 and its container GLB: what reading and writing share.
 //!
-//! A file of ours holds a node with the extras [`Recipe`], under it a node for each class with the mesh of its voxels, and a
-//! node for each box with the mesh of the voxels that are the box's own. glTF has y up: the node with the recipe turns
+//! A file of ours holds a node with extras of ours (`SceneExtras`), under it a node for each class with the mesh of its voxels, and a
+//! node for each box with the mesh of the voxels that are the box's own. glTF has y up: that node turns
 //! the scene's axes (x forward, y left, z up) to those of glTF (x, z, -y), and everything below it is in metres of the ego frame.
 
 pub(crate) mod accessor;
 pub(crate) mod class_words;
+pub(crate) mod columns;
 pub(crate) mod container;
 pub(crate) mod document;
 pub(crate) mod foreign;
 pub(crate) mod mesh;
 pub(crate) mod model;
 pub(crate) mod own;
+pub(crate) mod single;
 pub(crate) mod solid;
 pub(crate) mod surface;
 #[cfg(test)]
@@ -36,22 +38,21 @@ pub(crate) fn z_up_from_y_up() -> DMat3 {
     DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y)
 }
 
-/// Extras of the node that holds a scene of ours: `{"sceneloom": {…}}`.
+/// Extras of the node that holds a scene of ours.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SceneExtras {
-    pub(crate) sceneloom: Recipe,
+    pub(crate) sceneloom: Told,
+    /// How the file came to be: a [`crate::recipe::Recipe`]. Programs may round its numbers.
+    #[serde(default)]
+    pub(crate) recipe: serde_json::Value,
 }
 
 /// What a file of ours says of its scene. Unknown keys are passed over.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Recipe {
+pub(crate) struct Told {
     pub(crate) version: u32,
-    /// Name of the scene.
-    pub(crate) scene: String,
-    pub(crate) prompt: String,
     /// In digits: programs that read numbers as f64 would round it.
     pub(crate) seed: String,
-    pub(crate) time_s: f64,
     /// Name of the numbering of the classes.
     pub(crate) class_map: String,
     pub(crate) extent: ExtentExtras,
@@ -59,8 +60,6 @@ pub(crate) struct Recipe {
     pub(crate) voxel_m: f64,
     /// The axes below this node, in words.
     pub(crate) frame: String,
-    /// What wrote the file.
-    pub(crate) program: String,
 }
 
 /// An [`Extent`] in a file.

@@ -7,13 +7,17 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 use scene::message::quoted;
 use scene::moved::Columns;
-use scene::{BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, infer};
+use scene::{
+    BevLayout, BoxId, Class, Conditions, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid,
+    infer,
+};
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 use super::document::{Document, LeftOut, Node};
 use super::solid::Solid;
 use super::surface::Surface;
-use super::{BoxExtras, CLASS_MAP, ClassExtras, Recipe, SceneExtras, VERSION, class_words};
+use super::{BoxExtras, CLASS_MAP, ClassExtras, SceneExtras, VERSION, class_words};
 use crate::FormatError;
 use crate::import::Loaded;
 
@@ -32,8 +36,8 @@ enum Role {
     Box(Box<BoxExtras>),
 }
 
-/// The recipe in a document, if it is one of ours. Errors if it is, and newer or otherwise not readable.
-pub(crate) fn recipe(document: &Document<'_>) -> Result<Option<Recipe>, FormatError> {
+/// What a document says of its scene, if it is one of ours. Errors if it is, and newer or otherwise not readable.
+pub(crate) fn extras(document: &Document<'_>) -> Result<Option<SceneExtras>, FormatError> {
     for node in &document.nodes {
         let Some(text) = node
             .extras
@@ -44,22 +48,27 @@ pub(crate) fn recipe(document: &Document<'_>) -> Result<Option<Recipe>, FormatEr
         };
         let extras: SceneExtras =
             serde_json::from_str(text).map_err(|e| FormatError::new(e).at(&"extras of the scene's node"))?;
-        let recipe = extras.sceneloom;
-        if recipe.version > VERSION || recipe.class_map != CLASS_MAP {
+        let told = &extras.sceneloom;
+        if told.version > VERSION || told.class_map != CLASS_MAP {
             return Err(FormatError::new(format!(
                 "a scene of version {} with classes {:?}, expected at most version {VERSION} with {CLASS_MAP:?}",
-                recipe.version,
-                quoted(&recipe.class_map, 40)
+                told.version,
+                quoted(&told.class_map, 40)
             )));
         }
-        return Ok(Some(recipe));
+        return Ok(Some(extras));
     }
     Ok(None)
 }
 
-/// The scene of a document of ours.
-pub(crate) fn scene(document: &Document<'_>, recipe: &Recipe) -> Result<Loaded, FormatError> {
-    let extent = Extent::new(recipe.extent.from, recipe.extent.columns).map_err(FormatError::new)?;
+/// The scene of a document of ours; `name` if the document does not tell its name.
+pub(crate) fn scene(
+    document: &Document<'_>,
+    extras: &SceneExtras,
+    name: &str,
+) -> Result<Loaded, FormatError> {
+    let told = &extras.sceneloom;
+    let extent = Extent::new(told.extent.from, told.extent.columns).map_err(FormatError::new)?;
     if extent
         .from()
         .iter()
@@ -70,10 +79,10 @@ pub(crate) fn scene(document: &Document<'_>, recipe: &Recipe) -> Result<Loaded, 
             extent.from()
         )));
     }
-    let seed = recipe
+    let seed = told
         .seed
         .parse()
-        .map_err(|_| FormatError::new(format!("seed {:?}, expected digits", quoted(&recipe.seed, 40))))?;
+        .map_err(|_| FormatError::new(format!("seed {:?}, expected digits", quoted(&told.seed, 40))))?;
     let mut left_out = LeftOut::default();
     let roles = roles(document, &mut left_out);
     let mut occupancy = VoxelGrid::over(extent);
@@ -107,8 +116,18 @@ pub(crate) fn scene(document: &Document<'_>, recipe: &Recipe) -> Result<Loaded, 
         inferred,
         ..Frame::new(layout, boxes, occupancy)
     };
-    let mut scene = Scene::single(&recipe.scene, frame, Arc::new(SensorRig::default()), seed);
-    scene.prompt = recipe.prompt.as_str().into();
+    let recipe = &extras.recipe;
+    let text = |key: &str| recipe[key].as_str();
+    let rig = Arc::new(SensorRig::default());
+    let mut scene = Scene::single(text("scene").unwrap_or(name), frame, rig, seed);
+    scene.prompt = text("prompt").unwrap_or_default().into();
+    let words = recipe["words"].as_array().into_iter().flatten();
+    scene.words = Arc::new(words.filter_map(Value::as_str).map(str::to_owned).collect());
+    // Numbers that another program rounded are no reason to refuse the scene.
+    let conditions = serde_json::from_value::<Conditions>(recipe["conditions"].clone());
+    if let Some(conditions) = conditions.ok().filter(|c| c.problem().is_none()) {
+        scene.conditions = conditions;
+    }
     scene.background = Arc::new(background);
     Ok(Loaded {
         scene,

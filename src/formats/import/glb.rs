@@ -28,14 +28,17 @@ pub const IMPORTER: Importer = Importer {
     in_folder: None,
     read: |source| Ok(Content::Scene(Box::new(read(source)?))),
     #[cfg(test)]
-    sample: || crate::export::glb::to_bytes(&crate::table_tests::scene()).expect("a small scene"),
+    sample: || {
+        let scene = crate::table_tests::scene();
+        crate::export::glb::to_bytes(&scene, &crate::recipe::Recipe::of(&scene)).expect("a small scene")
+    },
 };
 
 fn read(source: &Source<'_>) -> Result<Loaded, FormatError> {
     let document = Document::read(source)?;
     document.check_size()?;
-    match own::recipe(&document)? {
-        Some(recipe) => own::scene(&document, &recipe),
+    match own::extras(&document)? {
+        Some(extras) => own::scene(&document, &extras, source.name),
         None => foreign::scene(&document, source.name),
     }
 }

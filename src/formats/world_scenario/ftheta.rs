@@ -1,6 +1,6 @@
 //! The f-theta camera: how far a ray's angle from the optical axis lies from the principal point is a polynomial.
 //!
-//! World scenarios know this model alone. A camera is brought to it by a fit of the angle over the distance in pixels: within a
+//! World scenarios know this model alone. Any other camera, a pinhole too, is brought to it by a fit of the angle over the distance in pixels: within a
 //! tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), .45 pixels at 120 degrees.
 
 use glam::{DVec2, DVec3};
@@ -11,6 +11,8 @@ const TERMS: usize = 5;
 /// Distances from the principal point at which the fit is made, and at which its error is looked for.
 const SAMPLES: usize = 400;
 const CHECKS: usize = 2000;
+/// Points of the picture along each side at which its error is looked for.
+const CELLS: usize = 32;
 /// Rounds of reweighting after which the greatest error is as small as it gets.
 const ROUNDS: usize = 200;
 /// Beyond the corners of the picture the model goes on straight for so much of an angle, rad.
@@ -35,24 +37,31 @@ pub struct FTheta {
 }
 
 impl FTheta {
-    /// The model of a camera with any lens; what a distorted lens shifts to the side is left out.
+    /// The model of a camera. What its lens bends to one side (tangential distortion) and its rolling shutter are left out.
     pub fn of(camera: &Camera) -> Self {
         let [fx, fy] = camera.focal_px;
         let linear_c = fx / fy;
         let size = DVec2::new(f64::from(camera.width), f64::from(camera.height));
         let center = DVec2::from_array(camera.center_px);
         let corner = center.abs().max((size - center).abs());
-        let optics = Optics::new(camera);
-        let seen = |r_px: f64| optics.direction(center.x, center.y + r_px);
-        // Up to the corner, or to where the lens sees no more.
-        let mut farthest_px = DVec2::new(corner.x / linear_c, corner.y).length();
-        while seen(farthest_px) == DVec3::ZERO && farthest_px > 1.0 {
-            farthest_px *= 0.99;
-        }
-        let angle_of = |r_px: f64| {
-            let d = seen(r_px);
-            d.truncate().length().atan2(d.z)
+        let corner_px = DVec2::new(corner.x / linear_c, corner.y).length();
+        // The lens alone, as far as it is the same all round.
+        let radial = Camera {
+            focal_px: [1.0; 2],
+            center_px: [0.0; 2],
+            lens: match camera.lens {
+                Lens::Distorted { k, .. } => Lens::Distorted { k, p: [0.0; 2] },
+                lens => lens,
+            },
+            ..camera.clone()
         };
+        let optics = Optics::new(&radial);
+        let angle_of = |r_px: f64| {
+            let way = optics.direction(r_px / fy, 0.0);
+            (way != DVec3::ZERO).then(|| way.x.atan2(way.z))
+        };
+        let farthest_px = last(corner_px, |r_px| angle_of(r_px).is_some());
+        let angle_of = |r_px: f64| angle_of(r_px.clamp(0.0, farthest_px)).unwrap_or_default();
         let mut out = Self {
             width: camera.width,
             height: camera.height,
@@ -63,20 +72,34 @@ impl FTheta {
             farthest_px,
         };
         // An error of the angle is so many times larger in pixels.
-        let px_per_rad = |r_px: f64| match camera.lens {
-            Lens::Pinhole => fy * (1.0 + (r_px / fy).powi(2)),
-            _ => {
-                let (low, high) = ((r_px - 0.5).max(0.0), (r_px + 0.5).min(farthest_px));
-                (high - low) / (angle_of(high) - angle_of(low)).max(1e-9)
-            }
+        let px_per_rad = |r_px: f64| {
+            let step = farthest_px * 1e-4;
+            let (near, far) = ((r_px - step).max(0.0), (r_px + step).min(farthest_px));
+            (far - near) / (angle_of(far) - angle_of(near)).max(1e-12)
         };
         out.angle_of_px = fitted(farthest_px, angle_of, px_per_rad);
         let off_px = |i: usize| {
             let r_px = farthest_px * i as f64 / CHECKS as f64;
             (out.px_of_angle(angle_of(r_px)) - r_px).abs() * linear_c.max(1.0)
         };
-        out.error_px = (1..=CHECKS).map(off_px).fold(0.0, f64::max);
+        let along_px = (1..=CHECKS).map(off_px).fold(0.0, f64::max);
+        out.error_px = out.off_px(camera).fold(along_px, f64::max);
         out
+    }
+
+    /// How far points all over the picture are from where a camera has them, pixels.
+    fn off_px(&self, camera: &Camera) -> impl Iterator<Item = f64> {
+        let optics = Optics::new(camera);
+        let at = |i: usize, side: u32| f64::from(side) * i as f64 / CELLS as f64;
+        let pixels = (0..=CELLS).flat_map(move |i| (0..=CELLS).map(move |j| (i, j)));
+        pixels.filter_map(move |(i, j)| {
+            let pixel = DVec2::new(at(i, camera.width), at(j, camera.height));
+            let way = optics.direction(pixel.x, pixel.y);
+            (way != DVec3::ZERO).then(|| {
+                self.project(way)
+                    .map_or(f64::INFINITY, |found| found.distance(pixel))
+            })
+        })
     }
 
     /// The same view in a picture of another size and the same shape.
@@ -158,6 +181,23 @@ impl FTheta {
         let at = direction * self.px_of_angle(angle_rad);
         Some(DVec2::new(at.x * self.linear_c, at.y) + DVec2::from_array(self.center_px))
     }
+}
+
+/// The greatest length up to `most` for which `holds` is true, if it is true for all shorter ones.
+fn last(most: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    if holds(most) {
+        return most;
+    }
+    let (mut low, mut high) = (0.0, most);
+    for _ in 0..60 {
+        let middle = (low + high) / 2.0;
+        if holds(middle) {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    low
 }
 
 /// Coefficients of the powers 1 to 5 that keep the greatest error in pixels small: least squares, with more weight where the
@@ -268,6 +308,45 @@ mod tests {
             assert!(found < most_px, "{fov_deg} degrees: {found} px");
         }
         assert!(FTheta::of(&Camera::new("CAM", 120.0)).error_px > 0.1);
+    }
+
+    #[test]
+    fn lenses_of_all_kinds_are_met_and_what_cannot_be_is_told() {
+        let with = |lens: Lens, focal_px: f64| {
+            let mut camera = Camera {
+                lens,
+                ..Camera::new("CAM", 90.0)
+            };
+            camera.focal_px = [focal_px; 2];
+            FTheta::of(&camera)
+        };
+        let fisheye = Lens::Fisheye {
+            k: [-0.012, 0.009, -0.007, 0.0015],
+            max_angle_deg: 100.0,
+        };
+        let f_theta = Lens::FTheta {
+            c: [1.0, -0.01, 0.02, -0.015, 0.002, 0.0],
+            max_angle_deg: 100.0,
+        };
+        for lens in [fisheye, f_theta] {
+            let model = with(lens, 520.0);
+            assert!(model.error_px < 0.6, "{}: {} px", lens.name(), model.error_px);
+            // It sees what is beside and behind it, where the picture goes that far.
+            assert!(
+                model.widest_rad() > 1.6,
+                "{}: {} rad",
+                lens.name(),
+                model.widest_rad()
+            );
+            assert!(model.project(DVec3::new(1.0, 0.0, 0.05)).is_some());
+        }
+        let k = [-0.33, 0.13, -0.02, 0.0, 0.0, 0.0];
+        let radial = with(Lens::Distorted { k, p: [0.0; 2] }, 1200.0);
+        assert!(radial.error_px < 0.2, "{} px", radial.error_px);
+        // What is bent to one side has no place in the model: the error says so.
+        let aside = with(Lens::Distorted { k, p: [3e-3, -2e-3] }, 1200.0);
+        assert_eq!(aside.angle_of_px, radial.angle_of_px);
+        assert!((0.5..20.0).contains(&aside.error_px), "{} px", aside.error_px);
     }
 
     #[test]

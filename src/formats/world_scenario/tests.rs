@@ -17,7 +17,7 @@ use super::draw_scene::{Painted, Shot};
 use super::ftheta::FTheta;
 use super::map::Map;
 use super::{Kind, boxes_at, category, clip_id, ego_at, scenario_from_world, tables, times_s};
-use crate::table_tests::random_scene;
+use crate::table_tests::{Small, random_scene};
 
 fn a_box(id: u32, class: Class, at: DVec3) -> SceneBox {
     let [length, width, height] = class.typical_size_m().expect("an object");
@@ -420,7 +420,7 @@ fn the_video_has_thirty_pictures_a_second_for_each_camera() {
     Arc::make_mut(&mut scene.rig).cameras = vec![small, aside];
     let write = || {
         let exporter = crate::export::from_id("control-video").expect("in the table");
-        (exporter.write)(&scene, &mut crate::table_tests::Small).expect("sound")
+        (exporter.write)(&scene, &mut Small).expect("sound")
     };
     let files = write();
     let names: Vec<&str> = files.iter().map(|f| f.name.as_str()).collect();
@@ -441,6 +441,6 @@ fn the_video_has_thirty_pictures_a_second_for_each_camera() {
     }
     Arc::make_mut(&mut scene.rig).cameras.clear();
     let exporter = crate::export::from_id("control-video").expect("in the table");
-    let error = (exporter.write)(&scene, &mut crate::table_tests::Small).expect_err("no cameras");
+    let error = (exporter.write)(&scene, &mut Small).expect_err("no cameras");
     assert!(error.to_string().contains("no cameras"));
 }

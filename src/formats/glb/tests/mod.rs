@@ -24,7 +24,7 @@ fn read_at(bytes: &[u8], name: &str, path: Option<PathBuf>) -> Result<Loaded, Fo
     };
     match (IMPORTER.read)(&source)? {
         Content::Scene(loaded) => Ok(*loaded),
-        other => panic!("a scene is in meshes, not {other:?}"),
+        other => panic!("{other:?}, expected a scene"),
     }
 }
 

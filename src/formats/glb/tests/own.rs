@@ -8,10 +8,15 @@ use scene::{BevLayer, BoxId, Class, Extent, Scene, SceneBox, SensorRig};
 use serde_json::{Value, json};
 
 use super::{Blocks, read, refusal, text};
-use crate::export::glb::to_bytes;
+use crate::export;
 use crate::glb::container;
 use crate::import::Loaded;
+use crate::recipe::Recipe;
 use crate::table_tests::random_scene;
+
+fn to_bytes(scene: &Scene) -> Result<Vec<u8>, crate::FormatError> {
+    export::glb::to_bytes(scene, &Recipe::of(scene))
+}
 
 /// A file of ours as JSON and bytes, to be edited as other programs do.
 fn edited(bytes: &[u8], edit: impl FnOnce(&mut Value)) -> Vec<u8> {
@@ -41,11 +46,17 @@ fn maps_of_other_extents_come_back() {
     let frame = scene::Frame::new(layout, Default::default(), occupancy);
     let mut map = Scene::single("a \"map\"", frame, Arc::new(SensorRig::default()), u64::MAX);
     map.prompt = "rain\nand fog".into();
+    map.words = Arc::new(vec!["a road".into(), "a house".into()]);
+    map.conditions.seed = 3;
     let back = read(&to_bytes(&map).expect("sound"));
     assert!(back.scene.frame().occupancy == map.frame().occupancy && back.skipped.is_empty());
     assert_eq!(
         (&back.scene.name, &back.scene.prompt, back.scene.seed),
         (&map.name, &map.prompt, u64::MAX)
+    );
+    assert_eq!(
+        (&back.scene.words, back.scene.conditions),
+        (&map.words, map.conditions)
     );
     let layout = &back.scene.frame().layout;
     assert_eq!(layout.extent(), extent);
