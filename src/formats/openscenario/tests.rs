@@ -167,8 +167,7 @@ fn every_track_is_where_it_is_at_every_frame() {
         .expect("Ego");
     let last = ego
         .descendants()
-        .filter(|n| n.has_tag_name("WorldPosition"))
-        .last()
+        .rfind(|n| n.has_tag_name("WorldPosition"))
         .expect("a place");
     assert!((number(last, "x") - 40.0).abs() < 1e-6 && (number(last, "z") - 2.0).abs() < 1e-3);
     assert!((number(last, "p") + 0.05f64.atan()).abs() < 1e-3);
