@@ -3,7 +3,7 @@
 use super::{Exporter, OutFile, Span};
 use crate::{Holds, sparse_npy};
 
-/// See [`sparse_npy`]: cells of 0.2 m, 512 x 512 x 40 of them around the first LiDAR.
+/// See `sparse_npy`: cells of 0.2 m, 512 x 512 x 40 of them around the first LiDAR.
 pub const EXPORTER: Exporter = Exporter {
     id: "openoccupancy",
     title: "Occupancy: OpenOccupancy .npy, rows z, y, x, class in cells of 0.2 m, LiDAR frame",

@@ -9,7 +9,7 @@ use crate::semantic_kitti::{CELLS, LATTICE, ego_from_cells, packed, raw_id};
 use crate::voxels::{Physical, cells_of, physical};
 use crate::{FormatError, Holds};
 
-/// See [`crate::semantic_kitti`].
+/// See `semantic_kitti`.
 pub const EXPORTER: Exporter = Exporter {
     id: "semantic-kitti",
     title: "Occupancy: SemanticKITTI voxels, 256 x 256 x 32 cells of 0.2 m ahead of the LiDAR, with what one scan sees",

@@ -3,7 +3,7 @@
 use super::{Exporter, OutFile, Span};
 use crate::{Holds, sparse_npy};
 
-/// See [`sparse_npy`]: cells of 0.5 m, 200 x 200 x 16 of them around the first LiDAR.
+/// See `sparse_npy`: cells of 0.5 m, 200 x 200 x 16 of them around the first LiDAR.
 pub const EXPORTER: Exporter = Exporter {
     id: "surroundocc",
     title: "Occupancy: SurroundOcc .npy, rows x, y, z, class in cells of 0.5 m, LiDAR frame",

@@ -3,7 +3,7 @@
 use super::{Exporter, OutFile, Span};
 use crate::{Holds, vox, voxels};
 
-/// See [`vox`].
+/// See `vox`.
 pub const EXPORTER: Exporter = Exporter {
     id: "vox",
     title: "Occupancy: MagicaVoxel .vox, a voxel each, coloured by class",

@@ -3,7 +3,7 @@
 //! A scan `velodyne/000123.bin` has its labels in `labels/000123.label` (u32: below the class, above the instance). Points are
 //! in the sensor's frame: x forward, y left, z up. Where `calib.txt` beside the folder says where the sensor is in the ego
 //! frame (`Tr_ego_to_velo`, as this program writes it) it is put there; else it is taken to be where the LiDAR of the default
-//! rig is, and that is told. See [`super::cloud`] for what becomes of points with and without labels.
+//! rig is, and that is told. See `cloud` for what becomes of points with and without labels.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

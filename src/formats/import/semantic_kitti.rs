@@ -10,7 +10,7 @@ use crate::semantic_kitti::{BIT_BYTES, CELLS, LATTICE, bit, class_of, ego_from_c
 use crate::voxels::{Cells, Physical, unobserved};
 use crate::{FormatError, Holds};
 
-/// See [`crate::semantic_kitti`].
+/// See `semantic_kitti`.
 pub const IMPORTER: Importer = Importer {
     id: "semantic-kitti",
     title: "voxels of SemanticKITTI",

@@ -15,7 +15,7 @@ use crate::{FormatError, Holds};
 /// Classes that readers of these files ignore: noise, and the number that they replace it by.
 const IGNORED: [f64; 2] = [0.0, 255.0];
 
-/// See [`crate::sparse_npy`].
+/// See `sparse_npy`.
 pub const IMPORTER: Importer = Importer {
     id: "sparse-npy",
     title: "lists of voxels of OpenOccupancy, SurroundOcc and UniScene",

@@ -4,7 +4,7 @@ use super::{Content, GUESSED, Importer, Loaded, Source, labelled};
 use crate::vox::{File, Placed, place};
 use crate::{FormatError, Holds};
 
-/// See [`crate::vox`].
+/// See `vox`.
 pub const IMPORTER: Importer = Importer {
     id: "vox",
     title: "MagicaVoxel models",
