@@ -100,7 +100,7 @@ class Calls:
     def export(
         self,
         *,
-        format: Literal['occ3d', 'boxes', 'nuscenes-lidar', 'ply', 'semantic', 'depth', 'pictures', 'view'],
+        format: str,
         learned_lidar: bool | None = None,
         name: str | None = None,
         replace: bool | None = None,
@@ -218,8 +218,9 @@ class Calls:
         heading_deg: float | None = None,
         size_m: Sequence[float] | None = None,
     ) -> types.Opened:
-        """Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz) or
-        another format that is read. It can be undone. list_files tells what is there.
+        """Replaces the scene by one from a file: a project (.loom), roads (.xodr), occupancy labels (.npz), a
+        picture that this program made (.png), or another format that is read. It can be undone. list_files
+        tells what is there.
 
         at_m: Of a road file: where the ego vehicle stands in the file's frame, m; a good place on a lane if
             left out.
@@ -276,14 +277,14 @@ class Calls:
     def render(
         self,
         *,
-        what: Sequence[Literal['semantic', 'depth', 'appearance', 'mpi', 'perspective', 'normals', 'lidar', 'bev', 'view']],
+        what: Sequence[Literal['semantic', 'depth', 'appearance', 'mpi', 'perspective', 'normals', 'truth', 'lidar', 'bev', 'view']],
         cameras: Sequence[str] | None = None,
         folder: str | None = None,
         learned_lidar: bool | None = None,
         preview: bool | None = None,
         replace: bool | None = None,
         size: Sequence[int] | None = None,
-        source: Literal['splats', 'voxels', 'shapes'] | None = None,
+        source: Literal['splats', 'voxels', 'shapes', 'truth'] | None = None,
         time: types.TimeOfDay | None = None,
         weather: types.Weather | None = None,
     ) -> types.Rendered:

@@ -33,13 +33,13 @@ def add_box(
 ) -> types.EditAddBox:
     """Puts a box in, and voxels of its class.
 
-    center_m: Centre in the ego frame, m.
+    center_m: Centre in the world frame, m.
     class_: One of the ten object classes.
     size_m: Length, width, height, m.
-    yaw_deg: Heading, degrees counter-clockwise from ego x.
+    yaw_deg: Heading, degrees counter-clockwise from x.
     id: Its number; none means the next one free.
     label: What it is called and how it is painted.
-    velocity_mps: Velocity over ground in the ego frame's axes, m/s; none means standing.
+    velocity_mps: Velocity over ground in the world frame's axes, m/s; none means standing.
     """
     args = _given(
         {
@@ -66,9 +66,9 @@ def move_box(
     """Moves, turns or resizes a box; what is left out stays.
 
     id: The box.
-    center_m: New centre in the ego frame, m.
+    center_m: New centre in the world frame, m.
     size_m: New length, width, height, m.
-    yaw_deg: New heading, degrees counter-clockwise from ego x.
+    yaw_deg: New heading, degrees counter-clockwise from x.
     """
     args = _given({'id': id, 'center_m': center_m, 'size_m': size_m, 'yaw_deg': yaw_deg}, ['id'])
     return cast('types.EditMoveBox', {"move_box": args})
@@ -174,7 +174,7 @@ def add_polylines(*, lines: Sequence[types.Polyline]) -> types.EditAddPolylines:
     """Puts lines on the ground: lane centres, and dividers, stop lines and crossings with the cells of
     their layer.
 
-    lines: What they mean and where they run, ego frame, m; at least two vertices each.
+    lines: What they mean and where they run, world frame, m; at least two vertices each.
     """
     args = _given({'lines': lines}, ['lines'])
     return cast('types.EditAddPolylines', {"add_polylines": args})
@@ -353,7 +353,7 @@ def waive(
 
     check: Name of the check.
     reason: Why it may stay; not empty.
-    where_m: Where it was found, ego frame, m.
+    where_m: Where it was found, world frame, m.
     box: The box it is about, if it is about one.
     """
     args = _given(
@@ -372,7 +372,7 @@ def unwaive(*, check: str, where_m: Sequence[float], box: types.BoxId | None = N
     """Takes a waiver back: the finding counts again. Nothing if there is none.
 
     check: Name of the check.
-    where_m: Where it was found, ego frame, m.
+    where_m: Where it was found, world frame, m.
     box: The box it is about, if it is about one.
     """
     args = _given({'check': check, 'where_m': where_m, 'box': box}, ['check', 'where_m'])

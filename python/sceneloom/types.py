@@ -82,7 +82,7 @@ Building = TypedDict(
     },
 )
 
-# A pinhole camera without distortion; optical axes x right, y down, z forward.
+# A camera; optical axes x right, y down, z forward.
 Camera = TypedDict(
     'Camera',
     {
@@ -92,10 +92,14 @@ Camera = TypedDict(
         'focal_px': 'Sequence[float]',
         # Image size in pixels.
         'height': 'int',
+        # How the lens bends rays.
+        'lens': 'NotRequired[Lens]',
         # As in the data set: `CAM_FRONT`.
         'name': 'str',
         # Optical frame to ego: quaternion w, x, y, z.
         'rotation_wxyz': 'Sequence[float]',
+        # How the picture is read; all at one instant if there is none.
+        'shutter': 'NotRequired[Shutter | None]',
         # Optical centre in the ego frame, m.
         'translation_m': 'Sequence[float]',
         # Image size in pixels.
@@ -258,7 +262,7 @@ EditRemoveBox = TypedDict(
 EditAddBoxArgs = TypedDict(
     'EditAddBoxArgs',
     {
-        # Centre in the ego frame, m.
+        # Centre in the world frame, m.
         'center_m': 'Sequence[float]',
         # One of the ten object classes.
         'class': 'Class',
@@ -268,9 +272,9 @@ EditAddBoxArgs = TypedDict(
         'label': 'NotRequired[BoxLabel]',
         # Length, width, height, m.
         'size_m': 'Sequence[float]',
-        # Velocity over ground in the ego frame's axes, m/s; none means standing.
+        # Velocity over ground in the world frame's axes, m/s; none means standing.
         'velocity_mps': 'NotRequired[Sequence[float] | None]',
-        # Heading, degrees counter-clockwise from ego x.
+        # Heading, degrees counter-clockwise from x.
         'yaw_deg': 'float',
     },
 )
@@ -286,13 +290,13 @@ EditAddBox = TypedDict(
 EditMoveBoxArgs = TypedDict(
     'EditMoveBoxArgs',
     {
-        # New centre in the ego frame, m.
+        # New centre in the world frame, m.
         'center_m': 'NotRequired[Sequence[float] | None]',
         # The box.
         'id': 'BoxId',
         # New length, width, height, m.
         'size_m': 'NotRequired[Sequence[float] | None]',
-        # New heading, degrees counter-clockwise from ego x.
+        # New heading, degrees counter-clockwise from x.
         'yaw_deg': 'NotRequired[float | None]',
     },
 )
@@ -469,7 +473,7 @@ EditClearScenery = TypedDict(
 EditAddPolylinesArgs = TypedDict(
     'EditAddPolylinesArgs',
     {
-        # What they mean and where they run, ego frame, m; at least two vertices each.
+        # What they mean and where they run, world frame, m; at least two vertices each.
         'lines': 'Sequence[Polyline]',
     },
 )
@@ -689,7 +693,7 @@ EditWaiveArgs = TypedDict(
         'check': 'str',
         # Why it may stay; not empty.
         'reason': 'str',
-        # Where it was found, ego frame, m.
+        # Where it was found, world frame, m.
         'where_m': 'Sequence[float]',
     },
 )
@@ -709,7 +713,7 @@ EditUnwaiveArgs = TypedDict(
         'box': 'NotRequired[BoxId | None]',
         # Name of the check.
         'check': 'str',
-        # Where it was found, ego frame, m.
+        # Where it was found, world frame, m.
         'where_m': 'Sequence[float]',
     },
 )
@@ -966,6 +970,65 @@ Key = TypedDict(
     },
 )
 
+LensDistortedArgs = TypedDict(
+    'LensDistortedArgs',
+    {
+        # k1, k2, k3, k4, k5, k6. OpenCV's own lists have p1 and p2 after k2.
+        'k': 'Sequence[float]',
+        # p1, p2.
+        'p': 'Sequence[float]',
+    },
+)
+
+# OpenCV's model: radial k1, k2, k3 over k4, k5, k6 (Brown and Conrady where the last three are 0), tangential
+# p1, p2.
+LensDistorted = TypedDict(
+    'LensDistorted',
+    {
+        'distorted': 'LensDistortedArgs',
+    },
+)
+
+LensFisheyeArgs = TypedDict(
+    'LensFisheyeArgs',
+    {
+        # k1, k2, k3, k4.
+        'k': 'Sequence[float]',
+        # Nothing is seen beyond this angle from the optical axis, degrees; at most 180.
+        'max_angle_deg': 'float',
+    },
+)
+
+# OpenCV's fisheye (J. Kannala and S. Brandt, 2006): radius = a + k1 a^3 + k2 a^5 + k3 a^7 + k4 a^9 at the angle
+# a, rad, from the optical axis.
+LensFisheye = TypedDict(
+    'LensFisheye',
+    {
+        'fisheye': 'LensFisheyeArgs',
+    },
+)
+
+LensFThetaArgs = TypedDict(
+    'LensFThetaArgs',
+    {
+        # c1 to c6; c1 is 1 where the focal length is that of the middle.
+        'c': 'Sequence[float]',
+        # Nothing is seen beyond this angle from the optical axis, degrees; at most 180.
+        'max_angle_deg': 'float',
+    },
+)
+
+# f-theta: radius = c1 a + c2 a^2 + … + c6 a^6 at the angle a, rad, from the optical axis.
+LensFTheta = TypedDict(
+    'LensFTheta',
+    {
+        'f_theta': 'LensFThetaArgs',
+    },
+)
+
+# A model of a lens. Coefficients are those of the field, without unit.
+Lens: TypeAlias = "Literal['pinhole'] | LensDistorted | LensFisheye | LensFTheta"
+
 # How a spinning LiDAR samples directions and time.
 LidarPattern = TypedDict(
     'LidarPattern',
@@ -1200,7 +1263,7 @@ Phrase = TypedDict(
     },
 )
 
-# A line on the ground, ego frame.
+# A line on the ground, world frame.
 Polyline = TypedDict(
     'Polyline',
     {
@@ -1276,6 +1339,9 @@ Question = TypedDict(
         'text': 'str',
     },
 )
+
+# In which order a rolling shutter reads the picture.
+ReadOut: TypeAlias = "Literal['top_to_bottom', 'bottom_to_top', 'left_to_right', 'right_to_left']"
 
 # Receipt of `render`.
 Rendered = TypedDict(
@@ -1428,7 +1494,7 @@ ShapeCells = TypedDict(
     },
 )
 
-# An area on the ground, ego frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
+# An area on the ground, world frame, m (cells: grid indices). A cell belongs to a shape if its centre does.
 Shape: TypeAlias = 'ShapeDisc | ShapeRect | ShapePolygon | ShapeLine | ShapeCells'
 
 # Receipt of `show`.
@@ -1456,6 +1522,17 @@ Shrubs = TypedDict(
         'outline_m': 'Sequence[Sequence[float]]',
         # Plants per square metre, 0 to 2.
         'per_m2': 'float',
+    },
+)
+
+# A rolling shutter. The moment of a picture is that of its middle row or column.
+Shutter = TypedDict(
+    'Shutter',
+    {
+        # Order.
+        'direction': 'ReadOut',
+        # From the first row or column to the last, s.
+        'readout_s': 'float',
     },
 )
 
