@@ -2,6 +2,7 @@
 //! they write, is in `formats::export`; here is what has to be made of the scene for them.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -177,7 +178,7 @@ pub fn export_all(
     let fills_a_folder = formats.len() > 1;
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
-    let recipe = Recipe::of(scene);
+    let recipe = OnceCell::new();
     // Files of a moment speak of the ego frame; sensors see the scene where it is.
     for format in formats {
         let of_file = match format.span {
@@ -230,7 +231,8 @@ fn write(named: &Path, ready: Vec<(PathBuf, Vec<u8>)>) -> anyhow::Result<Vec<(Pa
 struct Making<'a> {
     /// The clip.
     whole: &'a Scene,
-    recipe: &'a Recipe,
+    /// Made when the first file asks for it: it takes the scene as a file.
+    recipe: &'a OnceCell<Recipe>,
     /// The moment that products are made of, with the sensors where the ego vehicle is.
     scene: Cow<'a, Scene>,
     options: &'a ExportOptions,
@@ -336,7 +338,7 @@ impl Products for Making<'_> {
     }
 
     fn recipe(&self) -> &Recipe {
-        self.recipe
+        self.recipe.get_or_init(|| Recipe::of(self.whole))
     }
 
     fn world_from_ego(&self) -> Pose {

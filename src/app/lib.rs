@@ -35,7 +35,7 @@ pub mod view3d;
 pub mod views_shown;
 pub mod windows;
 
-pub use authoring::again::again;
+pub use authoring::again::{again, scene_of};
 pub use authoring::{memory, open, prompting, scenery, text};
 
 pub use command::Command;

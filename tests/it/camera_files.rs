@@ -34,8 +34,8 @@ fn normal_maps_are_written_beside_other_pictures() {
     let report = json(&sceneloom(&[
         "render", &scene, "--what", "normals", "--size", "96x54", "-o", &out, "--json",
     ]));
-    // One for each camera, and a sheet of all.
-    assert_eq!(report["files"].as_array().map(Vec::len), Some(6 + 1));
+    // One for each camera, a sheet of all, and the calibration.
+    assert_eq!(report["files"].as_array().map(Vec::len), Some(6 + 1 + 1));
     assert!(report["wall_s"]["normals"].is_number());
     let front = image::open(Path::new(&out).join("CAM_FRONT_normals.png"))
         .expect("a picture")

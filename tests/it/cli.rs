@@ -161,8 +161,9 @@ fn sensors_and_views_render() {
         "render", &scene, "--what", what, "--size", "160x90", "-o", &out, "--json",
     ]));
     let files = report["files"].as_array().expect("a list");
-    // Per camera a semantic picture, two of depth and the arrays; two each of the LiDAR and from above, the view.
-    assert_eq!(files.len(), 6 + 12 + 6 + 2 + 2 + 1, "{files:?}");
+    // Per camera a semantic picture, two of depth and the arrays; two each of the LiDAR and from above, the view, the
+    // calibration.
+    assert_eq!(files.len(), 6 + 12 + 6 + 2 + 2 + 1 + 1, "{files:?}");
     assert!(report["lidar"]["returns"].as_u64() > Some(10_000));
     let front = image::open(Path::new(&out).join("CAM_FRONT_semantic.png"))
         .expect("a picture")
@@ -191,7 +192,10 @@ fn sensors_and_views_render() {
         "--json",
     ]));
     // Appearance comes with a sheet of all cameras.
-    assert_eq!(more["files"].as_array().map(Vec::len), Some(12 + 7 + 12 + 12 + 2));
+    assert_eq!(
+        more["files"].as_array().map(Vec::len),
+        Some(12 + 7 + 12 + 12 + 2 + 1)
+    );
     assert!(more["lidar"]["returns"].as_u64() > Some(10_000));
     let shot = dir.path("shot.png");
     json(&sceneloom(&[

@@ -267,7 +267,7 @@ fn camera_maps_and_views_are_pictures_that_say_what_they_show() {
     let path = dir.save("a.loom", &scene);
     let size = ["--size", "160x90"];
     let written = export(&path, "semantic", &dir.path("maps"), &size);
-    assert_eq!(written.len(), 7);
+    assert_eq!(written.len(), 8);
     let classes: Value =
         serde_json::from_slice(&std::fs::read(dir.path("maps/classes.json")).expect("there")).expect("JSON");
     let mut names = HashMap::new();
@@ -295,7 +295,7 @@ fn camera_maps_and_views_are_pictures_that_say_what_they_show() {
     assert!(seen.len() > 4, "{seen:?}");
 
     let written = export(&path, "depth", &dir.path("maps"), &size);
-    assert_eq!(written.len(), 6);
+    assert_eq!(written.len(), 7);
     let depth = image::open(dir.path("maps/CAM_FRONT_depth_mm.png"))
         .expect("a picture")
         .to_luma16();

@@ -170,7 +170,7 @@ pub fn main() -> ExitCode {
 
 fn editor(path: Option<PathBuf>, trace: Option<PathBuf>) -> Outcome {
     let scene = match &path {
-        Some(path) => open::scene(path)?,
+        Some(path) => app::scene_of(path)?,
         None => open::bundled()?,
     };
     if !doctor::has_display() {

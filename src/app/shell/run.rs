@@ -29,7 +29,7 @@ pub fn run_window(
         params: GenParams::default(),
         full_params: job::GenParams::whole_scene(),
         warm_up: true,
-        open: Arc::new(open::scene),
+        open: Arc::new(crate::scene_of),
         save: Arc::new(|scene, path| {
             loom::save(path, scene)?;
             Ok(())

@@ -8,6 +8,7 @@ mod commonroad_obstacles;
 #[cfg(test)]
 mod commonroad_tests;
 pub mod glb;
+mod importer;
 pub mod kitti;
 pub mod lanelet2;
 #[cfg(test)]
@@ -26,15 +27,11 @@ pub mod semantic_kitti;
 pub mod sparse_npy;
 pub mod vox;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use scene::{Extent, Frame, Inferred, Scene, SensorRig, Unobserved, VoxelGrid, infer};
-
-use super::opendrive::RoadNetwork;
-use super::recipe::Recipe;
-use super::{FormatError, Holds, input};
+use super::{FormatError, input};
+pub use importer::{Content, Importer, Loaded, Source};
+use importer::{GUESSED, first_entry_ends, labelled};
 
 /// Every format that can be read. A file that no other format recognises is read as the last one.
 const TABLE: &[&Importer] = &[
@@ -59,83 +56,6 @@ const TABLE: &[&Importer] = &[
 
 /// Bytes from which a format is recognised.
 const HEAD: u64 = 1024;
-
-/// A format that is read.
-pub struct Importer {
-    /// Name in reports.
-    pub id: &'static str,
-    /// Name for a person, in the plural.
-    pub title: &'static str,
-    /// Extensions without the dot, in small letters.
-    pub extensions: &'static [&'static str],
-    /// What a file holds.
-    pub holds: &'static [Holds],
-    /// Largest file that is read, bytes.
-    pub largest: u64,
-    /// True for the first bytes of such a file.
-    pub recognises: fn(head: &[u8]) -> bool,
-    /// The file to begin with in a folder of several, where the format keeps its files in one.
-    pub in_folder: Option<fn(&Path) -> Option<PathBuf>>,
-    /// Reads the bytes of a file. Errors in one line, without the file's name.
-    pub read: fn(&Source<'_>) -> Result<Content, FormatError>,
-    /// A small file, for the tests of the table.
-    #[cfg(test)]
-    pub sample: fn() -> Vec<u8>,
-}
-
-/// A file to be read.
-pub struct Source<'a> {
-    /// Everything in it.
-    pub bytes: &'a [u8],
-    /// Name of the scene to be made.
-    pub name: &'a str,
-    /// Where the file is, for formats of several files; `None` for bytes alone.
-    pub path: Option<&'a Path>,
-}
-
-impl Source<'_> {
-    /// Everything in a file beside this one: `relative` is a path from this file's folder, with `/` between names. Errors if
-    /// it has more than `limit` bytes, is not there or cannot be read.
-    pub fn beside(&self, relative: &str, limit: u64) -> Result<Vec<u8>, FormatError> {
-        let path = self.place(relative)?;
-        input::read(&path, limit).map_err(FormatError::new)
-    }
-
-    /// Where a file beside this one would be. Errors for bytes alone, and for an absolute path.
-    pub fn place(&self, relative: &str) -> Result<PathBuf, FormatError> {
-        let folder = self.path.and_then(Path::parent);
-        let folder = folder
-            .ok_or_else(|| FormatError::new(format!("{relative}: read from memory, not from a folder")))?;
-        match Path::new(relative).is_absolute() {
-            true => Err(FormatError::new(format!(
-                "{relative}: an absolute path, expected one beside the file"
-            ))),
-            false => Ok(folder.join(relative)),
-        }
-    }
-}
-
-/// What a file held.
-#[derive(Debug)]
-pub enum Content {
-    /// A scene.
-    Scene(Box<Loaded>),
-    /// Roads: a scene lies somewhere on them, and the user says where.
-    Roads(Box<RoadNetwork>),
-    /// Words and parameters that a scene can be made of again.
-    Recipe(Box<Recipe>),
-}
-
-/// A scene, and what was left out of it.
-#[derive(Debug)]
-pub struct Loaded {
-    /// The scene.
-    pub scene: Scene,
-    /// What of it is a guess, for a person: `layout`, `boxes`, `background`.
-    pub inferred: &'static [&'static str],
-    /// What the file holds and the scene does not, counted by kind.
-    pub skipped: BTreeMap<String, usize>,
-}
 
 /// Every format that is read.
 pub fn all() -> &'static [&'static Importer] {
@@ -190,8 +110,10 @@ fn of_folder(folder: &Path) -> Result<(&'static Importer, PathBuf), FormatError>
     let known = || all().iter().filter(|i| i.in_folder.is_some()).map(|i| i.title);
     all().iter().find_map(first).ok_or_else(|| {
         let known = known().collect::<Vec<_>>().join(", ");
-        let known = if known.is_empty() { "a file" } else { &known };
-        FormatError::new(format!("{}: a folder, expected {known}", folder.display()))
+        FormatError::new(format!(
+            "{}: a folder, expected a regular file or a folder of {known}",
+            folder.display()
+        ))
     })
 }
 
@@ -219,41 +141,6 @@ pub fn scene_name(path: &Path) -> String {
         (Some(stem), _) => stem.into_owned(),
         (None, _) => "import".to_owned(),
     }
-}
-
-/// A scene from labels: their voxels as they are; layout, boxes and background are inferred, of a larger map in the networks'
-/// window.
-fn labelled(name: &str, labels: VoxelGrid, unobserved: Option<Unobserved>) -> Scene {
-    let window = labels.crop(Extent::WINDOW);
-    let (layout, boxes) = (infer::layout(&window), infer::boxes(&window));
-    let background = infer::background(&window, &layout);
-    let layout = layout.crop(labels.extent());
-    let inferred = Inferred {
-        layout: true,
-        boxes: boxes.keys().copied().collect(),
-        background: !background.is_empty(),
-        unobserved,
-    };
-    let frame = Frame {
-        inferred,
-        ..Frame::new(layout, boxes, labels)
-    };
-    let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), 0);
-    scene.background = Arc::new(background);
-    scene
-}
-
-/// Everything that [`labelled`] guesses.
-const GUESSED: [&str; 3] = ["layout", "boxes", "background"];
-
-/// True for a zip archive whose first entry's name ends in this.
-fn first_entry_ends(head: &[u8], ending: &str) -> bool {
-    let local_header = head.starts_with(b"PK\x03\x04");
-    let length = head
-        .get(26..28)
-        .map_or(0, |b| usize::from(u16::from_le_bytes([b[0], b[1]])));
-    let name = head.get(30..30 + length).unwrap_or_default();
-    local_header && name.ends_with(ending.as_bytes())
 }
 
 #[cfg(test)]

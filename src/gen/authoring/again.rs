@@ -1,12 +1,14 @@
 //! A scene made again from the recipe of a file.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, bail};
 
 use super::prompting::How;
-use super::text;
+use super::{open, text};
 use editor::{Edit, apply_all};
+use formats::import::{self, Content};
 use formats::recipe::Recipe;
 use scene::Scene;
 
@@ -28,6 +30,18 @@ pub fn again(recipe: &Recipe) -> anyhow::Result<Scene> {
     scene.name = recipe.scene.as_str().into();
     scene.touch();
     Ok(scene)
+}
+
+/// A scene from a file of any format that is read; of a picture that carries words alone, the scene that they make again.
+pub fn scene_of(path: &Path) -> anyhow::Result<Scene> {
+    match import::format_of(path).map(|importer| importer.id) {
+        Ok("picture") => match import::read(path)?.1 {
+            Content::Recipe(recipe) => again(&recipe).with_context(|| path.display().to_string()),
+            Content::Scene(loaded) => Ok(loaded.scene),
+            Content::Roads(_) => bail!("{}: roads in a picture", path.display()),
+        },
+        _ => open::scene(path),
+    }
 }
 
 #[cfg(test)]

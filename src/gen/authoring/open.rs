@@ -7,7 +7,6 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use glam::DVec2;
 
-use super::again::again;
 use super::{large, scenery_around};
 use formats::import::{self, Content};
 use formats::opendrive::RoadNetwork;
@@ -51,7 +50,10 @@ pub fn scene(path: &Path) -> anyhow::Result<Scene> {
         Content::Roads(network) => {
             Ok(on_roads(*network, &import::scene_name(path), &Placement::default()).scene)
         }
-        Content::Recipe(recipe) => again(&recipe).with_context(|| path.display().to_string()),
+        Content::Recipe(_) => bail!(
+            "{}: words to make a scene of, expected a scene: import it first",
+            path.display()
+        ),
     }
 }
 

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::bundles::Bundled;
 use super::chains::{Chain, Near, STEP_M, Sample, Surface, surface};
+use super::curve::{BACK_RAD, curve};
 use super::fit::{placed, reference, wrapped};
 use super::roads::{Contact, End, Road};
 use super::strips::{PAVED_IN_JUNCTION_M, Station, Strip, Strips};
@@ -15,8 +16,6 @@ use scene::road_map::resampled;
 
 /// Free samples between the end of a road and its zone, at most.
 const NEAR_ZONE: usize = 40;
-/// Turns beyond this go back, rad.
-const BACK_RAD: f64 = 2.6;
 /// Turns below this go straight on, rad.
 const STRAIGHT_RAD: f64 = 0.5;
 /// Tightest turn, m.
@@ -448,28 +447,6 @@ fn straightest(ground: &Ground<'_>, pairs: impl Iterator<Item = (Door, Door)>) -
 /// True if an arm is a lane that is driven both ways: a way through it counts for both directions.
 fn both(gates: &Gates, arm: (usize, bool)) -> bool {
     gates.inward.iter().any(|d| d.arm() == arm && d.two_way)
-}
-
-/// A smooth way from one place and heading to another; `None` where it would turn back or wind.
-fn curve(from: Contact, to: Contact) -> Option<Vec<DVec2>> {
-    let way = to.at_m - from.at_m;
-    let turn = wrapped(to.heading_rad - from.heading_rad);
-    let [out, back] = [from, to].map(|c| DVec2::from_angle(c.heading_rad));
-    if way.dot(out) < 0.0 || way.dot(back) < 0.0 || way.length() < 1.0 || turn.abs() > BACK_RAD {
-        return None;
-    }
-    // Hermite's cubic with the speed of a circle of that turn.
-    let speed = way.length() / (turn / 4.0).cos().powi(2);
-    let count = (way.length() / STEP_M).ceil().max(4.0) as usize * 2;
-    let at = |i: usize| {
-        let p = i as f64 / count as f64;
-        let (p2, p3) = (p * p, p * p * p);
-        from.at_m * (2.0 * p3 - 3.0 * p2 + 1.0)
-            + out * (speed * (p3 - 2.0 * p2 + p))
-            + to.at_m * (3.0 * p2 - 2.0 * p3)
-            + back * (speed * (p3 - p2))
-    };
-    Some((0..=count).map(at).collect())
 }
 
 /// True where a vehicle can follow a line: paved and not too tight.

@@ -7,6 +7,7 @@ mod areas;
 mod bundles;
 mod chains;
 mod connect;
+mod curve;
 pub(crate) mod fit;
 mod middles;
 mod on_road;
