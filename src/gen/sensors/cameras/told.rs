@@ -36,7 +36,6 @@ impl CameraSource for Told {
             occupancy: true,
             layout: true,
             boxes: true,
-            conditions: true,
             ..Needs::default()
         }
     }
