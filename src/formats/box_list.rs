@@ -3,13 +3,16 @@
 //! `{"format": "sceneloom_boxes", "version": 1, "scene": name, "time_s": s, "frame": "ego: x forward, y left, z up, m",
 //! "boxes": […]}`, each box with `id`; `class` and `class_id` (Occ3D); `center_m` [x, y, z]; `size_m` [length, width, height];
 //! `yaw_rad` counter-clockwise from ego x and the same turn as `rotation_wxyz`; `velocity_mps` [x, y] over ground; and, where
-//! known, `num_lidar_pts` and `camera_pixels` (returns and pixels of all sensors of a kind together). Numbers read back
+//! known, `num_lidar_pts` and `camera_pixels` (returns and pixels of all sensors of a kind together); last `recipe`, how the file came to be ([`Recipe`]). Numbers read back
 //! as the very numbers that were written.
 
 use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::recipe::Recipe;
 
 use scene::message::{one_line, quoted};
 use scene::{BoxId, BoxLabel, Class, Frame, SceneBox};
@@ -26,6 +29,8 @@ struct List {
     time_s: f64,
     frame: String,
     boxes: Vec<Entry>,
+    #[serde(default, skip_serializing_if = "Value::is_null")]
+    recipe: Value,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -55,6 +60,7 @@ pub fn to_bytes(
     frame: &Frame,
     lidar: Counts<'_>,
     camera: Counts<'_>,
+    recipe: Option<&Recipe>,
 ) -> Result<Vec<u8>, String> {
     if let Some(problem) = frame.boxes.values().find_map(SceneBox::problem) {
         return Err(problem);
@@ -83,14 +89,15 @@ pub fn to_bytes(
         time_s: frame.time_s,
         frame: FRAME.into(),
         boxes: frame.boxes.values().map(entry).collect(),
+        recipe: recipe.map_or(Ok(Value::Null), serde_json::to_value).map_err(|e| e.to_string())?,
     };
     let mut bytes = serde_json::to_vec_pretty(&list).map_err(|e| e.to_string())?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
-/// The boxes in the bytes of such a file. Errors in one line.
-pub fn read(bytes: &[u8]) -> Result<Vec<SceneBox>, String> {
+/// The boxes in the bytes of such a file, and its recipe (null if it has none). Errors in one line.
+pub fn read(bytes: &[u8]) -> Result<(Vec<SceneBox>, Value), String> {
     let list: List = serde_json::from_slice(bytes).map_err(|e| one_line(&e))?;
     if (list.format.as_str(), list.version) != (FORMAT, VERSION) {
         return Err(format!(
@@ -114,7 +121,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<SceneBox>, String> {
         .collect();
     match boxes.iter().find_map(SceneBox::problem) {
         Some(problem) => Err(problem),
-        None => Ok(boxes),
+        None => Ok((boxes, list.recipe)),
     }
 }
 
@@ -136,8 +143,14 @@ mod tests {
         };
         let mut frame = Frame::new(BevLayout::default(), [(b.id, b)].into(), VoxelGrid::new());
         let counts = [(BoxId(7), 31)].into();
-        let bytes = to_bytes("a scene", &frame, Some(&counts), None).expect("finite");
-        assert_eq!(read(&bytes).expect("ours"), [b]);
+        let bytes = to_bytes("a scene", &frame, Some(&counts), None, None).expect("finite");
+        assert_eq!(read(&bytes).expect("ours"), (vec![b], Value::Null));
+        let recipe = Recipe {
+            seed: 9,
+            ..Recipe::default()
+        };
+        let with = to_bytes("a scene", &frame, None, None, Some(&recipe)).expect("finite");
+        assert_eq!(read(&with).expect("ours").1["seed"], 9);
         let text = String::from_utf8(bytes).expect("UTF-8");
         assert!(text.contains("\"num_lidar_pts\": 31") && !text.contains("camera_pixels"));
         assert!(
@@ -148,7 +161,7 @@ mod tests {
         read(b"{").expect_err("no JSON");
         frame.boxes.get_mut(&BoxId(7)).expect("there").center_m.x = f64::NAN;
         assert!(
-            to_bytes("a scene", &frame, None, None)
+            to_bytes("a scene", &frame, None, None, None)
                 .expect_err("NaN")
                 .contains("center_m")
         );

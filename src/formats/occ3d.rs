@@ -1,5 +1,6 @@
 //! Occ3D-nuScenes labels: `labels.npz` with `semantics`, `mask_lidar`, `mask_camera`, each
-//! [200, 200, 16], index `[x][y][z]`, ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed.
+//! [200, 200, 16], index `[x][y][z]`, ego frame, 0.4 m, 17 = free; a mask is 0 where nothing was observed. Ours have `recipe` too:
+//! the bytes of a JSON text, see [`Recipe`].
 //! Also read: an archive with one array, `occ` (UniScene's output) or `arr_0` (submission files); OpenDriveLab's openocc labels
 //! and Occ3D-Waymo labels of 0.4 m, which have the same shape and other numbers ([`Numbering`]).
 
@@ -16,6 +17,7 @@ pub use numbering::Numbering;
 
 use super::input::{self, InputError};
 use super::npy;
+use super::recipe::{self, Recipe};
 use super::npz::{self, Values as Npy};
 use scene::message::{one_line, quoted, shortened};
 use scene::{Class, VoxelGrid, Window};
@@ -32,6 +34,9 @@ const WAYMO_MASKS: [&str; 2] = ["origin_voxel_state", "final_voxel_state"];
 pub const LARGEST_FILE: u64 = 256 << 20;
 /// Largest array that is unpacked: eight bytes a voxel and a header.
 const LARGEST: u64 = 8 * Window::VOXELS as u64 + 65_536;
+/// Largest recipe that is read, bytes.
+const LARGEST_RECIPE: u64 = 1 << 20;
+
 /// A labelled frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Occ3dFrame {
@@ -87,6 +92,8 @@ pub struct Found {
     pub frame: Occ3dFrame,
     /// How the file numbers them.
     pub numbering: Numbering,
+    /// How the file came to be, if it says: a [`crate::recipe::Recipe`].
+    pub recipe: Option<serde_json::Value>,
     /// Arrays of the file that are not read.
     pub left_out: Vec<String>,
 }
@@ -129,12 +136,30 @@ pub fn read_found(bytes: &[u8]) -> Result<Found, Occ3dError> {
         camera_observed: mask(masks[1])?,
         labels: VoxelGrid::from_dense(&labels).expect("as many labels as voxels"),
     };
-    let is_read = |other: &String| *other == name || masks.contains(&other.as_str());
+    let recipe = recipe(&mut zip);
+    let is_recipe = |other: &String| recipe.is_some() && *other == recipe::NAME;
+    let is_read = |other: &String| *other == name || masks.contains(&other.as_str()) || is_recipe(other);
     Ok(Found {
         frame,
         numbering,
         left_out: found.iter().filter(|other| !is_read(other)).cloned().collect(),
+        recipe,
     })
+}
+
+/// The array of bytes that holds a recipe as JSON.
+fn recipe(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Option<serde_json::Value> {
+    let file = zip
+        .by_name(&npyz::npz::file_name_from_array_name(recipe::NAME))
+        .ok()?;
+    if file.size() > LARGEST_RECIPE {
+        return None;
+    }
+    let text = NpyFile::new(file.take(LARGEST_RECIPE)).ok()?;
+    if text.len() > LARGEST_RECIPE {
+        return None;
+    }
+    serde_json::from_slice(&text.into_vec::<u8>().ok()?).ok()
 }
 
 /// The classes of an array of labels, and how it numbers them.
@@ -180,16 +205,22 @@ fn classes(name: &str, values: Values) -> Result<(Vec<u8>, Numbering), Occ3dErro
 
 /// Labels as an npz file with the array `semantics`, compressed; equal labels give equal bytes.
 pub fn to_bytes(labels: &VoxelGrid) -> Vec<u8> {
-    arrays_to_bytes(labels, [None, None])
+    arrays_to_bytes(labels, [None, None], None)
 }
 
 /// The same with the masks that the frame has.
 pub fn frame_to_bytes(frame: &Occ3dFrame) -> Vec<u8> {
     let masks = [&frame.lidar_observed, &frame.camera_observed];
-    arrays_to_bytes(&frame.labels, masks.map(Option::as_deref))
+    arrays_to_bytes(&frame.labels, masks.map(Option::as_deref), None)
 }
 
-fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2]) -> Vec<u8> {
+/// The same with how it came to be: an array `recipe` of the bytes of a JSON text.
+pub fn frame_with_recipe_to_bytes(frame: &Occ3dFrame, recipe: &Recipe) -> Vec<u8> {
+    let masks = [&frame.lidar_observed, &frame.camera_observed];
+    arrays_to_bytes(&frame.labels, masks.map(Option::as_deref), Some(recipe))
+}
+
+fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2], recipe: Option<&Recipe>) -> Vec<u8> {
     let array = |name, bytes| npz::Array {
         name,
         shape: &[Window::NX, Window::NY, Window::NZ],
@@ -198,6 +229,15 @@ fn arrays_to_bytes(labels: &VoxelGrid, masks: [Option<&[bool]>; 2]) -> Vec<u8> {
     let mut all = vec![array("semantics", labels.to_dense())];
     for (name, mask) in MASKS.into_iter().zip(masks) {
         all.extend(mask.map(|mask| array(name, mask.iter().map(|seen| u8::from(*seen)).collect())));
+    }
+    let text = recipe.map(|r| r.to_json().into_bytes()).unwrap_or_default();
+    let shape = [text.len()];
+    if recipe.is_some() {
+        all.push(npz::Array {
+            name: recipe::NAME,
+            shape: &shape,
+            values: Npy::U8(text),
+        });
     }
     npz::to_bytes(&all).expect("a mask has a flag per voxel, and memory takes what is written")
 }

@@ -22,7 +22,7 @@ pub struct Recipe {
     pub version: String,
     /// Name of the scene.
     pub scene: String,
-    /// SHA-256 of the scene as a `.loom` file, hexadecimal; empty if it could not be made.
+    /// SHA-256 of the scene as a `.loom` file that keeps nothing beside it, hexadecimal; empty if it could not be made.
     pub scene_sha256: String,
     /// The moment, s.
     pub time_s: f64,
@@ -48,7 +48,7 @@ const LARGEST_INSIDE: usize = 4 << 20;
 impl Recipe {
     /// Of a scene as a whole, at the moment that it shows.
     pub fn of(scene: &Scene) -> Self {
-        let loom = loom::to_bytes(scene).ok();
+        let loom = loom::alone_to_bytes(scene).ok();
         let hash = loom.as_deref().map(hex_of).unwrap_or_default();
         Self {
             software: "sceneloom".into(),
@@ -90,6 +90,23 @@ impl Recipe {
             ],
             scene: self.loom.as_ref().filter(|_| whole).map(|l| l.as_slice()),
         })
+    }
+}
+
+/// Gives a scene the words, style, light and air and the seed of a recipe that a file carries, as far as they can be read: other
+/// programs may have changed the text, which is no reason to refuse the file.
+pub fn restore(recipe: &serde_json::Value, scene: &mut Scene) {
+    if let Some(prompt) = recipe["prompt"].as_str() {
+        scene.prompt = prompt.into();
+    }
+    let words = recipe["words"].as_array().into_iter().flatten();
+    scene.words = Arc::new(words.filter_map(|w| w.as_str().map(str::to_owned)).collect());
+    if let Some(seed) = recipe["seed"].as_u64() {
+        scene.seed = seed;
+    }
+    let conditions = serde_json::from_value::<Conditions>(recipe["conditions"].clone());
+    if let Some(conditions) = conditions.ok().filter(|c| c.problem().is_none()) {
+        scene.conditions = conditions;
     }
 }
 

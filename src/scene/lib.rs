@@ -18,6 +18,7 @@ pub mod graph;
 pub mod grid;
 pub mod infer;
 pub mod inferred;
+pub mod kept;
 pub mod layout;
 pub mod lens;
 pub mod message;
@@ -55,6 +56,7 @@ pub use edit::{Edit, EditError};
 pub use frame::{Frame, SourceFrame};
 pub use grid::{Extent, VoxelGrid, VoxelPaint, Window};
 pub use inferred::{Inferred, Unobserved};
+pub use kept::{Kept, KeptVersion};
 pub use layout::{BevLayout, Polyline, PolylineKind};
 pub use lens::{Lens, Optics, ReadOut, Shutter};
 pub use numeric::splitmix as draw;
@@ -101,6 +103,8 @@ pub struct Scene {
     pub background: Arc<Background>,
     /// Seed of every random draw made for this scene.
     pub seed: u64,
+    /// What its file keeps beside it: no part of any state, so that neither revision says anything of it.
+    pub kept: Arc<Kept>,
     content: SceneRev,
     canvas: Arc<Frame>,
     clip: Arc<Clip>,
@@ -127,6 +131,7 @@ impl Scene {
             canvas,
             clip: Arc::default(),
             seed,
+            kept: Arc::default(),
         }
     }
 

@@ -74,7 +74,7 @@ fn a_list_of_boxes_becomes_a_scene() {
     let dir = tempfile::tempdir().expect("a folder");
     let path = |name: &str| dir.path().join(name).display().to_string();
     let scene = app::open::from_template("straight", 3).expect("a template");
-    let bytes = box_list::to_bytes("s", scene.frame(), None, None).expect("finite");
+    let bytes = box_list::to_bytes("s", scene.frame(), None, None, None).expect("finite");
     std::fs::write(path("boxes.json"), bytes).expect("written");
     let report = import(&path("boxes.json"), &path("boxes.loom"));
     assert_eq!(report["boxes"], scene.frame().boxes.len());

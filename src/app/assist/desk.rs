@@ -15,10 +15,11 @@ use crate::folder::Folder;
 pub use app::shell::guests::Task;
 use editor::checks::{self, Finding};
 use editor::{Document, Edit};
+use formats::loom;
 use job::pipeline::OccPipeline;
 use job::region::edited_columns;
 use nets::OccModels;
-use scene::{Scene, SceneRev};
+use scene::{KeptVersion, Scene, SceneRev};
 
 /// True once the call in progress is not wanted any more.
 pub type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
@@ -217,6 +218,35 @@ impl Desk {
             self.pipeline = Some(OccPipeline::new(models));
         }
         self.pipeline.as_mut().context("no networks")
+    }
+
+    /// A scene as it is saved: its file keeps the versions of this session, with their names and a star.
+    pub fn with_versions(&self, scene: &Scene) -> anyhow::Result<Scene> {
+        let mut scene = scene.clone();
+        let kept = Arc::make_mut(&mut scene.kept);
+        kept.versions
+            .retain(|v| self.versions.iter().all(|(name, _)| *name != v.name));
+        for (name, version) in &self.versions {
+            kept.versions.push(KeptVersion {
+                name: name.clone(),
+                label: "Kept in a session".into(),
+                note: String::new(),
+                starred: true,
+                loom: Arc::new(loom::alone_to_bytes(version)?),
+            });
+        }
+        Ok(scene)
+    }
+
+    /// Takes over the named versions that a scene's file keeps, as far as there is room and they can be read.
+    pub fn take_versions(&mut self, scene: &Scene) {
+        for kept in scene.kept.versions.iter().filter(|v| !v.name.is_empty()) {
+            if let Ok(version) = loom::from_bytes(&kept.loom)
+                && self.keep(kept.name.clone(), Arc::new(version)).is_err()
+            {
+                return;
+            }
+        }
     }
 
     /// States kept under a name, the oldest first.

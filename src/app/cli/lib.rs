@@ -28,6 +28,7 @@ mod schema;
 mod session;
 mod shot;
 mod trade;
+mod versions;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -81,6 +82,8 @@ enum Command {
     Batch(batch::Batch),
     /// What differs between two scenes.
     Diff(diff::Diff),
+    /// The versions that a scene's file keeps: listed, taken out, added.
+    Versions(versions::VersionsCommand),
     /// Files for other programs.
     Export(export::Export),
     /// Training and evaluation data from procedural worlds.
@@ -145,6 +148,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(c)) => c.run(),
         Some(Command::Batch(c)) => c.run(),
         Some(Command::Diff(c)) => c.run(),
+        Some(Command::Versions(c)) => c.run(),
         Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),
         Some(Command::Eval(c)) => c.run(),

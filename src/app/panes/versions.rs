@@ -1,4 +1,4 @@
-//! The list of versions: looked at, compared with, starred, gone back to.
+//! The list of versions: looked at, compared with, named, starred, gone back to.
 
 use egui::accesskit::Role;
 use egui::{Color32, Rect, Sense, TextureOptions, Ui, WidgetInfo, pos2, vec2};
@@ -8,13 +8,13 @@ use super::pane::{Pane, PaneContext, Place};
 use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::comparing::{CompareMode, Comparing};
-use crate::shell::versions::Versions;
+use crate::shell::versions::{Version, Versions};
 use scene::SceneRev;
 use widgets::icons;
 use widgets::icons::Icon;
 use widgets::theme;
 
-/// What was generated so far.
+/// What the scene was so far.
 pub struct VersionsPane;
 
 impl Pane for VersionsPane {
@@ -61,7 +61,7 @@ pub fn versions_ui(
     commands: &mut Vec<Command>,
 ) {
     if versions.list().len() < 2 {
-        let text = "Each generation leaves a version here: click one to compare with it, double-click to go back to it.";
+        let text = "Each generation leaves a version here: click one to compare with it, double-click to go back to it, right-click to name it. They are saved with the scene.";
         ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         ui.add_space(4.0);
     }
@@ -70,71 +70,145 @@ pub fn versions_ui(
         .id_salt("versions")
         .auto_shrink(false)
         .show(ui, |ui| {
-            for (i, version) in versions.list_mut().iter_mut().enumerate().rev() {
-                let size = vec2(ui.available_width(), ENTRY);
-                let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-                if !ui.is_rect_visible(rect) {
-                    continue;
-                }
-                let is_shown = version.scene.content() == shown;
-                let label = version.label.clone();
-                response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, &label));
-                let fill = match (
-                    is_shown,
-                    before == Some(version.scene.content()),
-                    response.hovered(),
-                ) {
-                    (true, ..) => theme::accent_fill(),
-                    (_, true, _) => theme::field_active(),
-                    (_, _, true) => theme::field_hover(),
-                    _ => theme::field(),
+            for i in (0..versions.list().len()).rev() {
+                let entry = Entry {
+                    rev: versions.list()[i].scene.content(),
+                    shown,
+                    before,
                 };
-                ui.painter().rect_filled(rect, theme::RADIUS, fill);
-                let texture = version.thumbnail.get_or_insert_with(|| {
-                    let behind = Color32::from_rgb(29, 32, 37);
-                    let image = bev_image::occupancy(&version.scene.frame().occupancy, behind);
-                    ui.ctx().load_texture("version", image, TextureOptions::LINEAR)
-                });
-                let picture = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(ENTRY - 8.0, ENTRY - 8.0));
-                let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                ui.painter().image(texture.id(), picture, unit, Color32::WHITE);
-                let text = |y: f32, text: &str, style: egui::TextStyle, color| {
-                    let font = style.resolve(ui.style());
-                    let at = pos2(picture.right() + 8.0, rect.top() + y);
-                    let room = rect.right() - 30.0 - at.x;
-                    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
-                    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(20.0));
-                    let galley = ui.painter().layout_job(job);
-                    ui.painter().galley(at, galley, color);
-                };
-                text(7.0, &version.label, egui::TextStyle::Body, theme::text_strong());
-                text(28.0, &version.note, egui::TextStyle::Small, theme::text_weak());
-                let star =
-                    Rect::from_center_size(pos2(rect.right() - 16.0, rect.center().y), vec2(24.0, 24.0));
-                let starring = ui.interact(star, ui.scope_id().with(("star", i)), Sense::click());
-                let starred = version.starred;
-                starring
-                    .widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, "Keep this version"));
-                let color = if version.starred {
-                    theme::warn()
-                } else {
-                    theme::text_weak()
-                };
-                draw_star(ui, star.center(), color, version.starred);
-                icons::focus_ring(ui, &starring, star);
-                if starring.on_hover_text("Keep this version").clicked() {
-                    version.starred = !version.starred;
-                }
-                icons::focus_ring(ui, &response, rect);
-                if response.double_clicked() {
-                    commands.push(Command::Generation(GenerationCommand::RestoreVersion(
-                        version.scene.content(),
-                    )));
-                } else if response.clicked() {
-                    commands.push(Command::View(ViewCommand::CompareWith(version.scene.content())));
-                }
+                entry.ui(ui, versions, i, commands);
             }
         });
+}
+
+/// One version of the list.
+struct Entry {
+    rev: SceneRev,
+    shown: SceneRev,
+    before: Option<SceneRev>,
+}
+
+impl Entry {
+    fn ui(&self, ui: &mut Ui, versions: &mut Versions, i: usize, commands: &mut Vec<Command>) {
+        let size = vec2(ui.available_width(), ENTRY);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        if !ui.is_rect_visible(rect) {
+            return;
+        }
+        let is_shown = self.rev == self.shown;
+        let title = versions.list()[i].title().to_owned();
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, &title));
+        let fill = match (is_shown, self.before == Some(self.rev), response.hovered()) {
+            (true, ..) => theme::accent_fill(),
+            (_, true, _) => theme::field_active(),
+            (_, _, true) => theme::field_hover(),
+            _ => theme::field(),
+        };
+        ui.painter().rect_filled(rect, theme::RADIUS, fill);
+        let picture = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(ENTRY - 8.0, ENTRY - 8.0));
+        thumbnail(ui, picture, &mut versions.list_mut()[i]);
+        let version = &versions.list()[i];
+        let at = pos2(picture.right() + 8.0, rect.top() + 7.0);
+        let room = rect.right() - 30.0 - at.x;
+        let line = |at, text: &str, style, color| line(ui, at, room, text, style, color);
+        if versions.renaming.as_ref().is_none_or(|(rev, _)| *rev != self.rev) {
+            line(at, &title, egui::TextStyle::Body, theme::text_strong());
+        }
+        let below = match (version.name.is_empty(), version.note.is_empty()) {
+            (true, _) => version.note.clone(),
+            (false, true) => version.label.clone(),
+            (false, false) => format!("{} · {}", version.label, version.note),
+        };
+        line(at + vec2(0.0, 21.0), &below, egui::TextStyle::Small, theme::text_weak());
+        let star = Rect::from_center_size(pos2(rect.right() - 16.0, rect.center().y), vec2(24.0, 24.0));
+        let starring = ui.interact(star, ui.scope_id().with(("star", i)), Sense::click());
+        let starred = version.starred;
+        starring.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, "Keep this version"));
+        let color = if starred { theme::warn() } else { theme::text_weak() };
+        draw_star(ui, star.center(), color, starred);
+        icons::focus_ring(ui, &starring, star);
+        if starring.on_hover_text("Keep this version").clicked() {
+            versions.star(self.rev);
+        }
+        icons::focus_ring(ui, &response, rect);
+        if self.name_field(ui, Rect::from_min_size(at, vec2(room, 20.0)), versions) {
+            return;
+        }
+        if response.double_clicked() {
+            commands.push(self.go_back());
+        } else if response.clicked() {
+            commands.push(self.compare());
+        }
+        response.context_menu(|ui| self.menu(ui, versions, commands));
+    }
+
+    fn go_back(&self) -> Command {
+        Command::Generation(GenerationCommand::RestoreVersion(self.rev))
+    }
+
+    fn compare(&self) -> Command {
+        Command::View(ViewCommand::CompareWith(self.rev))
+    }
+
+    fn menu(&self, ui: &mut Ui, versions: &mut Versions, commands: &mut Vec<Command>) {
+        if ui.button("Compare with it").clicked() {
+            commands.push(self.compare());
+        }
+        if ui.button("Go back to it").clicked() {
+            commands.push(self.go_back());
+        }
+        ui.separator();
+        if ui.button("Name…").clicked()
+            && let Some(i) = versions.of(self.rev)
+        {
+            versions.renaming = Some((self.rev, versions.list()[i].title().to_owned()));
+        }
+        let is_last = versions.list().len() < 2;
+        if ui.add_enabled(!is_last, egui::Button::new("Remove")).clicked() {
+            versions.remove(self.rev);
+        }
+    }
+
+    /// The field in which the name is typed; false if that of another one is, or none.
+    fn name_field(&self, ui: &mut Ui, rect: Rect, versions: &mut Versions) -> bool {
+        let Some((_, text)) = versions.renaming.as_mut().filter(|(rev, _)| *rev == self.rev) else {
+            return false;
+        };
+        let field = egui::TextEdit::singleline(text)
+            .id_salt("version name")
+            .char_limit(Versions::LONGEST_NAME)
+            .hint_text("name");
+        let field = ui.put(rect, field);
+        if field.lost_focus() {
+            let text = text.clone();
+            if !ui.input(|i| i.key_pressed(egui::Key::Escape)) {
+                versions.rename(self.rev, &text);
+            }
+            versions.renaming = None;
+        } else if !field.has_focus() {
+            field.request_focus();
+        }
+        true
+    }
+}
+
+fn thumbnail(ui: &Ui, rect: Rect, version: &mut Version) {
+    let texture = version.thumbnail.get_or_insert_with(|| {
+        let behind = Color32::from_rgb(29, 32, 37);
+        let image = bev_image::occupancy(&version.scene.frame().occupancy, behind);
+        ui.ctx().load_texture("version", image, TextureOptions::LINEAR)
+    });
+    let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture.id(), rect, unit, Color32::WHITE);
+}
+
+/// Text on one line, cut where the room ends.
+fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: egui::TextStyle, color: Color32) {
+    let font = style.resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font, color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(room.max(20.0));
+    let galley = ui.painter().layout_job(job);
+    ui.painter().galley(at, galley, color);
 }
 
 /// What the header of the list offers.

@@ -25,7 +25,7 @@ use super::preferences::Preferences;
 use super::settings::{QUALITY, Settings};
 use super::toasts::{Level, Toasts};
 use super::tuning::Tuning;
-use super::versions::Versions;
+use super::versions::{Opened, Versions};
 use super::views::Views;
 use crate::sensing::Sensing;
 use crate::state::UiState;
@@ -152,8 +152,10 @@ impl SceneloomApp {
         };
         // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn then.
         let view3d = View3d::new(render_state.clone());
+        let Opened { scene, versions: kept, .. } = Opened::of(config.scene);
         let mut versions = Versions::default();
-        versions.push("As opened".into(), String::new(), Arc::new(config.scene.clone()));
+        versions.replace(kept);
+        versions.push("As opened".into(), String::new(), Arc::new(scene.clone()));
         let (between_frames_s, sensing_grace) = match view3d.is_software() {
             true => (0.15, Duration::from_millis(25)),
             false => (0.015, Duration::ZERO),
@@ -174,6 +176,8 @@ impl SceneloomApp {
         let dock = settings.dock.clone().and_then(Dock::from_kept);
         let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
         let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));
+        let mut views = Views::new(view3d, dock, render_state);
+        views.prompt.opened(&scene);
         let live = Live::new(params, config.full_params, config.warm_up);
         let disk = Disk {
             open: config.open,
@@ -181,12 +185,12 @@ impl SceneloomApp {
             new_scene: config.new_scene,
         };
         Ok(Self {
-            document: Document::new(config.scene),
+            document: Document::new(scene),
             state,
             toasts,
             files: Files::new(config.path, disk, config.native_dialogs),
             generation: Generation::new(worker, live, tuning, versions),
-            views: Views::new(view3d, dock, render_state),
+            views,
             threads: SceneThreads {
                 checking: Checking::spawn(wake.clone())?,
                 sensing: Sensing::spawn(sensing_grace, wake)?,

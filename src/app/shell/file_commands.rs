@@ -1,6 +1,7 @@
 //! Carries out commands about files: opening, saving, screenshots, sensors.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crossbeam_channel::bounded;
 use egui::Context;
@@ -9,9 +10,11 @@ use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
 use super::files::{Next, Opening};
 use super::toasts::Level;
+use super::versions::Opened;
 use crate::command::FileCommand;
 use crate::open;
 use editor::Edit;
+use scene::{Kept, Scene};
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -115,11 +118,11 @@ impl SceneloomApp {
         path: Option<PathBuf>,
         is_import: bool,
         ctx: &Context,
-        make: impl FnOnce() -> anyhow::Result<scene::Scene> + Send + 'static,
+        make: impl FnOnce() -> anyhow::Result<Scene> + Send + 'static,
     ) {
         let (send, scene) = bounded(1);
         let wake = ctx.clone();
-        let thread = job::guard::spawn("open", make, move |scene| {
+        let thread = job::guard::spawn("open", move || make().map(Opened::of), move |scene| {
             // Nobody listens if something else was opened meanwhile.
             let _ = send.send(scene.unwrap_or_else(|panic| Err(panic.into())));
             wake.request_repaint();
@@ -177,11 +180,12 @@ impl SceneloomApp {
 
     pub(crate) fn save_to(&mut self, path: PathBuf, ctx: &Context) {
         self.document.cancel_drag();
-        let scene = self.document.settled_scene().clone();
+        let scene = self.with_kept(self.document.settled_scene());
         let next = self.files.after_save.take();
         match (self.files.disk.save)(&scene, &path) {
             Ok(()) => {
                 self.document.mark_saved();
+                self.generation.versions.changed = false;
                 let now_s = self.now_s();
                 self.toasts
                     .push(Level::Info, format!("Saved {}", path.display()), now_s);
@@ -193,6 +197,16 @@ impl SceneloomApp {
             }
             Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
         }
+    }
+
+    /// A scene with what its file keeps beside it: versions, and what was typed.
+    pub(crate) fn with_kept(&self, scene: &Scene) -> Scene {
+        let mut scene = scene.clone();
+        scene.kept = Arc::new(Kept {
+            versions: self.generation.versions.kept(scene.content()),
+            typed: self.views.prompt.typed().to_vec(),
+        });
+        scene
     }
 
     /// A path beside the scene's file, or in the working folder, named after the scene.

@@ -10,6 +10,7 @@ use scene::Scene;
 use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::recovery::Recovery;
+use super::versions::Opened;
 use crate::windows::place_picker::PlacePicker;
 
 /// Reads a scene from a file of any kind that can be opened.
@@ -47,7 +48,7 @@ pub(crate) struct Opening {
     pub is_import: bool,
     /// It becomes an undo step of this name, not a document of its own.
     pub step: Option<&'static str>,
-    pub scene: Receiver<anyhow::Result<Scene>>,
+    pub scene: Receiver<anyhow::Result<Opened>>,
 }
 
 /// Roads from a file, on which a scene will stand.

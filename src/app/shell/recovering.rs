@@ -6,6 +6,7 @@ use super::app::SceneloomApp;
 use super::recovery::Recovery;
 use super::toasts::Level;
 use crate::windows::recovery::{Answer, recovery_ui};
+use scene::Scene;
 
 /// What a scene that is being recovered is called while it is read.
 const READING: &str = "Recovering";
@@ -26,10 +27,16 @@ impl SceneloomApp {
 
     pub(crate) fn update_recovery(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
-        let Some(recovery) = &mut self.files.recovery else {
+        if self.generation.versions.changed {
+            self.document.mark_unsaved();
+        }
+        let Some(mut recovery) = self.files.recovery.take() else {
             return;
         };
-        let (wait_s, problem) = recovery.tick(&self.document, self.files.path.as_deref(), now_s);
+        let with_kept = |scene: &Scene| self.with_kept(scene);
+        let path = self.files.path.as_deref();
+        let (wait_s, problem) = recovery.tick(&self.document, path, with_kept, now_s);
+        self.files.recovery = Some(recovery);
         if let Some(seconds) = wait_s {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }

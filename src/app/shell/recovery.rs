@@ -42,7 +42,7 @@ struct About {
 }
 
 enum Job {
-    Write(Arc<Scene>, Option<PathBuf>),
+    Write(Box<Scene>, Option<PathBuf>),
     Remove,
 }
 
@@ -139,11 +139,12 @@ impl Recovery {
 
     /// Has a copy written if there are unsaved changes that are in none yet and it is time, and removes it once there
     /// are none. Returns after how many seconds to call it again if nothing else happens, and why a copy could not be
-    /// written (told once until one can). `now_s` never runs backward.
+    /// written (told once until one can). `with_kept` adds what the scene's file keeps beside it. `now_s` never runs backward.
     pub fn tick(
         &mut self,
         document: &Document,
         path: Option<&Path>,
+        with_kept: impl FnOnce(&Scene) -> Scene,
         now_s: f64,
     ) -> (Option<f64>, Option<String>) {
         let mut problem = None;
@@ -171,7 +172,7 @@ impl Recovery {
             return (Some(due_s - now_s), problem);
         }
         (self.asked, self.last_s, self.writing) = (Some(scene.content()), now_s, true);
-        self.send(Job::Write(scene.clone(), path.map(Path::to_path_buf)));
+        self.send(Job::Write(Box::new(with_kept(scene)), path.map(Path::to_path_buf)));
         (None, problem)
     }
 
@@ -368,22 +369,22 @@ mod tests {
         let root = tempfile::tempdir().expect("a folder");
         let mut recovery = Recovery::start(root.path(), 30.0, || {}).expect("a session");
         let (mut document, copy) = (document(), recovery.folder.join(SCENE));
-        assert_eq!(recovery.tick(&document, None, 0.0), (None, None));
+        assert_eq!(recovery.tick(&document, None, Scene::clone, 0.0), (None, None));
         assert!(!copy.exists());
         say(&mut document, "one");
-        assert_eq!(recovery.tick(&document, None, 1.0), (None, None));
+        assert_eq!(recovery.tick(&document, None, Scene::clone, 1.0), (None, None));
         recovery.wait();
         assert_eq!(prompt_in(&copy), "one");
         say(&mut document, "two");
-        assert_eq!(recovery.tick(&document, None, 11.0), (Some(20.0), None));
+        assert_eq!(recovery.tick(&document, None, Scene::clone, 11.0), (Some(20.0), None));
         recovery.wait();
         assert_eq!(prompt_in(&copy), "one");
-        assert_eq!(recovery.tick(&document, None, 31.0), (None, None));
+        assert_eq!(recovery.tick(&document, None, Scene::clone, 31.0), (None, None));
         recovery.wait();
         assert_eq!(prompt_in(&copy), "two");
-        assert_eq!(recovery.tick(&document, None, 99.0), (None, None), "nothing new");
+        assert_eq!(recovery.tick(&document, None, Scene::clone, 99.0), (None, None), "nothing new");
         document.mark_saved();
-        recovery.tick(&document, None, 100.0);
+        recovery.tick(&document, None, Scene::clone, 100.0);
         drop(recovery);
         assert_eq!(fs::read_dir(root.path()).expect("there").count(), 0);
     }
@@ -395,7 +396,7 @@ mod tests {
         let mut first = start();
         let mut document = document();
         say(&mut document, "night");
-        first.tick(&document, Some(Path::new("/tmp/a.loom")), 0.0);
+        first.tick(&document, Some(Path::new("/tmp/a.loom")), Scene::clone, 0.0);
         first.wait();
         let mut second = start();
         assert_eq!(second.offers.len(), 0, "the first one lives");
@@ -414,7 +415,7 @@ mod tests {
         offer.discard();
         assert_eq!(start().offers.len(), 0);
         // Given up: nothing is left.
-        second.tick(&document, None, 0.0);
+        second.tick(&document, None, Scene::clone, 0.0);
         second.wait();
         second.forget();
         drop((second, third));
@@ -430,7 +431,7 @@ mod tests {
         let mut told = Vec::new();
         for i in 0..3 {
             say(&mut document, &i.to_string());
-            recovery.tick(&document, None, f64::from(i) * 10.0);
+            recovery.tick(&document, None, Scene::clone, f64::from(i) * 10.0);
             // Not `wait`, which would swallow the problem.
             let done = recovery.done.recv().expect("an answer");
             told.extend(recovery.note(done));
@@ -446,12 +447,12 @@ mod tests {
         let (mut document, copy) = (document(), recovery.folder.join(SCENE));
         say(&mut document, "one");
         job::guard::panic_next(NAME);
-        recovery.tick(&document, None, 0.0);
+        recovery.tick(&document, None, Scene::clone, 0.0);
         let done = recovery.done.recv().expect("an answer");
         let told = recovery.note(done);
         assert_eq!(told.as_deref(), Some("recovery panicked: asked for by a test"));
         assert!(!copy.exists());
-        recovery.tick(&document, None, 10.0);
+        recovery.tick(&document, None, Scene::clone, 10.0);
         let done = recovery.done.recv().expect("an answer");
         assert_eq!((done.clone(), recovery.note(done)), (Ok(()), None));
         assert_eq!(prompt_in(&copy), "one");

@@ -1,13 +1,21 @@
-//! Versions of the scene: what each generation led to, kept to be looked at, compared with and gone back to.
+//! Versions of the scene: what each generation led to, kept to be looked at, compared with and gone back to. They live in the
+//! scene's file, with their names and stars.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use egui::TextureHandle;
+use rayon::prelude::*;
 
-use scene::{Scene, SceneRev};
+use formats::loom;
+use scene::{KeptVersion, Scene, SceneRev};
+
+/// A version as a file keeps it; none if it cannot be written.
+type Packed = OnceLock<Option<Arc<Vec<u8>>>>;
 
 /// A scene as it was when something was generated or opened.
 pub struct Version {
+    /// Given by the user; empty if none was.
+    pub name: String,
     /// The edit that led here.
     pub label: String,
     /// What the generation took.
@@ -18,16 +26,85 @@ pub struct Version {
     pub starred: bool,
     /// Its occupancy from above.
     pub(crate) thumbnail: Option<TextureHandle>,
+    packed: Arc<Packed>,
+}
+
+impl Version {
+    fn new(label: String, note: String, scene: Arc<Scene>) -> Self {
+        Self {
+            name: String::new(),
+            label,
+            note,
+            scene,
+            starred: false,
+            thumbnail: None,
+            packed: Arc::default(),
+        }
+    }
+
+    /// What it is called: its name, else what led here.
+    pub fn title(&self) -> &str {
+        if self.name.is_empty() { &self.label } else { &self.name }
+    }
+}
+
+fn pack(scene: &Scene) -> Option<Arc<Vec<u8>>> {
+    loom::alone_to_bytes(scene).ok().map(Arc::new)
+}
+
+/// A scene that was read, with the versions that its file keeps.
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// The oldest first.
+    pub versions: Vec<Version>,
+    /// Versions that cannot be read.
+    pub damaged: usize,
+}
+
+impl Opened {
+    /// Opens all versions; takes some 10 ms for each.
+    pub fn of(scene: Scene) -> Self {
+        let own = match scene.kept.versions.is_empty() {
+            true => None,
+            false => loom::alone_to_bytes(&scene).ok(),
+        };
+        let version = |kept: &KeptVersion| {
+            // The state that is open is one memory with the version that it is.
+            let found = match own.as_ref() == Some(&kept.loom) {
+                true => scene.clone(),
+                false => loom::from_bytes(&kept.loom).ok()?,
+            };
+            Some(Version {
+                name: kept.name.clone(),
+                starred: kept.starred,
+                packed: Arc::new(OnceLock::from(Some(kept.loom.clone()))),
+                ..Version::new(kept.label.clone(), kept.note.clone(), Arc::new(found))
+            })
+        };
+        let versions: Vec<Version> = scene.kept.versions.par_iter().filter_map(version).collect();
+        Self {
+            damaged: scene.kept.versions.len() - versions.len(),
+            versions,
+            scene,
+        }
+    }
 }
 
 /// All versions of the session, the oldest first.
 #[derive(Default)]
 pub struct Versions {
     list: Vec<Version>,
+    /// A name, a star or a removal that no file has yet.
+    pub(crate) changed: bool,
+    /// The version whose name is typed, and what was typed.
+    pub(crate) renaming: Option<(SceneRev, String)>,
 }
 
 impl Versions {
-    /// Versions kept that are not starred. Scenes share what they have in common: one takes a few hundred kilobytes.
+    /// Longest name, characters.
+    pub const LONGEST_NAME: usize = 80;
+    /// Versions kept that have neither star nor name. Scenes share what they have in common: one takes a few hundred kilobytes.
     pub const MAX: usize = 64;
 
     /// Adds a version, unless the newest is the same; the oldest that is not starred may have to go.
@@ -35,24 +112,66 @@ impl Versions {
         if self.list.iter().any(|v| v.scene.content() == scene.content()) {
             return;
         }
-        self.list.push(Version {
-            label,
-            note,
-            scene,
-            starred: false,
-            thumbnail: None,
+        let version = Version::new(label, note, scene);
+        let (packed, scene) = (version.packed.clone(), version.scene.clone());
+        // Beforehand, so that saving waits for none.
+        rayon::spawn(move || {
+            packed.get_or_init(|| pack(&scene));
         });
-        let plain = self.list.iter().filter(|v| !v.starred).count();
-        if plain > Self::MAX
-            && let Some(oldest) = self.list.iter().position(|v| !v.starred)
+        self.list.push(version);
+        let is_plain = |v: &Version| !v.starred && v.name.is_empty();
+        if self.list.iter().filter(|v| is_plain(v)).count() > Self::MAX
+            && let Some(oldest) = self.list.iter().position(is_plain)
         {
             self.list.remove(oldest);
         }
     }
 
-    /// Forgets all of them.
-    pub fn clear(&mut self) {
-        self.list.clear();
+    /// Those of another file, in place of all.
+    pub fn replace(&mut self, versions: Vec<Version>) {
+        *self = Self {
+            list: versions,
+            ..Self::default()
+        };
+    }
+
+    /// What a file of the state `saved` keeps: all, but that state itself if it has neither name nor star.
+    pub fn kept(&self, saved: SceneRev) -> Vec<KeptVersion> {
+        let is_kept = |v: &&Version| v.starred || !v.name.is_empty() || v.scene.content() != saved;
+        let kept: Vec<&Version> = self.list.iter().filter(is_kept).collect();
+        let version = |v: &&Version| {
+            Some(KeptVersion {
+                name: v.name.clone(),
+                label: v.label.clone(),
+                note: v.note.clone(),
+                starred: v.starred,
+                loom: v.packed.get_or_init(|| pack(&v.scene)).clone()?,
+            })
+        };
+        kept.par_iter().filter_map(version).collect()
+    }
+
+    /// Takes a version out of the list.
+    pub fn remove(&mut self, rev: SceneRev) {
+        self.list.retain(|v| v.scene.content() != rev);
+        self.changed = true;
+    }
+
+    /// Gives a version a name; an empty one takes it away.
+    pub fn rename(&mut self, rev: SceneRev, name: &str) {
+        if let Some(i) = self.of(rev) {
+            let name: String = name.trim().chars().take(Self::LONGEST_NAME).collect();
+            self.changed |= self.list[i].name != name;
+            self.list[i].name = name;
+        }
+    }
+
+    /// Stars a version, or takes the star away.
+    pub fn star(&mut self, rev: SceneRev) {
+        if let Some(i) = self.of(rev) {
+            self.list[i].starred = !self.list[i].starred;
+            self.changed = true;
+        }
     }
 
     /// All versions, the oldest first.
@@ -108,7 +227,7 @@ mod tests {
             versions.push(format!("{i}"), String::new(), s.clone());
             versions.push("again".into(), String::new(), s.clone());
             if i == 1 {
-                versions.list_mut()[1].starred = true;
+                versions.star(scenes[1].content());
             }
         }
         assert_eq!(versions.list().len(), Versions::MAX + 1);
@@ -122,5 +241,52 @@ mod tests {
         );
         assert!(same(versions.neighbour(rev(1), 1), 0) && versions.neighbour(rev(0), 1).is_none());
         assert!(versions.before(scenes[1].content()).is_none());
+    }
+
+    #[test]
+    fn they_come_back_from_the_file() {
+        let mut versions = Versions::default();
+        let scenes: Vec<_> = (0..3)
+            .map(|i| {
+                let mut scene = Scene::clone(&scene());
+                scene.seed = i;
+                Arc::new(scene)
+            })
+            .collect();
+        for s in &scenes {
+            versions.push("Add a car".into(), "0.1 s".into(), s.clone());
+        }
+        assert!(!versions.changed);
+        versions.rename(scenes[0].content(), "  before the rain ");
+        versions.star(scenes[1].content());
+        assert!(std::mem::take(&mut versions.changed));
+        let mut saved = Scene::clone(&scenes[2]);
+        let kept = versions.kept(saved.content());
+        assert_eq!(kept.len(), 2, "the state that is saved is the file itself");
+        versions.rename(saved.content(), "now");
+        let mut kept = versions.kept(saved.content());
+        kept.push(KeptVersion {
+            loom: Arc::new(vec![1, 2, 3]),
+            ..kept[0].clone()
+        });
+        saved.kept = Arc::new(scene::Kept {
+            versions: kept,
+            typed: Vec::new(),
+        });
+        let opened = Opened::of(saved);
+        let found: Vec<_> = opened
+            .versions
+            .iter()
+            .map(|v| (v.title(), v.starred, v.scene.seed))
+            .collect();
+        assert_eq!(
+            found,
+            [("before the rain", false, 0), ("Add a car", true, 1), ("now", false, 2)]
+        );
+        assert_eq!(opened.damaged, 1);
+        assert_eq!(opened.versions[2].scene.content(), opened.scene.content());
+        versions.replace(opened.versions);
+        versions.remove(opened.scene.content());
+        assert!(versions.changed && versions.list().len() == 2);
     }
 }

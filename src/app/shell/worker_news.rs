@@ -6,6 +6,7 @@ use std::time::Duration;
 use crossbeam_channel::TryRecvError;
 
 use super::app::{SceneloomApp, one_line};
+use super::versions::Opened;
 use crate::camera_views::Wanted;
 use crate::shell::live::{Advice, Purpose, Running};
 use crate::shell::staged::Again;
@@ -261,7 +262,11 @@ impl SceneloomApp {
         };
         let now_s = self.now_s();
         match answer {
-            Ok(scene) => {
+            Ok(Opened {
+                scene,
+                versions,
+                damaged,
+            }) => {
                 self.generation.forget_scene();
                 self.views.prompt.opened(&scene);
                 if opening.is_import {
@@ -277,10 +282,14 @@ impl SceneloomApp {
                     }
                     None => {
                         self.document = Document::new(scene);
-                        self.generation.versions.clear();
+                        self.generation.versions.replace(versions);
                         "As opened"
                     }
                 };
+                if damaged > 0 {
+                    let text = format!("{damaged} versions in the file cannot be read");
+                    self.toasts.push(Level::Error, text, now_s);
+                }
                 let opened = self.document.settled_scene().clone();
                 self.generation
                     .versions

@@ -28,7 +28,7 @@ pub const EXPORTER: Exporter = Exporter {
             lidar_observed,
             camera_observed,
         };
-        Ok(vec![OutFile::new("labels.npz", occ3d::frame_to_bytes(&found))])
+        Ok(vec![OutFile::new("labels.npz", occ3d::frame_with_recipe_to_bytes(&found, products.recipe()))])
     },
 };
 
@@ -76,6 +76,9 @@ mod tests {
             let frame = back.scene.frame();
             assert!(frame.occupancy == scene.frame().occupancy, "seed {seed}");
             assert!(back.skipped.is_empty(), "{:?}", back.skipped);
+            // (the tests' recipe is that of another scene)
+            let told = Small.recipe().clone();
+            assert_eq!((back.scene.seed, back.scene.conditions), (told.seed, told.conditions));
             let unobserved = frame.inferred.unobserved.as_ref().expect("masks");
             for [x, y] in Extent::WINDOW.all_columns() {
                 let expected = match (x >= 100, y >= 100) {

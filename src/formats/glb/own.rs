@@ -116,18 +116,11 @@ pub(crate) fn scene(
         inferred,
         ..Frame::new(layout, boxes, occupancy)
     };
-    let recipe = &extras.recipe;
-    let text = |key: &str| recipe[key].as_str();
-    let rig = Arc::new(SensorRig::default());
-    let mut scene = Scene::single(text("scene").unwrap_or(name), frame, rig, seed);
-    scene.prompt = text("prompt").unwrap_or_default().into();
-    let words = recipe["words"].as_array().into_iter().flatten();
-    scene.words = Arc::new(words.filter_map(Value::as_str).map(str::to_owned).collect());
-    // Numbers that another program rounded are no reason to refuse the scene.
-    let conditions = serde_json::from_value::<Conditions>(recipe["conditions"].clone());
-    if let Some(conditions) = conditions.ok().filter(|c| c.problem().is_none()) {
-        scene.conditions = conditions;
-    }
+    let name = extras.recipe["scene"].as_str().unwrap_or(name);
+    let mut scene = Scene::single(name, frame, Arc::new(SensorRig::default()), seed);
+    crate::recipe::restore(&extras.recipe, &mut scene);
+    // (in a recipe the seed is a number, which programs round)
+    scene.seed = seed;
     scene.background = Arc::new(background);
     Ok(Loaded {
         scene,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use scene::{BevLayout, Frame, Scene, SensorRig, draft};
 
 use super::{Content, Importer, Loaded};
-use crate::{FormatError, Holds, box_list, input};
+use crate::{FormatError, Holds, box_list, input, recipe};
 
 /// See [`box_list`].
 pub const IMPORTER: Importer = Importer {
@@ -21,7 +21,7 @@ pub const IMPORTER: Importer = Importer {
     },
     in_folder: None,
     read: |source| {
-        let list = box_list::read(source.bytes).map_err(FormatError::new)?;
+        let (list, recipe) = box_list::read(source.bytes).map_err(FormatError::new)?;
         let found = list.len();
         let boxes: BTreeMap<_, _> = list.into_iter().map(|b| (b.id, b)).collect();
         if boxes.len() < found {
@@ -30,12 +30,14 @@ pub const IMPORTER: Importer = Importer {
         let layout = BevLayout::default();
         let occupancy = draft::draft(&layout, boxes.values());
         let frame = Frame::new(layout, boxes, occupancy);
+        let mut scene = Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0);
+        recipe::restore(&recipe, &mut scene);
         Ok(Content::Scene(Box::new(Loaded {
-            scene: Scene::single(source.name, frame, Arc::new(SensorRig::default()), 0),
+            scene,
             inferred: &[],
             skipped: BTreeMap::new(),
         })))
     },
     #[cfg(test)]
-    sample: || box_list::to_bytes("s", crate::table_tests::scene().frame(), None, None).expect("finite"),
+    sample: || box_list::to_bytes("s", crate::table_tests::scene().frame(), None, None, None).expect("finite"),
 };

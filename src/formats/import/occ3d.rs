@@ -6,7 +6,7 @@ use scene::Unobserved;
 use scene::message::quoted;
 
 use super::{Content, GUESSED, Importer, Loaded, Source, first_entry_ends, labelled};
-use crate::{FormatError, Holds, occ3d};
+use crate::{FormatError, Holds, occ3d, recipe};
 
 /// See [`occ3d`].
 pub const IMPORTER: Importer = Importer {
@@ -38,8 +38,12 @@ fn read(source: &Source<'_>) -> Result<Content, occ3d::Occ3dError> {
         (one, other) => one.or(other),
     };
     let unobserved = seen.and_then(|seen: Vec<bool>| Unobserved::from_observed(&seen));
+    let mut scene = labelled(source.name, frame.labels, unobserved);
+    if let Some(told) = &found.recipe {
+        recipe::restore(told, &mut scene);
+    }
     Ok(Content::Scene(Box::new(Loaded {
-        scene: labelled(source.name, frame.labels, unobserved),
+        scene,
         inferred: &GUESSED,
         skipped,
     })))

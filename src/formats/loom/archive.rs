@@ -36,12 +36,21 @@ impl Writer {
     }
 
     pub(super) fn put(&mut self, entry: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+        self.entry(entry, bytes, CompressionMethod::Deflated)
+    }
+
+    /// Bytes that are packed already.
+    pub(super) fn packed(&mut self, entry: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+        self.entry(entry, bytes, CompressionMethod::Stored)
+    }
+
+    fn entry(&mut self, entry: &str, bytes: &[u8], method: CompressionMethod) -> Result<(), ProjectError> {
         self.unpacked += bytes.len() as u64;
         within("the size of the unpacked project", self.unpacked, MAX_UNPACKED)?;
         // Nothing of the machine or the moment may enter the bytes.
         let options = SimpleFileOptions::default()
-            .compression_method(CompressionMethod::Deflated)
-            .compression_level(Some(6))
+            .compression_method(method)
+            .compression_level((method == CompressionMethod::Deflated).then_some(6))
             .last_modified_time(DateTime::default())
             .system(zip::System::Unix)
             .unix_permissions(0o644);
@@ -106,6 +115,11 @@ impl<R: Read + Seek> Reader<R> {
             unread,
             made: BTreeMap::new(),
         })
+    }
+
+    /// True if the entry is there and was not read.
+    pub(super) fn has(&self, entry: &str) -> bool {
+        self.unread.contains(entry)
     }
 
     /// Everything in an entry, unpacked, if that is at most `limit` bytes. The size the zip declares

@@ -11,6 +11,7 @@
 //! | `canvas/unobserved.u16` | voxels that a data set's sensors did not see, a bit each; only if it says |
 //! | `canvas/source_layout.u32`, `source_relief.f32`, `source_occupancy.u8` | of the source, only where it differs from the canvas |
 //! | `tracks/0000000007.u8` | class labels of a moving object, where it was made, `[x][y][z]`, a byte per voxel |
+//! | `kept.json`, `versions/0007.loom` | versions with their names and stars, and what was typed; only if there are any |
 //!
 //! The canvas has 200 x 200 columns around the origin of the world frame, unless `scene.json` gives it another `extent`.
 //!
@@ -18,6 +19,7 @@
 //! one per version, until it is as a file of this version. A newer version is refused.
 
 mod archive;
+mod beside;
 mod check;
 mod error;
 mod header;
@@ -38,7 +40,7 @@ use super::{atomic, input};
 pub use error::ProjectError;
 use names::{FORMAT, MANIFEST, SCENE};
 pub use names::{LARGEST_FILE, VERSION};
-pub use write::to_bytes;
+pub use write::{alone_to_bytes, to_bytes};
 
 /// Writes the scene to `path`, whole or not at all; the number of bytes written.
 pub fn save(path: &Path, scene: &Scene) -> Result<u64, ProjectError> {

@@ -12,6 +12,7 @@ use scene::{
 };
 
 use super::archive::{MAX_JSON, Reader, parse, within, wrong_voxels};
+use super::beside;
 use super::check::check;
 use super::header::{ClipHeader, FrameHeader, SceneHeader, entry_name, track_entry};
 use super::manifest::{AnyManifest, Manifest};
@@ -35,6 +36,7 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
         Some(clip) => read_clip(&mut file, clip)?,
         None => Clip::default(),
     };
+    let kept = beside::read(&mut file)?;
     file.expect_all_read()?;
     let things = header.background.len();
     let background: Background = header.background.into_iter().collect();
@@ -48,6 +50,7 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
     scene.conditions = header.conditions;
     scene.words = Arc::new(header.words);
     scene.background = Arc::new(background);
+    scene.kept = Arc::new(kept);
     scene.change_clip(|empty| *empty = clip);
     check(&scene)?;
     scene.show(header.shown_s);

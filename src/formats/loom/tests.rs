@@ -70,7 +70,25 @@ fn sample(version: u32) -> Scene {
         scene.change_clip(|clip| *clip = sample_clip());
         scene.show(0.8);
     }
+    if version >= 6 {
+        scene.kept = Arc::new(kept());
+    }
     scene
+}
+
+/// A version with a star and a name, one without, and two lines.
+fn kept() -> Kept {
+    let version = |name: &str, starred, of: u32| KeptVersion {
+        name: name.into(),
+        label: "Add a car".into(),
+        note: if starred { "0.4 s".into() } else { String::new() },
+        starred,
+        loom: Arc::new(alone_to_bytes(&sample(of)).expect("sound")),
+    };
+    Kept {
+        versions: vec![version("before the rain", true, 1), version("", false, 2)],
+        typed: vec!["add a car".into(), "regen \"x\"".into()],
+    }
 }
 
 /// A bus that drives a path from the first half second on, a trailer behind it, and an ego vehicle that follows keyframes.
@@ -171,6 +189,7 @@ fn assert_same(a: &Scene, b: &Scene) {
     );
     assert!(a.canvas() == b.canvas(), "the canvas differs");
     assert!(a.clip() == b.clip(), "the clip differs");
+    assert!(a.kept == b.kept, "what is kept differs");
 }
 
 #[test]
@@ -272,8 +291,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3, v4] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3, v4];
+    let [v1, v2, v3, v4, v5] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4, v5];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.
@@ -422,5 +441,47 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
             line.starts_with(&format!("manifest.json: version is {version}, expected 5;")),
             "{line}"
         );
+    }
+}
+
+#[test]
+fn what_is_kept_is_no_part_of_the_scene() {
+    let scene = sample(VERSION);
+    let (with, alone) = (to_bytes(&scene).expect("sound"), alone_to_bytes(&scene).expect("sound"));
+    assert!(with.len() > alone.len());
+    let mut bare = scene.clone();
+    bare.kept = Arc::default();
+    assert_eq!(to_bytes(&bare).expect("sound"), alone);
+    // Every version opens by itself.
+    let back = from_bytes(&with).expect("its own");
+    assert_same(&from_bytes(&back.kept.versions[1].loom).expect("a version"), &sample(2));
+    assert_eq!(back.kept.versions[0].title(), "before the rain");
+    assert_eq!(back.kept.versions[1].title(), "Add a car");
+    // A version that is damaged does not keep the scene from opening; one that is missing or too much is named.
+    let mut entries = unpack(&with);
+    let at = entries.iter().position(|e| e.0 == "versions/0001.loom").expect("there");
+    entries[at].1.truncate(100);
+    let damaged = from_bytes(&pack(&entries)).expect("the scene is whole");
+    assert!(from_bytes(&damaged.kept.versions[1].loom).is_err());
+    let line = |entries: &[(String, Vec<u8>)]| from_bytes(&pack(entries)).expect_err("refused").to_string();
+    let gone = entries.remove(at);
+    assert_eq!(line(&entries), "entry \"versions/0001.loom\" is missing");
+    entries.push((gone.0, gone.1.clone()));
+    entries.push(("versions/0002.loom".into(), gone.1));
+    assert_eq!(line(&entries), "entry \"versions/0002.loom\" is not known");
+    entries.pop();
+    let at = entries.iter().position(|e| e.0 == "kept.json").expect("there");
+    for (bytes, expected) in [
+        (b"[".to_vec(), "kept.json"),
+        (br#"{"versions":[{"name":3}]}"#.to_vec(), "kept.json"),
+        (br#"{"kept":1}"#.to_vec(), "unknown field"),
+        (
+            format!(r#"{{"typed":[{}""]}}"#, r#""","#.repeat(1000)).into_bytes(),
+            "the number of typed lines",
+        ),
+    ] {
+        entries[at].1 = bytes;
+        let line = line(&entries);
+        assert!(line.contains(expected), "{line}");
     }
 }

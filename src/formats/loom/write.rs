@@ -3,13 +3,25 @@
 use scene::{BevLayout, Scene};
 
 use super::archive::Writer;
+use super::beside;
 use super::check::check;
 use super::header::{SceneHeader, entry_name, track_entry};
 use super::manifest::Manifest;
 use super::{ProjectError, SCENE};
 
-/// The scene as the bytes of a project file.
+/// The scene as the bytes of a project file, with what it keeps.
 pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
+    let mut out = written(scene)?;
+    beside::write(&mut out, &scene.kept)?;
+    out.finish()
+}
+
+/// The scene alone: equal scenes give equal bytes, whatever their files keep beside them.
+pub fn alone_to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
+    written(scene)?.finish()
+}
+
+fn written(scene: &Scene) -> Result<Writer, ProjectError> {
     check(scene)?;
     let mut out = Writer::new();
     out.json(super::MANIFEST, &Manifest::present())?;
@@ -45,7 +57,7 @@ pub fn to_bytes(scene: &Scene) -> Result<Vec<u8>, ProjectError> {
     for (id, track) in &scene.clip().tracks {
         out.put(&track_entry(*id), track.voxels.columns.as_flattened())?;
     }
-    out.finish()
+    Ok(out)
 }
 
 fn layout_bytes(layout: &BevLayout) -> Vec<u8> {

@@ -230,7 +230,7 @@ fn box_files() {
     let scene = loom::from_bytes(&file("assets/scenes/first_light.loom")).expect("sound");
     plain(
         "boxes",
-        vec![box_list::to_bytes("s", scene.frame(), None, None).expect("finite")],
+        vec![box_list::to_bytes("s", scene.frame(), None, None, None).expect("finite")],
         1500,
     );
 }

@@ -89,6 +89,7 @@ impl Operation for Open {
                 (scene, importer.id)
             }
         };
+        desk.take_versions(&scene);
         let (name, boxes, things) = (
             scene.name.to_string(),
             scene.frame().boxes.len(),

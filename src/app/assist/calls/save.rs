@@ -32,7 +32,7 @@ pub struct Saved {
 impl Operation for Save {
     const NAME: &'static str = "save";
     const ABOUT: &'static str =
-        "Writes the scene with everything in it as a project file (.loom), whole or not at all.";
+        "Writes the scene with everything in it and the kept versions as a project file (.loom), whole or not at all.";
     const EXAMPLE: &'static str = r#"{"file": "a.loom", "replace": true}"#;
     const CHANGES: bool = false;
     type Receipt = Saved;
@@ -43,7 +43,7 @@ impl Operation for Save {
         }
         let path = desk.folder.target(&self.file, self.replace)?;
         let scene = desk.scene()?;
-        let bytes = loom::save(&path, &scene)?;
+        let bytes = loom::save(&path, &desk.with_versions(&scene)?)?;
         // (a window knows its own file)
         if desk.is_own() {
             desk.with(|document| document.mark_saved())?;

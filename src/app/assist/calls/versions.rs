@@ -71,7 +71,7 @@ fn list(desk: &mut Desk) -> anyhow::Result<VersionList> {
 
 impl Operation for KeepVersion {
     const NAME: &'static str = "keep_version";
-    const ABOUT: &'static str = "Keeps the scene as it is now under a name, for diff and restore_version; at most 64, for the time of the session.";
+    const ABOUT: &'static str = "Keeps the scene as it is now under a name, for diff and restore_version; at most 64. save writes them into the project file, open brings them back.";
     const EXAMPLE: &'static str = r#"{"name": "before"}"#;
     const CHANGES: bool = false;
     type Receipt = VersionList;

@@ -31,6 +31,8 @@ pub struct PromptField {
     pub(super) prompt: String,
     pub(super) seed: u64,
     pub(super) history: Vec<String>,
+    /// What was typed for the scene that is open.
+    typed: Vec<String>,
     pub(super) back: usize, // steps back in the history; 0 is what is typed
     pub(super) draft: String,
     pub(super) read: Option<Both>,
@@ -50,7 +52,21 @@ fn field_id() -> egui::Id {
     egui::Id::unique("prompt field")
 }
 
+/// Puts a line at the end of a list that has each once, and takes the first one out if it is too long.
+fn keep(lines: &mut Vec<String>, line: &str, most: usize) {
+    lines.retain(|l| l != line);
+    lines.push(line.to_owned());
+    if lines.len() > most {
+        lines.remove(0);
+    }
+}
+
 impl PromptField {
+    /// What was typed for the scene that is open, the oldest first.
+    pub fn typed(&self) -> &[String] {
+        &self.typed
+    }
+
     /// The next frame gives the field the focus.
     pub fn focus(&mut self) {
         self.wants_focus = true;
@@ -65,7 +81,12 @@ impl PromptField {
     /// history.
     pub fn opened(&mut self, scene: &Scene) {
         if scene.words.contains(&self.prompt) {
+            self.typed = vec![self.prompt.clone()];
             return;
+        }
+        self.typed.clone_from(&scene.kept.typed);
+        for line in &scene.kept.typed {
+            keep(&mut self.history, line, HISTORY);
         }
         self.prompt.clear();
         (self.read, self.done, self.back) = (None, None, 0);
@@ -378,11 +399,8 @@ impl PromptField {
     }
 
     pub(super) fn remember(&mut self) {
-        self.history.retain(|p| *p != self.prompt);
-        self.history.push(self.prompt.clone());
-        if self.history.len() > HISTORY {
-            self.history.remove(0);
-        }
+        keep(&mut self.history, &self.prompt, HISTORY);
+        keep(&mut self.typed, &self.prompt, HISTORY);
         self.back = 0;
     }
 

@@ -6,6 +6,7 @@ mod v1;
 mod v2;
 mod v3;
 mod v4;
+mod v5;
 
 use std::io::{Read, Seek};
 
@@ -34,7 +35,7 @@ pub enum Change {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 4] = [v1::TO_V2, v2::TO_V3, v3::TO_V4, v4::TO_V5];
+pub const ALL: [Migration; 5] = [v1::TO_V2, v2::TO_V3, v3::TO_V4, v4::TO_V5, v5::TO_V6];
 
 /// What a step may change.
 pub trait Entries {

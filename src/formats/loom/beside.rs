@@ -1,0 +1,89 @@
+//! `kept.json` and the versions beside it: what a project keeps that is no part of its scene.
+
+use std::io::{Read, Seek};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use scene::kept::{Kept, KeptVersion};
+
+use super::archive::{MAX_JSON, Reader, Writer, parse, within};
+use super::{LARGEST_FILE, ProjectError};
+
+const KEPT: &str = "kept.json";
+
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct KeptHeader {
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    versions: Vec<VersionHeader>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    typed: Vec<String>,
+}
+
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct VersionHeader {
+    #[serde(skip_serializing_if = "String::is_empty")]
+    name: String,
+    label: String,
+    #[serde(skip_serializing_if = "String::is_empty")]
+    note: String,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    starred: bool,
+}
+
+fn entry(index: usize) -> String {
+    format!("versions/{index:04}.loom")
+}
+
+fn check(versions: usize, typed: usize) -> Result<(), ProjectError> {
+    within("the number of versions", versions as u64, Kept::MAX_VERSIONS as u64)?;
+    within("the number of typed lines", typed as u64, Kept::MAX_TYPED as u64)
+}
+
+/// Writes nothing if nothing is kept.
+pub(super) fn write(out: &mut Writer, kept: &Kept) -> Result<(), ProjectError> {
+    if kept.is_empty() {
+        return Ok(());
+    }
+    check(kept.versions.len(), kept.typed.len())?;
+    let version = |v: &KeptVersion| VersionHeader {
+        name: v.name.clone(),
+        label: v.label.clone(),
+        note: v.note.clone(),
+        starred: v.starred,
+    };
+    let header = KeptHeader {
+        versions: kept.versions.iter().map(version).collect(),
+        typed: kept.typed.clone(),
+    };
+    out.json(KEPT, &header)?;
+    for (i, version) in kept.versions.iter().enumerate() {
+        out.packed(&entry(i), &version.loom)?;
+    }
+    Ok(())
+}
+
+/// What is kept; versions are not opened.
+pub(super) fn read<R: Read + Seek>(file: &mut Reader<R>) -> Result<Kept, ProjectError> {
+    if !file.has(KEPT) {
+        return Ok(Kept::default());
+    }
+    let header: KeptHeader = parse(KEPT, &file.bytes(KEPT, MAX_JSON)?)?;
+    check(header.versions.len(), header.typed.len())?;
+    let version = |(i, v): (usize, VersionHeader)| {
+        Ok(KeptVersion {
+            name: v.name,
+            label: v.label,
+            note: v.note,
+            starred: v.starred,
+            loom: Arc::new(file.bytes(&entry(i), LARGEST_FILE)?),
+        })
+    };
+    let versions = header.versions.into_iter().enumerate().map(version);
+    Ok(Kept {
+        versions: versions.collect::<Result<_, ProjectError>>()?,
+        typed: header.typed,
+    })
+}

@@ -1,0 +1,46 @@
+//! What a project keeps beside its scene: versions to go back to, and what was typed.
+
+use std::sync::Arc;
+
+/// Versions and typed words. They belong to a file, not to a state of the scene: undo leaves them as they are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Kept {
+    /// The oldest first.
+    pub versions: Vec<KeptVersion>,
+    /// What was typed in the prompt field, the oldest first, whatever came of it.
+    pub typed: Vec<String>,
+}
+
+impl Kept {
+    /// Most versions of a file.
+    pub const MAX_VERSIONS: usize = 1000;
+    /// Most lines typed.
+    pub const MAX_TYPED: usize = 1000;
+
+    /// True if there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.versions.is_empty() && self.typed.is_empty()
+    }
+}
+
+/// A state of the scene that is kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptVersion {
+    /// Given by the user; empty if none was.
+    pub name: String,
+    /// The edit that led there.
+    pub label: String,
+    /// What generating it took.
+    pub note: String,
+    /// The user wants to keep it.
+    pub starred: bool,
+    /// The scene as a `.loom` file that keeps nothing itself.
+    pub loom: Arc<Vec<u8>>,
+}
+
+impl KeptVersion {
+    /// What it is called: its name, else what led there.
+    pub fn title(&self) -> &str {
+        if self.name.is_empty() { &self.label } else { &self.name }
+    }
+}
