@@ -30,6 +30,8 @@ pub enum Window {
     Palette,
     /// The dialog that exports files for other programs.
     Export,
+    /// The queue of batches.
+    Batches,
 }
 
 /// Commands for files and scenes.

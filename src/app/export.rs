@@ -11,7 +11,7 @@ use anyhow::{Context, anyhow, bail};
 use super::camera_views::LidarModel;
 use super::camera_views::camera_input;
 use super::picture::{ShotOptions, View3d};
-use crate::shell::checking;
+use crate::findings;
 use crate::truth;
 use formats::export::{Exporter, Observed, OutFile, Picture, Product, Products, Seen, Span};
 use formats::recipe::Recipe;
@@ -250,7 +250,7 @@ impl Products for Making<'_> {
     }
 
     fn seen(&mut self) -> Result<Seen, FormatError> {
-        let seen = checking::seen(&self.scene);
+        let seen = findings::seen(&self.scene);
         Ok(Seen {
             lidar_returns: seen.lidar_returns,
             camera_pixels: seen.camera_pixels,

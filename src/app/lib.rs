@@ -12,6 +12,7 @@ pub mod command;
 pub mod export;
 pub(crate) mod fields;
 mod finding_marks;
+pub mod findings;
 pub mod graphics;
 mod map_edges;
 mod marks;

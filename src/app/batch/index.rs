@@ -1,9 +1,11 @@
 //! The index of a batch: a Parquet table with a row for each variant, and a sheet of small pictures.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
+use super::marks::Marks;
 use super::plan::Plan;
 use super::record::Record;
 use super::thumb;
@@ -19,9 +21,9 @@ const MOST: usize = 120;
 const COLUMNS: usize = 4;
 
 /// Writes the index and, where variants lie in folders, the contact sheet. Returns the path of the index.
-pub fn write(output: &Path, plan: &Plan, records: &[Record]) -> anyhow::Result<PathBuf> {
+pub fn write(output: &Path, plan: &Plan, records: &[Record], marks: &Marks) -> anyhow::Result<PathBuf> {
     let path = output.join(FILE);
-    let bytes = table::to_bytes(records.len(), &fields(plan, records))?;
+    let bytes = table::to_bytes(records.len(), &fields(plan, records, marks))?;
     atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
     if plan.pack.is_none() {
         sheet(output, records)?;
@@ -29,9 +31,10 @@ pub fn write(output: &Path, plan: &Plan, records: &[Record]) -> anyhow::Result<P
     Ok(path)
 }
 
-fn fields(plan: &Plan, records: &[Record]) -> Vec<Field> {
+fn fields(plan: &Plan, records: &[Record], marks: &Marks) -> Vec<Field> {
     let texts = |of: &dyn Fn(&Record) -> String| Values::Text(records.iter().map(of).collect());
     let numbers = |of: &dyn Fn(&Record) -> i64| Values::Integer(records.iter().map(of).collect());
+    let flags = |of: &BTreeSet<usize>| Values::Flag(records.iter().map(|r| of.contains(&r.variant)).collect());
     let json =
         |value: &dyn Fn(&Record) -> serde_json::Result<String>| texts(&|r| value(r).unwrap_or_default());
     let shard = |r: &Record| {
@@ -70,6 +73,8 @@ fn fields(plan: &Plan, records: &[Record]) -> Vec<Field> {
             numbers(&|r| r.files.iter().map(|f| f.bytes as i64).sum()),
         ),
         ("failed", texts(&|r| r.failed.clone().unwrap_or_default())),
+        ("starred", flags(&marks.starred)),
+        ("discarded", flags(&marks.discarded)),
     ];
     columns
         .into_iter()

@@ -12,7 +12,6 @@ use super::thumb;
 use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, export_all};
 use crate::open::{self, Placement};
-use crate::shell::checking;
 use crate::text;
 use editor::checks::Severity;
 use editor::{Document, Edit, apply_all};
@@ -64,7 +63,7 @@ impl Maker {
             changes: self.changes(variant),
             ..Record::default()
         };
-        let scene = self.scene(&record)?;
+        let scene = self.scene_of(&record)?;
         let recipe = Recipe::of(&scene);
         record.seed = scene.seed;
         record.scene_sha256 = recipe.scene_sha256;
@@ -106,7 +105,16 @@ impl Maker {
             .collect()
     }
 
-    fn scene(&self, record: &Record) -> anyhow::Result<Scene> {
+    /// The scene of a variant.
+    pub fn scene(&self, variant: usize) -> anyhow::Result<Scene> {
+        self.scene_of(&Record {
+            variant,
+            changes: self.changes(variant),
+            ..Record::default()
+        })
+    }
+
+    fn scene_of(&self, record: &Record) -> anyhow::Result<Scene> {
         let changes = self.in_order(record);
         let (mut seed, mut base) = (self.plan.seed, &self.plan.base);
         for change in &changes {
@@ -319,7 +327,7 @@ fn counted(class: Class, n: usize, scene: &Scene, seed: u64) -> anyhow::Result<V
 
 fn findings(scene: &Scene) -> Findings {
     let mut out = Findings::default();
-    for finding in checking::check(scene) {
+    for finding in crate::findings::check(scene) {
         match finding.severity {
             Severity::Error => out.errors += 1,
             _ => out.warnings += 1,

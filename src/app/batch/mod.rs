@@ -5,11 +5,14 @@
 
 pub mod index;
 pub mod make;
+pub mod marks;
 pub mod pack;
 pub mod plan;
+pub mod queue;
 pub mod record;
 pub mod run;
 mod thumb;
 
 pub use plan::Plan;
+pub use queue::Queue;
 pub use run::{Batch, Progress, Report, Shard};

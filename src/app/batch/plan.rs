@@ -13,7 +13,8 @@ use scene::{BoxId, Class, TimeOfDay, Weather};
 
 /// `format` of a plan.
 pub const FORMAT: &str = "sceneloom_batch";
-const VERSION: u32 = 1;
+/// `version` of a plan.
+pub const VERSION: u32 = 1;
 /// Variants at most.
 pub const MOST_VARIANTS: usize = 1_000_000;
 

@@ -7,10 +7,12 @@ use anyhow::{Context, bail};
 
 use super::index;
 use super::make::Maker;
+use super::marks::Marks;
 use super::pack;
 use super::plan::Plan;
 use super::record::{FILE, Record};
 use formats::{atomic, input};
+use scene::Scene;
 
 /// Name of the plan's copy in the output folder.
 const PLAN: &str = "plan.json";
@@ -87,20 +89,7 @@ impl Batch {
     /// another plan.
     pub fn new(plan: Plan, folder: &Path, output: &Path) -> anyhow::Result<Self> {
         let maker = Maker::new(plan, folder)?;
-        std::fs::create_dir_all(output).with_context(|| format!("create {}", output.display()))?;
-        let copy = output.join(PLAN);
-        let text = serde_json::to_string_pretty(maker.plan())?;
-        if copy.exists() {
-            let there = input::read_text(&copy, input::LARGEST_TEXT)?;
-            if there != text {
-                bail!(
-                    "{}: the folder belongs to another plan, expected an empty one",
-                    output.display()
-                );
-            }
-        } else {
-            atomic::write(&copy, text.as_bytes()).with_context(|| format!("write {}", copy.display()))?;
-        }
+        claim(maker.plan(), output)?;
         Ok(Self {
             maker,
             output: output.into(),
@@ -110,6 +99,11 @@ impl Batch {
     /// The plan.
     pub fn plan(&self) -> &Plan {
         self.maker.plan()
+    }
+
+    /// The scene of a variant, made anew.
+    pub fn scene(&self, variant: usize) -> anyhow::Result<Scene> {
+        self.maker.scene(variant)
     }
 
     /// Folder of a variant.
@@ -240,9 +234,29 @@ impl Batch {
             }
             None => self.records(0..plan.count())?,
         };
-        report.index = Some(index::write(&self.output, plan, &records)?);
+        let marks = Marks::read(&self.output)?;
+        report.index = Some(index::write(&self.output, plan, &records, &marks)?);
         Ok(())
     }
+}
+
+/// Makes the output folder and keeps a copy of the plan there. Errors if the folder belongs to another plan.
+pub fn claim(plan: &Plan, output: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(output).with_context(|| format!("create {}", output.display()))?;
+    let copy = output.join(PLAN);
+    let text = serde_json::to_string_pretty(plan)?;
+    if copy.exists() {
+        let there = input::read_text(&copy, input::LARGEST_TEXT)?;
+        if there != text {
+            bail!(
+                "{}: the folder belongs to another plan, expected an empty one",
+                output.display()
+            );
+        }
+    } else {
+        atomic::write(&copy, text.as_bytes()).with_context(|| format!("write {}", copy.display()))?;
+    }
+    Ok(())
 }
 
 /// What a panic said.

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::{Common, Moment, Outcome, Stop, output};
 use app::open;
 use app::panes;
-use app::shell::checking;
+use app::findings;
 use editor::checks::{self, Finding, Severity, waive};
 use formats::loom;
 use scene::Scene;
@@ -52,7 +52,7 @@ impl Check {
     fn findings(&self, scene: &Scene) -> Vec<Finding> {
         match self.no_sensors {
             true => checks::run_checks(scene, None),
-            false => checking::check(scene),
+            false => findings::check(scene),
         }
     }
 

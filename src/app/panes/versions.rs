@@ -125,7 +125,7 @@ impl Entry {
         let starred = version.starred;
         starring.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, "Keep this version"));
         let color = if starred { theme::warn() } else { theme::text_weak() };
-        draw_star(ui, star.center(), color, starred);
+        icons::star(ui, star.center(), color, starred);
         icons::focus_ring(ui, &starring, star);
         if starring.on_hover_text("Keep this version").clicked() {
             versions.star(self.rev);
@@ -214,22 +214,4 @@ fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: egui::TextStyle, 
 /// What the header of the list offers.
 pub fn versions_controls(ui: &mut Ui, how: &mut Comparing) {
     icons::choice(ui, &mut how.mode, &CompareMode::ALL, "Compare");
-}
-
-fn draw_star(ui: &Ui, center: egui::Pos2, color: Color32, filled: bool) {
-    let point = |i: usize| {
-        let radius = if i.is_multiple_of(2) { 7.0 } else { 3.2 };
-        let angle = (i as f32) * std::f32::consts::PI / 5.0 - std::f32::consts::FRAC_PI_2;
-        center + radius * egui::Vec2::angled(angle)
-    };
-    let points: Vec<_> = (0..10).map(point).collect();
-    if filled {
-        for i in 0..10 {
-            let triangle = vec![center, points[i], points[(i + 1) % 10]];
-            let shape = egui::Shape::convex_polygon(triangle, color, egui::Stroke::NONE);
-            ui.painter().add(shape);
-        }
-    }
-    ui.painter()
-        .add(egui::Shape::closed_line(points, egui::Stroke::new(1.2, color)));
 }

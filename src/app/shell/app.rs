@@ -284,6 +284,7 @@ impl SceneloomApp {
         self.update_checks(ctx);
         self.update_recovery(ctx);
         self.update_export();
+        self.update_batches(ctx);
         self.set_title(ctx);
         self.keep_settings(ctx);
     }

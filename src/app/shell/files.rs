@@ -7,6 +7,7 @@ use crossbeam_channel::Receiver;
 
 use scene::Scene;
 
+use super::batching::Batching;
 use super::exporting::Exporting;
 use super::file_dialogs::FileDialogs;
 use super::recovery::Recovery;
@@ -76,6 +77,7 @@ pub struct Files {
     /// Copies of unsaved work; none in tests.
     pub recovery: Option<Recovery>,
     pub(crate) exporting: Exporting,
+    pub(crate) batching: Batching,
 }
 
 impl Files {
@@ -92,6 +94,7 @@ impl Files {
             may_close: false,
             recovery: None,
             exporting: Exporting::default(),
+            batching: Batching::default(),
         }
     }
 

@@ -57,7 +57,11 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
         Command::File(FileCommand::SaveAs),
     );
     ui.separator();
-    on(item(ui, "Export…", "", true), Command::Toggle(Window::Export));
+    on(item(ui, "Export…", "Ctrl+E", true), Command::Toggle(Window::Export));
+    on(
+        item(ui, "Batches…", "Ctrl+B", true),
+        Command::Toggle(Window::Batches),
+    );
     on(
         item(ui, "Quick screenshot", "F12", true),
         Command::File(FileCommand::QuickShot),

@@ -2,6 +2,7 @@
 
 pub mod actions;
 pub mod app;
+pub mod batching;
 pub mod bookmarks;
 mod by_words;
 pub mod checking;

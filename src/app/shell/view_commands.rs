@@ -92,6 +92,7 @@ impl SceneloomApp {
     pub(crate) fn toggle(&mut self, window: Window) {
         match window {
             Window::Export => self.toggle_export(),
+            Window::Batches => self.toggle_batches(),
             Window::Palette => self.overlays.palette.toggle(),
             Window::Settings => self.state.windows.settings = !self.state.windows.settings,
             Window::Start => self.state.windows.start = !self.state.windows.start,

@@ -242,6 +242,7 @@ impl SceneloomApp {
             drop_hint(ui, self.views.center);
         }
         self.export_dialog(ui);
+        self.batches_ui(ui);
         self.picking_ui(ui);
         self.recovery_dialog(ui);
         if self.files.unsaved.is_some()

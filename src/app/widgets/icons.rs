@@ -194,3 +194,22 @@ pub fn section(ui: &mut Ui, title: &str) {
     );
     ui.add_space(2.0);
 }
+
+/// A star of five points, filled or as an outline.
+pub fn star(ui: &Ui, center: Pos2, color: Color32, filled: bool) {
+    let point = |i: usize| {
+        let radius = if i.is_multiple_of(2) { 7.0 } else { 3.2 };
+        let angle = (i as f32) * std::f32::consts::PI / 5.0 - std::f32::consts::FRAC_PI_2;
+        center + radius * egui::Vec2::angled(angle)
+    };
+    let points: Vec<_> = (0..10).map(point).collect();
+    if filled {
+        for i in 0..10 {
+            let triangle = vec![center, points[i], points[(i + 1) % 10]];
+            let shape = egui::Shape::convex_polygon(triangle, color, egui::Stroke::NONE);
+            ui.painter().add(shape);
+        }
+    }
+    ui.painter()
+        .add(egui::Shape::closed_line(points, egui::Stroke::new(1.2, color)));
+}

@@ -1,5 +1,7 @@
 //! Windows and dialogs that lie over the panes.
 
+pub mod batch_plan;
+pub mod batches;
 pub mod export;
 mod lens;
 pub mod open;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
-use app::shell::checking;
+use app::findings;
 use editor::checks::{self, Finding, Severity, waive};
 use editor::fix::fix_all;
 use scene::Scene;
@@ -91,7 +91,7 @@ impl Operation for Check {
 
     fn run(self, desk: &mut Desk) -> anyhow::Result<Checked> {
         let look = |scene: &Scene| match self.sensors {
-            true => checking::check(scene),
+            true => findings::check(scene),
             false => checks::run_checks(scene, None),
         };
         let mut scene = desk.scene()?;

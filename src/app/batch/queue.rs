@@ -1,0 +1,392 @@
+//! Batches that wait, run and are done: one at a time, the most urgent first. A batch that has to wait goes on by file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crossbeam_channel::{Receiver, Sender, unbounded};
+
+use super::marks::Marks;
+use super::plan::Plan;
+use super::run::{Batch, Progress, Report, Shard, claim};
+
+/// How urgent a batch is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Priority {
+    /// After the others.
+    Low,
+    /// In the order in which they were added.
+    #[default]
+    Normal,
+    /// Before the others: a batch that runs makes way after the variant at hand.
+    High,
+}
+
+impl Priority {
+    /// All of them, the most urgent first.
+    pub const ALL: [Self; 3] = [Self::High, Self::Normal, Self::Low];
+
+    /// Name for a person.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Low => "Low",
+            Self::Normal => "Normal",
+            Self::High => "High",
+        }
+    }
+}
+
+/// How far a batch is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum State {
+    /// For its turn.
+    Waiting,
+    /// On the thread.
+    Running,
+    /// Until somebody lets it go on.
+    Paused,
+    /// All variants are ready or failed.
+    Done(Report),
+    /// It cannot be run.
+    Failed(String),
+}
+
+/// A batch of the queue.
+pub struct Item {
+    /// Tells it from the others.
+    pub id: u64,
+    /// Name of its folder.
+    pub name: String,
+    /// What is made.
+    pub plan: Plan,
+    /// Where to.
+    pub output: PathBuf,
+    /// How urgent it is.
+    pub priority: Priority,
+    /// How far it is.
+    pub state: State,
+    /// Variants that are ready or failed.
+    pub done: usize,
+    /// What its variants failed by.
+    pub failed: Vec<(usize, String)>,
+    /// Stars and discarded variants.
+    pub marks: Marks,
+    /// The index does not have the marks yet.
+    is_index_old: bool,
+    /// The folder to which the plan's paths are relative.
+    folder: PathBuf,
+}
+
+impl Item {
+    /// The batch itself.
+    pub fn batch(&self) -> anyhow::Result<Batch> {
+        Batch::new(self.plan.clone(), &self.folder, &self.output)
+    }
+}
+
+enum News {
+    At(Progress),
+    Ended(anyhow::Result<Report>),
+}
+
+struct Running {
+    id: u64,
+    stop: Arc<AtomicBool>,
+    news: Receiver<News>,
+    /// Only the index is written again.
+    is_index: bool,
+}
+
+/// The queue. Dropped, it stops after the variant at hand.
+#[derive(Default)]
+pub struct Queue {
+    items: Vec<Item>,
+    running: Option<Running>,
+    next_id: u64,
+}
+
+impl Queue {
+    /// All batches, in the order in which they were added.
+    pub fn items(&self) -> &[Item] {
+        &self.items
+    }
+
+    /// That batch.
+    pub fn item(&self, id: u64) -> Option<&Item> {
+        self.items.iter().find(|i| i.id == id)
+    }
+
+    fn item_mut(&mut self, id: u64) -> Option<&mut Item> {
+        self.items.iter_mut().find(|i| i.id == id)
+    }
+
+    /// Adds a batch at the end. `folder` is that of the plan. Errors if the output folder belongs to another plan, cannot be
+    /// written, or is in the queue already.
+    pub fn add(&mut self, plan: Plan, folder: &Path, output: &Path) -> anyhow::Result<u64> {
+        if let Some(problem) = plan.problem() {
+            anyhow::bail!("{problem}");
+        }
+        if let Some(there) = self.items.iter().find(|i| i.output == output) {
+            anyhow::bail!("{} is in the queue already", there.name);
+        }
+        claim(&plan, output)?;
+        let id = self.next_id;
+        self.next_id += 1;
+        let name = output.file_name().unwrap_or(output.as_os_str());
+        self.items.push(Item {
+            id,
+            name: name.to_string_lossy().into_owned(),
+            marks: Marks::read(output)?,
+            plan,
+            output: output.into(),
+            priority: Priority::default(),
+            state: State::Waiting,
+            done: 0,
+            failed: Vec::new(),
+            is_index_old: false,
+            folder: folder.into(),
+        });
+        Ok(id)
+    }
+
+    /// Takes a batch out of the queue; its files stay.
+    pub fn remove(&mut self, id: u64) {
+        self.stop(id);
+        self.items.retain(|i| i.id != id);
+    }
+
+    /// Makes a batch more or less urgent.
+    pub fn set_priority(&mut self, id: u64, priority: Priority) {
+        if let Some(item) = self.item_mut(id) {
+            item.priority = priority;
+        }
+    }
+
+    /// Stops a batch after the variant at hand until it is resumed.
+    pub fn pause(&mut self, id: u64) {
+        self.stop(id);
+        if let Some(item) = self.item_mut(id)
+            && matches!(item.state, State::Waiting | State::Running)
+        {
+            item.state = State::Paused;
+        }
+    }
+
+    /// Lets a batch wait for its turn again; one that failed, or whose variants did, is tried again.
+    pub fn resume(&mut self, id: u64) {
+        let runs = self.running.as_ref().is_some_and(|r| r.id == id);
+        if let Some(item) = self.item_mut(id)
+            && (!runs || item.state == State::Paused)
+        {
+            item.state = State::Waiting;
+        }
+    }
+
+    /// Changes the marks of a batch and writes them. Errors if they cannot be written.
+    pub fn mark(&mut self, id: u64, change: impl FnOnce(&mut Marks)) -> anyhow::Result<()> {
+        let Some(item) = self.item_mut(id) else {
+            return Ok(());
+        };
+        change(&mut item.marks);
+        item.is_index_old = true;
+        item.marks.write(&item.output)
+    }
+
+    fn stop(&self, id: u64) {
+        if let Some(running) = self.running.as_ref().filter(|r| r.id == id) {
+            running.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Takes news from the thread and starts what is next; `wake` is called from the thread when there is more. Returns the
+    /// batches that ended.
+    pub fn tick(&mut self, wake: impl Fn() + Clone + Send + 'static) -> Vec<u64> {
+        let ended = self.take_news();
+        match &self.running {
+            None => self.start_next(wake),
+            Some(running) => {
+                let urgent = |i: &Item| i.state == State::Waiting && i.id != running.id;
+                let most = self.items.iter().filter(|i| urgent(i)).map(|i| i.priority).max();
+                let own = self.item(running.id).map(|i| i.priority);
+                if most > own {
+                    running.stop.store(true, Ordering::Relaxed);
+                }
+            }
+        }
+        ended
+    }
+
+    fn take_news(&mut self) -> Vec<u64> {
+        let mut ended = Vec::new();
+        let Some(running) = self.running.take() else {
+            return ended;
+        };
+        let (id, is_index) = (running.id, running.is_index);
+        let mut is_over = false;
+        for news in running.news.try_iter().collect::<Vec<_>>() {
+            let Some(item) = self.item_mut(id) else {
+                is_over |= matches!(news, News::Ended(_));
+                continue; // it was taken out of the queue
+            };
+            match news {
+                News::At(progress) => {
+                    item.done = progress.done;
+                    item.failed.extend(progress.failed.map(|why| (progress.variant, why)));
+                }
+                News::Ended(result) => {
+                    is_over = true;
+                    let paused = item.state == State::Paused;
+                    item.state = match result {
+                        Ok(report) if report.open == 0 => State::Done(report),
+                        Ok(_) if paused => State::Paused,
+                        Ok(_) => State::Waiting,
+                        Err(error) => State::Failed(scene::message::of_error(error.as_ref())),
+                    };
+                    if !is_index && !matches!(item.state, State::Waiting | State::Paused) {
+                        ended.push(id);
+                    }
+                }
+            }
+        }
+        if !is_over {
+            self.running = Some(running);
+        }
+        ended
+    }
+
+    fn start_next(&mut self, wake: impl Fn() + Clone + Send + 'static) {
+        let waits = |i: &&mut Item| i.state == State::Waiting;
+        // (of equals the last one is taken: from the back that is the first one)
+        let next = self.items.iter_mut().rev().filter(waits).max_by_key(|i| i.priority);
+        let is_index = next.is_none();
+        let old = |i: &&mut Item| i.is_index_old && matches!(i.state, State::Done(_));
+        let Some(item) = (match next {
+            Some(item) => Some(item),
+            None => self.items.iter_mut().find(old),
+        }) else {
+            return;
+        };
+        if !is_index {
+            (item.state, item.done) = (State::Running, 0);
+            item.failed.clear();
+        }
+        item.is_index_old = false;
+        let (news, stop) = (unbounded(), Arc::new(AtomicBool::new(false)));
+        let (tell, told): (Sender<News>, _) = news;
+        let (plan, folder, output) = (item.plan.clone(), item.folder.clone(), item.output.clone());
+        let id = item.id;
+        let (stopped, progress, wake_up) = (stop.clone(), tell.clone(), wake.clone());
+        let work = move || {
+            Batch::new(plan, &folder, &output)?.run(Shard::default(), &mut |at| {
+                // Nobody listens if the window has closed.
+                let _ = progress.send(News::At(at.clone()));
+                wake_up();
+                !stopped.load(Ordering::Relaxed)
+            })
+        };
+        let thread = job::guard::spawn("batch", work, move |result| {
+            let _ = tell.send(News::Ended(result.unwrap_or_else(|panic| Err(panic.into()))));
+            wake();
+        });
+        match thread {
+            Ok(_) => {
+                self.running = Some(Running {
+                    id,
+                    stop,
+                    news: told,
+                    is_index,
+                })
+            }
+            Err(error) => item.state = State::Failed(error.to_string()),
+        }
+    }
+}
+
+impl Drop for Queue {
+    fn drop(&mut self) {
+        if let Some(running) = &self.running {
+            running.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    fn plan(variants: usize) -> Plan {
+        let text = format!(
+            r#"{{"format":"sceneloom_batch","version":1,"base":{{"template":"straight"}},
+            "sweep":[{{"name":"seed","seeds":{{"from":0,"count":{variants}}}}}],"write":[{{"format":"surroundocc"}}]}}"#
+        );
+        serde_json::from_str(&text).expect("a plan")
+    }
+
+    fn until(queue: &mut Queue, what: &str, is: impl Fn(&Queue) -> bool) -> Vec<u64> {
+        let start = Instant::now();
+        let mut ended = Vec::new();
+        while !is(queue) {
+            assert!(start.elapsed() < Duration::from_secs(60), "never {what}");
+            ended.extend(queue.tick(|| {}));
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        ended
+    }
+
+    #[test]
+    fn the_urgent_goes_first_and_the_rest_goes_on() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let mut queue = Queue::default();
+        let mut add = |name: &str, n| queue.add(plan(n), dir.path(), &dir.path().join(name)).expect("added");
+        let (long, short) = (add("long", 6), add("short", 1));
+        assert!(queue.add(plan(1), dir.path(), &dir.path().join("long")).is_err(), "twice");
+        until(&mut queue, "begins", |q| q.item(long).is_some_and(|i| i.done > 0));
+        queue.set_priority(short, Priority::High);
+        let ended = until(&mut queue, "all done", |q| {
+            q.items().iter().all(|i| matches!(i.state, State::Done(_)))
+        });
+        assert_eq!(ended, [short, long], "the long one made way");
+        let State::Done(report) = &queue.item(long).expect("there").state else {
+            panic!("not done");
+        };
+        assert!(report.kept >= 1 && report.kept + report.made == 6, "{report:?}");
+        // A folder of another plan.
+        queue.remove(long);
+        let line = queue.add(plan(2), dir.path(), &dir.path().join("long")).expect_err("taken");
+        assert!(line.to_string().contains("another plan"), "{line}");
+    }
+
+    #[test]
+    fn pauses_marks_and_faults() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let mut queue = Queue::default();
+        let id = queue.add(plan(4), dir.path(), &dir.path().join("a")).expect("added");
+        until(&mut queue, "begins", |q| q.item(id).is_some_and(|i| i.done > 0));
+        queue.pause(id);
+        until(&mut queue, "stops", |q| q.running.is_none());
+        assert_eq!(queue.item(id).expect("there").state, State::Paused);
+        assert!(queue.tick(|| {}).is_empty() && queue.running.is_none());
+        queue.resume(id);
+        until(&mut queue, "done", |q| matches!(q.items()[0].state, State::Done(_)));
+        let index = dir.path().join("a/index.parquet");
+        let before = std::fs::read(&index).expect("an index");
+        queue.mark(id, |marks| marks.star(1)).expect("written");
+        queue.mark(id, |marks| marks.discard(2)).expect("written");
+        queue.tick(|| {});
+        until(&mut queue, "indexed", |q| q.running.is_none());
+        assert_ne!(std::fs::read(&index).expect("an index"), before);
+        let marks = Marks::read(&dir.path().join("a")).expect("marks");
+        assert!(marks.starred.contains(&1) && marks.discarded.contains(&2));
+        // A variant cannot be both, and all can be taken back.
+        queue.mark(id, |marks| marks.star(2)).expect("written");
+        queue.mark(id, |marks| marks.star(1)).expect("written");
+        let marks = &queue.item(id).expect("there").marks;
+        assert_eq!((marks.starred.len(), marks.discarded.len()), (1, 0));
+        // Marks that are no marks are told, and the batch is not added.
+        queue.remove(id);
+        std::fs::write(dir.path().join("a/marks.json"), "{").expect("written");
+        assert!(queue.add(plan(4), dir.path(), &dir.path().join("a")).is_err());
+    }
+}
