@@ -19,6 +19,8 @@ const RADIUS_M: f64 = 2.5;
 const ASIDE_M: f64 = 1.0;
 /// On this share of its way, at least.
 const PAVED_SHARE: f64 = 0.97;
+/// Tighter curves, where the widest one would leave the pavement.
+const TIGHTER: [f64; 3] = [0.8, 0.65, 0.5];
 /// A vehicle joins or leaves a ring over a way from and to, m.
 const JOIN_M: [f64; 2] = [3.0, 16.0];
 
@@ -55,8 +57,7 @@ pub(super) fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
                 inward.iter().copied().zip(outward.iter().copied()).collect()
             };
             for (from, to) in pairs {
-                let direct = curve(from.contact, to.contact).filter(|points| is_drivable(ground, points));
-                let points_m = direct.or_else(|| around(ground, from, to));
+                let points_m = direct(ground, from, to).or_else(|| around(ground, from, to));
                 found.extend(points_m.map(|points_m| Way { from, to, points_m }));
             }
         }
@@ -87,7 +88,7 @@ fn straightest(ground: &Ground<'_>, pairs: impl Iterator<Item = (Door, Door)>) -
     let mut pairs: Vec<(Door, Door)> = pairs.filter(|(from, to)| from.arm() != to.arm()).collect();
     pairs.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
     let way = pairs.into_iter().find_map(|(from, to)| {
-        let points_m = curve(from.contact, to.contact).filter(|points| is_drivable(ground, points))?;
+        let points_m = direct(ground, from, to)?;
         Some(Way { from, to, points_m })
     });
     way.filter(is_apart)
@@ -96,6 +97,36 @@ fn straightest(ground: &Ground<'_>, pairs: impl Iterator<Item = (Door, Door)>) -
 /// True if an arm is a lane that is driven both ways: a way through it counts for both directions.
 fn both(gates: &Gates, arm: (usize, bool)) -> bool {
     gates.inward.iter().any(|d| d.arm() == arm && d.two_way)
+}
+
+/// A way that can be driven: one curve, else straight on and a tighter curve around the corner.
+fn direct(ground: &Ground<'_>, from: Door, to: Door) -> Option<Vec<DVec2>> {
+    let (from, to) = (from.contact, to.contact);
+    let tighter = TIGHTER.iter().filter_map(|share| around_corner(from, to, *share));
+    let all = curve(from, to).into_iter().chain(tighter);
+    all.into_iter().find(|points| is_drivable(ground, points))
+}
+
+/// A curve that begins and ends at that share of the way to where the two lanes cross; `None` where they do not cross ahead.
+fn around_corner(from: Contact, to: Contact, share: f64) -> Option<Vec<DVec2>> {
+    let [out, back] = [from, to].map(|c| DVec2::from_angle(c.heading_rad));
+    let (way, sine) = (to.at_m - from.at_m, out.perp_dot(back));
+    if sine.abs() < STRAIGHT_RAD.sin() {
+        return None;
+    }
+    let (before, behind) = (way.perp_dot(back) / sine, way.perp_dot(out) / sine);
+    let leg = before.min(-behind) * share;
+    if leg <= 0.0 {
+        return None;
+    }
+    let moved = |c: Contact, by: DVec2| Contact {
+        at_m: c.at_m + by,
+        ..c
+    };
+    let begin = moved(from, out * (before - leg));
+    let end = moved(to, back * (behind + leg));
+    let turn = curve(begin, end)?;
+    Some([from.at_m].into_iter().chain(turn).chain([to.at_m]).collect())
 }
 
 /// True where a vehicle can follow a line: paved and not too tight.
