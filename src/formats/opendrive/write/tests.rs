@@ -173,11 +173,9 @@ fn links_lead_back_and_lanes_meet() {
                 back,
                 Some(&opendrive::RoadEnd::Junction(road.junction.clone().expect("one")))
             );
-            let lane = connecting.descendants().filter(|n| n.has_tag_name("lane"));
-            let driving = lane
-                .filter(|n| n.attribute("type") == Some("driving"))
-                .next()
-                .expect("a lane");
+            let is_driving =
+                |n: &Node<'_, '_>| n.has_tag_name("lane") && n.attribute("type") == Some("driving");
+            let driving = connecting.descendants().find(is_driving).expect("a lane");
             let own: i32 = driving.attribute("id").expect("an id").parse().expect("a number");
             let link = driving
                 .children()
