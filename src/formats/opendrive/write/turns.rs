@@ -15,8 +15,8 @@ use scene::road_map::resampled;
 const STRAIGHT_RAD: f64 = 0.5;
 /// Tightest turn, m.
 const RADIUS_M: f64 = 2.5;
-/// A turn keeps so much paved ground to both sides of its middle, m.
-const ASIDE_M: f64 = 1.0;
+/// A turn keeps so much paved ground to both sides of its middle, m; the less only where the more is nowhere.
+const ASIDE_M: [f64; 2] = [1.4, 0.9];
 /// On this share of its way, at least.
 const PAVED_SHARE: f64 = 0.97;
 /// Tighter curves, where the widest one would leave the pavement.
@@ -57,7 +57,9 @@ pub(super) fn turns(ground: &Ground<'_>, gates: &Gates, ways: &mut Vec<Way>) {
                 inward.iter().copied().zip(outward.iter().copied()).collect()
             };
             for (from, to) in pairs {
-                let points_m = direct(ground, from, to).or_else(|| around(ground, from, to));
+                let ways =
+                    |aside_m| direct(ground, from, to, aside_m).or_else(|| around(ground, from, to, aside_m));
+                let points_m = ASIDE_M.into_iter().find_map(ways);
                 found.extend(points_m.map(|points_m| Way { from, to, points_m }));
             }
         }
@@ -88,7 +90,7 @@ fn straightest(ground: &Ground<'_>, pairs: impl Iterator<Item = (Door, Door)>) -
     let mut pairs: Vec<(Door, Door)> = pairs.filter(|(from, to)| from.arm() != to.arm()).collect();
     pairs.sort_by(|a, b| turn(a).total_cmp(&turn(b)));
     let way = pairs.into_iter().find_map(|(from, to)| {
-        let points_m = direct(ground, from, to)?;
+        let points_m = ASIDE_M.into_iter().find_map(|m| direct(ground, from, to, m))?;
         Some(Way { from, to, points_m })
     });
     way.filter(is_apart)
@@ -100,11 +102,12 @@ fn both(gates: &Gates, arm: (usize, bool)) -> bool {
 }
 
 /// A way that can be driven: one curve, else straight on and a tighter curve around the corner.
-fn direct(ground: &Ground<'_>, from: Door, to: Door) -> Option<Vec<DVec2>> {
+fn direct(ground: &Ground<'_>, from: Door, to: Door, aside_m: f64) -> Option<Vec<DVec2>> {
     let (from, to) = (from.contact, to.contact);
     let tighter = TIGHTER.iter().filter_map(|share| around_corner(from, to, *share));
     let all = curve(from, to).into_iter().chain(tighter);
-    all.into_iter().find(|points| is_drivable(ground, points))
+    all.into_iter()
+        .find(|points| is_drivable(ground, points, aside_m))
 }
 
 /// A curve that begins and ends at that share of the way to where the two lanes cross; `None` where they do not cross ahead.
@@ -130,7 +133,7 @@ fn around_corner(from: Contact, to: Contact, share: f64) -> Option<Vec<DVec2>> {
 }
 
 /// True where a vehicle can follow a line: paved and not too tight.
-fn is_drivable(ground: &Ground<'_>, points: &[DVec2]) -> bool {
+fn is_drivable(ground: &Ground<'_>, points: &[DVec2], aside_m: f64) -> bool {
     let total: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
     let even = resampled(points, (total / STEP_M).ceil().max(3.0) as usize + 1);
     let extent = ground.layout.extent();
@@ -142,7 +145,7 @@ fn is_drivable(ground: &Ground<'_>, points: &[DVec2]) -> bool {
             return false;
         }
         let left = (triple[2] - triple[0]).normalize_or_zero().perp();
-        for aside in [-ASIDE_M, 0.0, ASIDE_M] {
+        for aside in [-aside_m, 0.0, aside_m] {
             looks += 1;
             let here = surface(ground.layout, extent, triple[1] + left * aside);
             paved += usize::from(!matches!(here, Surface::Other | Surface::Walkway));
@@ -152,7 +155,7 @@ fn is_drivable(ground: &Ground<'_>, points: &[DVec2]) -> bool {
 }
 
 /// A way along a third lane of the zone: onto a ring, around and off it.
-fn around(ground: &Ground<'_>, from: Door, to: Door) -> Option<Vec<DVec2>> {
+fn around(ground: &Ground<'_>, from: Door, to: Door, aside_m: f64) -> Option<Vec<DVec2>> {
     let first = ground.chains[from.chain].step(from.k, 1).unwrap_or(from.k);
     let zone = (0..NEAR_ZONE as isize)
         .filter_map(|n| {
@@ -180,10 +183,14 @@ fn around(ground: &Ground<'_>, from: Door, to: Door) -> Option<Vec<DVec2>> {
         };
         let onto = (0..chain.len()).filter(near(from.contact.at_m));
         let onto = onto.filter_map(|k| Some((k, curve(from.contact, at(k))?)));
-        let onto: Vec<_> = onto.filter(|(_, points)| is_drivable(ground, points)).collect();
+        let onto: Vec<_> = onto
+            .filter(|(_, points)| is_drivable(ground, points, aside_m))
+            .collect();
         let off = (0..chain.len()).filter(near(to.contact.at_m));
         let off = off.filter_map(|k| Some((k, curve(at(k), to.contact)?)));
-        let off: Vec<_> = off.filter(|(_, points)| is_drivable(ground, points)).collect();
+        let off: Vec<_> = off
+            .filter(|(_, points)| is_drivable(ground, points, aside_m))
+            .collect();
         for (a, first) in &onto {
             for (b, last) in &off {
                 let n = (b + chain.len() - a) % chain.len();
