@@ -14,6 +14,8 @@ mod on_road;
 mod profile;
 mod roads;
 mod strips;
+mod turns;
+mod ways;
 mod xml;
 mod zones;
 
@@ -21,6 +23,7 @@ use super::own_rows;
 use bundles::Bundled;
 use chains::{Chain, Near};
 use connect::{Ground, Junction};
+use on_road::OnRoads;
 use roads::Road;
 use scene::BevLayout;
 use scene::distance::nearest_source;
@@ -52,8 +55,9 @@ pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String 
     if roads.is_empty() {
         roads.push(on_road::nowhere(layout));
     }
-    on_road::crossings(&mut roads, layout);
-    on_road::stop_lines(&mut roads, layout);
+    let mut on_roads = OnRoads::new(&mut roads);
+    on_roads.crossings(layout);
+    on_roads.stop_lines(layout);
     let header = xml::header(name, layout);
     let mut body = xml::network(&roads, &junctions, layout);
     if detail != Detail::Roads {
@@ -63,7 +67,7 @@ pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String 
             let found = read
                 .to_layout_over(layout.extent(), glam::DVec2::ZERO, 0.0)
                 .layout;
-            on_road::areas(&mut roads, layout, &found);
+            OnRoads::new(&mut roads).areas(layout, &found);
             body = xml::network(&roads, &junctions, layout);
         }
     }
@@ -172,6 +176,8 @@ fn is_left_hand(bundled: &Bundled) -> bool {
 }
 
 #[cfg(test)]
+mod measure;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
-pub(crate) use tests::picture;
+pub(crate) use measure::picture;

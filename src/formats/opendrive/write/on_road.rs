@@ -13,8 +13,18 @@ use scene::{BevLayer, BevLayout, PolylineKind};
 
 /// A stop line farther from a lane holds for nobody, m.
 const STOP_M: f64 = 3.0;
+/// Nor does one that is farther from the middle of its road, m.
+const STOP_ROAD_M: f64 = 40.0;
 /// Stations that are looked at first.
 const EVERY: usize = 8;
+/// A road in a junction counts as so much farther away, m.
+const IN_JUNCTION_M: f64 = 10.0;
+
+/// Roads that get objects.
+pub(super) struct OnRoads<'a> {
+    roads: &'a mut [Road],
+    stations: Vec<(usize, usize, DVec2)>, // every few metres: road, station, place
+}
 
 /// A place on a road.
 struct Place {
@@ -24,175 +34,168 @@ struct Place {
     away_m: f64,
 }
 
-/// The nearest place on any road; roads outside of junctions go before those in them if both are near.
-fn nearest(roads: &[Road], p: DVec2) -> Option<Place> {
-    let mut best: Option<(f64, Place)> = None;
-    for (r, road) in roads.iter().enumerate() {
-        let far = |i: &usize| road.reference.at(road.s_m[*i]).position_m.distance_squared(p);
-        let n = road.s_m.len();
-        let rough = (0..n)
-            .step_by(EVERY)
-            .chain([n - 1])
-            .min_by(|a, b| far(a).total_cmp(&far(b)));
-        let around = |i: usize| i.saturating_sub(EVERY)..(i + EVERY).min(n);
-        let Some(i) = rough.and_then(|i| around(i).min_by(|a, b| far(a).total_cmp(&far(b)))) else {
-            continue;
+impl<'a> OnRoads<'a> {
+    pub fn new(roads: &'a mut [Road]) -> Self {
+        let of_road = |(r, road): (usize, &Road)| {
+            let n = road.s_m.len();
+            let some = (0..n).step_by(EVERY).chain([n - 1]);
+            let placed = some.map(|i| (r, i, road.reference.at(road.s_m[i]).position_m));
+            placed.collect::<Vec<_>>()
         };
+        Self {
+            stations: roads.iter().enumerate().flat_map(of_road).collect(),
+            roads,
+        }
+    }
+
+    /// The nearest place on any road; roads outside of junctions go before those in them if both are near.
+    fn nearest(&self, p: DVec2) -> Option<Place> {
+        let cost = |(r, _, at): &(usize, usize, DVec2)| {
+            let more_m = self.roads[*r].junction.map_or(0.0, |_| IN_JUNCTION_M);
+            at.distance(p) + more_m
+        };
+        let rough = self.stations.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let (r, i, _) = *rough;
+        let road = &self.roads[r];
+        let far = |i: &usize| road.reference.at(road.s_m[*i]).position_m.distance_squared(p);
+        let around = i.saturating_sub(EVERY)..(i + EVERY).min(road.s_m.len());
+        let i = around.min_by(|a, b| far(a).total_cmp(&far(b)))?;
         let base = road.reference.at(road.s_m[i]);
         let (ahead, way) = (DVec2::from_angle(base.heading_rad), p - base.position_m);
         let s_m = (road.s_m[i] + way.dot(ahead)).clamp(0.0, road.reference.end_s_m());
         let base = road.reference.at(s_m);
-        let away_m = base.position_m.distance(p);
-        let cost = away_m + if road.junction.is_some() { 10.0 } else { 0.0 };
-        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-            let t_m = DVec2::from_angle(base.heading_rad).perp_dot(p - base.position_m);
-            let place = Place {
-                road: r,
-                s_m,
-                t_m,
-                away_m,
-            };
-            best = Some((cost, place));
-        }
+        Some(Place {
+            road: r,
+            s_m,
+            t_m: DVec2::from_angle(base.heading_rad).perp_dot(p - base.position_m),
+            away_m: base.position_m.distance(p),
+        })
     }
-    best.map(|(_, place)| place)
-}
 
-/// An object with an outline, at its middle. `kind` are its attributes and `outline` those of the outline.
-fn add_outline(roads: &mut [Road], id: &str, kind: &str, outline: &str, points: &[DVec2], inner: &str) {
-    let middle = points.iter().sum::<DVec2>() / points.len() as f64;
-    let Some(place) = nearest(roads, middle) else {
-        return;
-    };
-    let road = &mut roads[place.road];
-    let base = road.reference.at(place.s_m);
-    let origin = base.offset(place.t_m);
-    let back = DVec2::from_angle(-base.heading_rad);
-    let local: Vec<DVec2> = points.iter().map(|p| back.rotate(*p - origin)).collect();
-    let low = local.iter().copied().fold(DVec2::INFINITY, DVec2::min);
-    let high = local.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-    let size = (high - low).max(DVec2::splat(0.01));
-    // One outline without a list around it, as in OpenDRIVE 1.4: 1.8 allows it, and more readers know it.
-    let mut text = format!(
-        "      <object id=\"{id}\" {kind} s=\"{}\" t=\"{}\" zOffset=\"0\" hdg=\"0\" orientation=\"none\" length=\"{}\" \
-         width=\"{}\" height=\"0\">\n        <outline id=\"0\" closed=\"true\" outer=\"true\"{outline}>\n",
-        number(place.s_m),
-        number(place.t_m),
-        number(size.x),
-        number(size.y),
-    );
-    for (i, p) in local.iter().enumerate() {
-        let _ = writeln!(
-            text,
-            "          <cornerLocal id=\"{i}\" u=\"{}\" v=\"{}\" z=\"0\" height=\"0\"/>",
-            number(p.x),
-            number(p.y)
-        );
-    }
-    let _ = writeln!(text, "        </outline>{inner}\n      </object>");
-    road.objects.push(text);
-}
-
-/// Crossings: those that have outlines, and painted cells in none of them.
-pub(super) fn crossings(roads: &mut [Road], layout: &BevLayout) {
-    let extent = layout.extent();
-    let bit = BevLayer::PedCrossing.bit();
-    let mut open: Vec<bool> = layout.cells().iter().map(|c| c & bit != 0).collect();
-    let mut all: Vec<Vec<DVec2>> = Vec::new();
-    for line in layout
-        .polylines
-        .iter()
-        .filter(|l| l.kind == PolylineKind::PedCrossing)
-    {
-        if line.points_m.len() >= 3 && line.points_m.iter().all(|p| p.is_finite()) {
-            scene::raster::polygon_cells(extent, &line.points_m, |x, y| open[extent.index(x, y)] = false);
-            all.push(line.points_m.clone());
-        }
-    }
-    all.extend(outlines(extent, |c| open[c]));
-    for (i, points) in all.iter().enumerate() {
-        add_outline(
-            roads,
-            &format!("crossing{i}"),
-            "type=\"crosswalk\" name=\"crosswalk\"",
-            "",
-            points,
-            "",
-        );
-    }
-}
-
-/// Stop lines, as signals for the lanes that they lie across.
-pub(super) fn stop_lines(roads: &mut [Road], layout: &BevLayout) {
-    let lines = layout
-        .polylines
-        .iter()
-        .filter(|l| l.kind == PolylineKind::StopLine);
-    for (i, line) in lines.enumerate() {
-        let (Some(a), Some(b)) = (line.points_m.first(), line.points_m.last()) else {
-            continue;
+    /// An object with an outline, at its middle. `kind` are its attributes, `lane` those of its outline, `inner` what it holds
+    /// besides.
+    fn add(&mut self, id: &str, points: &[DVec2], [kind, lane, inner]: [&str; 3]) {
+        let middle = points.iter().sum::<DVec2>() / points.len() as f64;
+        let Some(place) = self.nearest(middle) else {
+            return;
         };
-        let middle = a.midpoint(*b);
-        if !middle.is_finite() || roads.is_empty() {
-            continue;
-        }
-        let Some(place) = nearest(roads, middle).filter(|p| p.away_m < 40.0) else {
-            continue;
-        };
-        let road = &mut roads[place.road];
-        let at = road
-            .s_m
-            .partition_point(|s| *s < place.s_m)
-            .min(road.s_m.len() - 1);
-        let strips = &road.strips;
-        let away_m = |strip: &usize| {
-            let [l, r] = [strip, &(strip + 1)].map(|b| strips.borders_m[*b][at]);
-            (place.t_m - l).max(r - place.t_m)
-        };
-        let lanes = (0..strips.kinds.len()).filter(|s| matches!(strips.kinds[*s], Strip::Lane { .. }));
-        let Some(lane) = lanes.min_by(|a, b| away_m(a).total_cmp(&away_m(b))) else {
-            continue;
-        };
-        let Strip::Lane { along, .. } = strips.kinds[lane] else {
-            continue;
-        };
-        if away_m(&lane) > STOP_M {
-            continue;
-        }
-        let orientation = if along { "+" } else { "-" };
-        road.signals.push(format!(
-            "      <signal id=\"stop{i}\" name=\"stop line\" s=\"{}\" t=\"{}\" zOffset=\"0\" dynamic=\"no\" \
-             orientation=\"{orientation}\" country=\"DE\" type=\"294\" subtype=\"-1\"/>\n",
+        let road = &mut self.roads[place.road];
+        let base = road.reference.at(place.s_m);
+        let origin = base.offset(place.t_m);
+        let back = DVec2::from_angle(-base.heading_rad);
+        let local: Vec<DVec2> = points.iter().map(|p| back.rotate(*p - origin)).collect();
+        let low = local.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = local.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let size = (high - low).max(DVec2::splat(0.01));
+        // One outline without a list around it, as in OpenDRIVE 1.4: 1.8 allows it, and more readers know it.
+        let mut text = format!(
+            "      <object id=\"{id}\" {kind} s=\"{}\" t=\"{}\" zOffset=\"0\" hdg=\"0\" orientation=\"none\" length=\"{}\" \
+             width=\"{}\" height=\"0\">\n        <outline id=\"0\" closed=\"true\" outer=\"true\"{lane}>\n",
             number(place.s_m),
             number(place.t_m),
-        ));
+            number(size.x),
+            number(size.y),
+        );
+        for (i, p) in local.iter().enumerate() {
+            let _ = writeln!(
+                text,
+                "          <cornerLocal id=\"{i}\" u=\"{}\" v=\"{}\" z=\"0\" height=\"0\"/>",
+                number(p.x),
+                number(p.y)
+            );
+        }
+        let _ = writeln!(text, "        </outline>{inner}\n      </object>");
+        road.objects.push(text);
     }
-}
 
-/// Ground that a reader of the roads does not find, with the kind of lane that it would be.
-pub(super) fn areas(roads: &mut [Road], layout: &BevLayout, found: &BevLayout) {
-    let kinds = [
-        (BevLayer::DrivableArea, "driving", "roadSurface"),
-        (BevLayer::CarparkArea, "parking", "parkingSpace"),
-        (BevLayer::Walkway, "sidewalk", "roadSurface"),
-    ];
-    let carpark = BevLayer::CarparkArea.bit();
-    for (layer, lane, kind) in kinds {
-        let bit = layer.bit();
-        let missing = |c: usize| {
-            let (cell, there) = (layout.cells()[c], found.cells()[c]);
-            // What is a car park comes with that.
-            let other = bit != carpark && cell & carpark != 0;
-            cell & bit != 0 && there & bit == 0 && !other
-        };
-        for (i, points) in outlines(layout.extent(), missing).iter().enumerate() {
-            let attributes = format!("type=\"{kind}\" name=\"{}\"", layer.name());
-            let outline = format!(" laneType=\"{lane}\"");
-            let inner = match bit == carpark {
-                true => "\n        <parkingSpace access=\"all\"/>",
-                false => "",
+    /// Crossings: those that have outlines, and painted cells in none of them.
+    pub fn crossings(&mut self, layout: &BevLayout) {
+        let extent = layout.extent();
+        let bit = BevLayer::PedCrossing.bit();
+        let mut open: Vec<bool> = layout.cells().iter().map(|c| c & bit != 0).collect();
+        let mut all: Vec<Vec<DVec2>> = Vec::new();
+        let lines = layout.polylines.iter();
+        for line in lines.filter(|l| l.kind == PolylineKind::PedCrossing) {
+            if line.points_m.len() >= 3 && line.points_m.iter().all(|p| p.is_finite()) {
+                let points = &line.points_m;
+                scene::raster::polygon_cells(extent, points, |x, y| open[extent.index(x, y)] = false);
+                all.push(points.clone());
+            }
+        }
+        all.extend(outlines(extent, |c| open[c]));
+        for (i, points) in all.iter().enumerate() {
+            let kind = "type=\"crosswalk\" name=\"crosswalk\"";
+            self.add(&format!("crossing{i}"), points, [kind, "", ""]);
+        }
+    }
+
+    /// Stop lines, as signals for the lanes that they lie across.
+    pub fn stop_lines(&mut self, layout: &BevLayout) {
+        let lines = layout.polylines.iter();
+        for (i, line) in lines.filter(|l| l.kind == PolylineKind::StopLine).enumerate() {
+            let ends = line.points_m.first().zip(line.points_m.last());
+            let middle = ends.map(|(a, b)| a.midpoint(*b)).filter(|m| m.is_finite());
+            let place = middle.and_then(|m| self.nearest(m));
+            let Some(place) = place.filter(|p| p.away_m < STOP_ROAD_M) else {
+                continue;
             };
-            add_outline(roads, &format!("{lane}{i}"), &attributes, &outline, points, inner);
+            let road = &mut self.roads[place.road];
+            let at = road.s_m.partition_point(|s| *s < place.s_m);
+            let at = at.min(road.s_m.len() - 1);
+            let strips = &road.strips;
+            let away_m = |strip: usize| {
+                let [l, r] = [strip, strip + 1].map(|b| strips.borders_m[b][at]);
+                (place.t_m - l).max(r - place.t_m)
+            };
+            let lanes = strips
+                .kinds
+                .iter()
+                .enumerate()
+                .filter_map(|(strip, kind)| match kind {
+                    Strip::Lane { along, .. } => Some((away_m(strip), *along)),
+                    _ => None,
+                });
+            let Some((away_m, along)) = lanes.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+                continue;
+            };
+            if away_m > STOP_M {
+                continue;
+            }
+            let orientation = if along { "+" } else { "-" };
+            road.signals.push(format!(
+                "      <signal id=\"stop{i}\" name=\"stop line\" s=\"{}\" t=\"{}\" zOffset=\"0\" dynamic=\"no\" \
+                 orientation=\"{orientation}\" country=\"DE\" type=\"294\" subtype=\"-1\"/>\n",
+                number(place.s_m),
+                number(place.t_m),
+            ));
+        }
+    }
+
+    /// Ground that a reader of the roads does not find, with the kind of lane that it would be.
+    pub fn areas(&mut self, layout: &BevLayout, found: &BevLayout) {
+        let carpark = BevLayer::CarparkArea.bit();
+        for (layer, lane, kind, inner) in [
+            (BevLayer::DrivableArea, "driving", "roadSurface", ""),
+            (
+                BevLayer::CarparkArea,
+                "parking",
+                "parkingSpace",
+                "\n        <parkingSpace access=\"all\"/>",
+            ),
+            (BevLayer::Walkway, "sidewalk", "roadSurface", ""),
+        ] {
+            let bit = layer.bit();
+            let missing = |c: usize| {
+                let (cell, there) = (layout.cells()[c], found.cells()[c]);
+                // What is a car park comes with that.
+                let other = bit != carpark && cell & carpark != 0;
+                cell & bit != 0 && there & bit == 0 && !other
+            };
+            let attributes = format!("type=\"{kind}\" name=\"{}\"", layer.name());
+            let of_outline = format!(" laneType=\"{lane}\"");
+            for (i, points) in outlines(layout.extent(), missing).iter().enumerate() {
+                self.add(&format!("{lane}{i}"), points, [&attributes, &of_outline, inner]);
+            }
         }
     }
 }
