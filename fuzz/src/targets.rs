@@ -168,7 +168,7 @@ pub fn opendrive_file(bytes: &[u8]) {
 pub fn box_file(bytes: &[u8]) {
     match box_list::read(bytes) {
         Err(error) => one_line(error),
-        Ok(boxes) => assert!(boxes.iter().all(|b| b.problem().is_none())),
+        Ok((boxes, _)) => assert!(boxes.iter().all(|b| b.problem().is_none())),
     }
 }
 

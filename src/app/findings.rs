@@ -78,6 +78,8 @@ pub fn check(scene: &Scene) -> Vec<Finding> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::open;
     use editor::{Apply, Edit};

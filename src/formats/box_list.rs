@@ -89,7 +89,9 @@ pub fn to_bytes(
         time_s: frame.time_s,
         frame: FRAME.into(),
         boxes: frame.boxes.values().map(entry).collect(),
-        recipe: recipe.map_or(Ok(Value::Null), serde_json::to_value).map_err(|e| e.to_string())?,
+        recipe: recipe
+            .map_or(Ok(Value::Null), serde_json::to_value)
+            .map_err(|e| e.to_string())?,
     };
     let mut bytes = serde_json::to_vec_pretty(&list).map_err(|e| e.to_string())?;
     bytes.push(b'\n');

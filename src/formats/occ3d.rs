@@ -17,8 +17,8 @@ pub use numbering::Numbering;
 
 use super::input::{self, InputError};
 use super::npy;
-use super::recipe::{self, Recipe};
 use super::npz::{self, Values as Npy};
+use super::recipe::{self, Recipe};
 use scene::message::{one_line, quoted, shortened};
 use scene::{Class, VoxelGrid, Window};
 

@@ -41,6 +41,10 @@ pub struct KeptVersion {
 impl KeptVersion {
     /// What it is called: its name, else what led there.
     pub fn title(&self) -> &str {
-        if self.name.is_empty() { &self.label } else { &self.name }
+        if self.name.is_empty() {
+            &self.label
+        } else {
+            &self.name
+        }
     }
 }

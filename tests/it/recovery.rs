@@ -55,7 +55,12 @@ fn child() {
     let mut recovery = Recovery::start(&folder.join("recovery"), 1.0, || {}).expect("a session");
     for i in 1.. {
         document.apply_all("Edit", &edits(i)).expect("sound");
-        recovery.tick(&document, Some(&user_file), i as f64 / EDITS_PER_COPY as f64);
+        recovery.tick(
+            &document,
+            Some(&user_file),
+            scene::Scene::clone,
+            i as f64 / EDITS_PER_COPY as f64,
+        );
         recovery.wait();
         println!("edit {i}");
         if i % EDITS_PER_SAVE == 0 {

@@ -34,7 +34,8 @@ pub fn write(output: &Path, plan: &Plan, records: &[Record], marks: &Marks) -> a
 fn fields(plan: &Plan, records: &[Record], marks: &Marks) -> Vec<Field> {
     let texts = |of: &dyn Fn(&Record) -> String| Values::Text(records.iter().map(of).collect());
     let numbers = |of: &dyn Fn(&Record) -> i64| Values::Integer(records.iter().map(of).collect());
-    let flags = |of: &BTreeSet<usize>| Values::Flag(records.iter().map(|r| of.contains(&r.variant)).collect());
+    let flags =
+        |of: &BTreeSet<usize>| Values::Flag(records.iter().map(|r| of.contains(&r.variant)).collect());
     let json =
         |value: &dyn Fn(&Record) -> serde_json::Result<String>| texts(&|r| value(r).unwrap_or_default());
     let shard = |r: &Record| {

@@ -231,7 +231,8 @@ impl Queue {
             match news {
                 News::At(progress) => {
                     item.done = progress.done;
-                    item.failed.extend(progress.failed.map(|why| (progress.variant, why)));
+                    item.failed
+                        .extend(progress.failed.map(|why| (progress.variant, why)));
                 }
                 News::Ended(result) => {
                     is_over = true;
@@ -257,7 +258,12 @@ impl Queue {
     fn start_next(&mut self, wake: impl Fn() + Clone + Send + 'static) {
         let waits = |i: &&mut Item| i.state == State::Waiting;
         // (of equals the last one is taken: from the back that is the first one)
-        let next = self.items.iter_mut().rev().filter(waits).max_by_key(|i| i.priority);
+        let next = self
+            .items
+            .iter_mut()
+            .rev()
+            .filter(waits)
+            .max_by_key(|i| i.priority);
         let is_index = next.is_none();
         let old = |i: &&mut Item| i.is_index_old && matches!(i.state, State::Done(_));
         let Some(item) = (match next {
@@ -339,9 +345,16 @@ mod tests {
     fn the_urgent_goes_first_and_the_rest_goes_on() {
         let dir = tempfile::tempdir().expect("a folder");
         let mut queue = Queue::default();
-        let mut add = |name: &str, n| queue.add(plan(n), dir.path(), &dir.path().join(name)).expect("added");
+        let mut add = |name: &str, n| {
+            queue
+                .add(plan(n), dir.path(), &dir.path().join(name))
+                .expect("added")
+        };
         let (long, short) = (add("long", 6), add("short", 1));
-        assert!(queue.add(plan(1), dir.path(), &dir.path().join("long")).is_err(), "twice");
+        assert!(
+            queue.add(plan(1), dir.path(), &dir.path().join("long")).is_err(),
+            "twice"
+        );
         until(&mut queue, "begins", |q| q.item(long).is_some_and(|i| i.done > 0));
         queue.set_priority(short, Priority::High);
         let ended = until(&mut queue, "all done", |q| {
@@ -354,7 +367,9 @@ mod tests {
         assert!(report.kept >= 1 && report.kept + report.made == 6, "{report:?}");
         // A folder of another plan.
         queue.remove(long);
-        let line = queue.add(plan(2), dir.path(), &dir.path().join("long")).expect_err("taken");
+        let line = queue
+            .add(plan(2), dir.path(), &dir.path().join("long"))
+            .expect_err("taken");
         assert!(line.to_string().contains("another plan"), "{line}");
     }
 
@@ -362,14 +377,18 @@ mod tests {
     fn pauses_marks_and_faults() {
         let dir = tempfile::tempdir().expect("a folder");
         let mut queue = Queue::default();
-        let id = queue.add(plan(4), dir.path(), &dir.path().join("a")).expect("added");
+        let id = queue
+            .add(plan(4), dir.path(), &dir.path().join("a"))
+            .expect("added");
         until(&mut queue, "begins", |q| q.item(id).is_some_and(|i| i.done > 0));
         queue.pause(id);
         until(&mut queue, "stops", |q| q.running.is_none());
         assert_eq!(queue.item(id).expect("there").state, State::Paused);
         assert!(queue.tick(|| {}).is_empty() && queue.running.is_none());
         queue.resume(id);
-        until(&mut queue, "done", |q| matches!(q.items()[0].state, State::Done(_)));
+        until(&mut queue, "done", |q| {
+            matches!(q.items()[0].state, State::Done(_))
+        });
         let index = dir.path().join("a/index.parquet");
         let before = std::fs::read(&index).expect("an index");
         queue.mark(id, |marks| marks.star(1)).expect("written");

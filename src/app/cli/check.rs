@@ -7,9 +7,9 @@ use anyhow::{Context, anyhow};
 use serde_json::{Value, json};
 
 use super::{Common, Moment, Outcome, Stop, output};
+use app::findings;
 use app::open;
 use app::panes;
-use app::findings;
 use editor::checks::{self, Finding, Severity, waive};
 use formats::loom;
 use scene::Scene;

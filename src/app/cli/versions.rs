@@ -44,7 +44,8 @@ impl VersionsCommand {
                 None => loom::save(path, &scene)?,
                 Some(wanted) => {
                     let version = find(&scene.kept, wanted).with_context(|| file.to_string())?;
-                    let taken = loom::from_bytes(&version.loom).with_context(|| format!("{file}: {wanted}"))?;
+                    let taken =
+                        loom::from_bytes(&version.loom).with_context(|| format!("{file}: {wanted}"))?;
                     loom::save(path, &taken)?
                 }
             };
@@ -70,7 +71,11 @@ impl VersionsCommand {
             false => {
                 let line = |(i, v): (usize, &KeptVersion)| {
                     let star = if v.starred { "★" } else { " " };
-                    let note = if v.note.is_empty() { String::new() } else { format!(" ({})", v.note) };
+                    let note = if v.note.is_empty() {
+                        String::new()
+                    } else {
+                        format!(" ({})", v.note)
+                    };
                     format!("{:3} {star} {}{note}", i + 1, v.title())
                 };
                 let lines: Vec<String> = versions.iter().enumerate().map(line).collect();

@@ -119,12 +119,21 @@ impl Entry {
             (false, true) => version.label.clone(),
             (false, false) => format!("{} · {}", version.label, version.note),
         };
-        line(at + vec2(0.0, 21.0), &below, egui::TextStyle::Small, theme::text_weak());
+        line(
+            at + vec2(0.0, 21.0),
+            &below,
+            egui::TextStyle::Small,
+            theme::text_weak(),
+        );
         let star = Rect::from_center_size(pos2(rect.right() - 16.0, rect.center().y), vec2(24.0, 24.0));
         let starring = ui.interact(star, ui.scope_id().with(("star", i)), Sense::click());
         let starred = version.starred;
         starring.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, "Keep this version"));
-        let color = if starred { theme::warn() } else { theme::text_weak() };
+        let color = if starred {
+            theme::warn()
+        } else {
+            theme::text_weak()
+        };
         icons::star(ui, star.center(), color, starred);
         icons::focus_ring(ui, &starring, star);
         if starring.on_hover_text("Keep this version").clicked() {

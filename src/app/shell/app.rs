@@ -152,7 +152,11 @@ impl SceneloomApp {
         };
         // On a software rasteriser a frame takes as long as a step of generation, so fewer frames are drawn then.
         let view3d = View3d::new(render_state.clone());
-        let Opened { scene, versions: kept, .. } = Opened::of(config.scene);
+        let Opened {
+            scene,
+            versions: kept,
+            ..
+        } = Opened::of(config.scene);
         let mut versions = Versions::default();
         versions.replace(kept);
         versions.push("As opened".into(), String::new(), Arc::new(scene.clone()));

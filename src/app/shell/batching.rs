@@ -33,7 +33,11 @@ impl SceneloomApp {
             None => {
                 let kept = batching.closed.take();
                 let suggested = self.suggested("loom").with_extension("");
-                let name = suggested.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let name = suggested
+                    .file_name()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned();
                 let folder = suggested.with_file_name(format!("{name}_batch"));
                 self.files.batching.window = Some(kept.unwrap_or_else(|| BatchesWindow::new(&folder)));
             }
@@ -50,12 +54,17 @@ impl SceneloomApp {
             };
             let name = item.name.clone();
             let (level, text) = match &item.state {
-                State::Done(report) if report.failed.is_empty() => {
-                    (Level::Info, format!("Batch {name}: {} variants are ready", report.variants))
-                }
+                State::Done(report) if report.failed.is_empty() => (
+                    Level::Info,
+                    format!("Batch {name}: {} variants are ready", report.variants),
+                ),
                 State::Done(report) => (
                     Level::Error,
-                    format!("Batch {name}: {} of {} variants failed", report.failed.len(), report.variants),
+                    format!(
+                        "Batch {name}: {} of {} variants failed",
+                        report.failed.len(),
+                        report.variants
+                    ),
                 ),
                 State::Failed(why) => (Level::Error, format!("Batch {name}: {why}")),
                 _ => continue,
@@ -71,8 +80,18 @@ impl SceneloomApp {
             return;
         };
         let scene = self.document.settled_scene().clone();
-        let chosen = self.state.selected.filter(|id| scene.frame().boxes.contains_key(id));
-        let names: Vec<String> = self.generation.tuning.presets.all.iter().map(|p| p.name.clone()).collect();
+        let chosen = self
+            .state
+            .selected
+            .filter(|id| scene.frame().boxes.contains_key(id));
+        let names: Vec<String> = self
+            .generation
+            .tuning
+            .presets
+            .all
+            .iter()
+            .map(|p| p.name.clone())
+            .collect();
         let input = BatchesInput {
             scene: &scene,
             chosen,

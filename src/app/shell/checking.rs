@@ -109,13 +109,10 @@ impl Checking {
 
 #[cfg(test)]
 mod tests {
-    use editor::Apply;
     use std::time::{Duration, Instant};
 
     use super::*;
     use crate::open;
-    use editor::Edit;
-    use scene::{BoxLabel, Class};
 
     #[test]
     fn the_newest_scene_is_checked_after_a_rest() {

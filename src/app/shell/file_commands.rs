@@ -122,11 +122,15 @@ impl SceneloomApp {
     ) {
         let (send, scene) = bounded(1);
         let wake = ctx.clone();
-        let thread = job::guard::spawn("open", move || make().map(Opened::of), move |scene| {
-            // Nobody listens if something else was opened meanwhile.
-            let _ = send.send(scene.unwrap_or_else(|panic| Err(panic.into())));
-            wake.request_repaint();
-        });
+        let thread = job::guard::spawn(
+            "open",
+            move || make().map(Opened::of),
+            move |scene| {
+                // Nobody listens if something else was opened meanwhile.
+                let _ = send.send(scene.unwrap_or_else(|panic| Err(panic.into())));
+                wake.request_repaint();
+            },
+        );
         match thread {
             Ok(_) => {
                 self.files.opening = Some(Opening {

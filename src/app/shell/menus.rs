@@ -57,7 +57,10 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
         Command::File(FileCommand::SaveAs),
     );
     ui.separator();
-    on(item(ui, "Export…", "Ctrl+E", true), Command::Toggle(Window::Export));
+    on(
+        item(ui, "Export…", "Ctrl+E", true),
+        Command::Toggle(Window::Export),
+    );
     on(
         item(ui, "Batches…", "Ctrl+B", true),
         Command::Toggle(Window::Batches),

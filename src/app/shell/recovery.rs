@@ -6,7 +6,6 @@
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -172,7 +171,10 @@ impl Recovery {
             return (Some(due_s - now_s), problem);
         }
         (self.asked, self.last_s, self.writing) = (Some(scene.content()), now_s, true);
-        self.send(Job::Write(Box::new(with_kept(scene)), path.map(Path::to_path_buf)));
+        self.send(Job::Write(
+            Box::new(with_kept(scene)),
+            path.map(Path::to_path_buf),
+        ));
         (None, problem)
     }
 
@@ -376,13 +378,20 @@ mod tests {
         recovery.wait();
         assert_eq!(prompt_in(&copy), "one");
         say(&mut document, "two");
-        assert_eq!(recovery.tick(&document, None, Scene::clone, 11.0), (Some(20.0), None));
+        assert_eq!(
+            recovery.tick(&document, None, Scene::clone, 11.0),
+            (Some(20.0), None)
+        );
         recovery.wait();
         assert_eq!(prompt_in(&copy), "one");
         assert_eq!(recovery.tick(&document, None, Scene::clone, 31.0), (None, None));
         recovery.wait();
         assert_eq!(prompt_in(&copy), "two");
-        assert_eq!(recovery.tick(&document, None, Scene::clone, 99.0), (None, None), "nothing new");
+        assert_eq!(
+            recovery.tick(&document, None, Scene::clone, 99.0),
+            (None, None),
+            "nothing new"
+        );
         document.mark_saved();
         recovery.tick(&document, None, Scene::clone, 100.0);
         drop(recovery);

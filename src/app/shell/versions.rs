@@ -44,7 +44,11 @@ impl Version {
 
     /// What it is called: its name, else what led here.
     pub fn title(&self) -> &str {
-        if self.name.is_empty() { &self.label } else { &self.name }
+        if self.name.is_empty() {
+            &self.label
+        } else {
+            &self.name
+        }
     }
 }
 
@@ -281,7 +285,11 @@ mod tests {
             .collect();
         assert_eq!(
             found,
-            [("before the rain", false, 0), ("Add a car", true, 1), ("now", false, 2)]
+            [
+                ("before the rain", false, 0),
+                ("Add a car", true, 1),
+                ("now", false, 2)
+            ]
         );
         assert_eq!(opened.damaged, 1);
         assert_eq!(opened.versions[2].scene.content(), opened.scene.content());

@@ -108,10 +108,17 @@ impl PlanForm {
             }
         };
         let conditions = |time, weather| Value::One(Change::Conditions { time, weather });
-        axis("time", self.times.iter().map(|t| conditions(Some(*t), None)).collect());
-        axis("weather", self.weathers.iter().map(|w| conditions(None, Some(*w))).collect());
+        axis(
+            "time",
+            self.times.iter().map(|t| conditions(Some(*t), None)).collect(),
+        );
+        axis(
+            "weather",
+            self.weathers.iter().map(|w| conditions(None, Some(*w))).collect(),
+        );
         if let Some(id) = chosen {
-            for (name, range, direction) in [("ahead", self.ahead, DVec2::X), ("aside", self.aside, DVec2::Y)] {
+            for (name, range, direction) in [("ahead", self.ahead, DVec2::X), ("aside", self.aside, DVec2::Y)]
+            {
                 if range.on {
                     axis(name, range.values(id, direction));
                 }
@@ -139,7 +146,10 @@ impl PlanForm {
             seed: scene.seed,
             sweep,
             sample: None,
-            generate: self.quality.clone().map(|quality| Generate { quality, whole: false }),
+            generate: self.quality.clone().map(|quality| Generate {
+                quality,
+                whole: false,
+            }),
             check: self.check,
             write: self.formats.iter().map(output).collect(),
             frames_hz: (scene.clip().length_s > 0.0).then_some(self.frames_hz),
@@ -150,7 +160,11 @@ impl PlanForm {
     /// Draws the form; true if a batch is to be added. `qualities` are the names of presets.
     pub fn ui(&mut self, ui: &mut Ui, scene: &Scene, chosen: Option<BoxId>, qualities: &[String]) -> bool {
         let kinds = [
-            (false, "Variants of this scene", "every combination of what is ticked below"),
+            (
+                false,
+                "Variants of this scene",
+                "every combination of what is ticked below",
+            ),
             (true, "A plan from a file", "JSON, see docs/batches.md"),
         ];
         icons::segments(ui, &mut self.from_file, &kinds);
@@ -160,7 +174,12 @@ impl PlanForm {
         } else {
             self.scene_ui(ui, scene, chosen, qualities);
         }
-        path_row(ui, "Folder", &mut self.folder, "a new folder, or one that holds a part of this batch");
+        path_row(
+            ui,
+            "Folder",
+            &mut self.folder,
+            "a new folder, or one that holds a part of this batch",
+        );
         if let Some(problem) = &self.problem {
             ui.colored_label(theme::bad(), problem);
         }
@@ -215,14 +234,19 @@ impl PlanForm {
             ui.end_row();
             ui.label("Occupancy");
             ui.horizontal(|ui| {
-                let text = self.quality.as_deref().map_or("as drafted".into(), |q| format!("generated: {q}"));
-                egui::ComboBox::from_id_salt("batch quality").selected_text(text).show_ui(ui, |ui| {
-                    ui.selectable_value(&mut self.quality, None, "as drafted");
-                    for quality in qualities {
-                        let value = Some(quality.clone());
-                        ui.selectable_value(&mut self.quality, value, format!("generated: {quality}"));
-                    }
-                });
+                let text = self
+                    .quality
+                    .as_deref()
+                    .map_or("as drafted".into(), |q| format!("generated: {q}"));
+                egui::ComboBox::from_id_salt("batch quality")
+                    .selected_text(text)
+                    .show_ui(ui, |ui| {
+                        ui.selectable_value(&mut self.quality, None, "as drafted");
+                        for quality in qualities {
+                            let value = Some(quality.clone());
+                            ui.selectable_value(&mut self.quality, value, format!("generated: {quality}"));
+                        }
+                    });
                 if self.quality.is_some() {
                     ui.add(DragValue::new(&mut self.seeds).range(1..=1000));
                     ui.label("times, from other noise");
@@ -253,7 +277,11 @@ impl PlanForm {
             ui.end_row();
             if scene.clip().length_s > 0.0 {
                 ui.label("Moments");
-                ui.add(DragValue::new(&mut self.frames_hz).range(0.1..=30.0).suffix(" per second"));
+                ui.add(
+                    DragValue::new(&mut self.frames_hz)
+                        .range(0.1..=30.0)
+                        .suffix(" per second"),
+                );
                 ui.end_row();
             }
             ui.label("Checks");
@@ -266,7 +294,9 @@ impl PlanForm {
 fn path_row(ui: &mut Ui, label: &str, path: &mut String, hint: &str) {
     ui.horizontal(|ui| {
         ui.add_sized([52.0, 20.0], egui::Label::new(label).selectable(false));
-        let field = egui::TextEdit::singleline(path).desired_width(f32::INFINITY).hint_text(hint);
+        let field = egui::TextEdit::singleline(path)
+            .desired_width(f32::INFINITY)
+            .hint_text(hint);
         ui.add(field).accessible_name(label);
     });
 }
@@ -286,7 +316,12 @@ fn range_ui(ui: &mut Ui, text: &str, range: &mut Range) {
         ui.checkbox(&mut range.on, text);
         ui.add_enabled_ui(range.on, |ui| {
             ui.label("±");
-            ui.add(DragValue::new(&mut range.reach_m).range(0.1..=50.0).speed(0.1).suffix(" m"));
+            ui.add(
+                DragValue::new(&mut range.reach_m)
+                    .range(0.1..=50.0)
+                    .speed(0.1)
+                    .suffix(" m"),
+            );
             ui.label("in");
             ui.add(DragValue::new(&mut range.steps).range(2..=MOST_STEPS));
             ui.label("steps");

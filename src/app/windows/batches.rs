@@ -77,7 +77,13 @@ impl BatchesWindow {
     }
 
     /// Draws it.
-    pub fn ui(&mut self, ui: &Ui, queue: &mut Queue, input: &BatchesInput<'_>, open: &mut bool) -> Option<Asked> {
+    pub fn ui(
+        &mut self,
+        ui: &Ui,
+        queue: &mut Queue,
+        input: &BatchesInput<'_>,
+        open: &mut bool,
+    ) -> Option<Asked> {
         let mut asked = None;
         egui::Window::new("Batches")
             .id(egui::Id::unique("batches"))
@@ -138,7 +144,12 @@ impl BatchesWindow {
             (Shown::Failed, "Failed", "could not be made"),
         ];
         icons::segments(ui, &mut self.shown, &kinds);
-        let failed = |v: usize| item.failed.iter().find(|(of, _)| *of == v).map(|(_, why)| why.as_str());
+        let failed = |v: usize| {
+            item.failed
+                .iter()
+                .find(|(of, _)| *of == v)
+                .map(|(_, why)| why.as_str())
+        };
         let shown: Vec<usize> = (0..all)
             .filter(|v| match self.shown {
                 Shown::All => true,
@@ -160,23 +171,25 @@ impl BatchesWindow {
         }
         ui.spacing_mut().item_spacing = vec2(6.0, 6.0);
         let rows = shown.len().div_ceil(columns);
-        egui::ScrollArea::vertical().auto_shrink(false).show_rows(ui, cell.y, rows, |ui, rows| {
-            for row in rows {
-                ui.horizontal(|ui| {
-                    for variant in shown.iter().skip(row * columns).take(columns) {
-                        let path = item.output.join(format!("{variant:06}")).join("thumb.png");
-                        let texture = self.picture(ui, path, &mut may_read);
-                        let cell = Cell {
-                            item,
-                            variant: *variant,
-                            texture,
-                            failed: failed(*variant),
-                        };
-                        asked = cell.ui(ui, cell_size()).or(asked.take());
-                    }
-                });
-            }
-        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show_rows(ui, cell.y, rows, |ui, rows| {
+                for row in rows {
+                    ui.horizontal(|ui| {
+                        for variant in shown.iter().skip(row * columns).take(columns) {
+                            let path = item.output.join(format!("{variant:06}")).join("thumb.png");
+                            let texture = self.picture(ui, path, &mut may_read);
+                            let cell = Cell {
+                                item,
+                                variant: *variant,
+                                texture,
+                                failed: failed(*variant),
+                            };
+                            asked = cell.ui(ui, cell_size()).or(asked.take());
+                        }
+                    });
+                }
+            });
         asked
     }
 
@@ -233,7 +246,8 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
     ui.horizontal(|ui| {
         ui.heading(&item.name);
         let path = item.output.display().to_string();
-        let folder = egui::Label::new(egui::RichText::new(&path).small().color(theme::text_weak())).truncate();
+        let folder =
+            egui::Label::new(egui::RichText::new(&path).small().color(theme::text_weak())).truncate();
         ui.add(folder).on_hover_text(path);
     });
     ui.horizontal(|ui| {
@@ -245,7 +259,11 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
         }
         match &state {
             State::Running | State::Waiting => {
-                if ui.button("Pause").on_hover_text("after the variant at hand").clicked() {
+                if ui
+                    .button("Pause")
+                    .on_hover_text("after the variant at hand")
+                    .clicked()
+                {
                     queue.pause(id);
                 }
             }
@@ -266,7 +284,11 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
             }
             State::Done(_) => {}
         }
-        if ui.button("Take out of the queue").on_hover_text("its files stay").clicked() {
+        if ui
+            .button("Take out of the queue")
+            .on_hover_text("its files stay")
+            .clicked()
+        {
             queue.remove(id);
         }
     });
@@ -304,7 +326,8 @@ impl Cell<'_> {
         match (self.texture, self.failed) {
             (Some(texture), _) => {
                 let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-                ui.painter().image(texture, picture, unit, Color32::from_white_alpha(faint));
+                ui.painter()
+                    .image(texture, picture, unit, Color32::from_white_alpha(faint));
             }
             (None, Some(why)) => label(ui, picture, why, theme::bad()),
             (None, None) => label(ui, picture, "not made yet", theme::text_weak()),
@@ -335,7 +358,8 @@ impl Cell<'_> {
                 0 => icons::star(ui, at, color, on),
                 _ => {
                     let font = egui::TextStyle::Body.resolve(ui.style());
-                    ui.painter().text(at, egui::Align2::CENTER_CENTER, icon, font, color);
+                    ui.painter()
+                        .text(at, egui::Align2::CENTER_CENTER, icon, font, color);
                 }
             }
             icons::focus_ring(ui, &clicked, button);

@@ -16,8 +16,8 @@ pub const EXPORTER: Exporter = Exporter {
         let recipe = products.recipe().clone();
         let seen = products.seen()?;
         let (lidar, camera) = (seen.lidar_returns.as_ref(), seen.camera_pixels.as_ref());
-        let bytes =
-            box_list::to_bytes(&scene.name, scene.frame(), lidar, camera, Some(&recipe)).map_err(FormatError::new)?;
+        let bytes = box_list::to_bytes(&scene.name, scene.frame(), lidar, camera, Some(&recipe))
+            .map_err(FormatError::new)?;
         Ok(vec![OutFile::new("boxes.json", bytes)])
     },
 };

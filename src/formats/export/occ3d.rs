@@ -28,7 +28,10 @@ pub const EXPORTER: Exporter = Exporter {
             lidar_observed,
             camera_observed,
         };
-        Ok(vec![OutFile::new("labels.npz", occ3d::frame_with_recipe_to_bytes(&found, products.recipe()))])
+        Ok(vec![OutFile::new(
+            "labels.npz",
+            occ3d::frame_with_recipe_to_bytes(&found, products.recipe()),
+        )])
     },
 };
 
@@ -62,6 +65,7 @@ mod tests {
     use scene::{Unobserved, Window};
 
     use super::*;
+    use crate::export::Products;
     use crate::import::Content;
     use crate::table_tests::{Small, random_scene, round_trip, scene};
 
@@ -78,7 +82,10 @@ mod tests {
             assert!(back.skipped.is_empty(), "{:?}", back.skipped);
             // (the tests' recipe is that of another scene)
             let told = Small.recipe().clone();
-            assert_eq!((back.scene.seed, back.scene.conditions), (told.seed, told.conditions));
+            assert_eq!(
+                (back.scene.seed, back.scene.conditions),
+                (told.seed, told.conditions)
+            );
             let unobserved = frame.inferred.unobserved.as_ref().expect("masks");
             for [x, y] in Extent::WINDOW.all_columns() {
                 let expected = match (x >= 100, y >= 100) {

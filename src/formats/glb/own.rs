@@ -7,12 +7,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2, DVec3};
 use scene::message::quoted;
 use scene::moved::Columns;
-use scene::{
-    BevLayout, BoxId, Class, Conditions, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid,
-    infer,
-};
+use scene::{BevLayout, BoxId, Class, Extent, Frame, Inferred, Scene, SceneBox, SensorRig, VoxelGrid, infer};
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 
 use super::document::{Document, LeftOut, Node};
 use super::solid::Solid;

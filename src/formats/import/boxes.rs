@@ -39,5 +39,7 @@ pub const IMPORTER: Importer = Importer {
         })))
     },
     #[cfg(test)]
-    sample: || box_list::to_bytes("s", crate::table_tests::scene().frame(), None, None, None).expect("finite"),
+    sample: || {
+        box_list::to_bytes("s", crate::table_tests::scene().frame(), None, None, None).expect("finite")
+    },
 };

@@ -38,7 +38,11 @@ fn entry(index: usize) -> String {
 }
 
 fn check(versions: usize, typed: usize) -> Result<(), ProjectError> {
-    within("the number of versions", versions as u64, Kept::MAX_VERSIONS as u64)?;
+    within(
+        "the number of versions",
+        versions as u64,
+        Kept::MAX_VERSIONS as u64,
+    )?;
     within("the number of typed lines", typed as u64, Kept::MAX_TYPED as u64)
 }
 

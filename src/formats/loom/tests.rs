@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3};
 use scene::background::{Background, Form, Tree, TreeKind};
 use scene::clip::ObjectVoxels;
 use scene::{
-    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Key, Motion, Relief, Scene, SceneBox,
-    SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
+    BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Kept, KeptVersion, Key, Motion,
+    Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
@@ -431,7 +431,7 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 5; open it with the sceneloom that wrote it"
+        "manifest.json: version is 0, expected 6; open it with the sceneloom that wrote it"
     );
     for version in ["6", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
@@ -447,19 +447,28 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
 #[test]
 fn what_is_kept_is_no_part_of_the_scene() {
     let scene = sample(VERSION);
-    let (with, alone) = (to_bytes(&scene).expect("sound"), alone_to_bytes(&scene).expect("sound"));
+    let (with, alone) = (
+        to_bytes(&scene).expect("sound"),
+        alone_to_bytes(&scene).expect("sound"),
+    );
     assert!(with.len() > alone.len());
     let mut bare = scene.clone();
     bare.kept = Arc::default();
     assert_eq!(to_bytes(&bare).expect("sound"), alone);
     // Every version opens by itself.
     let back = from_bytes(&with).expect("its own");
-    assert_same(&from_bytes(&back.kept.versions[1].loom).expect("a version"), &sample(2));
+    assert_same(
+        &from_bytes(&back.kept.versions[1].loom).expect("a version"),
+        &sample(2),
+    );
     assert_eq!(back.kept.versions[0].title(), "before the rain");
     assert_eq!(back.kept.versions[1].title(), "Add a car");
     // A version that is damaged does not keep the scene from opening; one that is missing or too much is named.
     let mut entries = unpack(&with);
-    let at = entries.iter().position(|e| e.0 == "versions/0001.loom").expect("there");
+    let at = entries
+        .iter()
+        .position(|e| e.0 == "versions/0001.loom")
+        .expect("there");
     entries[at].1.truncate(100);
     let damaged = from_bytes(&pack(&entries)).expect("the scene is whole");
     assert!(from_bytes(&damaged.kept.versions[1].loom).is_err());

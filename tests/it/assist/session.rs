@@ -88,8 +88,15 @@ fn a_scene_is_made_changed_taken_back_and_written() {
     let opened = talk.did("open", json!({ "file": "made/a.loom" }));
     assert_eq!(opened["boxes"], state["counts"]["boxes"]);
     // The file keeps what was kept here.
-    let kept = formats::loom::load(&dir.path().join("made/a.loom")).expect("a project").kept.clone();
-    let names: Vec<_> = kept.versions.iter().map(|v| (v.name.as_str(), v.starred)).collect();
+    let kept = formats::loom::load(&dir.path().join("made/a.loom"))
+        .expect("a project")
+        .kept
+        .clone();
+    let names: Vec<_> = kept
+        .versions
+        .iter()
+        .map(|v| (v.name.as_str(), v.starred))
+        .collect();
     assert_eq!(names, [("before", true)]);
     let diff = talk.did("diff", json!({ "file": "made/a.loom" }));
     assert_eq!(

@@ -29,7 +29,7 @@ fn row_61_clocks() {
             Advice::Submit(params) | Advice::WarmUp(params) => assert_eq!(params.check(), Ok(())),
             Advice::Rest | Advice::Cancel => {}
         }
-        let (again, problem) = recovery.tick(&document, None, now_s);
+        let (again, problem) = recovery.tick(&document, None, scene::Scene::clone, now_s);
         assert_eq!(problem, None);
         assert!(again.is_none_or(|s| s >= 0.0), "{again:?}");
         recovery.wait();

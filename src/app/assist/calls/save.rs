@@ -31,8 +31,7 @@ pub struct Saved {
 
 impl Operation for Save {
     const NAME: &'static str = "save";
-    const ABOUT: &'static str =
-        "Writes the scene with everything in it and the kept versions as a project file (.loom), whole or not at all.";
+    const ABOUT: &'static str = "Writes the scene with everything in it and the kept versions as a project file (.loom), whole or not at all.";
     const EXAMPLE: &'static str = r#"{"file": "a.loom", "replace": true}"#;
     const CHANGES: bool = false;
     type Receipt = Saved;

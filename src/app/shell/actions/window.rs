@@ -329,9 +329,13 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(File, "export", "Export", "Ctrl+E", || {
         Command::Toggle(Window::Export)
     }),
-    action(File, "batches", "Batches: many variants of a scene", "Ctrl+B", || {
-        Command::Toggle(Window::Batches)
-    }),
+    action(
+        File,
+        "batches",
+        "Batches: many variants of a scene",
+        "Ctrl+B",
+        || Command::Toggle(Window::Batches),
+    ),
     action(File, "checks", "Checks of the scene", "", || {
         Command::View(ViewCommand::TogglePane(PaneId::CHECKS))
     }),
