@@ -14,6 +14,9 @@ def fail(line):
 def main(path):
     with np.load(path, allow_pickle=False) as labels:
         found = {name: labels[name] for name in labels.files}
+    recipe = json.loads(found.pop("recipe").tobytes())
+    if recipe["software"] != "sceneloom":
+        fail(f"recipe of {recipe['software']}, expected sceneloom")
     if sorted(found) != ["mask_camera", "mask_lidar", "semantics"]:
         fail(f"arrays {sorted(found)}, expected semantics, mask_lidar, mask_camera")
     for name, array in found.items():

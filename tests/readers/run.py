@@ -46,7 +46,8 @@ def environment(script, envs):
             if done.returncode:
                 raise RuntimeError(done.stderr.strip().splitlines()[-1])
             ready.touch()
-        return [python, script], ROOT
+        # -P: a script named as a package is not that package.
+        return [python, "-P", script], ROOT
     env.mkdir(parents=True, exist_ok=True)
     if not ready.exists():
         done = run("npm", "install", "--silent", "--prefix", env, *packages(script))

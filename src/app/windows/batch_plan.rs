@@ -260,7 +260,7 @@ impl PlanForm {
                     1..=3 => self.formats.join(", "),
                     n => format!("{n} formats"),
                 };
-                ui.menu_button(format!("{text} ⏷"), |ui| {
+                ui.menu_button(format!("{text}…"), |ui| {
                     egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
                         tick(ui, &mut self.formats, "loom", "loom: the scene itself");
                         for format in formats::export::all() {

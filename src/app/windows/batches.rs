@@ -15,6 +15,8 @@ use widgets::{icons, theme};
 const PICTURE: egui::Vec2 = vec2(226.0, 81.0);
 /// Below it: number and changes, star.
 const CAPTION: f32 = 22.0;
+/// Height of the window at most, points.
+const HEIGHT: f32 = 640.0;
 /// Pictures read from disk in one frame.
 const READ_AT_ONCE: usize = 6;
 /// Pictures kept in memory.
@@ -89,7 +91,8 @@ impl BatchesWindow {
             .id(egui::Id::unique("batches"))
             .open(open)
             .default_pos(egui::pos2(260.0, 90.0))
-            .default_size([1010.0, 600.0])
+            .default_size([1010.0, HEIGHT])
+            .max_height((ui.ctx().content_rect().height() - 120.0).min(HEIGHT))
             .show(ui.ctx(), |ui| {
                 egui::Panel::left("batch queue")
                     .exact_size(240.0)
@@ -115,7 +118,7 @@ impl BatchesWindow {
     }
 
     fn queue_ui(&mut self, ui: &mut Ui, queue: &Queue) {
-        if ui.selectable_label(self.is_new, "➕  New batch…").clicked() {
+        if ui.selectable_label(self.is_new, "New batch…").clicked() {
             self.is_new = true;
         }
         ui.separator();
@@ -336,13 +339,11 @@ impl Cell<'_> {
         let caption = Rect::from_min_max(below.min, pos2(below.right() - 48.0, below.bottom()));
         label(ui, caption, &self.changes(), theme::text());
         let mut asked = None;
-        for (i, (icon, on, hint)) in [
-            ("★", is_starred, "Star"),
-            ("✖", is_discarded, "Discard: marked in the index, the files stay"),
-        ]
-        .into_iter()
-        .enumerate()
-        {
+        let buttons = [
+            (is_starred, "Star"),
+            (is_discarded, "Discard: marked in the index, the files stay"),
+        ];
+        for (i, (on, hint)) in buttons.into_iter().enumerate() {
             let at = pos2(below.right() - 36.0 + 24.0 * i as f32, below.center().y);
             let button = Rect::from_center_size(at, vec2(22.0, CAPTION));
             let clicked = ui.interact(button, ui.scope_id().with((id, variant, i)), Sense::click());
@@ -357,9 +358,10 @@ impl Cell<'_> {
             match i {
                 0 => icons::star(ui, at, color, on),
                 _ => {
-                    let font = egui::TextStyle::Body.resolve(ui.style());
-                    ui.painter()
-                        .text(at, egui::Align2::CENTER_CENTER, icon, font, color);
+                    let stroke = egui::Stroke::new(if on { 2.0 } else { 1.2 }, color);
+                    for way in [vec2(4.5, 4.5), vec2(4.5, -4.5)] {
+                        ui.painter().line_segment([at - way, at + way], stroke);
+                    }
                 }
             }
             icons::focus_ring(ui, &clicked, button);
