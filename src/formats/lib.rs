@@ -6,6 +6,8 @@ pub mod box_list;
 pub mod calibration;
 #[cfg(test)]
 mod clip_tests;
+#[cfg(test)]
+mod cut_tests;
 pub mod error;
 pub mod export;
 pub mod glb;

@@ -378,7 +378,7 @@ impl Dice {
 }
 
 /// One line about a bad file, or none if it is read; never a panic.
-fn refusal(importer: &'static Importer, bytes: &[u8]) -> Option<String> {
+pub(crate) fn refusal(importer: &'static Importer, bytes: &[u8]) -> Option<String> {
     let outcome = catch_unwind(|| read(importer, bytes).map(drop));
     let line = outcome
         .unwrap_or_else(|_| panic!("{} panics", importer.id))

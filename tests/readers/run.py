@@ -78,7 +78,7 @@ def main():
     parser.add_argument("names", nargs="*")
     args = parser.parse_args()
     scripts = sorted(s for s in HERE.iterdir() if s.suffix in (".py", ".mjs") and s.stem not in OTHERS)
-    lost = {f["name"]: f.get("lost", "") for f in json.loads(run(args.program, "export", "--format", "list", "--json").stdout)["formats"]}
+    lost = {f["name"]: f["lost"] or "nothing of what it holds" if f["read"] else "not read" for f in json.loads(run(args.program, "export", "--format", "list", "--json").stdout)["formats"]}
     rows, failed = [], 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
@@ -104,7 +104,7 @@ def main():
                     raise RuntimeError((done.stderr.strip().splitlines() or ["no reason"])[-1])
                 said = json.loads(done.stdout.strip().splitlines()[-1])
                 reader = f"{said['reader']} {said.get('version', '')}".strip()
-                rows.append((name, reader, "yes" if said["accepted"] else "no", lost.get(name) or "nothing of what it holds"))
+                rows.append((name, reader, "yes" if said["accepted"] else "no", lost.get(name, "")))
                 failed += not said["accepted"]
             except (RuntimeError, subprocess.SubprocessError, OSError, ValueError, KeyError) as error:
                 failed += 1
@@ -112,7 +112,7 @@ def main():
             print(*rows[-1][:3], sep=" | ", flush=True)
     if not args.names:
         lines = ["# Formats and their own readers", "", "Made by `tests/readers/run.py`.", "",
-                 "| format | reader | accepted | lost when it is read again |", "|---|---|---|---|"]
+                 "| format | reader | accepted | lost when Sceneloom reads it again |", "|---|---|---|---|"]
         lines += [f"| {' | '.join(str(c).replace('|', '/') for c in row)} |" for row in rows]
         args.table.write_text("\n".join(lines) + "\n")
     return 1 if failed else 0
