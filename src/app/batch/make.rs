@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use anyhow::{Context, bail};
 
-use super::plan::{Base, Change, Generate, Output, Plan};
+use super::plan::{Base, Change, Generate, Output, Plan, video};
 use super::record::{FILE, FileRecord, Findings, Record};
 use super::thumb;
 use crate::camera_views::LidarModel;
+use crate::clip_export::{ClipOptions, ClipView, clip};
 use crate::export::{ExportOptions, ExportProgress, export_all};
 use crate::open::{self, Placement};
 use crate::text;
@@ -23,7 +24,11 @@ use job::{GenParams, Job, JobCtx, Pipeline, RegionMode};
 use nets::OccModels;
 use scene::draw::hash;
 use scene::{Class, Scene};
+use sensors::cameras::pictures;
 use trade::Presets;
+
+/// Size of each camera in moving pictures, pixels.
+const CLIP_SIZE: [u32; 2] = [400, 225];
 
 /// What makes the variants of a plan.
 pub struct Maker {
@@ -205,6 +210,15 @@ impl Maker {
             }
             return Ok(());
         }
+        if let Some(kind) = video(&output.format) {
+            if first {
+                make()?;
+                let bytes = clip(scene, &clip_options(output, scene), kind, &|_, _| true)?;
+                let path = place.join(format!("cameras.{}", output.format));
+                atomic::write(&path, &bytes).with_context(|| format!("write {}", path.display()))?;
+            }
+            return Ok(());
+        }
         let Some(format) = formats::export::from_id(&output.format) else {
             bail!("format {:?} is not known", output.format);
         };
@@ -221,6 +235,20 @@ impl Maker {
         }
         export_all(scene, &[format], &options, &place, &ExportProgress::default())?;
         Ok(())
+    }
+}
+
+/// The pictures of all cameras over the whole clip.
+fn clip_options(output: &Output, scene: &Scene) -> ClipOptions {
+    ClipOptions {
+        view: ClipView::Cameras {
+            view: pictures::VIEW.id,
+            source: pictures::ID,
+            camera: None,
+        },
+        size: output.size.unwrap_or(CLIP_SIZE),
+        span_s: [0.0, scene.clip().length_s],
+        rate_hz: scene.clip().rate_hz,
     }
 }
 

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use editor::Edit;
 use formats::input;
+use formats::video::VideoKind;
 use numeric::splitmix::hash;
 use scene::{BoxId, Class, TimeOfDay, Weather};
 
@@ -173,7 +174,7 @@ pub struct Generate {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Output {
-    /// A format of `export --format list`, or `loom`.
+    /// A format of `export --format list`, or `loom`, or of clips `mp4`, `gif` and `apng`: all cameras in two rows.
     pub format: String,
     /// Size of camera pictures, pixels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -181,6 +182,16 @@ pub struct Output {
     /// The learned LiDAR in place of the exact one.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub learned_lidar: bool,
+}
+
+/// The kind of moving pictures that a format of a plan is, if it is one.
+pub fn video(format: &str) -> Option<VideoKind> {
+    match format {
+        "mp4" => Some(VideoKind::Mp4),
+        "gif" => Some(VideoKind::Gif),
+        "apng" => Some(VideoKind::Apng),
+        _ => None,
+    }
 }
 
 impl Value {
@@ -259,12 +270,13 @@ impl Plan {
         if self.write.is_empty() {
             return Some("write is empty, expected at least one format".into());
         }
-        let unknown = |o: &&Output| o.format != "loom" && formats::export::from_id(&o.format).is_none();
+        let known = |id: &str| id == "loom" || video(id).is_some() || formats::export::from_id(id).is_some();
+        let unknown = |o: &&Output| !known(&o.format);
         if let Some(output) = self.write.iter().find(unknown) {
             let known: Vec<&str> = formats::export::all().iter().map(|f| f.id).collect();
             let found = scene::message::quoted(&output.format, 60);
             return Some(format!(
-                "write: format is {found:?}, expected loom, {}",
+                "write: format is {found:?}, expected loom, mp4, gif, apng, {}",
                 known.join(", ")
             ));
         }

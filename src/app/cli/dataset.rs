@@ -6,6 +6,7 @@ use anyhow::{Context, bail};
 
 use super::dataset_occ3d;
 use super::progress::Progress;
+use super::render::size;
 use super::{Common, Outcome, output};
 use app::memory;
 use app::open;
@@ -13,6 +14,7 @@ use authoring::drives::{drive_scene, frames_of};
 use authoring::roads::Roads;
 use dataset::layout::layout_frame;
 use dataset::lidar::lidar_frame;
+use dataset::pictures::picture_frame;
 use dataset::text::text_frame;
 use dataset::{self, DatasetReport, OccupancyFrame, occupancy_frame};
 use formats::occ3d;
@@ -22,7 +24,7 @@ use formats::occ3d;
 pub struct Dataset {
     /// What the frames hold, as shards for training; `occ3d` writes simulated labels with their masks as Occ3D files,
     /// `memory` the bank of remembered scenes.
-    #[arg(value_parser = ["occupancy", "drives", "lidar", "layout", "text", "occ3d", "memory"])]
+    #[arg(value_parser = ["occupancy", "drives", "lidar", "layout", "text", "pictures", "occ3d", "memory"])]
     kind: String,
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
@@ -34,6 +36,9 @@ pub struct Dataset {
     /// rest on templates.
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     roads: Option<PathBuf>,
+    /// Size of camera pictures (kind `pictures`).
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "400x225")]
+    size: [u32; 2],
     /// Fixes the worlds; use different seeds for training, validation and test.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -98,6 +103,15 @@ impl Dataset {
             }
             "text" => {
                 let make = |i: usize| anyhow::Ok(text_frame(self.seed, i as u64, |seed| roads.layout(seed)));
+                dataset::write(&self.output, frames, make, step)
+            }
+            "pictures" => {
+                let size = self.size;
+                let make = |i: usize| {
+                    anyhow::Ok(picture_frame(self.seed, i as u64, size, |seed| {
+                        roads.layout(seed)
+                    }))
+                };
                 dataset::write(&self.output, frames, make, step)
             }
             "drives" => {

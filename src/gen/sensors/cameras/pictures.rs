@@ -10,12 +10,15 @@ use scene::Camera;
 /// What it shows.
 pub const VIEW: View = View::new(ViewId::new("appearance"), "Picture", "what a camera would see");
 
+/// Name of the source.
+pub const ID: SourceId = SourceId::new("pictures");
+
 /// The source.
 pub struct Pictures;
 
 impl CameraSource for Pictures {
     fn id(&self) -> SourceId {
-        SourceId::new("pictures")
+        ID
     }
 
     fn title(&self) -> &'static str {
