@@ -26,7 +26,8 @@ def run(*command, **more):
 
 
 def format_of(script):
-    return script.stem.replace("_", "-")
+    # A second reader of a format is named FORMAT__READER.
+    return script.stem.split("__")[0].replace("_", "-")
 
 
 def packages(script):
