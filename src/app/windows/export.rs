@@ -6,9 +6,12 @@ use egui::{DragValue, Ui};
 
 use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, Format};
-use formats::export::Product;
+use formats::export::{Product, Span};
 use sensors::cameras::{self, ViewId};
-use widgets::theme;
+use widgets::{icons, theme};
+
+/// Height of the list of formats at most, points.
+const LIST_HEIGHT: f32 = 280.0;
 
 /// What the dialog shows of the application.
 pub struct ExportInput<'a> {
@@ -41,6 +44,7 @@ pub struct ExportDialog {
     pub path: String,
     /// Where the last export went: that it is there is no surprise.
     pub written: String,
+    search: String,
     folder: std::path::PathBuf,
     stem: String,
 }
@@ -58,6 +62,7 @@ impl ExportDialog {
             written: String::new(),
             options: ExportOptions::default(),
             path: String::new(),
+            search: String::new(),
             folder: scene_file.parent().unwrap_or(Path::new("")).to_path_buf(),
             stem,
         };
@@ -175,12 +180,77 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     }
 }
 
+/// Headings of the list, and how the titles below each begin; the last takes all others.
+const GROUPS: [(&str, &[&str]); 4] = [
+    ("Occupancy and meshes", &["Occupancy: ", "Meshes: ", "Splats: "]),
+    ("LiDAR", &["LiDAR: "]),
+    ("Pictures", &["Cameras: ", "3D view: "]),
+    ("Boxes, roads, clips", &[]),
+];
+
+/// Heading that a format stands under.
+fn group_of(format: Format) -> usize {
+    let begins = |(_, starts): &(&str, &[&str])| starts.iter().any(|s| format.title.starts_with(s));
+    GROUPS.iter().position(begins).unwrap_or(GROUPS.len() - 1)
+}
+
+/// The formats that hold every word that was typed, by heading.
+fn found(search: &str) -> [Vec<Format>; GROUPS.len()] {
+    let words: Vec<String> = search.split_whitespace().map(str::to_lowercase).collect();
+    let mut out: [Vec<Format>; GROUPS.len()] = Default::default();
+    for format in formats::export::all() {
+        let text = format!("{} {}", format.id, format.title).to_lowercase();
+        if words.iter().all(|word| text.contains(word)) {
+            out[group_of(format)].push(format);
+        }
+    }
+    out
+}
+
 fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
     let before = dialog.format;
-    for format in formats::export::all() {
-        ui.radio_value(&mut dialog.format, Some(*format), format.title);
+    let hint = format!("Search {} formats", formats::export::all().len());
+    let field = egui::TextEdit::singleline(&mut dialog.search)
+        .hint_text(hint)
+        .desired_width(f32::INFINITY);
+    ui.add(field).accessible_name("Search formats");
+    egui::ScrollArea::vertical()
+        .max_height(LIST_HEIGHT)
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            let found = found(&dialog.search);
+            for ((heading, starts), formats) in GROUPS.iter().zip(&found) {
+                if formats.is_empty() {
+                    continue;
+                }
+                icons::section(ui, heading);
+                for format in formats {
+                    let mut starts = starts.iter();
+                    let short = starts.find_map(|s| format.title.strip_prefix(s));
+                    let radio =
+                        egui::RadioButton::new(dialog.format == Some(*format), short.unwrap_or(format.title));
+                    if ui.add(radio).clicked() {
+                        dialog.format = Some(*format);
+                    }
+                }
+            }
+            if found.iter().all(Vec::is_empty) {
+                ui.weak("No format is called so.");
+            }
+        });
+    ui.radio_value(&mut dialog.format, None, "Every format, into one folder");
+    if let Some(format) = dialog.format {
+        let span = match format.span {
+            Span::Moment => "The moment that is shown.",
+            Span::Clip => "The whole clip.",
+        };
+        let lost = match format.lost {
+            "" => String::new(),
+            lost => format!(" Read again it lacks: {lost}."),
+        };
+        ui.weak(format!("{span}{lost}"));
     }
-    ui.radio_value(&mut dialog.format, None, "Everything above, into one folder");
     if dialog.format != before {
         dialog.path = dialog.suggested();
     }

@@ -311,9 +311,7 @@ fn the_export_dialog_writes_what_was_chosen() {
     bench.off();
     bench.key(Modifiers::CTRL, Key::E);
     bench.steps(2);
-    assert!(
-        bench.sees("Occupancy: Occ3D labels.npz, 200 x 200 x 16 class labels, masks of LiDAR and cameras")
-    );
+    assert!(bench.sees("Occ3D labels.npz, 200 x 200 x 16 class labels, masks of LiDAR and cameras"));
     bench.click("Boxes: JSON with centre, size, heading, velocity, LiDAR points");
     let path = bench.folder.path().join("cars.json");
     bench.harness.get_by_label("Export path").focus();
