@@ -494,3 +494,33 @@ fn things_beside_the_road_are_edited_by_words_and_by_edits() {
     let (changes, _) = run(&["diff", &worded, &edited]);
     assert_eq!(changes["voxels_changed"], 0, "{changes:#}");
 }
+
+/// Versions are listed, added and taken out; a bad name is one line.
+#[test]
+fn versions_of_a_file_by_the_command_line() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let (scene, kept, taken) = (path("a.loom"), path("b.loom"), path("c.loom"));
+    run(&["new", "--template", "straight", "--seed", "2", "-o", &scene]);
+    let listed = run(&["versions", &scene]).0;
+    assert_eq!(listed["versions"], serde_json::json!([]));
+    run(&["versions", &scene, "--keep", "plain", "-o", &kept]);
+    let edits = path("edits.json");
+    std::fs::write(&edits, r#"[{"set_prompt": {"prompt": "snow"}}]"#).expect("written");
+    run(&["edit", &kept, "--edits", &edits, "-o", &kept]);
+    let listed = run(&["versions", &kept]).0;
+    assert_eq!(listed["versions"][0]["name"], "plain");
+    assert_eq!(listed["versions"][0]["starred"], true);
+    for which in ["plain", "1"] {
+        run(&["versions", &kept, "--take", which, "-o", &taken]);
+        assert_eq!(
+            std::fs::read(&taken).expect("written"),
+            std::fs::read(&scene).expect("written"),
+            "the version is the scene that it was"
+        );
+    }
+    refused(
+        &["versions", &kept, "--take", "other", "-o", &taken],
+        "expected a name or 1 to 1",
+    );
+}

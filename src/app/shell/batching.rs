@@ -25,6 +25,11 @@ pub struct Batching {
 }
 
 impl SceneloomApp {
+    /// The queue of batches.
+    pub fn batches(&self) -> &Queue {
+        &self.files.batching.queue
+    }
+
     /// Opens the window of batches, or closes it.
     pub(crate) fn toggle_batches(&mut self) {
         let batching = &mut self.files.batching;

@@ -1,5 +1,6 @@
 //! The window driven as a user drives it: by labels, pointer and keys, with a scripted pipeline.
 
+mod batches;
 mod bench;
 mod beside;
 mod checks;
