@@ -297,7 +297,7 @@ fn path_row(ui: &mut Ui, label: &str, path: &mut String, hint: &str) {
         let field = egui::TextEdit::singleline(path)
             .desired_width(f32::INFINITY)
             .hint_text(hint);
-        ui.add(field).accessible_name(label);
+        ui.add(field).accessible_name(format!("{label} of the batch"));
     });
 }
 

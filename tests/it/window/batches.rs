@@ -8,7 +8,7 @@ use app::batch::marks::Marks;
 use app::batch::queue::State;
 
 impl Bench {
-    fn type_into(&mut self, label: &str, text: &str) {
+    pub fn type_into(&mut self, label: &str, text: &str) {
         self.harness.get_by_label(label).focus();
         self.steps(2);
         self.harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
@@ -26,7 +26,7 @@ fn variants_are_made_marked_and_opened() {
     let folder = bench.folder.path().join("variants");
     bench.click("Night");
     bench.click("Rain");
-    bench.type_into("Folder", &folder.display().to_string());
+    bench.type_into("Folder of the batch", &folder.display().to_string());
     bench.click("count what the quality checks find");
     bench.click("Add to the queue");
     assert_eq!(bench.app().batches().items().len(), 1);

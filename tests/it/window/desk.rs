@@ -312,6 +312,7 @@ fn the_export_dialog_writes_what_was_chosen() {
     bench.key(Modifiers::CTRL, Key::E);
     bench.steps(2);
     assert!(bench.sees("Occ3D labels.npz, 200 x 200 x 16 class labels, masks of LiDAR and cameras"));
+    bench.type_into("Search formats", "boxes json");
     bench.click("Boxes: JSON with centre, size, heading, velocity, LiDAR points");
     let path = bench.folder.path().join("cars.json");
     bench.harness.get_by_label("Export path").focus();
