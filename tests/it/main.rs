@@ -24,6 +24,7 @@ mod recovery;
 mod rows;
 mod sensor_scene;
 mod sensors;
+mod serve;
 mod shaders;
 mod splat_gpu;
 mod splat_reference;

@@ -16,8 +16,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-# Scripts that are no format: this one, and the client of `mcp`.
-OTHERS = {"run", "mcp_client"}
+# Scripts that are no format: this one, and the clients of `mcp` and `serve`.
+OTHERS = {"run", "mcp_client", "serve"}
 CLIPS = {"nuscenes", "openlabel", "mcap", "openscenario", "world-scenario", "control-video", "kitti"}
 
 

@@ -25,6 +25,7 @@ mod region_arg;
 mod render;
 mod scenery;
 mod schema;
+mod serve;
 mod session;
 mod shot;
 mod trade;
@@ -96,6 +97,8 @@ enum Command {
     Session(session::Session),
     /// Drive an editor by an assistant: a server of the Model Context Protocol.
     Mcp(mcp::Mcp),
+    /// Answer simulators: camera pictures and LiDAR of scenes at poses and times, over gRPC.
+    Serve(serve::Serve),
     /// The JSON Schema of all calls of `session` and `mcp`.
     Schema(schema::SchemaCommand),
     /// What this machine offers.
@@ -155,6 +158,7 @@ pub fn main() -> ExitCode {
         Some(Command::Trade(c)) => c.run(),
         Some(Command::Session(c)) => c.run(),
         Some(Command::Mcp(c)) => c.run(),
+        Some(Command::Serve(c)) => c.run(),
         Some(Command::Schema(c)) => c.run(),
         Some(Command::Doctor(c)) => c.run(),
         None => editor(cli.scene, cli.trace),

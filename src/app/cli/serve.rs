@@ -1,0 +1,51 @@
+//! `sceneloom serve`: a renderer for simulators, over gRPC.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use super::Outcome;
+use ::serve::{LidarModel, Options, Server};
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Serve {
+    /// Scenes, and folders whose .loom files are served; a scene's id is its file's name without the ending.
+    #[arg(required = true, value_name = "FOLDER|SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Where to listen; port 0 stands for any free one. Whoever reaches the address may ask.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:50051")]
+    listen: SocketAddr,
+    /// Requests that are rendered at a time.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..=256))]
+    jobs: u16,
+    /// Requests that wait at most; more are refused.
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    waiting: u16,
+    /// Scenes that are kept in memory.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    keep: u16,
+    /// How LiDAR sweeps come about.
+    #[arg(long, value_name = "MODEL", value_parser = ["learned", "exact"], default_value = "learned")]
+    lidar: String,
+}
+
+impl Serve {
+    pub(super) fn run(self) -> Outcome {
+        let server = Server::bind(Options {
+            listen: self.listen,
+            jobs: self.jobs.into(),
+            waiting: self.waiting.into(),
+            kept: self.keep.into(),
+            lidar: match self.lidar.as_str() {
+                "exact" => LidarModel::Exact,
+                _ => LidarModel::Learned,
+            },
+            ..Options::new(self.scenes)
+        })?;
+        let (address, scenes) = (server.address()?, server.scenes());
+        let noun = if scenes == 1 { "scene" } else { "scenes" };
+        println!("serving {scenes} {noun} on {address}");
+        server.run_until_signal()?;
+        Ok(())
+    }
+}

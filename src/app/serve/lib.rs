@@ -1,0 +1,35 @@
+//! A renderer for simulators: scenes, poses and times in, camera pictures and LiDAR sweeps out, over gRPC. The protocol is that by
+//! which AlpaSim's runtime asks its sensor simulation; `docs/serve.md` says which of it is served, `docs/sensorsim.proto` what its
+//! fields mean.
+//!
+//! A request is let in by a gate before it is read, rendered on a thread that may block, and keeps its place until the
+//! answer is sent. Nothing is remembered between requests but scenes and prepared moments: the same request gives the same bytes.
+
+mod encode;
+#[cfg(test)]
+mod error_tests;
+#[cfg(test)]
+mod fixture;
+mod gate;
+#[cfg(test)]
+mod grpc_tests;
+mod lens;
+mod lidar;
+pub mod limits;
+mod moment;
+mod offers;
+mod picture;
+mod polynomial;
+mod poses;
+mod recent;
+mod renderer;
+mod scenes;
+mod server;
+mod service;
+mod several;
+#[cfg(test)]
+mod tests;
+pub mod wire;
+
+pub use renderer::LidarModel;
+pub use server::{Options, Server};

@@ -1,0 +1,80 @@
+//! What all requests share: the scenes, what was prepared last, and the LiDAR network.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::Context;
+
+use crate::recent::Recent;
+use crate::scenes::Scenes;
+use nets::lidar::LidarNet;
+use scene::{Frame, Scene, SceneRev, SensorRig};
+use sensors::appearance::Appearance;
+
+/// How sweeps come about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LidarModel {
+    /// By the network: ranges within voxels, intensities, lost echoes.
+    #[default]
+    Learned,
+    /// Every ray to the first voxel; intensities are 0.
+    Exact,
+}
+
+/// Scenes, and what is kept of them.
+pub struct Renderer {
+    /// The scenes.
+    pub scenes: Scenes,
+    /// The network of sweeps; none where they are exact.
+    pub net: Option<Arc<LidarNet>>,
+    prepared: Recent<Prepared, Arc<Appearance>>,
+}
+
+/// All that an appearance depends on, with numbers by their bits.
+#[derive(PartialEq)]
+struct Prepared {
+    content: SceneRev,
+    numbers: Vec<u64>,
+}
+
+impl Renderer {
+    /// Of files and folders; keeps at most so many scenes, and so many prepared moments. Errors in one line.
+    pub fn new(paths: &[PathBuf], scenes: usize, moments: usize, lidar: LidarModel) -> anyhow::Result<Self> {
+        let net = match lidar {
+            LidarModel::Learned => Some(LidarNet::bundled().context("the LiDAR network")?),
+            LidarModel::Exact => None,
+        };
+        Ok(Self {
+            scenes: Scenes::list(paths, scenes)?,
+            net,
+            prepared: Recent::new(moments),
+        })
+    }
+
+    /// A frame ready to be looked at, kept for the next camera of the same moment. `moment` is all that decides the frame besides
+    /// the scene; the vehicle is that of `rig`.
+    pub fn appearance<E>(
+        &self,
+        scene: &Scene,
+        moment: Vec<f64>,
+        rig: &SensorRig,
+        frame: impl FnOnce() -> Result<Arc<Frame>, E>,
+    ) -> Result<Arc<Appearance>, E> {
+        let mut numbers = moment;
+        numbers.extend(rig.vehicle.rotation.to_array());
+        numbers.extend(rig.vehicle.translation_m.to_array());
+        // (the longest read-out decides where things that move are looked for)
+        let rolls = rig.cameras.iter().filter_map(|c| c.shutter);
+        numbers.push(rolls.map(|s| s.readout_s).fold(0.0, f64::max));
+        let key = Prepared {
+            content: scene.content(),
+            numbers: numbers.into_iter().map(f64::to_bits).collect(),
+        };
+        if let Some(ready) = self.prepared.get(&key) {
+            return Ok(ready);
+        }
+        let ready = Arc::new(Appearance::new(&*frame()?, rig, &scene.conditions));
+        self.prepared.put(key, ready.clone());
+        Ok(ready)
+    }
+}
