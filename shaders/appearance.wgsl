@@ -12,6 +12,8 @@ struct View {
     // Ego frame to where textures stay: quaternion, shift.
     turn: vec4f,
     shift: vec4f,
+    // Where the vehicle stands, x and y in m.
+    vehicle: vec4f,
     // Voxels of the field along x and y, blocks along x and y.
     field: vec4u,
     // Bins of lines along x and y.

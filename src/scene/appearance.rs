@@ -173,6 +173,8 @@ pub struct AppearanceData {
     pub turn: [f32; 4],
     /// And the way, m.
     pub shift_m: [f32; 3],
+    /// Where the vehicle stands: rain and snow fall around it, m.
+    pub vehicle_m: [f32; 2],
     /// Varies textures.
     pub seed: u32,
 }

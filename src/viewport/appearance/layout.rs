@@ -19,6 +19,7 @@ pub(super) struct GpuView {
     air: [[f32; 4]; 8],
     turn: [f32; 4],
     shift: [f32; 4],
+    vehicle: [f32; 4],
     field: [u32; 4],
     bins: [u32; 4],
     low: [f32; 4],
@@ -49,6 +50,7 @@ impl GpuView {
             air: appearance.air,
             turn: appearance.turn,
             shift: [x, y, z, 0.0],
+            vehicle: [appearance.vehicle_m[0], appearance.vehicle_m[1], 0.0, 0.0],
             field: [shape.nx, shape.ny, blocks_x, blocks_y].map(|n| n as u32),
             bins: [bins_x as u32, bins_y as u32, 0, 0],
             low: [

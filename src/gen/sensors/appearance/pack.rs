@@ -28,6 +28,7 @@ impl Appearance {
             ],
             turn: turn.to_array(),
             shift_m: shift.to_array(),
+            vehicle_m: self.vehicle.to_array(),
             seed: self.seed,
             ..AppearanceData::default()
         };

@@ -82,6 +82,8 @@ pub struct Appearance {
     /// Ego frame to where textures stay.
     turn: Quat,
     shift: Vec3,
+    /// Where the vehicle stands: rain and snow fall around it, m.
+    pub(super) vehicle: Vec2,
     /// Nothing is higher, m.
     highest: f32,
 }
@@ -141,6 +143,7 @@ impl Appearance {
             seed,
             turn: Quat::IDENTITY,
             shift: Vec3::ZERO,
+            vehicle: rig.vehicle.translation_m.truncate().as_vec2(),
         }
     }
 

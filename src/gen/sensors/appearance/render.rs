@@ -162,6 +162,7 @@ impl Appearance {
             return color;
         }
         let flat = d.truncate().length_squared();
+        let o = o - self.vehicle.extend(0.0);
         let radii: &[f32] = if rain {
             &[3.2, 5.0, 7.5, 11.0]
         } else {

@@ -114,6 +114,27 @@ fn wetness_visibility_and_sun_show() {
     assert_eq!((wet(&appearance(0.25)), wet(&appearance(1.0))), (2.25, 3.0));
 }
 
+/// Rain and snow fall around the vehicle wherever it drives.
+#[test]
+fn rain_goes_along() {
+    let frame = street(4);
+    for weather in [Weather::Rain, Weather::Snow] {
+        let wet_px = |x_m: f64| {
+            let mut rig = SensorRig::default();
+            rig.vehicle.translation_m.x = x_m;
+            let mut camera = rig.cameras[0].clone();
+            camera.translation_m[0] += x_m;
+            let falling = Appearance::new(&frame, &rig, &of(TimeOfDay::Day, weather));
+            let mut calm = Appearance::new(&frame, &rig, &of(TimeOfDay::Day, weather));
+            (calm.air.rain, calm.air.snow) = (false, 0.0);
+            let [a, b] = [&falling, &calm].map(|a| a.render(&camera, 80, 45, Quality::Preview).rgba);
+            a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a != b).count()
+        };
+        let (here, there) = (wet_px(0.0), wet_px(25.0));
+        assert!(here > 100 && there > here / 2, "{weather:?}: {here} {there}");
+    }
+}
+
 #[test]
 fn threads_do_not_matter_and_the_seed_does() {
     let (frame, mut rig) = (street(4), SensorRig::default());
