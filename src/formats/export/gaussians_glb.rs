@@ -13,7 +13,7 @@ use crate::{FormatError, Holds};
 /// See [`to_bytes`].
 pub const EXPORTER: Exporter = Exporter {
     id: "gaussians-glb",
-    title: "3-D Gaussians: GLB with KHR_gaussian_splatting, a node for each box and class",
+    title: "Splats: 3-D Gaussians, GLB (KHR_gaussian_splatting), a node for each box and class",
     file_name: Some("scene_gaussians.glb"),
     holds: &[Holds::Pictures],
     lost: "",

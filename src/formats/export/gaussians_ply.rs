@@ -11,7 +11,7 @@ use crate::recipe::{NAME, Recipe};
 /// See [`to_bytes`].
 pub const EXPORTER: Exporter = Exporter {
     id: "gaussians-ply",
-    title: "3-D Gaussians: PLY for splat viewers, ego frame, with class, instance, LiDAR strength",
+    title: "Splats: 3-D Gaussians, PLY, ego frame, with class, instance, LiDAR strength",
     file_name: Some("scene_gaussians.ply"),
     holds: &[Holds::Pictures],
     lost: "",

@@ -48,12 +48,13 @@ fn scene_of(i: usize) -> anyhow::Result<(String, Scene)> {
     Ok((name.to_owned(), scene))
 }
 
-/// Cameras that were not baked from: on vehicles beside the places that were, and in drives every second one on the way
-/// itself, midway between two of the places there.
+/// Cameras that were not baked from: on vehicles beside the places that were, and in drives about every second one on the
+/// way itself, midway between two of the places there.
 fn unseen(scene: &Scene, stands: &[Pose], seed: u64) -> Vec<Camera> {
     let mut draw = Draw::new(seed, "unseen poses");
-    let on_way = bake::between(scene);
     let home = scene.rig.vehicle.inverse();
+    let is_free = |pose: &Pose| stands::is_free(scene.frame(), &scene.rig, pose);
+    let on_way: Vec<Pose> = bake::between(scene).into_iter().filter(is_free).collect();
     let mut out = Vec::new();
     // Where there is no room beside the places, fewer are judged.
     for _ in 0..VIEWS * 200 {
@@ -61,9 +62,8 @@ fn unseen(scene: &Scene, stands: &[Pose], seed: u64) -> Vec<Camera> {
             break;
         }
         let which = draw.below(scene.rig.cameras.len());
-        let pose = if out.len() % 2 == 1 && !on_way.is_empty() {
-            on_way[draw.below(on_way.len())]
-        } else {
+        let is_beside = on_way.is_empty() || draw.chance(0.5);
+        let pose = if is_beside {
             let from = stands[draw.below(stands.len())];
             let way = draw.range(0.0, std::f64::consts::TAU);
             let aside = DVec2::from_angle(way) * draw.range(ASIDE_M[0], ASIDE_M[1]);
@@ -71,8 +71,10 @@ fn unseen(scene: &Scene, stands: &[Pose], seed: u64) -> Vec<Camera> {
             let turn = sign * draw.range(TURNED_DEG[0], TURNED_DEG[1]).to_radians();
             let at = from.translation_m.truncate() + aside;
             stands::standing(scene.frame(), &from, at, turn)
+        } else {
+            on_way[draw.below(on_way.len())]
         };
-        if stands::fits(scene.frame(), &scene.rig, &pose) {
+        if !is_beside || stands::fits(scene.frame(), &scene.rig, &pose) {
             let mut camera = scene.rig.placed(&(pose * home)).cameras[which].clone();
             camera.shutter = None;
             out.push(camera);

@@ -25,7 +25,7 @@ pub fn stands(frame: &Frame, rig: &SensorRig, path: &[Pose], reach_m: f64, most:
     let step = path.len().div_ceil(most.div_ceil(2).max(1)).max(1);
     for (i, pose) in path.iter().step_by(step).enumerate() {
         // Others may stand now where the vehicle is at another moment.
-        if i > 0 && !body(rig, pose).all(|p| is_clear(frame, p)) {
+        if i > 0 && !is_free(frame, rig, pose) {
             continue;
         }
         shorten(&mut away, &free, pose);
@@ -76,10 +76,16 @@ fn shorten(away: &mut [f64], places: &[DVec2], pose: &Pose) {
 /// True if the vehicle can stand there: all of it on the drivable area, and no box in the way.
 pub fn fits(frame: &Frame, rig: &SensorRig, pose: &Pose) -> bool {
     let extent = frame.layout.extent();
-    body(rig, pose).all(|p| {
+    let is_on_road = |p: DVec2| {
         let column = extent.column_at(p.x, p.y);
-        column.is_some_and(|[x, y]| is_road(&frame.layout, x, y)) && is_clear(frame, p)
-    })
+        column.is_some_and(|[x, y]| is_road(&frame.layout, x, y))
+    };
+    body(rig, pose).all(is_on_road) && is_free(frame, rig, pose)
+}
+
+/// True if no box is in the way of a vehicle there.
+pub fn is_free(frame: &Frame, rig: &SensorRig, pose: &Pose) -> bool {
+    body(rig, pose).all(|p| is_clear(frame, p))
 }
 
 /// Points all over the vehicle's floor plan.
