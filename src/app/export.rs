@@ -17,8 +17,9 @@ use formats::export::{Exporter, Observed, OutFile, Picture, Product, Products, S
 use formats::recipe::Recipe;
 use formats::{FormatError, atomic};
 use nets::lidar::LidarNet;
-use scene::{CameraMaps, CameraTruth, LidarSweep, Pose, Scene, SensorRig};
+use scene::{CameraMaps, CameraTruth, GaussianScene, LidarSweep, Pose, Scene, SensorRig};
 use sensors::appearance::Quality;
+use sensors::bake::{self, BakeOptions};
 use sensors::cameras::{
     self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, pictures,
 };
@@ -178,7 +179,7 @@ pub fn export_all(
     let fills_a_folder = formats.len() > 1;
     let mut ready = Vec::new();
     progress.begin(formats, &scene.rig);
-    let recipe = OnceCell::new();
+    let (recipe, gaussians) = (OnceCell::new(), OnceCell::new());
     // Files of a moment speak of the ego frame; sensors see the scene where it is.
     for format in formats {
         let of_file = match format.span {
@@ -188,6 +189,7 @@ pub fn export_all(
         let mut making = Making {
             whole: scene,
             recipe: &recipe,
+            gaussians: &gaussians,
             scene: scene.with_rig_in_world(),
             options,
             progress,
@@ -233,6 +235,8 @@ struct Making<'a> {
     whole: &'a Scene,
     /// Made when the first file asks for it: it takes the scene as a file.
     recipe: &'a OnceCell<Recipe>,
+    /// Baked when the first file asks for them, and of which moment.
+    gaussians: &'a OnceCell<(f64, GaussianScene)>,
     /// The moment that products are made of, with the sensors where the ego vehicle is.
     scene: Cow<'a, Scene>,
     options: &'a ExportOptions,
@@ -335,6 +339,21 @@ impl Products for Making<'_> {
             },
         );
         told.map_err(FormatError::new)
+    }
+
+    fn gaussians(&mut self) -> Result<GaussianScene, FormatError> {
+        let time_s = self.scene.time_s();
+        if let Some((of_s, baked)) = self.gaussians.get()
+            && *of_s == time_s
+        {
+            return Ok(baked.clone());
+        }
+        let cancelled = || self.progress.is_cancelled();
+        let baked = bake::bake_scene(&self.scene, &BakeOptions::default(), &cancelled)
+            .ok_or_else(|| FormatError::new("cancelled"))?;
+        // (of a second moment nothing is kept)
+        let _ = self.gaussians.set((time_s, baked.clone()));
+        Ok(baked)
     }
 
     fn recipe(&self) -> &Recipe {

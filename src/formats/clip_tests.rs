@@ -146,6 +146,10 @@ impl Products for Plain {
         Ok(())
     }
 
+    fn gaussians(&mut self) -> Result<scene::GaussianScene, FormatError> {
+        Err(FormatError::new("no Gaussians"))
+    }
+
     fn seen(&mut self) -> Result<Seen, FormatError> {
         let ids = self.scene.frame().boxes.keys();
         Ok(Seen {

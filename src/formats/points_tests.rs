@@ -55,6 +55,10 @@ impl Products for OneSweep {
         absent()
     }
 
+    fn gaussians(&mut self) -> Result<scene::GaussianScene, FormatError> {
+        absent()
+    }
+
     fn recipe(&self) -> &crate::recipe::Recipe {
         crate::table_tests::Small.recipe()
     }

@@ -9,8 +9,8 @@ use std::sync::{Arc, LazyLock};
 use glam::{DVec2, DVec3};
 use scene::message::LONGEST;
 use scene::{
-    BevLayer, BevLayout, BoxId, CameraMaps, CameraTruth, Class, Frame, LidarPoint, LidarSweep, Pose, Scene,
-    SceneBox, SensorRig, TruthPixel, VoxelGrid,
+    Baking, BevLayer, BevLayout, BoxId, CameraMaps, CameraTruth, Class, Frame, GaussianScene, LidarPoint,
+    LidarSweep, Pose, Scene, SceneBox, SceneGaussian, SensorRig, TruthPixel, VoxelGrid,
 };
 
 use tempfile::TempDir;
@@ -80,6 +80,41 @@ pub(crate) fn random_scene(seed: u64) -> Scene {
     }
     let frame = Frame::new(layout, boxes, occupancy);
     Scene::single("random", frame, Arc::new(SensorRig::default()), seed)
+}
+
+/// A disc on the road and one on a car.
+pub(crate) fn two_gaussians() -> GaussianScene {
+    let road = SceneGaussian {
+        position_m: [4.0, 1.5, -0.25],
+        rotation_wxyz: [0.8, 0.0, 0.0, 0.6],
+        std_m: [0.25, 0.125, 0.003],
+        opacity: 0.95,
+        color: [0.25, 0.5, 1.0],
+        class: Class::DriveableSurface.id(),
+        instance: 0,
+        strength: 8.5,
+    };
+    let car = SceneGaussian {
+        position_m: [9.0, -2.0, 1.25],
+        rotation_wxyz: [0.5, 0.5, -0.1, 0.7],
+        std_m: [0.5, 0.03, 0.06],
+        opacity: 0.5,
+        color: [-0.01, 0.75, 1.02],
+        class: Class::Car.id(),
+        instance: 4,
+        strength: 28.0,
+    };
+    GaussianScene {
+        gaussians: vec![road, car],
+        baking: Baking {
+            stands: 2,
+            views: 12,
+            size_px: [320, 180],
+            samples: 100,
+            most: 2,
+            rounds: 3,
+        },
+    }
 }
 
 /// Products of two cameras of four pixels and a sweep of one point. Observed are: by the LiDAR the lower half of the columns
@@ -178,6 +213,10 @@ impl Products for Small {
             rgba: vec![255; 8],
         };
         take(picture, truth)
+    }
+
+    fn gaussians(&mut self) -> Result<GaussianScene, FormatError> {
+        Ok(two_gaussians())
     }
 
     fn recipe(&self) -> &'static Recipe {

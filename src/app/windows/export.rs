@@ -311,7 +311,7 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                 });
                 ui.weak("Seen as the 3D view shows it now.");
             }
-            Product::Observed | Product::Seen => {}
+            Product::Gaussians | Product::Observed | Product::Seen => {}
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use scene::{BoxId, CameraMaps, CameraTruth, Extent, LidarSweep, Pose, Scene};
+use scene::{BoxId, CameraMaps, CameraTruth, Extent, GaussianScene, LidarSweep, Pose, Scene};
 
 use crate::recipe::Recipe;
 use crate::{FormatError, Holds};
@@ -65,6 +65,8 @@ pub enum Product {
     Pictures,
     /// A picture of every camera with the truth about it.
     Truth,
+    /// The scene as Gaussians.
+    Gaussians,
     /// A picture of the 3D view.
     View,
 }
@@ -97,6 +99,8 @@ pub trait Products {
         &mut self,
         take: &mut dyn FnMut(Picture, CameraTruth) -> Result<(), FormatError>,
     ) -> Result<(), FormatError>;
+    /// The scene as coloured Gaussians, in the ego frame.
+    fn gaussians(&mut self) -> Result<GaussianScene, FormatError>;
     /// How the files come to be.
     fn recipe(&self) -> &Recipe;
     /// Where the ego vehicle is at the moment that products are made of, in the world frame.

@@ -5,6 +5,8 @@ pub mod boxes;
 pub mod control_video;
 pub mod depth;
 mod exporter;
+pub mod gaussians_glb;
+pub mod gaussians_ply;
 pub mod glb;
 pub mod kitti;
 pub mod las;
@@ -49,6 +51,8 @@ const TABLE: &[&Exporter] = &[
     &depth::EXPORTER,
     &pictures::EXPORTER,
     &truth::EXPORTER,
+    &gaussians_ply::EXPORTER,
+    &gaussians_glb::EXPORTER,
     &view::EXPORTER,
     &world_scenario::EXPORTER,
     &control_video::EXPORTER,

@@ -225,6 +225,9 @@ mod tests {
             ) -> Result<(), FormatError> {
                 Small.truth(take)
             }
+            fn gaussians(&mut self) -> Result<scene::GaussianScene, FormatError> {
+                Small.gaussians()
+            }
             fn recipe(&self) -> &crate::recipe::Recipe {
                 Small.recipe()
             }

@@ -1,12 +1,12 @@
 //! The table of suites.
 
 use crate::suite::{Found, Options, Suite};
-use crate::suites::{forecast, map};
+use crate::suites::{forecast, gaussians, map};
 use job::pipeline::OccPipeline;
 use nets::OccModels;
 
 /// All suites, in the order of `eval all`.
-pub static SUITES: [Suite; 9] = [
+pub static SUITES: [Suite; 10] = [
     Suite {
         name: "world",
         title: "Procedural worlds beside what is known of real drives",
@@ -216,6 +216,18 @@ pub static SUITES: [Suite; 9] = [
         quick: |options| options.frames = 3,
         table: None,
         run: |options, progress| options.splat(progress),
+    },
+    Suite {
+        name: "gaussians",
+        title: "Pictures of baked Gaussians beside the renderer's, from unseen poses",
+        figures: &[
+            ("PSNR of a scene's median picture, dB", "/psnr_median_db"),
+            ("PSNR of a scene's worst picture, dB", "/psnr_worst_db"),
+            ("time of baking, s (median)", "/bake_s_median"),
+        ],
+        quick: |options| options.frames = 1,
+        table: Some(gaussians::table),
+        run: |options, progress| options.gaussians(progress),
     },
     Suite {
         name: "layout",

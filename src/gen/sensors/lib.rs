@@ -5,6 +5,7 @@
 
 pub mod appearance;
 pub mod backdrop;
+pub mod bake;
 pub mod border;
 pub mod cameras;
 pub mod caster;

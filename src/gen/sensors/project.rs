@@ -31,6 +31,36 @@ pub struct Footprint {
     pub covariance_px2: [f64; 3],
 }
 
+/// What a picture shows around a point, to first order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    /// Depth along the optical axis, m.
+    pub depth_m: f64,
+    /// The point, px.
+    pub mean_px: [f64; 2],
+    /// How its two coordinates change along the axes of the ego frame, px/m.
+    pub px_per_m: [DVec3; 2],
+}
+
+impl Around {
+    /// A Gaussian there whose covariance is the sum of a aᵀ over `axes_m`: its principal axes in the ego frame, each as long as
+    /// the standard deviation along it, m. `None` for numbers that are not finite.
+    pub fn footprint(&self, axes_m: [DVec3; 3]) -> Option<Footprint> {
+        let mut covariance_px2 = [0.0; 3];
+        for axis in axes_m {
+            let [u, v] = self.px_per_m.map(|row| row.dot(axis));
+            covariance_px2[0] += u * u;
+            covariance_px2[1] += u * v;
+            covariance_px2[2] += v * v;
+        }
+        covariance_px2.iter().all(|c| c.is_finite()).then_some(Footprint {
+            depth_m: self.depth_m,
+            mean_px: self.mean_px,
+            covariance_px2,
+        })
+    }
+}
+
 /// The inverse of a 2 x 2 covariance as L D L^T, which keeps its sign and accuracy for long ellipses:
 /// d^T cov^-1 d = `along` (dx - `shear` dy)^2 + `across` dy^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,6 +137,48 @@ impl View {
             depth_m,
             mean_px: mean.to_array(),
             covariance_px2,
+        })
+    }
+
+    /// The picture around a point of the ego frame to first order (EWA), the derivative held as in [`Self::project`]; `None` as
+    /// there.
+    pub fn around(&self, p_in_ego: DVec3, [near_m, far_m]: [f64; 2]) -> Option<Around> {
+        let to_ego = |row: DVec3| self.camera_from_ego.transpose() * row;
+        if let Some(rays) = &self.bent {
+            let p = rays.to_camera(p_in_ego, DVec3::ZERO);
+            let depth_m = rays.optics().depth_m(p);
+            // Written so that NaN fails too.
+            if !(depth_m > near_m.max(0.0) && depth_m <= far_m && p.is_finite()) {
+                return None;
+            }
+            let mean = rays.optics().project(p)?;
+            let held = mean.clamp(self.rim_px[0], self.rim_px[1]);
+            let at = match held == mean {
+                true => p,
+                false => rays.optics().direction(held.x, held.y) * depth_m,
+            };
+            return (at != DVec3::ZERO).then(|| Around {
+                depth_m,
+                mean_px: mean.to_array(),
+                px_per_m: rays.optics().jacobian(at).map(to_ego),
+            });
+        }
+        let p = self.to_camera(p_in_ego);
+        if !(p.z > near_m.max(0.0) && p.z <= far_m && p.is_finite()) {
+            return None;
+        }
+        let ([fx, fy], z) = (self.focal_px, p.z);
+        let (u, v) = (p.x / z, p.y / z);
+        let cu = u.clamp(-self.limit[0], self.limit[0]);
+        let cv = v.clamp(-self.limit[1], self.limit[1]);
+        let rows = [
+            DVec3::new(fx, 0.0, -fx * cu) / z,
+            DVec3::new(0.0, fy, -fy * cv) / z,
+        ];
+        Some(Around {
+            depth_m: z,
+            mean_px: [fx * u + self.center_px[0], fy * v + self.center_px[1]],
+            px_per_m: rows.map(to_ego),
         })
     }
 

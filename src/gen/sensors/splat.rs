@@ -7,7 +7,7 @@ pub use super::cloud::{Gaussian, GaussianCloud};
 pub use scene::splats::{RawMaps, SplatOptions};
 
 use super::order::depth_order;
-use super::project::{Conic, View};
+use super::project::{Conic, Footprint, View};
 use super::rays::CameraRays;
 use super::tile::{Limits, Splat, SplatPixels, TILE, Tile};
 use scene::sensor_data::RENDER_IDS;
@@ -145,41 +145,10 @@ fn project_all(
     let one = |g: &Gaussian| -> Option<SplatPixels> {
         let position = glam::Vec3::from(g.position_m).as_dvec3();
         let footprint = view.project(position, f64::from(g.std_m), options.near_m, options.far_m)?;
-        let conic = Conic::new(footprint.covariance_px2, options.low_pass_px2)?;
-        let mut opacity = g.opacity.clamp(0.0, 1.0);
-        if options.compensate_opacity {
-            opacity *= conic.compensation as f32;
-        }
-        // Not above 0 also drops NaN.
-        if !(opacity > 0.0 && opacity >= options.alpha_min) || usize::from(g.id) >= RENDER_IDS {
+        if usize::from(g.id) >= RENDER_IDS {
             return None;
         }
-        let min_exponent = (options.alpha_min / opacity).ln(); // -inf without a threshold
-        // Where the exponent meets the threshold; a hair more, since alpha is rounded.
-        let reach = (-2.0 * f64::from(min_exponent)).sqrt() + 1e-3;
-        let mut bounds = [[0; 2]; 2];
-        for axis in 0..2 {
-            let (mean, half) = (footprint.mean_px[axis], reach * conic.extent_px[axis]);
-            let limit = f64::from(size[axis].min(u32::from(u16::MAX)));
-            // Pixel i is sampled at i + 1/2.
-            let first = (mean - half - 0.5).ceil().clamp(0.0, limit);
-            let end = ((mean + half - 0.5).floor() + 1.0).clamp(0.0, limit);
-            if first >= end {
-                return None;
-            }
-            bounds[axis] = [first as u16, end as u16];
-        }
-        let splat = Splat {
-            mean_px: footprint.mean_px.map(|v| v as f32),
-            along: (-0.5 * conic.along) as f32,
-            shear: conic.shear as f32,
-            across: (-0.5 * conic.across) as f32,
-            opacity,
-            min_exponent,
-            depth_m: footprint.depth_m as f32,
-            id: g.id,
-        };
-        Some((splat, bounds))
+        placed(&footprint, (g.opacity, g.id), size, options)
     };
     let splats: Vec<SplatPixels> = cloud.gaussians().par_iter().filter_map(one).collect();
     let depths: Vec<f32> = splats.iter().map(|(s, _)| s.depth_m).collect();
@@ -189,15 +158,61 @@ fn project_all(
         .collect()
 }
 
+/// A footprint with an opacity and an id as the inner loop wants it, and the pixels of a picture of `size` that it may touch;
+/// `None` if it touches none.
+pub(super) fn placed(
+    footprint: &Footprint,
+    (opacity, id): (f32, u8),
+    size: [u32; 2],
+    options: &SplatOptions,
+) -> Option<SplatPixels> {
+    let conic = Conic::new(footprint.covariance_px2, options.low_pass_px2)?;
+    let mut opacity = opacity.clamp(0.0, 1.0);
+    if options.compensate_opacity {
+        opacity *= conic.compensation as f32;
+    }
+    // Not above 0 also drops NaN.
+    if !(opacity > 0.0 && opacity >= options.alpha_min) {
+        return None;
+    }
+    let min_exponent = (options.alpha_min / opacity).ln(); // -inf without a threshold
+    // Where the exponent meets the threshold; a hair more, since alpha is rounded.
+    let reach = (-2.0 * f64::from(min_exponent)).sqrt() + 1e-3;
+    let mut bounds = [[0; 2]; 2];
+    for axis in 0..2 {
+        let (mean, half) = (footprint.mean_px[axis], reach * conic.extent_px[axis]);
+        let limit = f64::from(size[axis].min(u32::from(u16::MAX)));
+        // Pixel i is sampled at i + 1/2.
+        let first = (mean - half - 0.5).ceil().clamp(0.0, limit);
+        let end = ((mean + half - 0.5).floor() + 1.0).clamp(0.0, limit);
+        if first >= end {
+            return None;
+        }
+        bounds[axis] = [first as u16, end as u16];
+    }
+    let splat = Splat {
+        mean_px: footprint.mean_px.map(|v| v as f32),
+        along: (-0.5 * conic.along) as f32,
+        shear: conic.shear as f32,
+        across: (-0.5 * conic.across) as f32,
+        opacity,
+        min_exponent,
+        depth_m: footprint.depth_m as f32,
+        id,
+    };
+    Some((splat, bounds))
+}
+
 /// For each tile the splats that may touch it, near to far.
-struct Bins {
+pub(super) struct Bins {
     tiles_x: usize,
     starts: Vec<u32>,
     splats: Vec<u32>,
 }
 
 impl Bins {
-    fn new(splats: &[SplatPixels], width: usize, height: usize) -> Bins {
+    /// Of splats that are sorted near to far.
+    pub fn new(splats: &[SplatPixels], width: usize, height: usize) -> Bins {
         let (tiles_x, tiles_y) = (width.div_ceil(TILE), height.div_ceil(TILE));
         let tiles = |&[x, y]: &[[u16; 2]; 2]| {
             let range = |[first, end]: [u16; 2]| usize::from(first) / TILE..usize::from(end).div_ceil(TILE);
@@ -227,7 +242,8 @@ impl Bins {
         }
     }
 
-    fn list(&self, tile_x: usize, tile_y: usize) -> &[u32] {
+    /// The splats of a tile.
+    pub fn list(&self, tile_x: usize, tile_y: usize) -> &[u32] {
         let tile = tile_y * self.tiles_x + tile_x;
         &self.splats[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }

@@ -2,6 +2,7 @@
 
 pub mod editing;
 pub mod forecast;
+pub mod gaussians;
 pub mod generation;
 pub mod layout;
 pub mod lidar;

@@ -8,6 +8,7 @@ mod material;
 mod noise;
 mod pack;
 mod prepared;
+mod probe;
 mod render;
 mod shade;
 mod sky;
@@ -15,6 +16,7 @@ mod things;
 mod truth;
 
 pub use prepared::Appearance;
+pub(crate) use probe::Probe;
 pub use truth::NextMoment;
 
 use rayon::prelude::*;

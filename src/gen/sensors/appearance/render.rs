@@ -18,7 +18,21 @@ use scene::{BoxId, Camera, CameraTruth, SceneBox, TruthPixel};
 impl Appearance {
     /// The picture of one camera at `width` x `height` px.
     pub fn render(&self, camera: &Camera, width: u32, height: u32, quality: Quality) -> CameraImage {
-        self.draw(camera, [width, height], quality, None)
+        let light = self.gather((camera, [width, height]), quality, Drops::Drawn, None);
+        self.finish(camera, [width as usize, height as usize], light)
+    }
+
+    /// The same picture without what belongs to the lens and to the moment: no rain or flakes in the air, no glare, darkened
+    /// corners or noise. sRGB-coded, 0 to 1, row-major, top row first.
+    pub fn render_plain(
+        &self,
+        camera: &Camera,
+        [width, height]: [u32; 2],
+        quality: Quality,
+    ) -> Vec<[f32; 3]> {
+        let light = self.gather((camera, [width, height]), quality, Drops::LeftOut, None);
+        let shown = light.par_iter().map(|c| self.shown(*c, 1.0).to_array());
+        shown.collect()
     }
 
     /// The same picture, and the truth about it: each pixel is told by a hit that made its colour. Where four samples make a
@@ -33,18 +47,25 @@ impl Appearance {
     ) -> (CameraImage, CameraTruth) {
         let teller = Teller::new(self, camera, size, next);
         let mut pixels = vec![TruthPixel::default(); size[0] as usize * size[1] as usize];
-        let image = self.draw(camera, size, quality, Some((&teller, &mut pixels)));
+        let light = self.gather(
+            (camera, size),
+            quality,
+            Drops::Drawn,
+            Some((&teller, &mut pixels)),
+        );
+        let image = self.finish(camera, size.map(|n| n as usize), light);
         let truth = self.finish_truth(&teller, camera, size, boxes, pixels, next);
         (image, truth)
     }
 
-    fn draw(
+    /// The light of every pixel, linear.
+    fn gather(
         &self,
-        camera: &Camera,
-        [width, height]: [u32; 2],
+        (camera, [width, height]): (&Camera, [u32; 2]),
         quality: Quality,
+        drops: Drops,
         truth: Option<(&Teller<'_>, &mut [TruthPixel])>,
-    ) -> CameraImage {
+    ) -> Vec<Vec3> {
         let (w, h) = (width as usize, height as usize);
         let rays = CameraRays::new(camera, width, height);
         let pixel = rays.optics().pixel_rad() as f32;
@@ -52,7 +73,9 @@ impl Appearance {
             let ray = rays.at(u, v);
             let (o, d) = usable(&ray)?;
             let (mut sample, seen) = self.light_along((o, d), ray.after_s as f32, pixel);
-            sample.color = self.falling(o, d, sample.t, pixel, sample.color);
+            if drops == Drops::Drawn {
+                sample.color = self.falling(o, d, sample.t, pixel, sample.color);
+            }
             if !sample.color.is_finite() {
                 sample.color = Vec3::ZERO;
             }
@@ -119,7 +142,7 @@ impl Appearance {
             };
             each_row(w, &mut light, &mut *told, row_of);
         }
-        self.finish(camera, [w, h], light)
+        light
     }
 
     /// The picture of light that was computed elsewhere, `width * height` linear colours: glare, exposure, tone.
@@ -220,20 +243,34 @@ impl Appearance {
     /// Exposure, tone curve, fine sensor noise (the only thing that belongs to the pixel), sRGB.
     fn develop(&self, c: Vec3, at: Vec2, x: usize, y: usize) -> [u8; 4] {
         let vignette = 1.0 - 0.34 * at.length_squared();
-        let c = film(c.max(Vec3::ZERO) * (self.air.exposure * vignette));
+        let shown = self.shown(c, vignette);
         let noise =
             unit3(IVec3::new(x as i32, y as i32, 5), 99) - unit3(IVec3::new(x as i32, y as i32, 6), 99);
         let strength = 0.006 + 0.010 * ramp(0.9, 1.0, self.air.lamps);
-        let byte = |v: f32| {
-            let v = if v <= 0.003_130_8 {
+        let byte = |v: f32| ((v + noise * strength).clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+        [byte(shown.x), byte(shown.y), byte(shown.z), 255]
+    }
+
+    /// Exposure, tone curve and sRGB, 0 to 1; `left` is the share of the light that the lens lets through.
+    pub(super) fn shown(&self, c: Vec3, left: f32) -> Vec3 {
+        let c = film(c.max(Vec3::ZERO) * (self.air.exposure * left));
+        c.map(|v| {
+            if v <= 0.003_130_8 {
                 12.92 * v
             } else {
                 1.055 * v.powf(1.0 / 2.4) - 0.055
-            };
-            ((v + noise * strength).clamp(0.0, 1.0) * 255.0 + 0.5) as u8
-        };
-        [byte(c.x), byte(c.y), byte(c.z), 255]
+            }
+        })
     }
+}
+
+/// Whether what falls between camera and surface is drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Drops {
+    /// Rain and flakes, where they fall.
+    Drawn,
+    /// Haze alone.
+    LeftOut,
 }
 
 /// Calls `one` for each row of `values`, with its row of `told` where there is one.

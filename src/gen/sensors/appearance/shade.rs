@@ -63,10 +63,8 @@ impl Appearance {
                 t: f32::INFINITY,
                 key: 0,
             };
-            return match self.beyond(o, d, f32::INFINITY) {
-                Some(b) => (sample(b.color), Seen::Skyline(b.class, b.t)),
-                None => (sample(self.air.sky(self.anchor_dir(d))), Seen::Sky),
-            };
+            let (color, seen) = self.light_behind((o, d));
+            return (sample(color), seen);
         };
         if hit.t > SKYLINE_FROM_M
             && let Some(b) = self.beyond(o, d, hit.t)
@@ -92,6 +90,14 @@ impl Appearance {
             key: key << 8 | ((s.normal * 3.0 + 4.0).as_uvec3().dot(glam::UVec3::new(1, 8, 32)) & 0xff),
         };
         (sample, Seen::Surface(hit, footprint))
+    }
+
+    /// Light of the skyline or the sky along a ray, whatever is on the map.
+    pub(super) fn light_behind(&self, (o, d): (Vec3, Vec3)) -> (Vec3, Seen) {
+        match self.beyond(o, d, f32::INFINITY) {
+            Some(b) => (b.color, Seen::Skyline(b.class, b.t)),
+            None => (self.air.sky(self.anchor_dir(d)), Seen::Sky),
+        }
     }
 
     /// What [`Self::light_along`] shows along a ray, without its light.

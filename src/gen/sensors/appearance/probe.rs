@@ -1,0 +1,85 @@
+//! What a single ray shows, for those who make something else than a picture of it.
+
+use glam::Vec3;
+
+use super::prepared::Appearance;
+use super::shade::Seen;
+use super::truth::usable;
+use crate::rays::Ray;
+use scene::truth::{self, TruthClass};
+
+/// What a ray shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Probe {
+    /// As a picture shows it, without lens and sensor: sRGB-coded, 0 to 1.
+    pub color: Vec3,
+    /// Origin of the ray, m.
+    pub from: Vec3,
+    /// Its way, a unit vector.
+    pub way: Vec3,
+    /// Distance, m; infinite for the sky.
+    pub t: f32,
+    /// Outward unit normal; against the ray for sky and skyline.
+    pub normal: Vec3,
+    /// Class.
+    pub class: TruthClass,
+    /// The box that was hit; 0 for none.
+    pub instance: u32,
+    /// It stands around the map, not on it.
+    pub is_skyline: bool,
+}
+
+impl Appearance {
+    /// What a ray shows; `pixel_rad` is the angle between neighbouring pixels. `None` where the lens sees nothing.
+    pub(crate) fn probe(&self, ray: &Ray, pixel_rad: f32) -> Option<Probe> {
+        let (from, way) = usable(ray)?;
+        let (sample, seen) = self.light_along((from, way), ray.after_s as f32, pixel_rad);
+        Some(self.told((from, way), sample.color, seen))
+    }
+
+    /// What a ray would show if there were nothing on the map: skyline or sky.
+    pub(crate) fn probe_behind(&self, from: Vec3, way: Vec3) -> Probe {
+        let (color, seen) = self.light_behind((from, way));
+        self.told((from, way), color, seen)
+    }
+
+    /// The sky in a direction as a picture shows it, whatever hides it.
+    pub(crate) fn sky_along(&self, way: Vec3) -> Vec3 {
+        let color = self.shown(self.air.sky(self.anchor_dir(way)), 1.0);
+        if color.is_finite() { color } else { Vec3::ZERO }
+    }
+
+    fn told(&self, (from, way): (Vec3, Vec3), light: Vec3, seen: Seen) -> Probe {
+        let color = self.shown(light, 1.0);
+        let probe = Probe {
+            color: if color.is_finite() { color } else { Vec3::ZERO },
+            from,
+            way,
+            t: f32::INFINITY,
+            normal: -way,
+            class: truth::SKY,
+            instance: 0,
+            is_skyline: false,
+        };
+        match seen {
+            Seen::Sky => probe,
+            Seen::Skyline(class, t) => Probe {
+                t,
+                class: truth::of_class(class),
+                is_skyline: true,
+                ..probe
+            },
+            Seen::Surface(hit, footprint) => {
+                let (class, instance) = self.label(&hit, footprint);
+                let normal = self.normal(&hit);
+                Probe {
+                    t: hit.t,
+                    normal: if normal.is_finite() { normal } else { -way },
+                    class,
+                    instance,
+                    ..probe
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Lifts a scene to 3-D Gaussians (after X-Scene, arXiv 2506.13558): the renderer's own rays are cast from many places where
+//! the vehicle could stand, what they meet becomes flat coloured discs, which are then fitted to the pictures.
+
+mod blend;
+mod discs;
+mod dome;
+pub mod draw;
+mod of_scene;
+mod refine;
+mod samples;
+pub mod stands;
+mod strength;
+mod train;
+mod tree;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::appearance::Appearance;
+use draw::Ellipsoid;
+pub use of_scene::{bake_scene, between, places};
+use samples::{Sample, Sampled};
+use scene::{Baking, Conditions, Frame, GaussianScene, Pose, SceneGaussian, SensorRig};
+use tree::Leaf;
+
+/// How much work goes into it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BakeOptions {
+    /// Most Gaussians.
+    pub most: usize,
+    /// Most places from which the scene is looked at.
+    pub stands: usize,
+    /// How far from the vehicle's path they lie, m.
+    pub reach_m: f64,
+    /// Size of the pictures that are taken, px.
+    pub size_px: [u32; 2],
+    /// Steps in which places, shapes, opacities and colours are fitted to them, a few pictures each.
+    pub steps: usize,
+    /// Steps in which colours are fitted to all of them at the end.
+    pub rounds: usize,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self {
+            most: 300_000,
+            stands: 20,
+            reach_m: 22.0,
+            size_px: [320, 180],
+            steps: 160,
+            rounds: 3,
+        }
+    }
+}
+
+/// Most rays that are cast: samples and pictures of them take some 60 bytes each.
+const MOST_RAYS: u64 = 10_000_000;
+/// Alpha of a Gaussian at its centre.
+const OPACITY: f32 = 0.99;
+/// The sky has one of so many Gaussians.
+const SKY_SHARE: usize = 25;
+/// Weight of a Gaussian's first colour against the pictures: so many pixels, and more for each sample that it was made of.
+const KEEP: f32 = 0.4;
+const KEEP_PER_SAMPLE: f32 = 0.05;
+/// Gaussians of the sky count as if they were made of so many.
+const SKY_SAMPLES: f32 = 100.0;
+
+/// What is baked, all in one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct BakeInput<'a> {
+    /// Occupancy, layout and boxes.
+    pub frame: &'a Frame,
+    /// Sensors where the vehicle is.
+    pub rig: &'a SensorRig,
+    /// Light and air. Rain and flakes in the air are left out.
+    pub conditions: Conditions,
+    /// Where the vehicle drives; if empty, where it stands.
+    pub path: &'a [Pose],
+}
+
+/// Bakes a scene. The same input gives the same Gaussians on any number of threads. `None` once `cancelled` says so.
+pub fn bake(
+    input: &BakeInput<'_>,
+    options: &BakeOptions,
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Option<GaussianScene> {
+    let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+    let here = [input.rig.vehicle];
+    let path = if input.path.is_empty() { &here } else { input.path };
+    let stands = stands::stands(input.frame, input.rig, path, options.reach_m, options.stands);
+    let size = options.size_px;
+    let mut cameras = stands::views(input.rig, &stands);
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    cameras.truncate((MOST_RAYS / pixels.max(1)) as usize);
+    let mut sampled = samples::look(&appearance, &cameras, size, cancelled)?;
+    let seen = sampled.samples.len() as u64;
+    let eyes: Vec<Vec3> = cameras
+        .iter()
+        .map(|c| glam::DVec3::from(c.translation_m).as_vec3())
+        .collect();
+    let sky = (options.most / SKY_SHARE).clamp(500, 20_000).min(options.most);
+    let sky = dome::dome(&appearance, path[0].translation_m.as_vec3(), sky, OPACITY);
+    let (mut gaussians, mut keep) = surfaces(&mut sampled, &eyes, options.most - sky.len());
+    keep.resize(keep.len() + sky.len(), KEEP + KEEP_PER_SAMPLE * SKY_SAMPLES);
+    gaussians.extend(sky);
+    train::fit(&mut gaussians, &sampled.taken, size, options.steps, cancelled);
+    let ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::of).collect();
+    let mut colors: Vec<[f32; 3]> = gaussians.iter().map(|g| g.color).collect();
+    let start = (&mut colors, &keep[..]);
+    refine::fit(
+        &ellipsoids,
+        &sampled.taken,
+        size,
+        start,
+        options.rounds,
+        cancelled,
+    );
+    if cancelled() {
+        return None;
+    }
+    for (g, color) in gaussians.iter_mut().zip(colors) {
+        g.color = color.map(|v| v.clamp(0.0, 1.0));
+    }
+    Some(GaussianScene {
+        gaussians,
+        baking: Baking {
+            stands: stands.len() as u32,
+            views: sampled.taken.len() as u32,
+            size_px: size,
+            samples: seen,
+            most: options.most as u32,
+            rounds: (options.steps + options.rounds) as u32,
+        },
+    })
+}
+
+/// Gaussians of all that was met, and the weight of each one's colour. Takes the samples away.
+fn surfaces(sampled: &mut Sampled, eyes: &[Vec3], most: usize) -> (Vec<SceneGaussian>, Vec<f32>) {
+    let samples = std::mem::take(&mut sampled.samples);
+    let (samples, leaves) = tree::leaves(samples, &sampled.groups, eyes, most);
+    let strengths = strength::Strengths::new();
+    let one = |leaf: &Leaf| {
+        let own = &samples[leaf.from as usize..leaf.to as usize];
+        let disc = discs::disc(own, leaf);
+        let group = sampled.groups[usize::from(own[0].group)];
+        let q = disc.rotation;
+        SceneGaussian {
+            position_m: disc.position_m.to_array(),
+            rotation_wxyz: [q.w, q.x, q.y, q.z],
+            std_m: disc.std_m.to_array(),
+            opacity: OPACITY,
+            color: mean_color(own),
+            class: group.class,
+            instance: group.instance,
+            strength: strengths.of(&group, disc.position_m, disc.normal),
+        }
+    };
+    let weight = |leaf: &Leaf| KEEP + KEEP_PER_SAMPLE * (leaf.to - leaf.from) as f32;
+    let keep = leaves.iter().map(weight).collect();
+    (leaves.par_iter().map(one).collect(), keep)
+}
+
+fn mean_color(samples: &[Sample]) -> [f32; 3] {
+    let mut sum = [0u32; 3];
+    for s in samples {
+        for (sum, v) in sum.iter_mut().zip(s.rgb) {
+            *sum += u32::from(v);
+        }
+    }
+    sum.map(|v| v as f32 / (255.0 * samples.len().max(1) as f32))
+}
+
+#[cfg(test)]
+mod tests;
