@@ -73,7 +73,7 @@ impl Export {
             return Ok(());
         }
         let formats = match (self.format.as_str(), formats::export::from_id(&self.format)) {
-            ("all", _) => formats::export::all().to_vec(),
+            ("all", _) => formats::export::usual(),
             (_, Some(format)) => vec![format],
             (unknown, None) => {
                 return Err(

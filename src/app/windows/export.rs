@@ -140,8 +140,8 @@ pub fn export_window(
                 let enabled = input.busy.is_none() && !dialog.path.trim().is_empty();
                 let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
-                    let all = || formats::export::all().to_vec();
-                    asked = Some(Asked::Write(dialog.format.map_or_else(all, |f| vec![f])));
+                    let formats = dialog.format.map_or_else(formats::export::usual, |f| vec![f]);
+                    asked = Some(Asked::Write(formats));
                 }
                 if let Some(progress) = input.busy {
                     busy(ui, progress);
@@ -239,7 +239,11 @@ fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
                 ui.weak("No format is called so.");
             }
         });
-    ui.radio_value(&mut dialog.format, None, "Every format, into one folder");
+    ui.radio_value(
+        &mut dialog.format,
+        None,
+        "Every format but splats, into one folder",
+    );
     if let Some(format) = dialog.format {
         let span = match format.span {
             Span::Moment => "The moment that is shown.",

@@ -68,6 +68,18 @@ pub fn all() -> &'static [&'static Exporter] {
     TABLE
 }
 
+/// What *all* writes: every format but Gaussians, which take a minute and more.
+pub fn usual() -> Vec<&'static Exporter> {
+    let slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
+    all().iter().copied().filter(|f| !slow(f)).collect()
+}
+
+/// What *all* writes: every format but Gaussians, which take a minute and more.
+pub fn usual() -> Vec<&'static Exporter> {
+    let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
+    all().iter().copied().filter(|f| !is_slow(f)).collect()
+}
+
 /// The format of that name.
 pub fn from_id(id: &str) -> Option<&'static Exporter> {
     all().iter().find(|e| e.id == id).copied()
