@@ -315,7 +315,10 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
                 });
                 ui.weak("Seen as the 3D view shows it now.");
             }
-            Product::Gaussians | Product::Observed | Product::Seen => {}
+            Product::Gaussians => {
+                ui.weak("Baked from pictures of many places: a minute or two.");
+            }
+            Product::Observed | Product::Seen => {}
         }
     }
 }
