@@ -70,12 +70,6 @@ pub fn all() -> &'static [&'static Exporter] {
 
 /// What *all* writes: every format but Gaussians, which take a minute and more.
 pub fn usual() -> Vec<&'static Exporter> {
-    let slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
-    all().iter().copied().filter(|f| !slow(f)).collect()
-}
-
-/// What *all* writes: every format but Gaussians, which take a minute and more.
-pub fn usual() -> Vec<&'static Exporter> {
     let is_slow = |f: &&'static Exporter| f.needs.contains(&Product::Gaussians);
     all().iter().copied().filter(|f| !is_slow(f)).collect()
 }
