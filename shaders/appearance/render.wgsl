@@ -1,9 +1,9 @@
 // Rain and snow, and the samples of a pixel: the entry points.
 // ---- render.rs
 
-fn falling(from: vec3f, d: vec3f, t: f32, pixel: f32, start: vec3f) -> vec3f {
+fn falling(eye: vec3f, d: vec3f, t: f32, pixel: f32, start: vec3f) -> vec3f {
     var color = start;
-    let o = from - vec3f(view.vehicle.xy, 0.0);
+    let o = eye - vec3f(view.vehicle.xy, 0.0);
     let rain = a_rain();
     if !rain && !(a_snow() > 0.0) {
         return color;
