@@ -1,5 +1,6 @@
 //! The window with its panes. It knows every other room; only the command line knows it.
 
+mod baking;
 pub mod batch;
 mod bev_image;
 pub mod camera_views;

@@ -22,6 +22,7 @@ pub mod objects;
 pub mod pane;
 pub mod pointed;
 pub mod prompt;
+mod splats;
 mod statistics;
 mod thing_list;
 mod things;
@@ -45,6 +46,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
         Box::new(view3d::View3dPane),
         Box::new(cameras::Cameras),
         Box::new(lidar::Lidar::default()),
+        Box::new(splats::Splats::default()),
         Box::new(box_views::BoxViews::default()),
         Box::new(prompt::Prompt),
         Box::new(versions::VersionsPane),

@@ -50,7 +50,7 @@ impl SceneloomApp {
         if !dialog && !self.state.compare.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
-                flying: secondary && self.state.pointed.pane == Some(PaneId::VIEW3D),
+                flying: secondary && matches!(self.state.pointed.pane, Some(PaneId::VIEW3D | PaneId::SPLATS)),
                 dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
             };
             keys::commands(

@@ -77,7 +77,7 @@ impl Projected {
             let splat = placed(&footprint, (e.opacity, 0), [width, height], &OPTIONS)?;
             Some((splat, i as u32))
         };
-        let found: Vec<(SplatPixels, u32)> = ellipsoids.iter().enumerate().filter_map(one).collect();
+        let found: Vec<(SplatPixels, u32)> = ellipsoids.par_iter().enumerate().filter_map(one).collect();
         let away = |i: u32| ellipsoids[i as usize].position_m.distance(sight.eye);
         let depths: Vec<f32> = found.iter().map(|(_, i)| away(*i)).collect();
         let order = depth_order(&depths);
@@ -108,16 +108,25 @@ impl Projected {
         let w = self.size[0];
         let mut out = vec![[0.0; 3]; w * self.size[1]];
         let colors: Vec<[f32; 3]> = self.of.iter().map(|i| colors[*i as usize]).collect();
-        let mut light = Light::new();
-        self.each_tile(|origin, size, list| {
-            light.blend(&self.splats, &colors, list, (origin, size), LIMITS);
-            for row in 0..size[1] {
-                let at = (origin[1] + row) * w + origin[0];
-                for (column, out) in out[at..at + size[0]].iter_mut().enumerate() {
-                    *out = light.pixel(row, column);
+        let row_of_tiles = |(tile_y, out): (usize, &mut [[f32; 3]])| {
+            let mut light = Light::new();
+            let rows = out.len() / w;
+            for tile_x in 0..w.div_ceil(TILE) {
+                let size = [TILE.min(w - tile_x * TILE), rows];
+                let place = ([tile_x * TILE, tile_y * TILE], size);
+                let list = self.bins.list(tile_x, tile_y);
+                light.blend(&self.splats, &colors, list, place, LIMITS);
+                for row in 0..rows {
+                    let at = row * w + tile_x * TILE;
+                    for (column, out) in out[at..at + size[0]].iter_mut().enumerate() {
+                        *out = light.pixel(row, column);
+                    }
                 }
             }
-        });
+        };
+        out.par_chunks_mut(w.max(1) * TILE)
+            .enumerate()
+            .for_each(row_of_tiles);
         out
     }
 
@@ -214,10 +223,29 @@ impl Sight {
     }
 }
 
-/// The picture that a camera sees of Gaussians, `width * height` sRGB-coded colours, row-major, top row first; black where
-/// there is none. The same on any number of threads.
+/// Gaussians made ready to be drawn from many places.
+pub struct Ready {
+    ellipsoids: Vec<Ellipsoid>,
+    colors: Vec<[f32; 3]>,
+}
+
+impl Ready {
+    /// Some 60 bytes a Gaussian.
+    pub fn new(gaussians: &[SceneGaussian]) -> Self {
+        Self {
+            ellipsoids: gaussians.par_iter().map(Ellipsoid::of).collect(),
+            colors: gaussians.iter().map(|g| g.color).collect(),
+        }
+    }
+
+    /// The picture that a camera sees, `width * height` sRGB-coded colours, row-major, top row first; black where there is
+    /// nothing. The same on any number of threads.
+    pub fn render(&self, camera: &Camera, size: [u32; 2]) -> Vec<[f32; 3]> {
+        Projected::new(&self.ellipsoids, camera, size).picture(&self.colors)
+    }
+}
+
+/// See [`Ready::render`].
 pub fn render(gaussians: &[SceneGaussian], camera: &Camera, size: [u32; 2]) -> Vec<[f32; 3]> {
-    let ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::of).collect();
-    let colors: Vec<[f32; 3]> = gaussians.iter().map(|g| g.color).collect();
-    Projected::new(&ellipsoids, camera, size).picture(&colors)
+    Ready::new(gaussians).render(camera, size)
 }

@@ -1,0 +1,236 @@
+//! Gaussians in the background: the thread that lifts a scene to them, and the one that draws them.
+
+use std::sync::Arc;
+
+use egui::ColorImage;
+use glam::{DMat3, DQuat};
+
+use job::guard::Panicked;
+use job::product::{Ctx, Product, Wake, Worker};
+use scene::{Camera, Lens, Scene, SceneRev};
+use sensors::bake::draw::Ready;
+use sensors::bake::{BakeOptions, bake_scene};
+use viewport::ViewCamera;
+
+/// A picture to draw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// From where, in the world.
+    pub camera: ViewCamera,
+    /// Width and height, px.
+    pub size: [u32; 2],
+}
+
+/// Gaussians of a state, in the world.
+#[derive(Clone)]
+pub struct Baked {
+    /// The state, with its moment.
+    pub of: SceneRev,
+    /// How many there are.
+    pub count: usize,
+    ready: Arc<Ready>,
+}
+
+enum News {
+    Baked(Baked),
+    Drawn(Seen, ColorImage),
+    GivenUp,
+    Failed(Panicked),
+}
+
+struct Baker;
+
+impl Product for Baker {
+    type Request = Arc<Scene>;
+    type Update = News;
+
+    fn make(&mut self, scene: &Arc<Scene>, ctx: &Ctx<'_, News>) -> News {
+        let stop = || ctx.should_stop();
+        let in_world = scene.with_rig_in_world();
+        let Some(mut lifted) = bake_scene(&in_world, &BakeOptions::default(), &stop) else {
+            return News::GivenUp;
+        };
+        lifted.place(&scene.frame().world_from_ego);
+        News::Baked(Baked {
+            of: scene.rev,
+            count: lifted.gaussians.len(),
+            ready: Arc::new(Ready::new(&lifted.gaussians)),
+        })
+    }
+
+    fn reset(&mut self) {}
+
+    fn given_up() -> News {
+        News::GivenUp
+    }
+
+    fn panicked(panic: Panicked) -> News {
+        News::Failed(panic)
+    }
+
+    fn is_terminal(_: &News) -> bool {
+        true
+    }
+}
+
+struct Drawer;
+
+impl Product for Drawer {
+    type Request = (Baked, Seen);
+    type Update = News;
+
+    fn make(&mut self, (baked, seen): &(Baked, Seen), _: &Ctx<'_, News>) -> News {
+        let pixels = baked.ready.render(&camera_of(seen), seen.size);
+        let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let rgb: Vec<u8> = pixels.iter().flat_map(|p| p.map(byte)).collect();
+        let size = seen.size.map(|n| n as usize);
+        News::Drawn(*seen, ColorImage::from_rgb(size, &rgb))
+    }
+
+    fn reset(&mut self) {}
+
+    fn given_up() -> News {
+        News::GivenUp
+    }
+
+    fn panicked(panic: Panicked) -> News {
+        News::Failed(panic)
+    }
+
+    fn is_terminal(_: &News) -> bool {
+        true
+    }
+}
+
+/// The view as a camera.
+fn camera_of(seen: &Seen) -> Camera {
+    let view = seen.camera.sane();
+    let [right, up, ahead] = view.axes();
+    let turn = DQuat::from_mat3(&DMat3::from_cols(right, -up, ahead));
+    let [width, height] = seen.size.map(f64::from);
+    let focal_px = height / 2.0 / (view.fov_y_rad / 2.0).tan();
+    Camera {
+        name: "VIEW".into(),
+        width: seen.size[0],
+        height: seen.size[1],
+        focal_px: [focal_px; 2],
+        center_px: [width / 2.0, height / 2.0],
+        rotation_wxyz: [turn.w, turn.x, turn.y, turn.z],
+        translation_m: view.eye_m().to_array(),
+        lens: Lens::default(),
+        shutter: None,
+        carried: Default::default(),
+    }
+}
+
+/// Both threads, and the newest of what they made.
+pub struct Baking {
+    baker: Worker<Arc<Scene>, News>,
+    drawer: Worker<(Baked, Seen), News>,
+    /// What is being baked.
+    pub busy: Option<SceneRev>,
+    /// The newest Gaussians.
+    pub baked: Option<Baked>,
+    /// What went wrong last.
+    pub problem: Option<String>,
+    drawing: Option<Seen>,
+    wanted: Option<Seen>,
+    drawn: Option<(Seen, ColorImage)>,
+}
+
+impl Baking {
+    /// Starts the threads. Errors if the system gives none.
+    pub fn spawn(wake: Wake) -> std::io::Result<Self> {
+        Ok(Self {
+            baker: Worker::start("baking", || Baker, wake.clone())?,
+            drawer: Worker::start("splats", || Drawer, wake)?,
+            busy: None,
+            baked: None,
+            problem: None,
+            drawing: None,
+            wanted: None,
+            drawn: None,
+        })
+    }
+
+    /// Lifts a scene; takes a minute or two.
+    pub fn bake(&mut self, scene: &Arc<Scene>) {
+        self.busy = Some(scene.rev);
+        self.problem = None;
+        self.baker.submit(scene.clone());
+    }
+
+    /// Gives up what is being baked.
+    pub fn cancel(&mut self) {
+        self.baker.cancel();
+        self.busy = None;
+    }
+
+    /// Asks for a picture of the newest Gaussians: the newest wish is drawn next.
+    pub fn look(&mut self, seen: Seen) {
+        self.wanted = Some(seen);
+        self.update();
+    }
+
+    /// Takes news; a picture if there is a new one.
+    pub fn update(&mut self) -> Option<(Seen, ColorImage)> {
+        let news: Vec<News> = self.baker.updates().try_iter().map(|e| e.update).collect();
+        for news in news {
+            match news {
+                News::Baked(baked) if self.busy == Some(baked.of) => {
+                    (self.baked, self.busy) = (Some(baked), None);
+                    (self.drawing, self.drawn) = (None, None);
+                }
+                News::Failed(panic) => (self.busy, self.problem) = (None, Some(panic.to_string())),
+                _ => {}
+            }
+        }
+        let drawn: Vec<News> = self.drawer.updates().try_iter().map(|e| e.update).collect();
+        for news in drawn {
+            self.drawing = None;
+            match news {
+                News::Drawn(seen, image) => self.drawn = Some((seen, image)),
+                News::Failed(panic) => self.problem = Some(panic.to_string()),
+                _ => {}
+            }
+        }
+        if let (None, Some(seen), Some(baked)) = (self.drawing, self.wanted.take(), &self.baked) {
+            self.drawing = Some(seen);
+            self.drawer.submit((baked.clone(), seen));
+        }
+        self.drawn.take()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use sensors::rays::CameraRays;
+
+    /// What is in the middle of the view is in the middle of the picture, and up is up.
+    #[test]
+    fn the_view_is_that_camera() {
+        let view = ViewCamera {
+            target_m: DVec3::new(4.0, 2.0, 1.0),
+            distance_m: 12.0,
+            yaw_rad: 0.7,
+            pitch_rad: -0.3,
+            ..ViewCamera::default()
+        };
+        let seen = Seen {
+            camera: view,
+            size: [320, 180],
+        };
+        let camera = camera_of(&seen);
+        let rays = CameraRays::new(&camera, 320, 180);
+        for p in [view.target_m, view.target_m + DVec3::new(0.5, -1.0, 1.5)] {
+            let expected = view.project(p, [320, 180]).expect("in sight");
+            let found = rays.project(p);
+            assert!(
+                (found.truncate() - expected).length() < 0.01,
+                "{found} {expected}"
+            );
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! The scene lifted to 3-D Gaussians, as a viewer of splats shows it, flown through from where the 3D view stands.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use egui::accesskit::Role;
+use egui::{
+    Color32, Key, PointerButton, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
+};
+use glam::{DVec2, DVec3};
+
+use super::id::PaneId;
+use super::pane::{Pane, PaneContext};
+use crate::baking::{Baking, Seen};
+use crate::command::Command;
+use viewport::ViewCamera;
+use widgets::icons::Icon;
+use widgets::theme;
+
+/// Turn per point that the pointer moves, rad.
+const ORBIT_RAD: f64 = 0.006;
+/// Speed of flight, m/s.
+const FLY_MPS: f64 = 14.0;
+/// Width of the picture while the view moves, and at rest, px.
+const MOVING_PX: f32 = 320.0;
+const STILL_PX: f32 = 960.0;
+/// Time without motion after which the picture is fine, s.
+const SETTLE_S: f64 = 0.25;
+
+/// The pane.
+#[derive(Default)]
+pub struct Splats {
+    baking: Option<Baking>,
+    began: Option<Instant>,
+    texture: Option<TextureHandle>,
+    shown: Option<Seen>,
+    asked: Option<Seen>,
+    moved_s: f64,
+    camera: Option<ViewCamera>,
+}
+
+impl Pane for Splats {
+    fn id(&self) -> PaneId {
+        PaneId::SPLATS
+    }
+
+    fn title(&self) -> String {
+        "Splats".into()
+    }
+
+    fn icon(&self) -> Icon {
+        Icon::Stack
+    }
+
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let Some(baking) = &mut self.baking else {
+            return;
+        };
+        if baking.busy.is_some() {
+            if ui.button("Cancel baking").clicked() {
+                baking.cancel();
+            }
+            return;
+        }
+        let Some(baked) = &baking.baked else {
+            return;
+        };
+        if baked.of != cx.document.settled_scene().rev {
+            let button = egui::Button::new("Bake again").fill(theme::accent_fill());
+            if ui
+                .add(button)
+                .on_hover_text("the scene has changed since")
+                .clicked()
+            {
+                self.began = Some(Instant::now());
+                baking.bake(cx.document.settled_scene());
+            }
+        }
+    }
+
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let rect = ui.available_rect_before_wrap();
+        let has = self.baking.as_ref().is_some_and(|b| b.baked.is_some());
+        if !has {
+            self.before(ui, rect, cx);
+            return;
+        }
+        let response = ui.allocate_rect(rect, Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Splats"));
+        fly(ui, &response, &mut cx.view3d.camera);
+        self.look(ui, rect, &cx.view3d.camera);
+        let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        let painter = ui.painter().with_clip_rect(rect);
+        match &self.texture {
+            Some(texture) => painter.image(texture.id(), rect, unit, Color32::WHITE),
+            None => painter.rect_filled(rect, 0.0, theme::well()),
+        };
+        let busy = self.baking.as_ref().is_some_and(|b| b.busy.is_some());
+        let text = match busy {
+            true => self.progress(),
+            false => {
+                let count = self
+                    .baking
+                    .as_ref()
+                    .and_then(|b| b.baked.as_ref())
+                    .map_or(0, |b| b.count);
+                format!("{count} Gaussians")
+            }
+        };
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let at = rect.left_bottom() + egui::vec2(8.0, -8.0);
+        painter.text(
+            at,
+            egui::Align2::LEFT_BOTTOM,
+            text,
+            font,
+            Color32::from_white_alpha(200),
+        );
+        if busy {
+            ui.ctx()
+                .request_repaint_after(std::time::Duration::from_millis(500));
+        }
+    }
+}
+
+impl Splats {
+    fn progress(&self) -> String {
+        let seconds = self.began.map_or(0, |t| t.elapsed().as_secs());
+        format!("Baking from pictures of many places… {seconds} s")
+    }
+
+    /// What is shown before anything was baked.
+    fn before(&mut self, ui: &mut Ui, rect: Rect, cx: &PaneContext<'_>) {
+        if let Some(baking) = &mut self.baking {
+            baking.update();
+        }
+        let mut within = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(16.0)));
+        within.vertical_centered(|ui| {
+            ui.add_space((rect.height() / 2.0 - 60.0).max(8.0));
+            if self.baking.as_ref().is_some_and(|b| b.busy.is_some()) {
+                ui.spinner();
+                ui.label(self.progress());
+                ui.ctx().request_repaint_after(std::time::Duration::from_millis(500));
+                return;
+            }
+            let text = "The scene as 3-D Gaussians, with the colours of the camera pictures, as viewers of splats show it. It is baked in the background, a minute or two.";
+            ui.label(egui::RichText::new(text).color(theme::text_weak()));
+            ui.add_space(theme::GAP);
+            let button = egui::Button::new("Bake the scene").fill(theme::accent_fill());
+            if ui.add(button).clicked() {
+                self.bake(ui, cx);
+            }
+            if let Some(problem) = self.baking.as_ref().and_then(|b| b.problem.as_ref()) {
+                ui.colored_label(theme::bad(), problem);
+            }
+        });
+    }
+
+    fn bake(&mut self, ui: &Ui, cx: &PaneContext<'_>) {
+        if self.baking.is_none() {
+            let wake = ui.ctx().clone();
+            // Without a thread the button does nothing; the log of the system says why.
+            self.baking = Baking::spawn(Arc::new(move || wake.request_repaint())).ok();
+        }
+        if let Some(baking) = &mut self.baking {
+            self.began = Some(Instant::now());
+            baking.bake(cx.document.settled_scene());
+        }
+    }
+
+    /// Has the picture drawn as the camera stands, coarse while it moves.
+    fn look(&mut self, ui: &Ui, rect: Rect, camera: &ViewCamera) {
+        let now_s = ui.input(|i| i.time);
+        if self.camera != Some(*camera) {
+            (self.camera, self.moved_s) = (Some(*camera), now_s);
+        }
+        let moving = now_s - self.moved_s < SETTLE_S;
+        if moving {
+            let rest = std::time::Duration::from_secs_f64(SETTLE_S);
+            ui.ctx().request_repaint_after(rest);
+        }
+        let px = rect.size() * ui.ctx().pixels_per_point();
+        let width = px.x.min(if moving { MOVING_PX } else { STILL_PX }).max(16.0);
+        let size = [width, width * px.y / px.x.max(1.0)].map(|v| (v.round() as u32).max(9));
+        let seen = Seen {
+            camera: *camera,
+            size,
+        };
+        let Some(baking) = &mut self.baking else {
+            return;
+        };
+        let was_baked = baking.baked.as_ref().map(|b| b.of);
+        let drawn = baking.update();
+        if baking.baked.as_ref().map(|b| b.of) != was_baked {
+            self.asked = None;
+        }
+        if let Some((of, image)) = drawn {
+            self.shown = Some(of);
+            match &mut self.texture {
+                Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                None => self.texture = Some(ui.ctx().load_texture("splats", image, TextureOptions::LINEAR)),
+            }
+        }
+        if self.asked != Some(seen) {
+            self.asked = Some(seen);
+            baking.look(seen);
+        }
+    }
+}
+
+/// The pointer as in the 3D view: drag turns, with Shift shifts; the right button looks around, and W A S D Q E fly; the
+/// wheel comes nearer.
+fn fly(ui: &Ui, response: &Response, camera: &mut ViewCamera) {
+    let delta = response.drag_delta();
+    let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
+    let shift = ui.input(|i| i.modifiers.shift);
+    if response.dragged_by(PointerButton::Secondary) {
+        camera.turn_head(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
+        let (step, dt) = ui.input(|i| {
+            let axis =
+                |plus: Key, minus: Key| f64::from(i8::from(i.key_down(plus)) - i8::from(i.key_down(minus)));
+            let step = DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
+            (step, f64::from(i.stable_dt.min(0.1)))
+        });
+        let pace = if shift { 4.0 } else { 1.0 };
+        camera.fly(step * (FLY_MPS * pace * dt));
+        ui.ctx().request_repaint();
+    } else if delta != egui::Vec2::ZERO {
+        let pans = shift && response.dragged();
+        if pans {
+            let size = response.rect.size();
+            camera.pan(
+                DVec2::new(dx, dy),
+                [size.x, size.y].map(|v| v.round().max(1.0) as u32),
+            );
+        } else {
+            camera.ortho = false;
+            camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
+        }
+    }
+    if response.hovered() {
+        let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let factor = f64::from((scroll / 260.0).exp() * zoom);
+        if (factor - 1.0).abs() > 1e-4 {
+            camera.zoom(factor, None);
+        }
+    }
+}
