@@ -151,8 +151,8 @@ class Calls:
         return receipt
 
     def keep_version(self, *, name: str) -> types.VersionList:
-        """Keeps the scene as it is now under a name, for diff and restore_version; at most 64, for the time of
-        the session.
+        """Keeps the scene as it is now under a name, for diff and restore_version; at most 64. save writes
+        them into the project file, open brings them back.
 
         name: A name of 1 to 60 characters; a version of that name is replaced.
         """
@@ -333,7 +333,8 @@ class Calls:
         return receipt
 
     def save(self, *, file: str, replace: bool | None = None) -> types.Saved:
-        """Writes the scene with everything in it as a project file (.loom), whole or not at all.
+        """Writes the scene with everything in it and the kept versions as a project file (.loom), whole or not
+        at all.
 
         file: File in the folder of this session; it ends in `.loom`.
         replace: Write over a file that is there.

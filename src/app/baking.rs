@@ -32,6 +32,7 @@ pub struct Baked {
 }
 
 enum News {
+    At(f32),
     Baked(Baked),
     Drawn(Seen, ColorImage),
     GivenUp,
@@ -45,9 +46,12 @@ impl Product for Baker {
     type Update = News;
 
     fn make(&mut self, scene: &Arc<Scene>, ctx: &Ctx<'_, News>) -> News {
-        let stop = || ctx.should_stop();
+        let go_on = |share: f32| {
+            ctx.tell(News::At(share));
+            !ctx.should_stop()
+        };
         let in_world = scene.with_rig_in_world();
-        let Some(mut lifted) = bake_scene(&in_world, &BakeOptions::default(), &stop) else {
+        let Some(mut lifted) = bake_scene(&in_world, &BakeOptions::default(), &go_on) else {
             return News::GivenUp;
         };
         lifted.place(&scene.frame().world_from_ego);
@@ -68,8 +72,8 @@ impl Product for Baker {
         News::Failed(panic)
     }
 
-    fn is_terminal(_: &News) -> bool {
-        true
+    fn is_terminal(news: &News) -> bool {
+        !matches!(news, News::At(_))
     }
 }
 
@@ -129,6 +133,8 @@ pub struct Baking {
     drawer: Worker<(Baked, Seen), News>,
     /// What is being baked.
     pub busy: Option<SceneRev>,
+    /// How far that is, 0 to 1.
+    pub share: f32,
     /// The newest Gaussians.
     pub baked: Option<Baked>,
     /// What went wrong last.
@@ -145,6 +151,7 @@ impl Baking {
             baker: Worker::start("baking", || Baker, wake.clone())?,
             drawer: Worker::start("splats", || Drawer, wake)?,
             busy: None,
+            share: 0.0,
             baked: None,
             problem: None,
             drawing: None,
@@ -155,7 +162,7 @@ impl Baking {
 
     /// Lifts a scene; takes a minute or two.
     pub fn bake(&mut self, scene: &Arc<Scene>) {
-        self.busy = Some(scene.rev);
+        (self.busy, self.share) = (Some(scene.rev), 0.0);
         self.problem = None;
         self.baker.submit(scene.clone());
     }
@@ -177,6 +184,7 @@ impl Baking {
         let news: Vec<News> = self.baker.updates().try_iter().map(|e| e.update).collect();
         for news in news {
             match news {
+                News::At(share) => self.share = share,
                 News::Baked(baked) if self.busy == Some(baked.of) => {
                     (self.baked, self.busy) = (Some(baked), None);
                     (self.drawing, self.drawn) = (None, None);

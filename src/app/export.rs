@@ -348,8 +348,8 @@ impl Products for Making<'_> {
         {
             return Ok(baked.clone());
         }
-        let cancelled = || self.progress.is_cancelled();
-        let baked = bake::bake_scene(&self.scene, &BakeOptions::default(), &cancelled)
+        let go_on = |_| !self.progress.is_cancelled();
+        let baked = bake::bake_scene(&self.scene, &BakeOptions::default(), &go_on)
             .ok_or_else(|| FormatError::new("cancelled"))?;
         // (of a second moment nothing is kept)
         let _ = self.gaussians.set((time_s, baked.clone()));

@@ -1,7 +1,6 @@
 //! The scene lifted to 3-D Gaussians, as a viewer of splats shows it, flown through from where the 3D view stands.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use egui::accesskit::Role;
 use egui::{
@@ -31,7 +30,6 @@ const SETTLE_S: f64 = 0.25;
 #[derive(Default)]
 pub struct Splats {
     baking: Option<Baking>,
-    began: Option<Instant>,
     texture: Option<TextureHandle>,
     shown: Option<Seen>,
     asked: Option<Seen>,
@@ -72,7 +70,6 @@ impl Pane for Splats {
                 .on_hover_text("the scene has changed since")
                 .clicked()
             {
-                self.began = Some(Instant::now());
                 baking.bake(cx.document.settled_scene());
             }
         }
@@ -125,8 +122,8 @@ impl Pane for Splats {
 
 impl Splats {
     fn progress(&self) -> String {
-        let seconds = self.began.map_or(0, |t| t.elapsed().as_secs());
-        format!("Baking from pictures of many places… {seconds} s")
+        let share = self.baking.as_ref().map_or(0.0, |b| b.share);
+        format!("Baking again: {:.0} %", 100.0 * share)
     }
 
     /// What is shown before anything was baked.
@@ -138,9 +135,11 @@ impl Splats {
         within.vertical_centered(|ui| {
             ui.add_space((rect.height() / 2.0 - 60.0).max(8.0));
             if self.baking.as_ref().is_some_and(|b| b.busy.is_some()) {
-                ui.spinner();
-                ui.label(self.progress());
-                ui.ctx().request_repaint_after(std::time::Duration::from_millis(500));
+                let share = self.baking.as_ref().map_or(0.0, |b| b.share);
+                ui.label("Baking from pictures of many places…");
+                ui.add_space(theme::GAP);
+                let bar = egui::ProgressBar::new(share).desired_width((rect.width() - 40.0).min(260.0));
+                ui.add(bar.desired_height(14.0).text(format!("{:.0} %", 100.0 * share)));
                 return;
             }
             let text = "The scene as 3-D Gaussians, with the colours of the camera pictures, as viewers of splats show it. It is baked in the background, a minute or two.";
@@ -163,7 +162,6 @@ impl Splats {
             self.baking = Baking::spawn(Arc::new(move || wake.request_repaint())).ok();
         }
         if let Some(baking) = &mut self.baking {
-            self.began = Some(Instant::now());
             baking.bake(cx.document.settled_scene());
         }
     }

@@ -13,6 +13,8 @@ mod strength;
 mod train;
 mod tree;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -78,12 +80,21 @@ pub struct BakeInput<'a> {
     pub path: &'a [Pose],
 }
 
-/// Bakes a scene. The same input gives the same Gaussians on any number of threads. `None` once `cancelled` says so.
+/// Bakes a scene. The same input gives the same Gaussians on any number of threads. `go_on` is told how far it is, 0 to 1;
+/// `None` once it says no.
 pub fn bake(
     input: &BakeInput<'_>,
     options: &BakeOptions,
-    cancelled: &(dyn Fn() -> bool + Sync),
+    go_on: &(dyn Fn(f32) -> bool + Sync),
 ) -> Option<GaussianScene> {
+    // A closure that says whether to stop, called so often while the work goes from one share to the other.
+    let counted = |from: f32, to: f32, calls: usize| {
+        let done = AtomicUsize::new(0);
+        move || {
+            let done = done.fetch_add(1, Ordering::Relaxed) as f32 / calls.max(1) as f32;
+            !go_on(from + (to - from) * done.min(1.0))
+        }
+    };
     let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
     let here = [input.rig.vehicle];
     let path = if input.path.is_empty() { &here } else { input.path };
@@ -92,7 +103,7 @@ pub fn bake(
     let mut cameras = stands::views(input.rig, &stands);
     let pixels = u64::from(size[0]) * u64::from(size[1]);
     cameras.truncate((MOST_RAYS / pixels.max(1)) as usize);
-    let mut sampled = samples::look(&appearance, &cameras, size, cancelled)?;
+    let mut sampled = samples::look(&appearance, &cameras, size, &counted(0.0, 0.2, cameras.len()))?;
     let seen = sampled.samples.len() as u64;
     let eyes: Vec<Vec3> = cameras
         .iter()
@@ -103,7 +114,8 @@ pub fn bake(
     let (mut gaussians, mut keep) = surfaces(&mut sampled, &eyes, options.most - sky.len());
     keep.resize(keep.len() + sky.len(), KEEP + KEEP_PER_SAMPLE * SKY_SAMPLES);
     gaussians.extend(sky);
-    train::fit(&mut gaussians, &sampled.taken, size, options.steps, cancelled);
+    let training = counted(0.2, 0.9, options.steps);
+    train::fit(&mut gaussians, &sampled.taken, size, options.steps, &training);
     let ellipsoids: Vec<Ellipsoid> = gaussians.par_iter().map(Ellipsoid::of).collect();
     let mut colors: Vec<[f32; 3]> = gaussians.iter().map(|g| g.color).collect();
     let start = (&mut colors, &keep[..]);
@@ -113,9 +125,9 @@ pub fn bake(
         size,
         start,
         options.rounds,
-        cancelled,
+        &counted(0.9, 1.0, (options.rounds + 1) * (sampled.taken.len() + 1)),
     );
-    if cancelled() {
+    if !go_on(1.0) {
         return None;
     }
     for (g, color) in gaussians.iter_mut().zip(colors) {

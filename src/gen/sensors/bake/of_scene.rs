@@ -7,12 +7,12 @@ use scene::{GaussianScene, Pose, Scene};
 const PATH_POSES: usize = 8;
 
 /// Lifts the moment that a scene shows, whose sensors are in the world ([`Scene::with_rig_in_world`]), to Gaussians in the ego
-/// frame of that moment. Of a clip the places from which it is looked at lie around the whole way of the ego vehicle. `None` once
-/// `cancelled` says so.
+/// frame of that moment. Of a clip the places from which it is looked at lie around the whole way of the ego vehicle. `go_on` is
+/// told how far it is, 0 to 1; `None` once it says no.
 pub fn bake_scene(
     scene: &Scene,
     options: &BakeOptions,
-    cancelled: &(dyn Fn() -> bool + Sync),
+    go_on: &(dyn Fn(f32) -> bool + Sync),
 ) -> Option<GaussianScene> {
     let input = BakeInput {
         frame: scene.frame(),
@@ -20,7 +20,7 @@ pub fn bake_scene(
         conditions: scene.conditions,
         path: &path(scene),
     };
-    let mut baked = bake(&input, options, cancelled)?;
+    let mut baked = bake(&input, options, go_on)?;
     baked.place(&scene.frame().world_from_ego.inverse());
     Some(baked)
 }
