@@ -130,6 +130,9 @@ impl Splats {
     fn before(&mut self, ui: &mut Ui, rect: Rect, cx: &PaneContext<'_>) {
         if let Some(baking) = &mut self.baking {
             baking.update();
+            if baking.baked.is_some() {
+                ui.ctx().request_repaint();
+            }
         }
         let mut within = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(16.0)));
         within.vertical_centered(|ui| {
