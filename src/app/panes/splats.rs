@@ -43,7 +43,7 @@ impl Pane for Splats {
     }
 
     fn title(&self) -> String {
-        "Splats".into()
+        "Gaussian splats".into()
     }
 
     fn icon(&self) -> Icon {

@@ -1,10 +1,11 @@
 //! What the window does about batches: the queue runs while the user goes on; variants are marked and opened.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::Ui;
 
 use super::app::{SceneloomApp, one_line};
+use super::files::Next;
 use super::toasts::Level;
 use crate::batch::Queue;
 use crate::batch::plan::Plan;
@@ -44,7 +45,8 @@ impl SceneloomApp {
                     .to_string_lossy()
                     .into_owned();
                 let folder = suggested.with_file_name(format!("{name}_batch"));
-                self.files.batching.window = Some(kept.unwrap_or_else(|| BatchesWindow::new(&folder)));
+                self.files.batching.window =
+                    Some(kept.unwrap_or_else(|| BatchesWindow::new(&free_folder(&folder))));
             }
         }
     }
@@ -112,13 +114,14 @@ impl SceneloomApp {
                 if let Ok(id) = added {
                     (window.chosen, window.is_new) = (Some(id), false);
                     window.forget_pictures();
+                    window.form.folder = free_folder(&window.form.output()).display().to_string();
                 }
                 Ok(())
             }
             Some(Asked::Star(id, variant)) => self.files.batching.queue.mark(id, |m| m.star(variant)),
             Some(Asked::Discard(id, variant)) => self.files.batching.queue.mark(id, |m| m.discard(variant)),
             Some(Asked::Open(id, variant)) => {
-                self.open_variant(id, variant, ui.ctx());
+                self.guarded(Next::Variant(id, variant), ui.ctx());
                 Ok(())
             }
         };
@@ -137,7 +140,7 @@ impl SceneloomApp {
         let queue = &mut self.files.batching.queue;
         if form.from_file {
             let file = PathBuf::from(form.plan_file.trim());
-            let folder = file.parent().unwrap_or(std::path::Path::new("")).to_path_buf();
+            let folder = file.parent().unwrap_or(Path::new("")).to_path_buf();
             return queue.add(Plan::read(&file)?, &folder, &output);
         }
         let scene = self.document.settled_scene();
@@ -156,16 +159,10 @@ impl SceneloomApp {
     }
 
     /// Opens a variant as a scene of its own; it is made anew.
-    fn open_variant(&mut self, id: u64, variant: usize, ctx: &egui::Context) {
+    pub(super) fn open_variant(&mut self, id: u64, variant: usize, ctx: &egui::Context) {
         let Some(item) = self.files.batching.queue.item(id) else {
             return;
         };
-        if self.document.is_dirty() {
-            let text = "Save the scene first: opening a variant takes its place".to_owned();
-            let now_s = self.now_s();
-            self.toasts.push(Level::Error, text, now_s);
-            return;
-        }
         match item.batch() {
             Ok(batch) => {
                 let what = format!("Opening variant {variant} of {}", item.name);
@@ -173,5 +170,38 @@ impl SceneloomApp {
             }
             Err(error) => self.fail(one_line(&error)),
         }
+    }
+}
+
+/// The folder itself if it is not there yet, else the next free one: `a_batch_2`, `a_batch_3` and so on.
+fn free_folder(folder: &Path) -> PathBuf {
+    let name = folder
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let number = |c: char| c.is_ascii_digit();
+    let stem = name.trim_end_matches(number).strip_suffix('_').unwrap_or(&name);
+    let numbered = |i: u32| folder.with_file_name(format!("{stem}_{i}"));
+    std::iter::once(folder.to_path_buf())
+        .chain((2..10_000).map(numbered))
+        .find(|path| !path.exists())
+        .unwrap_or_else(|| folder.to_path_buf())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_that_are_there_get_a_number() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let first = dir.path().join("a_batch");
+        assert_eq!(free_folder(&first), first);
+        std::fs::create_dir(&first).expect("made");
+        let second = dir.path().join("a_batch_2");
+        assert_eq!(free_folder(&first), second);
+        std::fs::create_dir(&second).expect("made");
+        assert_eq!(free_folder(&second), dir.path().join("a_batch_3"));
     }
 }

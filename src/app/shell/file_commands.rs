@@ -84,6 +84,7 @@ impl SceneloomApp {
                 let folder = folder.parent().unwrap_or(Path::new("")).join("");
                 self.files.dialogs.ask(Purpose::Open, &folder, ctx);
             }
+            Next::Variant(id, variant) => self.open_variant(id, variant, ctx),
             Next::New => {
                 let make = self.files.disk.new_scene.clone();
                 self.load("New scene".into(), None, false, ctx, move || make());

@@ -38,6 +38,8 @@ pub(crate) enum Next {
     NewFrom(&'static str),
     AskOpen,
     Open(PathBuf),
+    /// A variant of a batch of the queue.
+    Variant(u64, usize),
     Quit,
 }
 

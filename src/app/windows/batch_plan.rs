@@ -167,19 +167,17 @@ impl PlanForm {
             ),
             (true, "A plan from a file", "JSON, see docs/batches.md"),
         ];
-        icons::segments(ui, &mut self.from_file, &kinds);
+        let mut changed = icons::segments(ui, &mut self.from_file, &kinds);
         ui.add_space(theme::GAP);
         if self.from_file {
-            path_row(ui, "Plan", &mut self.plan_file, "plan.json");
+            changed |= path_row(ui, "Plan", &mut self.plan_file, "plan.json");
         } else {
             self.scene_ui(ui, scene, chosen, qualities);
         }
-        path_row(
-            ui,
-            "Folder",
-            &mut self.folder,
-            "a new folder, or one that holds a part of this batch",
-        );
+        let hint = "a new folder, or one that holds a part of this batch";
+        if path_row(ui, "Folder", &mut self.folder, hint) || changed {
+            self.problem = None;
+        }
         if let Some(problem) = &self.problem {
             ui.colored_label(theme::bad(), problem);
         }
@@ -291,14 +289,18 @@ impl PlanForm {
     }
 }
 
-fn path_row(ui: &mut Ui, label: &str, path: &mut String, hint: &str) {
-    ui.horizontal(|ui| {
+fn path_row(ui: &mut Ui, label: &str, path: &mut String, hint: &str) -> bool {
+    let row = ui.horizontal(|ui| {
         ui.add_sized([52.0, 20.0], egui::Label::new(label).selectable(false));
         let field = egui::TextEdit::singleline(path)
             .desired_width(f32::INFINITY)
             .hint_text(hint);
-        ui.add(field).accessible_name(format!("{label} of the batch"));
+        let field = ui.add(field);
+        let changed = field.changed();
+        field.accessible_name(format!("{label} of the batch"));
+        changed
     });
+    row.inner
 }
 
 fn tick<T: PartialEq + Copy>(ui: &mut Ui, list: &mut Vec<T>, value: T, text: &str) {

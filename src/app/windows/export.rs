@@ -207,13 +207,26 @@ fn found(search: &str) -> [Vec<Format>; GROUPS.len()] {
     out
 }
 
+/// A search that hides what was chosen chooses the first that it finds.
+fn pick_found(dialog: &mut ExportDialog) {
+    let found = found(&dialog.search).concat();
+    let is_found = dialog.format.is_some_and(|f| found.iter().any(|g| g.id == f.id));
+    if let (false, Some(first)) = (is_found, found.first()) {
+        dialog.format = Some(*first);
+    }
+}
+
 fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
     let before = dialog.format;
     let hint = format!("Search {} formats", formats::export::all().len());
     let field = egui::TextEdit::singleline(&mut dialog.search)
         .hint_text(hint)
         .desired_width(f32::INFINITY);
-    ui.add(field).accessible_name("Search formats");
+    let field = ui.add(field);
+    if field.changed() {
+        pick_found(dialog);
+    }
+    field.accessible_name("Search formats");
     egui::ScrollArea::vertical()
         .max_height(LIST_HEIGHT)
         .auto_shrink([false, true])

@@ -116,10 +116,12 @@ fn coefficients(ui: &mut Ui, name: &str, values: &mut [f64]) -> egui::Response {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 3.0;
             let first = row * 3 + 1;
-            caption(
-                ui,
-                &format!("{name}{first} to {name}{}", first + values.len() - 1),
-            );
+            let last = first + values.len() - 1;
+            let text = match first == last {
+                true => format!("{name}{first}"),
+                false => format!("{name}{first} to {name}{last}"),
+            };
+            caption(ui, &text);
             for (i, value) in values.iter_mut().enumerate() {
                 let drag = DragValue::new(value)
                     .speed(0.001)
