@@ -50,6 +50,7 @@ fn variants_are_made_marked_and_opened() {
     assert_eq!((marks.starred.len(), marks.discarded.len()), (0, 1));
     // The same folder again is told, not written over.
     bench.click("New batch…");
+    bench.type_into("Folder of the batch", &folder.display().to_string());
     bench.click("Add to the queue");
     let told = bench.harness.query_by_label_contains("is in the queue already");
     assert!(told.is_some());
