@@ -1,7 +1,12 @@
 //! Every reader of the table, with files that are cut off or lie: no panic, one line, and no more memory than twice the file
 //! beside what a scene takes.
 
+#[path = "../../tests/it/peak_memory.rs"]
+mod peak_memory;
+
 use std::process::Command;
+
+use peak_memory::peak_growth;
 
 use crate::import::{self, Importer};
 use crate::table_tests::refusal;
@@ -79,19 +84,6 @@ fn lies(sample: &[u8]) -> Vec<Vec<u8>> {
         }
     }
     out
-}
-
-fn peak_growth(work: impl FnOnce()) -> Option<usize> {
-    let field = |name: &str| -> Option<usize> {
-        let text = std::fs::read_to_string("/proc/self/status").ok()?;
-        let line = text.lines().find(|l| l.starts_with(name))?;
-        Some(line.split_whitespace().nth(1)?.parse::<usize>().ok()? * 1024)
-    };
-    // 5 sets the peak back to what is held now.
-    std::fs::write("/proc/self/clear_refs", "5").ok()?;
-    let before = field("VmRSS:")?;
-    work();
-    Some(field("VmHWM:")?.saturating_sub(before))
 }
 
 /// Row 62 of the extremes table for every reader. The peak of the process is read, so the test runs itself again alone.

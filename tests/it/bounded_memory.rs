@@ -3,6 +3,8 @@
 
 use std::io::{Cursor, Write};
 
+use crate::peak_memory::peak_growth;
+
 use editor::{Document, Edit, Shape};
 use formats::{box_list, loom, occ3d, opendrive};
 use glam::DVec2;
@@ -14,20 +16,6 @@ use zip::write::SimpleFileOptions;
 const MIB: usize = 1 << 20;
 /// What a scene needs whatever is in its file, and the allocator.
 const OWN: usize = 24 * MIB;
-
-/// Peak of this process's memory beyond where it stood, while `work` runs; `None` where the system does not tell.
-fn peak_growth(work: impl FnOnce()) -> Option<usize> {
-    let field = |name: &str| -> Option<usize> {
-        let text = std::fs::read_to_string("/proc/self/status").ok()?;
-        let line = text.lines().find(|l| l.starts_with(name))?;
-        Some(line.split_whitespace().nth(1)?.parse::<usize>().ok()? * 1024)
-    };
-    // 5 sets the peak back to what is held now.
-    std::fs::write("/proc/self/clear_refs", "5").ok()?;
-    let before = field("VmRSS:")?;
-    work();
-    Some(field("VmHWM:")?.saturating_sub(before))
-}
 
 fn zipped(entries: &[(&str, &[u8])]) -> Vec<u8> {
     let mut out = zip::ZipWriter::new(Cursor::new(Vec::new()));

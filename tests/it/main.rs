@@ -16,6 +16,7 @@ mod inferred;
 mod map;
 mod opendrive;
 mod parity;
+mod peak_memory;
 mod pipeline;
 mod project;
 mod prompt;

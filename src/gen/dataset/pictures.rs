@@ -1,20 +1,26 @@
 //! Frames with camera pictures and the truth about each pixel, for networks that see or make pictures.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 use safetensors::tensor::Dtype;
 
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
-    BevLayout, CameraTruth, Conditions, Extent, Frame, SensorRig, TimeOfDay, VoxelGrid, Weather, raster,
+    BevLayout, CameraTruth, Class, Conditions, Extent, Frame, PolylineKind, Pose, SceneBox, SensorRig,
+    TimeOfDay, VoxelGrid, Weather, raster,
 };
 use sensors::appearance::{Appearance, Quality};
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
+/// Distance between two places that are tried, m.
+const STEP_M: f64 = 2.0;
+/// The vehicle's middle ahead of its rear axle, and the free way around it beside a box, m.
+const MIDDLE_M: f64 = 1.4;
+const REACH_M: f64 = 5.5;
 /// Steps of a depth, m; 0 where there is none.
 const DEPTH_STEP_M: f32 = 0.01;
 
-/// One frame: a world under some light and weather, seen by the six cameras of the default rig.
+/// One frame: a world under some light and weather, seen by the six cameras of the default rig from a free place on a lane.
 pub struct PictureFrame {
     /// Every voxel of the world, in the vertical convention of labels.
     pub dense: VoxelGrid,
@@ -41,7 +47,7 @@ pub fn picture_frame(
         world.boxes.clone(),
         complete(&world, Vertical::Occ3d),
     );
-    let rig = SensorRig::default();
+    let rig = SensorRig::default().placed(&ego_pose(&frame));
     let mut draw = Draw::new(seed, "pictures");
     let time = TimeOfDay::ALL[draw.weighted(&[0.15, 0.5, 0.15, 0.2])];
     let weather = Weather::ALL[draw.weighted(&[0.4, 0.2, 0.2, 0.08, 0.08, 0.04])];
@@ -66,6 +72,48 @@ pub fn picture_frame(
     }
 }
 
+/// The place on a lane, nearest to the middle of the map, where nothing is in the vehicle's way; the middle if there is none.
+fn ego_pose(frame: &Frame) -> Pose {
+    let layout = &frame.layout;
+    let lanes = layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::LaneCenter);
+    let places = lanes.flat_map(|lane| {
+        lane.points_m.windows(2).flat_map(|pair| {
+            let (from, way) = (pair[0], pair[1] - pair[0]);
+            let steps = (way.length() / STEP_M).ceil().max(1.0) as usize;
+            (0..steps).map(move |i| (from + way * (i as f64 / steps as f64), way.to_angle()))
+        })
+    });
+    let free = places.filter(|(at, yaw)| is_free(frame, *at, *yaw));
+    let nearest = free.min_by(|a, b| a.0.length_squared().total_cmp(&b.0.length_squared()));
+    nearest.map_or(Pose::IDENTITY, |(at, yaw)| match layout.relief.is_flat() {
+        true => Pose::planar(at.x, at.y, yaw),
+        false => layout.relief.pose_on(at, yaw),
+    })
+}
+
+/// True if a vehicle has room there: no box within reach, and nothing but ground in its footprint.
+fn is_free(frame: &Frame, at: DVec2, yaw: f64) -> bool {
+    let (ahead, extent) = (DVec2::from_angle(yaw), frame.extent());
+    let is_near = |b: &SceneBox| {
+        let reach = (b.size_m.truncate().length() + REACH_M) / 2.0;
+        b.center_m.truncate().distance(at + ahead * MIDDLE_M) < reach
+    };
+    let foot = (-1..=4).flat_map(|x| (-1..=1).map(move |y| (f64::from(x), f64::from(y))));
+    let is_ground = |(x, y): (f64, f64)| {
+        let p = at + ahead * x + ahead.perp() * y;
+        let Some([i, j]) = extent.column_at(p.x, p.y) else {
+            return false;
+        };
+        let ground =
+            |label: &u8| *label == Class::FREE || Class::from_id(*label).is_some_and(Class::is_ground);
+        frame.occupancy.column(i, j).iter().all(ground)
+    };
+    !frame.boxes.values().any(is_near) && foot.into_iter().all(is_ground)
+}
+
 impl Shard for PictureFrame {
     const ARRAYS: &'static [&'static str] = &[
         "rgb",
@@ -74,7 +122,7 @@ impl Shard for PictureFrame {
         "depth",
         "normal",
         "intrinsic",
-        "ego_from_camera",
+        "map_from_camera",
         "dense",
         "bev",
         "conditions",
@@ -82,7 +130,7 @@ impl Shard for PictureFrame {
 
     /// Of each camera u8 `rgb` `[N,6,h,w,3]`, `class` `[N,6,h,w]` (see [`scene::truth`]), u16 `instance` (box id, 0 none) and
     /// `depth` (cm along the optical axis, 0 none), i8 `normal` `[N,6,h,w,3]` (127ths, optical frame), f32 `intrinsic`
-    /// `[N,6,3,3]` (px) and `ego_from_camera` `[N,6,4,4]`; u8 `dense` `[N,200,200,16]`, i32 `bev` `[N,200,200]`; u8
+    /// `[N,6,3,3]` (px) and `map_from_camera` `[N,6,4,4]`; u8 `dense` `[N,200,200,16]`, i32 `bev` `[N,200,200]`; u8
     /// `conditions` `[N,2]`: time of day and weather by their place in the lists.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         let first = frames.first().and_then(|f| f.truth.first());
@@ -142,7 +190,7 @@ impl Shard for PictureFrame {
             (
                 Dtype::F32,
                 with(&[4, 4]),
-                floats(truths().flat_map(ego_from_camera).collect()),
+                floats(truths().flat_map(map_from_camera).collect()),
             ),
             (
                 Dtype::U8,
@@ -169,7 +217,7 @@ fn intrinsic(truth: &CameraTruth) -> [f64; 9] {
 }
 
 /// Row-major 4 x 4.
-fn ego_from_camera(truth: &CameraTruth) -> [f64; 16] {
+fn map_from_camera(truth: &CameraTruth) -> [f64; 16] {
     let [w, x, y, z] = truth.camera.rotation_wxyz;
     let rotation = glam::DQuat::from_xyzw(x, y, z, w);
     let at = DVec3::from(truth.camera.translation_m);
@@ -205,5 +253,28 @@ mod tests {
             below.class > 0 && below.depth_m > 1.0 && below.depth_m < 60.0,
             "{below:?}"
         );
+    }
+
+    /// Seed 3 has a building in the middle of its first map.
+    #[test]
+    fn the_vehicle_stands_on_a_lane_and_in_nothing() {
+        for i in 0..6 {
+            let frame = picture_frame(3, i, [64, 36], |_| None);
+            for truth in &frame.truth {
+                let near = truth
+                    .pixels
+                    .iter()
+                    .filter(|p| p.depth_m > 0.0 && p.depth_m < 0.8)
+                    .count();
+                assert!(
+                    near < 64 * 36 / 20,
+                    "frame {i}, {}: {near} pixels before the lens",
+                    truth.camera.name
+                );
+            }
+        }
+        let at = |camera: &scene::Camera| DVec3::from(camera.translation_m).truncate();
+        let moved = picture_frame(3, 0, [16, 9], |_| None);
+        assert!(at(&moved.truth[1].camera).distance(at(&SensorRig::default().cameras[1])) > 1.0);
     }
 }

@@ -57,8 +57,8 @@ fn a_single_model_is_one_box_ahead_of_the_vehicle() {
 /// The sample models, where they are: real files of another program.
 #[test]
 fn sample_models_are_read() {
-    let folder =
-        std::env::var_os("SCENELOOM_DATA").map_or_else(|| PathBuf::from("/work/shared/data"), PathBuf::from);
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
+    let folder = std::env::var_os("SCENELOOM_DATA").map_or_else(|| PathBuf::from(beside), PathBuf::from);
     let folder = folder.join("gltf");
     if !folder.is_dir() {
         return println!("{}: no sample models there", folder.display());
