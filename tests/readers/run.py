@@ -79,7 +79,7 @@ def main():
     parser.add_argument("names", nargs="*")
     args = parser.parse_args()
     scripts = sorted(s for s in HERE.iterdir() if s.suffix in (".py", ".mjs") and s.stem not in OTHERS)
-    lost = {f["name"]: f["lost"] or "nothing of what it holds" if f["read"] else "not read" for f in json.loads(run(args.program, "export", "--format", "list", "--json").stdout)["formats"]}
+    lost = {f["name"]: f["lost"] or ("nothing of what it holds" if f["read"] else "not read") for f in json.loads(run(args.program, "export", "--format", "list", "--json").stdout)["formats"]}
     rows, failed = [], 0
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)

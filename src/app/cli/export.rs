@@ -60,7 +60,7 @@ fn names() -> String {
 impl Export {
     pub(super) fn run(self) -> Outcome {
         if self.format == "list" {
-            let line = |f: &Format| json!({ "name": f.id, "holds": f.title, "read": formats::import::all().iter().any(|i| i.id == f.id), "lost": f.lost });
+            let line = |f: &Format| json!({ "name": f.id, "holds": f.title, "read": !f.lost.is_empty() || formats::import::all().iter().any(|i| i.id == f.id), "lost": f.lost });
             let list: Vec<_> = formats::export::all().iter().map(line).collect();
             output::report(&self.common, &json!({ "formats": list }), || {
                 let line = |f: &Format| format!("{:<16} {}", f.id, f.title);
