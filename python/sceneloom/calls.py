@@ -234,6 +234,40 @@ class Calls:
         receipt: types.Opened = self.call("open", args)
         return receipt
 
+    def place_model(
+        self,
+        *,
+        file: str,
+        at_m: Sequence[float] | None = None,
+        heading_deg: float | None = None,
+        of: types.BoxId | None = None,
+        to: types.BoxId | None = None,
+    ) -> types.ModelPlaced:
+        """Puts an object out of a file (a glTF model, a MagicaVoxel shape, a box of another scene) into the
+        scene as a box that keeps the shape of the model wherever it moves, or gives that shape to a box
+        that is there. list_files tells what is there.
+
+        file: File in the folder of this session: a glTF model (.glb, .gltf), a MagicaVoxel shape (.vox), or
+            a scene (.loom).
+        at_m: Where it stands, world frame, m; ahead of the ego vehicle if left out. The nearest free place
+            is taken.
+        heading_deg: Heading, degrees counter-clockwise from x; as the lane there if left out.
+        of: Number of the object's box, of a file that holds several.
+        to: Box of the scene that gets the shape and the size, in place of a new one.
+        """
+        args = _given(
+            {
+                'file': file,
+                'at_m': at_m,
+                'heading_deg': heading_deg,
+                'of': of,
+                'to': to,
+            },
+            ['file'],
+        )
+        receipt: types.ModelPlaced = self.call("place_model", args)
+        return receipt
+
     def prompt(
         self,
         *,

@@ -247,6 +247,19 @@ def at(
     return cast('types.EditAt', {"at": args})
 
 
+def set_shape(*, cells: Sequence[Sequence[int]], id: types.BoxId) -> types.EditSetShape:
+    """Gives a box voxels of its own, in place of those of its class: they go wherever it goes and are not
+    generated. Another size or class takes them away again.
+
+    cells: Voxels of 0.4 m that are its class's, as `[ahead, left, up]` from its middle seen from above
+        and from its underside: `[0, 0, 0]` is ahead of and left of the middle, and the underside is in
+        it. None: its class's again.
+    id: The box.
+    """
+    args = _given({'cells': cells, 'id': id}, ['cells', 'id'])
+    return cast('types.EditSetShape', {"set_shape": args})
+
+
 def set_motion(
     *,
     from_s: float | None = None,

@@ -571,6 +571,27 @@ EditAt = TypedDict(
     },
 )
 
+EditSetShapeArgs = TypedDict(
+    'EditSetShapeArgs',
+    {
+        # Voxels of 0.4 m that are its class's, as `[ahead, left, up]` from its middle seen from above and from
+        # its underside: `[0, 0, 0]` is ahead of and left of the middle, and the underside is in it. None: its
+        # class's again.
+        'cells': 'Sequence[Sequence[int]]',
+        # The box.
+        'id': 'BoxId',
+    },
+)
+
+# Gives a box voxels of its own, in place of those of its class: they go wherever it goes and are not generated.
+# Another size or class takes them away again.
+EditSetShape = TypedDict(
+    'EditSetShape',
+    {
+        'set_shape': 'EditSetShapeArgs',
+    },
+)
+
 EditSetMotionArgs = TypedDict(
     'EditSetMotionArgs',
     {
@@ -792,7 +813,7 @@ EditSetRig = TypedDict(
 
 # One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 # `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
-Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
+Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
 
 # Receipt of `export`.
 Exported = TypedDict(
@@ -1122,6 +1143,35 @@ Map = TypedDict(
         'max_m': 'Sequence[float]',
         # Its lower corner, x and y, m.
         'min_m': 'Sequence[float]',
+    },
+)
+
+# Receipt of `place_model`.
+ModelPlaced = TypedDict(
+    'ModelPlaced',
+    {
+        # Number of its box.
+        'box': 'BoxId',
+        # Where its middle is, world frame, m.
+        'center_m': 'Sequence[float]',
+        # What changed, in numbers.
+        'changed': 'Change',
+        # Its class.
+        'class': 'Class',
+        # Columns of voxels, 0.4 x 0.4 m each, that only sketch what was edited; `generate` draws them.
+        'draft_columns': 'int',
+        # Its heading, degrees counter-clockwise from x.
+        'heading_deg': 'float',
+        # Number of the state that the scene is in now. A state that comes back by undo has its old number.
+        'revision': 'int',
+        # Voxels of its shape.
+        'shape_voxels': 'int',
+        # Length, width, height, m.
+        'size_m': 'Sequence[float]',
+        # Name of the undo step; empty if nothing changed.
+        'step': 'str',
+        # What should be looked at, such as findings of the checks that were not there before.
+        'warnings': 'Sequence[str]',
     },
 )
 

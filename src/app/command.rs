@@ -57,6 +57,10 @@ pub enum FileCommand {
     QuickShot,
     /// Asks for a file and writes the clip there as moving pictures.
     SaveClip,
+    /// Asks for a model and puts it into the scene.
+    PlaceModel,
+    /// Asks for a model and gives its shape to the chosen box.
+    ShapeOfChosen,
     /// Asks for a file of sensors and takes them.
     ImportRig,
     /// Asks for a file and saves the sensors there.

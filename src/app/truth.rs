@@ -42,7 +42,7 @@ pub fn each_camera(
 fn next_frame(scene: &Scene) -> Option<Scene> {
     let clip = scene.clip();
     let time_s = scene.time_s() + 1.0 / clip.rate_hz;
-    if clip.is_still() || time_s > clip.length_s + 1e-9 {
+    if clip.stands() || time_s > clip.length_s + 1e-9 {
         return None;
     }
     let mut later = scene.at(time_s);

@@ -15,6 +15,7 @@ pub mod lanes;
 #[cfg(test)]
 mod map_tests;
 pub mod measure;
+pub mod models;
 pub mod outline;
 pub mod part;
 pub mod pick;

@@ -76,6 +76,7 @@ fn track(made: SceneBox, there_s: [Option<f64>; 2]) -> Track {
         there_s,
         voxels: ObjectVoxels::empty(),
         settled: true,
+        own_shape: false,
     }
 }
 

@@ -5,7 +5,7 @@ use scene::Scene;
 /// Times from the start of the clip to its end, `rate_hz` a second; the moment shown alone where nothing moves.
 pub fn times_s(scene: &Scene, rate_hz: f64) -> Vec<f64> {
     let clip = scene.clip();
-    if clip.is_still() || clip.length_s <= 0.0 {
+    if clip.stands() || clip.length_s <= 0.0 {
         return vec![scene.time_s()];
     }
     let last = (clip.length_s * rate_hz + 1e-6).floor() as usize;

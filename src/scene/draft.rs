@@ -50,6 +50,15 @@ pub fn box_columns(extent: Extent, b: &SceneBox) -> Vec<(usize, usize, usize)> {
     out
 }
 
+/// Draws the draft of a box into a grid, from the ground under it up.
+pub fn stamp_box(grid: &mut VoxelGrid, b: &SceneBox) {
+    let bottom_m = b.center_m.z - b.size_m.z / 2.0;
+    let ground = Relief::label_bin(bottom_m);
+    for (x, y, layers) in box_columns(grid.extent(), b) {
+        grid.column_mut(x, y)[ground.min(layers - 1)..layers].fill(b.class.id());
+    }
+}
+
 /// Bin that the ground of a layout lies in at a column, in the convention of the Occ3D labels: 0 without relief.
 pub fn ground_bin(layout: &BevLayout, x: usize, y: usize) -> usize {
     match layout.relief.is_flat() {

@@ -169,6 +169,15 @@ pub enum Edit {
         /// What is changed there.
         edit: Box<Edit>,
     },
+    /// Gives a box voxels of its own, in place of those of its class: they go wherever it goes and are not generated. Another
+    /// size or class takes them away again.
+    SetShape {
+        /// The box.
+        id: BoxId,
+        /// Voxels of 0.4 m that are its class's, as `[ahead, left, up]` from its middle seen from above and from its
+        /// underside: `[0, 0, 0]` is ahead of and left of the middle, and the underside is in it. None: its class's again.
+        cells: Vec<[i32; 3]>,
+    },
     /// Lets an object or the ego vehicle move, or (without a motion) stand where it is at the moment that is shown.
     SetMotion {
         /// The box; the ego vehicle if left out.
@@ -388,6 +397,9 @@ pub enum EditError {
     /// A moment that the clip does not have, or none.
     #[error("{0}")]
     BadMoment(String),
+    /// A shape that is not sound; see [`ObjectVoxels::of_cells`](crate::clip::ObjectVoxels::of_cells).
+    #[error("{0}")]
+    BadShape(String),
     /// A motion or a length that is not sound; see [`Clip::problem`](crate::Clip::problem).
     #[error("{0}")]
     BadMotion(String),

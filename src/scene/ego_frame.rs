@@ -128,6 +128,7 @@ fn in_ego(frame: &Frame, extent: Extent) -> Frame {
         ),
         source: Arc::new(source),
         absent: frame.absent.clone(),
+        own_shapes: frame.own_shapes.clone(),
     }
 }
 

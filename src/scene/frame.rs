@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use crate::clip::OwnShape;
 use crate::{
     BevLayout, BoxId, Class, Extent, Inferred, Pose, SceneBox, VoxelGrid, VoxelPaint, Waiver, raster,
 };
@@ -44,6 +45,8 @@ pub struct Frame {
     pub source: Arc<SourceFrame>,
     /// Ids of objects that are not there at this moment, but at others: no new box may have them.
     pub absent: Arc<BTreeSet<BoxId>>,
+    /// Objects whose voxels are their own, in place of those of their class. They are in the occupancy too.
+    pub own_shapes: Arc<BTreeMap<BoxId, OwnShape>>,
 }
 
 impl Frame {
@@ -70,6 +73,7 @@ impl Frame {
             waivers: Arc::default(),
             source,
             absent: Arc::default(),
+            own_shapes: Arc::default(),
         }
     }
 

@@ -110,6 +110,7 @@ impl Columns {
             ),
             source: Arc::new(source),
             absent: frame.absent.clone(),
+            own_shapes: frame.own_shapes.clone(),
         }
     }
 }

@@ -524,3 +524,50 @@ fn versions_of_a_file_by_the_command_line() {
         "expected a name or 1 to 1",
     );
 }
+
+#[test]
+fn an_object_of_another_scene_is_placed_with_its_voxels() {
+    let folder = Folder::new();
+    let scene = world();
+    let id = *scene.frame().boxes.keys().next().expect("traffic");
+    let [from, to, out] = ["s.loom", "t.loom", "u.loom"].map(|name| folder.path(name));
+    folder.save("s.loom", &scene);
+    folder.save("t.loom", &world());
+    refused(&["place", &from, &to, "-o", &out], "holds");
+    refused(
+        &["place", &from, &to, "--of", "99999", "-o", &out],
+        "box 99999 does not exist",
+    );
+    assert!(!Path::new(&out).exists());
+    let (report, code) = run(&[
+        "place",
+        &from,
+        &to,
+        "--of",
+        &id.0.to_string(),
+        "--at",
+        "-20,6",
+        "-o",
+        &out,
+    ]);
+    assert_eq!(code, 0, "{report}");
+    let placed = open::scene(Path::new(&out)).expect("a scene");
+    let new = BoxId(report["box"].as_u64().expect("a number") as u32);
+    assert_eq!(placed.frame().boxes.len(), world().frame().boxes.len() + 1);
+    let model = |scene: &Scene, id| scene::Model::of(scene, Some(id)).expect("an object").cells;
+    assert_eq!(model(&placed, new), model(&scene, id));
+    assert!(placed.frame().own_shapes.contains_key(&new));
+    // And given to a box that is there.
+    let (report, _) = run(&[
+        "place",
+        &out,
+        &to,
+        "--of",
+        &new.0.to_string(),
+        "--to",
+        &id.0.to_string(),
+        "-o",
+        &out,
+    ]);
+    assert_eq!(report["box"].as_u64(), Some(u64::from(id.0)));
+}

@@ -120,6 +120,8 @@ calls! {
     Prompt(calls::prompt::Prompt),
     /// See [`calls::apply`].
     Apply(calls::apply::Apply),
+    /// See [`calls::place_model`].
+    PlaceModel(calls::place_model::PlaceModel),
     /// See [`calls::tracks`].
     AddTrack(calls::tracks::AddTrack),
     /// See [`calls::tracks`].

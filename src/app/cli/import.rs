@@ -45,7 +45,7 @@ pub struct Import {
 }
 
 /// `X,Y` as finite metres.
-fn point(text: &str) -> Result<DVec2, String> {
+pub(super) fn point(text: &str) -> Result<DVec2, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x, y]) if x.is_finite() && y.is_finite() => Ok(DVec2::new(x, y)),

@@ -19,6 +19,7 @@ mod import;
 mod mcp;
 mod new;
 pub(crate) mod output;
+mod place;
 mod progress;
 mod prompt;
 mod region_arg;
@@ -83,6 +84,8 @@ enum Command {
     Batch(batch::Batch),
     /// What differs between two scenes.
     Diff(diff::Diff),
+    /// An object out of another file (a glTF model, a box of a project), put into a scene.
+    Place(place::Place),
     /// The versions that a scene's file keeps: listed, taken out, added.
     Versions(versions::VersionsCommand),
     /// Files for other programs.
@@ -151,6 +154,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(c)) => c.run(),
         Some(Command::Batch(c)) => c.run(),
         Some(Command::Diff(c)) => c.run(),
+        Some(Command::Place(c)) => c.run(),
         Some(Command::Versions(c)) => c.run(),
         Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),

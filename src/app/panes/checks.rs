@@ -42,7 +42,7 @@ impl Pane for Checks {
             stale: cx.checking.is_stale(settled.rev),
             selected: cx.state.selected,
             frame: settled.frame(),
-            lasts: !settled.clip().is_still(),
+            lasts: !settled.clip().stands(),
         };
         let marks = theme::panel_frame()
             .show(ui, |ui| checks_ui(ui, &input, commands))

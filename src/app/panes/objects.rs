@@ -13,7 +13,7 @@ use crate::state::UiState;
 use crate::tools::{Choose, Hand, ToolCommand};
 use editor::transform::Orientation;
 use editor::{Document, Edit, arrange};
-use scene::{BoxId, Class, Frame, SceneBox, Thing};
+use scene::{BoxId, Class, Frame, Scene, SceneBox, Thing};
 use widgets::icons::Icon;
 use widgets::icons::{self, section};
 use widgets::theme;
@@ -66,7 +66,10 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
             match state.selected.and_then(|id| frame.boxes.get(&id)) {
                 Some(_) if state.chosen().len() > 1 => several(ui, frame, &state.tools, commands),
-                Some(b) => inspector(ui, b, &state.tools, commands),
+                Some(b) => {
+                    inspector(ui, b, &state.tools, commands);
+                    own_shape(ui, scene, b.id, commands);
+                }
                 None if things.is_empty() => {
                     ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
                 }
@@ -307,6 +310,30 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
     field(&position, "Move box", edit(Some(center), None, None), commands);
     field(&dimensions, "Resize box", edit(None, None, Some(size)), commands);
     field(&turned, "Turn box", edit(None, Some(yaw_deg), None), commands);
+}
+
+/// Says of a box that stands with voxels of its own that it does, and takes them away.
+fn own_shape(ui: &mut Ui, scene: &Scene, id: BoxId, commands: &mut Vec<Command>) {
+    let track = scene.clip().tracks.get(&id);
+    if !track.is_some_and(|t| t.own_shape) {
+        return;
+    }
+    ui.horizontal(|ui| {
+        caption(ui, "Shape");
+        ui.label("From a model").on_hover_text(
+            "It keeps this shape wherever it is moved. Another size or class gives it a generated one.",
+        );
+        let button = ui
+            .button("Take away")
+            .on_hover_text("The shape is generated again");
+        if button.clicked() {
+            let cells = Vec::new();
+            commands.push(Command::Apply(
+                "Take the shape away",
+                vec![Edit::SetShape { id, cells }],
+            ));
+        }
+    });
 }
 
 /// A heading in degrees from -180 to 180. One beyond the range of a field would be brought into it as if it were typed,

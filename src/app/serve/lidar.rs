@@ -85,7 +85,7 @@ impl Spin<'_> {
     fn moves(&self) -> bool {
         let placed = self.placed.iter().any(|p| p.at.start != p.at.end);
         self.sensor.start != self.sensor.end
-            || self.span.length_s > 0.0 && (placed || !self.scene.clip().is_still())
+            || self.span.length_s > 0.0 && (placed || !self.scene.clip().stands())
     }
 
     /// The points, part by part, in the LiDAR's frame at the end of the spin.

@@ -50,6 +50,8 @@ impl SceneloomApp {
             FileCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             FileCommand::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
             FileCommand::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
+            FileCommand::PlaceModel => self.ask_model(false, ctx),
+            FileCommand::ShapeOfChosen => self.ask_model(true, ctx),
             FileCommand::ImportRig => {
                 let suggestion = self.suggested("json");
                 self.files.dialogs.ask(Purpose::ImportRig, &suggestion, ctx);
@@ -152,6 +154,8 @@ impl SceneloomApp {
             Purpose::SaveAs => self.save_to(path, ctx),
             Purpose::Screenshot => self.screenshot(&path),
             Purpose::Clip => self.save_clip(path, ctx),
+            Purpose::Model => self.read_model(path, false, ctx),
+            Purpose::ModelShape => self.read_model(path, true, ctx),
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
             Purpose::ExportFile | Purpose::ExportFolder => {

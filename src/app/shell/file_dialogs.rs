@@ -20,6 +20,10 @@ pub enum Purpose {
     Screenshot,
     /// Where to save moving pictures.
     Clip,
+    /// A model to put into the scene.
+    Model,
+    /// A model whose shape the chosen box gets.
+    ModelShape,
     /// Sensors to take.
     ImportRig,
     /// Where to save the sensors.
@@ -37,6 +41,8 @@ impl Purpose {
             Purpose::SaveAs => "Save scene as",
             Purpose::Screenshot => "Export screenshot",
             Purpose::Clip => "Save clip: .gif, .png or .mp4",
+            Purpose::Model => "Place a model",
+            Purpose::ModelShape => "Shape of the chosen box",
             Purpose::ImportRig => "Import sensors",
             Purpose::ExportRig => "Export sensors",
             Purpose::ExportFile => "Export to file",
@@ -50,6 +56,8 @@ impl Purpose {
             Purpose::SaveAs => "Save file",
             Purpose::Screenshot => "Export picture",
             Purpose::Clip => "Save clip",
+            Purpose::Model => "Place model",
+            Purpose::ModelShape => "Take shape",
             Purpose::ImportRig => "Import file",
             Purpose::ExportRig => "Export file",
             Purpose::ExportFile | Purpose::ExportFolder => "Use path",
@@ -57,7 +65,10 @@ impl Purpose {
     }
 
     fn is_save(self) -> bool {
-        !matches!(self, Purpose::Open | Purpose::ImportRig)
+        !matches!(
+            self,
+            Purpose::Open | Purpose::Model | Purpose::ModelShape | Purpose::ImportRig
+        )
     }
 }
 
@@ -123,6 +134,9 @@ impl FileDialogs {
             Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
             Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),
             Purpose::Clip => dialog.add_filter("Moving pictures", &["mp4", "gif", "png"]),
+            Purpose::Model | Purpose::ModelShape => dialog
+                .add_filter("Models and scenes of one object", &["glb", "gltf", "vox", "loom"])
+                .add_filter("All files", &["*"]),
             Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter("Sensor rig", &["json"]),
             Purpose::ExportFile | Purpose::ExportFolder => dialog,
         };
@@ -276,7 +290,12 @@ fn problem(path: &Path, field: &mut Field) -> Option<String> {
 /// A name without an extension gets the one that fits.
 fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
     let extension = match purpose {
-        Purpose::Open | Purpose::ImportRig | Purpose::ExportFile | Purpose::ExportFolder => return path,
+        Purpose::Open
+        | Purpose::Model
+        | Purpose::ModelShape
+        | Purpose::ImportRig
+        | Purpose::ExportFile
+        | Purpose::ExportFolder => return path,
         Purpose::ExportRig => "json",
         Purpose::SaveAs => "loom",
         Purpose::Screenshot => "png",

@@ -71,6 +71,8 @@ pub struct Files {
     pub(crate) opening: Option<Opening>,
     /// Roads on which a place is chosen.
     pub(crate) picking: Option<Picking>,
+    /// A model that is being read.
+    pub(crate) model: Option<super::models::Reading>,
     /// Waits for an answer about unsaved changes.
     pub(crate) unsaved: Option<Next>,
     /// Goes on after the scene was saved.
@@ -91,6 +93,7 @@ impl Files {
             dialogs: FileDialogs::new(native_dialogs),
             opening: None,
             picking: None,
+            model: None,
             unsaved: None,
             after_save: None,
             may_close: false,

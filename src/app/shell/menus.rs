@@ -58,6 +58,11 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     );
     ui.separator();
     on(
+        item(ui, "Place a model…", "", true),
+        Command::File(FileCommand::PlaceModel),
+    );
+    ui.separator();
+    on(
         item(ui, "Export…", "Ctrl+E", true),
         Command::Toggle(Window::Export),
     );
@@ -102,6 +107,10 @@ fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
     on(
         item(ui, &format!("Delete {what}"), "Del", some),
         Command::Tools(ToolCommand::Delete),
+    );
+    on(
+        item(ui, "Shape from a model…", "", hand.selected.is_some()),
+        Command::File(FileCommand::ShapeOfChosen),
     );
     let thing = |command| Command::Tools(ToolCommand::Thing(command));
     let things = !hand.things.chosen.is_empty();

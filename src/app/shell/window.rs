@@ -244,6 +244,7 @@ impl SceneloomApp {
         self.export_dialog(ui);
         self.batches_ui(ui);
         self.picking_ui(ui);
+        self.take_model();
         self.recovery_dialog(ui);
         if self.files.unsaved.is_some()
             && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name)

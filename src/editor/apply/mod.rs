@@ -75,7 +75,9 @@ impl Apply for Edit {
                 }
             }
             Self::At { .. } => at::apply(self, scene)?,
-            Self::SetMotion { .. } | Self::SetLength { .. } => motion::apply(self, scene)?,
+            Self::SetMotion { .. } | Self::SetLength { .. } | Self::SetShape { .. } => {
+                motion::apply(self, scene)?
+            }
             Self::ExtendMap { .. } => extend::apply(self, scene)?,
             Self::LetMove { .. } => all_or_nothing(scene, &let_move::let_move(scene, self)?)?,
             Self::Forecast { seconds } => {

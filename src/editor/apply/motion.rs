@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use scene::clip::{ObjectVoxels, Track};
-use scene::{BoxId, Clip, Edit, EditError, Frame, Motion, Scene, SceneBox, SourceFrame};
+use scene::{BoxId, Clip, Edit, EditError, Frame, Key, Motion, Scene, SceneBox, SourceFrame};
 
 use crate::immediate;
 
-/// Applies [`Edit::SetMotion`] and [`Edit::SetLength`]. On error nothing has changed.
+/// Applies [`Edit::SetMotion`], [`Edit::SetLength`] and [`Edit::SetShape`]. On error nothing has changed.
 pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
     match edit {
         Edit::SetMotion {
@@ -22,8 +22,61 @@ pub(super) fn apply(edit: &Edit, scene: &mut Scene) -> Result<(), EditError> {
             clip.rate_hz = rate_hz.unwrap_or(clip.rate_hz);
             put(scene, None, clip)
         }
+        Edit::SetShape { id, cells } => set_shape(scene, *id, cells),
         _ => Ok(()),
     }
+}
+
+/// Gives a box voxels of its own, or (without any) those of its class again. With its own it is a track from then on, which stands where it stood or moves as it moved.
+fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), EditError> {
+    let Some(b) = scene.frame().boxes.get(&id).copied() else {
+        return Err(EditError::UnknownBox { id });
+    };
+    let mut next = scene.clone();
+    if cells.is_empty() {
+        let Some(track) = next.clip().tracks.get(&id) else {
+            return Ok(()); // it has its class's voxels
+        };
+        let stands = track.stands();
+        next.change_clip(|clip| {
+            if let Some(track) = clip.tracks.get_mut(&id) {
+                (track.voxels, track.settled) = (ObjectVoxels::drafted(&track.made), false);
+                track.own_shape = false;
+            }
+        });
+        if stands {
+            // It needs no track to stand where it stands: a box of its class comes in its place.
+            set(&mut next, Some(id), None, [None; 2])?;
+            super::apply_all(&[Edit::RemoveBox { id }, b.into()], &mut next)?;
+        }
+        *scene = next;
+        return Ok(());
+    }
+    let (mut made, voxels) = ObjectVoxels::of_cells(&b, cells).map_err(EditError::BadShape)?;
+    if !next.clip().tracks.contains_key(&id) {
+        set(&mut next, Some(id), Some(&standing(&b)), [None; 2])?;
+    }
+    // A track's box is as high above the ground everywhere.
+    let relief = &next.canvas().layout.relief;
+    made.center_m.z += relief.height_m(made.center_m.truncate()) - relief.height_m(b.center_m.truncate());
+    let mut clip = Clip::clone(next.clip());
+    if let Some(track) = clip.tracks.get_mut(&id) {
+        made.velocity_mps = track.made.velocity_mps;
+        (track.made, track.voxels) = (made, voxels);
+        (track.settled, track.own_shape) = (true, true);
+    }
+    put(&mut next, None, clip)?;
+    *scene = next;
+    Ok(())
+}
+
+/// The motion of what stands where a box is.
+fn standing(b: &SceneBox) -> Motion {
+    Motion::Keys(vec![Key {
+        time_s: 0.0,
+        at_m: b.center_m.truncate(),
+        yaw_deg: b.yaw_rad.to_degrees(),
+    }])
 }
 
 /// Gives a box, or (`None`) the ego vehicle, a motion, or takes it away.
@@ -61,6 +114,14 @@ pub(super) fn set(
                 }
                 clip.tracks.insert(id, track);
                 canvas = Some(frame);
+            }
+        }
+        (Some(id), None) if clip.tracks.get(&id).is_some_and(|t| t.own_shape) => {
+            // It stands as a track: its voxels are its own.
+            let now = scene.frame().boxes.get(&id).copied();
+            if let Some(track) = clip.tracks.get_mut(&id) {
+                track.motion = standing(&now.unwrap_or(track.made));
+                track.there_s = [None; 2];
             }
         }
         (Some(id), None) => {
@@ -139,6 +200,7 @@ fn lift(canvas: &mut Frame, id: BoxId) -> Result<Track, EditError> {
         there_s: [None; 2],
         voxels,
         settled,
+        own_shape: false,
     })
 }
 

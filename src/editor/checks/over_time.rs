@@ -60,7 +60,7 @@ pub(super) struct OverTime {
 impl OverTime {
     pub(super) fn of(context: &Context<'_>) -> Self {
         let (scene, clip) = (context.scene, context.scene.clip());
-        if clip.is_still() || clip.problem().is_some() {
+        if clip.stands() || clip.problem().is_some() {
             return Self {
                 times_s: Vec::new(),
                 traces: Vec::new(),

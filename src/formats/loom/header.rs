@@ -53,6 +53,8 @@ pub(super) struct TrackHeader {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) to_s: Option<f64>,
     pub(super) settled: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) own_shape: bool,
     /// Column at the lower corner of its voxels, counted from the world frame's origin.
     pub(super) voxels_from: [i32; 2],
     /// Columns of them along x and y.
@@ -68,6 +70,7 @@ impl ClipHeader {
             from_s: t.there_s[0],
             to_s: t.there_s[1],
             settled: t.settled,
+            own_shape: t.own_shape,
             voxels_from: t.voxels.from,
             voxels_size: t.voxels.size,
         };

@@ -88,6 +88,7 @@ fn read_clip<R: Read + Seek>(file: &mut Reader<R>, header: ClipHeader) -> Result
             there_s: [track.from_s, track.to_s],
             voxels: Arc::new(voxels),
             settled: track.settled,
+            own_shape: track.own_shape,
         };
         if tracks.insert(id, track).is_some() {
             return Err(ProjectError::Unsound(format!(
@@ -183,6 +184,7 @@ fn read_canvas<R: Read + Seek>(file: &mut Reader<R>, header: FrameHeader) -> Res
         waivers: Arc::new(header.waivers),
         source: Arc::new(source),
         absent: Arc::default(),
+        own_shapes: Arc::default(),
     })
 }
 

@@ -117,6 +117,7 @@ fn sample_clip() -> Clip {
         there_s: [Some(0.5), None],
         voxels: voxels(made.class.id()),
         settled,
+        own_shape: settled,
     };
     let path = Motion::Path(scene::clip::Path {
         points_m: vec![

@@ -42,7 +42,7 @@ fn place(scene: &Scene, actor: &Actor, time_s: f64) -> Option<(Place, f64)> {
             let ahead = (pose.rotation * DVec3::X).truncate().normalize_or(DVec2::X);
             let speed_mps = match clip.ego_moving(time_s) {
                 Some(moving) => moving.velocity_mps.dot(ahead),
-                None if clip.is_still() => scene.rig.ego_speed_mps,
+                None if clip.stands() => scene.rig.ego_speed_mps,
                 None => 0.0,
             };
             let place = Place {

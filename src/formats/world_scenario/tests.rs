@@ -87,6 +87,7 @@ fn drive() -> Scene {
             there_s: [None, Some(1.2)],
             voxels: ObjectVoxels::empty(),
             settled: true,
+            own_shape: false,
         };
         clip.tracks.insert(car.id, track);
     });

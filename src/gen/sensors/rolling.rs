@@ -33,7 +33,7 @@ pub fn learned(net: &LidarNet, scene: &Scene, drops: Drops) -> Result<LidarSweep
 /// True if things or the own vehicle move while the first LiDAR spins.
 pub fn is_rolling(scene: &Scene) -> bool {
     let spins = scene.rig.lidars.first().is_some_and(|l| l.spin_hz > 0.0);
-    spins && !scene.clip().is_still()
+    spins && !scene.clip().stands()
 }
 
 /// The sweep of a scene's first LiDAR that ends at the moment shown, with the time and the velocity of its points. `whole`
@@ -169,6 +169,7 @@ mod tests {
                 there_s: [None; 2],
                 voxels: ObjectVoxels::cut(&own, &made, |_, label| label != Class::FREE),
                 settled: true,
+                own_shape: false,
             };
             clip.tracks.insert(made.id, track);
             if ego_mps > 0.0 {

@@ -58,6 +58,7 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
         waivers: after.waivers.clone(),
         source: canvas.source.clone(),
         absent: Arc::default(),
+        own_shapes: Arc::default(),
     };
     if clip.ego.is_none() {
         next.world_from_ego = after.world_from_ego;
@@ -122,6 +123,9 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
                 velocity_mps: was.velocity_mps,
                 ..*now
             };
+        }
+        if (was.class, was.size_m) != (now.class, now.size_m) {
+            track.own_shape = false;
         }
         let source = after.source.boxes.get(id);
         track.settled = source.is_some_and(|b| same_shape(b, now));

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 pub use fold::{Scope, Seen, fold};
 pub use motion::{Key, Motion, Moving, Sampling};
-pub use object_voxels::{MARGIN_M, ObjectVoxels};
+pub use object_voxels::{MARGIN_M, ObjectVoxels, OwnShape};
 pub use path::{Path, Speed};
 pub use template::{Manoeuvre, Pace, Template};
 
@@ -33,12 +33,19 @@ pub struct Track {
     pub voxels: Arc<ObjectVoxels>,
     /// False while the voxels are a draft that the networks have not drawn yet.
     pub settled: bool,
+    /// True if the voxels are its own, in place of those of its class: pictures show them.
+    pub own_shape: bool,
 }
 
 impl Track {
     /// True if it is there at a time.
     pub fn is_there(&self, time_s: f64) -> bool {
         self.there_s[0].is_none_or(|from| time_s >= from) && self.there_s[1].is_none_or(|to| time_s < to)
+    }
+
+    /// True if it is where it is, all the time.
+    pub fn stands(&self) -> bool {
+        matches!(&self.motion, Motion::Keys(keys) if keys.len() <= 1) && self.there_s == [None; 2]
     }
 
     /// What is wrong with it, in one line.
@@ -95,9 +102,14 @@ impl Clip {
     /// How many things may be attached to each other in a row.
     const MAX_ATTACHED: usize = 8;
 
-    /// True if every moment looks like every other.
+    /// True if there is nothing but the canvas.
     pub fn is_still(&self) -> bool {
         self.ego.is_none() && self.tracks.is_empty()
+    }
+
+    /// True if nothing is ever elsewhere: whatever is a track stands where it is, all the time.
+    pub fn stands(&self) -> bool {
+        self.ego.is_none() && self.tracks.values().all(Track::stands)
     }
 
     /// Number of frames, the first at 0 s.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::grid::NOT_PAINTED;
 use crate::raster::box_cells;
-use crate::{Class, Extent, SceneBox, VoxelGrid, VoxelPaint};
+use crate::{Class, Extent, SceneBox, VoxelGrid, VoxelPaint, draft};
 
 /// How far voxels of an object may reach beyond its box, m: the corner of one voxel.
 pub const MARGIN_M: f64 = 0.6;
@@ -21,6 +21,22 @@ pub struct ObjectVoxels {
     pub columns: Vec<[u8; Extent::NZ]>,
 }
 
+/// Voxels of an object, and its box at which they were made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnShape {
+    /// The box.
+    pub made: SceneBox,
+    /// The voxels.
+    pub voxels: Arc<ObjectVoxels>,
+}
+
+impl OwnShape {
+    /// The voxels as [`ObjectVoxels::of_cells`] takes them.
+    pub fn cells(&self) -> Vec<[i32; 3]> {
+        self.voxels.cells(&self.made)
+    }
+}
+
 impl ObjectVoxels {
     /// Columns of a shape at most: a square of 102 m.
     pub const MAX_COLUMNS: usize = 1 << 16;
@@ -32,6 +48,81 @@ impl ObjectVoxels {
             size: [0; 2],
             columns: Vec::new(),
         })
+    }
+
+    /// The draft of an object's voxels where it was made, whether that is on a map or not. Empty for one that is too large.
+    pub fn drafted(made: &SceneBox) -> Arc<Self> {
+        let reach = made.size_m.truncate().length() / 2.0 + Extent::VOXEL_M;
+        let column = |metres: f64| (metres * 2.5).floor() as i32;
+        let from = [column(made.center_m.x - reach), column(made.center_m.y - reach)];
+        let side = (2.0 * reach * 2.5).ceil() as usize + 1;
+        let fits = side * side <= Self::MAX_COLUMNS;
+        let Some(extent) = Extent::new(from, [side; 2]).ok().filter(|_| fits) else {
+            return Self::empty();
+        };
+        let mut grid = VoxelGrid::over(extent);
+        draft::stamp_box(&mut grid, made);
+        Self::cut(&grid, made, |_, label| label != Class::FREE)
+    }
+
+    /// The shape of an object that is made of these voxels of its class: `[ahead, left, up]` from the middle of its box seen
+    /// from above and from its underside. With it the box at which it is made, in the same place and turned to heading 0.
+    /// What is beyond the heights of a grid is left out. Errors in one line for none and for one that is not on the box.
+    pub fn of_cells(b: &SceneBox, cells: &[[i32; 3]]) -> Result<(SceneBox, Arc<Self>), String> {
+        let made = upright(b);
+        let middle = (made.center_m.truncate() * 2.5).round().as_ivec2();
+        let bottom = bottom_bin(&made);
+        let reach = reach(b);
+        let size = (2 * reach).as_uvec2().to_array().map(|n| n as usize);
+        let up_to = (b.size_m.z * 2.5).ceil() as i32 + 2;
+        if size[0].checked_mul(size[1]).is_none_or(|n| n > Self::MAX_COLUMNS) {
+            let [length, width, _] = b.size_m.to_array();
+            return Err(format!(
+                "a box of {length} x {width} m is too large for a shape of its own"
+            ));
+        }
+        let mut columns = vec![[Class::FREE; Extent::NZ]; size[0] * size[1]];
+        for cell @ &[ahead, left, up] in cells {
+            let within = |v: i32, reach: i32| (-reach..reach).contains(&v);
+            if !within(ahead, reach.x) || !within(left, reach.y) || !(-3..=up_to).contains(&up) {
+                let [x, y] = reach.to_array();
+                return Err(format!(
+                    "cell {cell:?} is not on the box, expected {} to {}, {} to {}, -3 to {up_to}",
+                    -x,
+                    x - 1,
+                    -y,
+                    y - 1
+                ));
+            }
+            let [i, j] = [ahead + reach.x, left + reach.y].map(|v| v as usize);
+            if let Some(z) = usize::try_from(up + bottom).ok().filter(|z| *z < Extent::NZ) {
+                columns[i * size[1] + j][z] = b.class.id();
+            }
+        }
+        if columns.iter().flatten().all(|label| *label == Class::FREE) {
+            return Err("the shape has no voxel within the heights of the grid".into());
+        }
+        let from = (middle - reach).to_array();
+        Ok((made, Arc::new(Self { from, size, columns })))
+    }
+
+    /// The voxels as [`of_cells`](Self::of_cells) takes them, of an object that was made with its box at `made`.
+    pub fn cells(&self, made: &SceneBox) -> Vec<[i32; 3]> {
+        let now = upright(made);
+        let middle = (now.center_m.truncate() * 2.5).round().as_ivec2();
+        let reach = reach(made);
+        let from = middle - reach;
+        let size = (2 * reach).as_uvec2();
+        let Ok(extent) = Extent::new(from.to_array(), [size.x as usize, size.y as usize]) else {
+            return Vec::new();
+        };
+        let bottom = bottom_bin(&now);
+        let mut out = Vec::new();
+        self.visit(extent, made, &now, |[x, y, z], _| {
+            out.push([x as i32 - reach.x, y as i32 - reach.y, z as i32 - bottom]);
+        });
+        out.sort_unstable();
+        out
     }
 
     /// Number of voxels.
@@ -134,6 +225,28 @@ impl ObjectVoxels {
         let wrong = labels.copied().find(|l| Class::from_id(*l).is_none());
         wrong.map(|label| format!("a shape holds label {label}, expected 0 to 17"))
     }
+}
+
+/// The box with heading 0, its middle moved by less than a voxel to where four columns meet.
+fn upright(b: &SceneBox) -> SceneBox {
+    let middle = (b.center_m.truncate() * 2.5).round() / 2.5;
+    SceneBox {
+        center_m: middle.extend(b.center_m.z),
+        yaw_rad: 0.0,
+        ..*b
+    }
+}
+
+/// How many columns a box and its margin reach ahead of its middle, and to its left.
+fn reach(b: &SceneBox) -> glam::IVec2 {
+    ((b.size_m.truncate() / 2.0 + MARGIN_M) * 2.5).ceil().as_ivec2()
+}
+
+/// The bin that a box's underside is in.
+fn bottom_bin(b: &SceneBox) -> i32 {
+    let bottom_m = b.center_m.z - b.size_m.z / 2.0;
+    // A hair up: an underside on the border of two bins is in the upper one.
+    ((bottom_m - Extent::BOTTOM_M) * 2.5 + 1e-6).floor() as i32
 }
 
 fn corner(found: &[([usize; 2], [u8; Extent::NZ])], of: fn(usize, usize) -> usize) -> Option<[usize; 2]> {

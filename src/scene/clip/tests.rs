@@ -52,6 +52,7 @@ fn scene() -> Scene {
         there_s: [None; 2],
         voxels: voxels(extent, &made),
         settled: true,
+        own_shape: false,
     };
     scene.change_clip(|clip| {
         clip.length_s = 4.0;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::Clip;
+use super::{Clip, OwnShape};
 use crate::{BoxId, Frame, Pose, SceneBox};
 
 impl Clip {
@@ -53,6 +53,12 @@ impl Clip {
         if boxes.is_empty() {
             return frame;
         }
+        let own = boxes.iter().filter_map(|b| Some((b.id, self.tracks.get(&b.id)?)));
+        let own = own.filter(|(_, track)| track.own_shape).map(|(id, track)| {
+            let (made, voxels) = (track.made, track.voxels.clone());
+            (id, OwnShape { made, voxels })
+        });
+        frame.own_shapes = Arc::new(own.collect());
         let source = Arc::make_mut(&mut frame.source);
         for b in boxes {
             let Some(track) = self.tracks.get(&b.id) else {

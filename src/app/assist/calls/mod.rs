@@ -10,6 +10,7 @@ pub mod history;
 mod names;
 pub mod new;
 pub mod open;
+pub mod place_model;
 pub mod prompt;
 pub mod render;
 pub mod save;

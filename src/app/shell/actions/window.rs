@@ -320,6 +320,16 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(File, "export_screenshot", "Export a screenshot", "", || {
         Command::File(FileCommand::ExportScreenshot)
     }),
+    action(File, "place_model", "Place a model", "", || {
+        Command::File(FileCommand::PlaceModel)
+    }),
+    action(
+        File,
+        "shape_of_chosen",
+        "Shape of the chosen box from a model",
+        "",
+        || Command::File(FileCommand::ShapeOfChosen),
+    ),
     action(File, "import_rig", "Import sensors", "", || {
         Command::File(FileCommand::ImportRig)
     }),

@@ -82,7 +82,7 @@ fn write(scene: &Scene, products: &mut dyn Products) -> Result<Vec<OutFile>, For
 /// Moments from the start of the clip to its end; the moment shown alone where nothing moves. Errors if they are too many.
 fn times_s(scene: &Scene) -> Result<Vec<f64>, FormatError> {
     let clip = scene.clip();
-    if clip.is_still() || clip.length_s <= 0.0 {
+    if clip.stands() || clip.length_s <= 0.0 {
         return Ok(vec![scene.time_s()]);
     }
     let last = (clip.length_s / STEP_S + 1e-6).floor() as usize;

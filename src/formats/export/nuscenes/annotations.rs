@@ -78,7 +78,7 @@ impl Annotations {
                 .or_insert_with(|| (categories::of_box(b.class, &b.label.name), Vec::new()));
             rows.push(writing.tables.sample_annotation.len());
             let is_track = now.clip().tracks.contains_key(&b.id);
-            let may_move = is_track || now.clip().is_still();
+            let may_move = is_track || now.clip().stands();
             let attributes =
                 attribute(b, is_track, may_move).map(|i| writing.tokens.token("attribute", i as u64));
             let returns = seen.lidar_returns.as_ref().and_then(|n| n.get(&b.id));

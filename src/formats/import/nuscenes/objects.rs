@@ -1,11 +1,10 @@
 //! Objects that stand, and objects that move.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use scene::clip::ObjectVoxels;
-use scene::{BoxId, Class, Clip, Extent, Frame, Key, Motion, SceneBox, Track, VoxelGrid, draft};
+use scene::{BoxId, Class, Clip, Frame, Key, Motion, SceneBox, Track};
 
 use super::read::{Annotation, Object, Recording};
 use super::{Skipped, count};
@@ -64,8 +63,9 @@ pub(super) fn things(recording: &Recording, skipped: &mut Skipped) -> Things {
             made,
             motion: motion(object.boxes.iter().map(|(f, a)| key(times_s[*f], a)).collect()),
             there_s: there_s(object, &times_s),
-            voxels: shape(&made),
+            voxels: ObjectVoxels::drafted(&made),
             settled: true,
+            own_shape: false,
         };
         if track.problem().is_some() {
             count(skipped, "objects that are not sound", 1);
@@ -151,30 +151,6 @@ fn velocity_mps(object: &Object, times_s: &[f64]) -> DVec2 {
     match apart_s > 0.0 && apart_s <= LONGEST_S {
         true => (b.center_m - a.center_m).truncate() / apart_s,
         false => DVec2::ZERO,
-    }
-}
-
-/// The draft of an object's voxels where it was made, whether that is on the map or not.
-fn shape(made: &SceneBox) -> Arc<ObjectVoxels> {
-    let reach = made.size_m.truncate().length() / 2.0 + Extent::VOXEL_M;
-    let column = |metres: f64| (metres * 2.5).floor() as i32;
-    let from = [column(made.center_m.x - reach), column(made.center_m.y - reach)];
-    let side = (2.0 * reach * 2.5).ceil() as usize + 1;
-    let fits = side * side <= ObjectVoxels::MAX_COLUMNS;
-    let Some(extent) = Extent::new(from, [side; 2]).ok().filter(|_| fits) else {
-        return ObjectVoxels::empty();
-    };
-    let mut grid = VoxelGrid::over(extent);
-    stamp(&mut grid, made);
-    ObjectVoxels::cut(&grid, made, |_, label| label != Class::FREE)
-}
-
-/// Draws the draft of a box into a grid.
-pub(super) fn stamp(grid: &mut VoxelGrid, b: &SceneBox) {
-    let bottom_m = b.center_m.z - b.size_m.z / 2.0;
-    let ground = scene::Relief::label_bin(bottom_m);
-    for (x, y, layers) in draft::box_columns(grid.extent(), b) {
-        grid.column_mut(x, y)[ground.min(layers - 1)..layers].fill(b.class.id());
     }
 }
 

@@ -7,7 +7,7 @@ use scene::{
     draft, infer,
 };
 
-use super::objects::{Things, holds, stamp};
+use super::objects::{Things, holds};
 use super::read::{KeyFrame, Recording, Sweep};
 use super::{Skipped, count};
 use crate::import::Source;
@@ -220,7 +220,10 @@ fn sweeps(
     count(skipped, "points that are not finite", votes.not_finite);
     count(skipped, "points beside the map", votes.elsewhere);
     let mut voxels = votes.grid()?;
-    things.standing.values().for_each(|b| stamp(&mut voxels, b));
+    things
+        .standing
+        .values()
+        .for_each(|b| draft::stamp_box(&mut voxels, b));
     Some(voxels)
 }
 

@@ -4,6 +4,7 @@
 mod build;
 mod part;
 mod shapes;
+mod voxel_shape;
 
 use glam::{Vec2, Vec3};
 
@@ -12,8 +13,9 @@ pub use part::Part;
 use super::noise::hash1;
 use build::Builder;
 use part::rounded;
-use scene::{BoxId, Class, Paint, SceneBox};
+use scene::{BoxId, Class, Extent, Paint, SceneBox};
 use shapes::shape;
+use voxel_shape::voxel_shape;
 
 /// What a part is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,8 +120,8 @@ fn usual_paint(name: &str) -> Option<Paint> {
 }
 
 impl Thing {
-    /// A box as a thing to be drawn; `None` if the box has a problem.
-    pub fn of(b: &SceneBox, seed: u32) -> Option<Self> {
+    /// A box as a thing to be drawn, by the shape of its class or by cells of its own; `None` if the box has a problem.
+    pub fn of(b: &SceneBox, cells: Option<&[[i32; 3]]>, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
             return None;
         }
@@ -149,7 +151,14 @@ impl Thing {
             Class::ConstructionVehicle => rgb(232, 168, 20),
             _ => car_paint(id),
         };
-        shape(&mut build, b.class, id);
+        match cells {
+            None => shape(&mut build, b.class, id),
+            // Three voxels across tell a shape; fewer do not.
+            Some(_) if b.size_m.truncate().min_element() < 3.0 * Extent::VOXEL_M => {
+                shape(&mut build, b.class, id)
+            }
+            Some(cells) => voxel_shape(&mut build, b, cells, Material::Plain(paint)),
+        }
         let bottom = b.center_m.z - b.size_m.z / 2.0;
         Some(Self {
             class: b.class,

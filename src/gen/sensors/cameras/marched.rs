@@ -1,5 +1,7 @@
 //! What the sources that cast exact rays share.
 
+use std::borrow::Cow;
+
 use super::{CameraPicture, Card, PreparedCameras, RenderOptions};
 use crate::march::{GroundHeight, MarchOptions, MarchScene};
 use scene::{Camera, Frame};
@@ -16,7 +18,12 @@ pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
         lines: true,
         seed,
     };
-    MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options)
+    // What has voxels of its own is those.
+    let mut boxes = Cow::Borrowed(&frame.boxes);
+    if shapes && !frame.own_shapes.is_empty() {
+        boxes.to_mut().retain(|id, _| !frame.own_shapes.contains_key(id));
+    }
+    MarchScene::new(&frame.occupancy, &frame.layout, &boxes, &options)
 }
 
 /// A frame made ready for rays.
