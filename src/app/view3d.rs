@@ -300,13 +300,14 @@ impl View3d {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
             let factor = f64::from((scroll / 260.0).exp() * zoom);
             if (factor - 1.0).abs() > 1e-4 {
-                let toward = self.pointer(at).and_then(|p| {
-                    let distance_m = match pick::pick(input.scene.frame(), &p.ray)? {
+                let toward = self.pointer(at).map(|p| {
+                    let hit_m = pick::pick(input.scene.frame(), &p.ray).map(|hit| match hit {
                         Hit::Box { distance_m, .. } => distance_m,
                         Hit::Voxel(v) => v.distance_m,
                         Hit::Ground { point_in_ego } => p.ray.origin_in_ego.distance(point_in_ego),
-                    };
-                    (distance_m < 400.0).then(|| p.ray.at(distance_m))
+                    });
+                    let (from_m, way) = (p.ray.origin_in_ego, p.ray.direction_in_ego);
+                    self.camera.zoom_point_m(from_m, way, hit_m)
                 });
                 self.camera.zoom(factor, toward);
             }

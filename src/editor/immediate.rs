@@ -76,10 +76,7 @@ pub(super) fn stamp_box(frame: &mut Frame, b: &SceneBox) {
 
 /// True for the layers that say what the ground is made of; lines and crossings lie on it.
 pub(super) fn shapes_ground(layer: BevLayer) -> bool {
-    matches!(
-        layer,
-        BevLayer::DrivableArea | BevLayer::Walkway | BevLayer::CarparkArea
-    )
+    BevLayer::GROUND.contains(&layer)
 }
 
 /// Gives columns whose layout has changed the ground class it now asks for. Columns in which

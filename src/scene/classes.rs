@@ -290,6 +290,9 @@ impl BevLayer {
         1 << self as u32
     }
 
+    /// Layers that say what the ground is. A cell has one of them at most: painting one takes the others away.
+    pub const GROUND: [BevLayer; 3] = [Self::DrivableArea, Self::Walkway, Self::CarparkArea];
+
     /// True for the layers that come from boxes.
     pub fn is_object(self) -> bool {
         self as u8 >= 8

@@ -76,6 +76,10 @@ impl Default for ViewCamera {
 const NEAR_M: f64 = 0.1;
 /// Half of the depth that an orthographic view shows about its target at least, m.
 const ORTHO_HALF_DEPTH_M: f64 = 1000.0;
+/// What is under the pointer is zoomed to if it is nearer than this, m.
+const FAR_ZOOM_M: f64 = 400.0;
+/// A map that is seen less steeply than this is seen from its edge, rad.
+const LEVEL_RAD: f64 = -0.17;
 const DISTANCE_M: std::ops::RangeInclusive<f64> = 0.2..=15_000.0;
 const TARGET_LIMIT_M: f64 = 20_000.0;
 const FOV_RAD: std::ops::RangeInclusive<f64> = 0.05..=2.6;
@@ -213,6 +217,15 @@ impl ViewCamera {
         *self = self.sane();
     }
 
+    /// The point on the ray under the pointer that [`zoom`](Self::zoom) comes nearer to, ego frame, m: where the ray hits, or as
+    /// deep as the middle of the view where it hits nothing near and in an orthographic view. `way` is a unit vector.
+    pub fn zoom_point_m(&self, from_m: DVec3, way: DVec3, hit_m: Option<f64>) -> DVec3 {
+        let [.., forward] = self.axes();
+        let level_m = forward.dot(self.target_m - from_m) / forward.dot(way).max(0.1);
+        let hit_m = hit_m.filter(|m| !self.ortho && *m < FAR_ZOOM_M);
+        from_m + way * hit_m.unwrap_or(level_m)
+    }
+
     /// Comes nearer by `factor` (2 halves the distance), keeping the point `toward` where it is on screen.
     pub fn zoom(&mut self, factor: f64, toward: Option<DVec3>) {
         if !(factor.is_finite() && factor > 0.0) {
@@ -240,10 +253,18 @@ impl ViewCamera {
         *self = self.sane();
     }
 
-    /// Fits a whole map in.
+    /// Fits a whole map in, from above if it was looked at along the ground.
     pub fn focus_map(&mut self, extent: Extent) {
         let (low, high) = (extent.min_m(), extent.max_m());
         let middle = ((low + high) / 2.0).with_z(0.0);
+        if !self.ortho {
+            // After the view of a camera it would be seen from its edge, and widely.
+            let usual = Self::default();
+            self.fov_y_rad = usual.fov_y_rad;
+            if self.pitch_rad > LEVEL_RAD {
+                self.pitch_rad = usual.pitch_rad;
+            }
+        }
         self.focus(middle, (high - low).truncate().max_element() / 2.0 * 1.1);
     }
 
@@ -450,6 +471,36 @@ mod tests {
             let after = camera.project(p, SIZE).expect("in front");
             assert!((before - after).length() < 1e-6, "{camera:?}");
         }
+    }
+
+    #[test]
+    fn the_wheel_keeps_what_is_under_the_pointer_in_every_view() {
+        for mut camera in all() {
+            let [right, up, forward] = camera.axes();
+            let eye = camera.eye_m();
+            let aim = camera.target_m + right * 3.0 - up;
+            let (from_m, way) = match camera.ortho {
+                true => (aim - forward * 900.0, forward),
+                false => (eye, (aim - eye).normalize()),
+            };
+            let p = camera.zoom_point_m(from_m, way, None);
+            assert!((p - aim).length() < 1e-6, "{camera:?}");
+            let before = camera.project(p, SIZE).expect("in front");
+            camera.zoom(2.0, Some(p));
+            assert!((camera.project(p, SIZE).expect("in front") - before).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_whole_map_is_never_seen_from_its_edge() {
+        let mut camera = ViewCamera::preset(ViewPreset::Ego);
+        (camera.pitch_rad, camera.fov_y_rad) = (0.0, 2.0);
+        camera.focus_map(Extent::WINDOW);
+        assert_eq!(camera.pitch_rad, ViewCamera::default().pitch_rad);
+        assert_eq!(camera.fov_y_rad, ViewCamera::default().fov_y_rad);
+        let mut side = ViewCamera::preset(ViewPreset::Side);
+        side.focus_map(Extent::WINDOW);
+        assert!(side.ortho && side.pitch_rad == ViewCamera::preset(ViewPreset::Side).pitch_rad);
     }
 
     #[test]

@@ -165,6 +165,7 @@ impl Prompt {
         let description = std::mem::take(&mut prompted.described.description);
         let mut made = text::make(&self.text, &description, self.seed, &how);
         made.scene.words = std::sync::Arc::new(vec![self.text.clone()]);
+        made.scene.name = text::title(&self.text).into();
         let generated = if self.generate {
             let (scene, report) = self.generated(Document::new(made.scene), GenParams::whole_scene())?;
             made.scene = scene;

@@ -178,7 +178,11 @@ fn layer_row(
         let color = theme::rgb(layer.color()).gamma_multiply(if shown { 1.0 } else { 0.4 });
         let name = theme::sentence(&label);
         let row = icons::row(ui, color, &name, &right, chosen, &format!("Paint {label}"));
-        if row.on_hover_text("Choose for the brush").clicked() {
+        let hint = match BevLayer::GROUND.contains(&layer) {
+            true => "Choose for the brush. A place is road, walkway or car park: what is painted last replaces the others",
+            false => "Choose for the brush",
+        };
+        if row.on_hover_text(hint).clicked() {
             tools.layer = layer;
             commands.push(Command::Tool(brush::ID));
         }

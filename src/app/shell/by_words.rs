@@ -46,8 +46,7 @@ impl SceneloomApp {
             let mut made = crate::text::made(ask.lay_out(), ask.seed);
             told.tell(&made.laid);
             made.scene.words = std::sync::Arc::new(vec![ask.prompt.clone()]);
-            let summary = &ask.description.summary;
-            made.scene.name = summary.chars().take(48).collect::<String>().into();
+            made.scene.name = crate::text::title(&ask.prompt).into();
             Ok(made.scene)
         };
         self.load(SCENE_FROM_WORDS.into(), None, false, ctx, make);

@@ -86,7 +86,10 @@ impl SceneloomApp {
     }
 
     pub(crate) fn apply(&mut self, label: impl Into<Label>, edits: &[Edit]) {
-        if let Some(layer) = self.state.locked_layer(edits) {
+        if let Some(layer) = self
+            .state
+            .locked_layer(&self.document.scene().frame().layout, edits)
+        {
             return self.fail(format!("Layer {:?} is locked", layer.label()));
         }
         if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {

@@ -20,6 +20,8 @@ pub struct Hands {
     pub flying: bool,
     /// Drags something with the button down: only the keys of [`DURING_A_DRAG`] count.
     pub dragging: bool,
+    /// Is over a window that floats over the panes: a key without Ctrl is not meant for the scene.
+    pub over_window: bool,
 }
 
 /// Commands of the keys pressed in this frame.
@@ -35,6 +37,9 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
     } in pressed(ctx)
     {
         let chord = Chord::pressed(key, modifiers);
+        if hands.over_window && !chord.ctrl {
+            continue;
+        }
         if hands.flying && is_flight(key) && !chord.ctrl {
             continue;
         }
@@ -220,6 +225,20 @@ mod tests {
         }
         assert_eq!(pressed(Key::OpenBracket, &state), [Command::BrushSize(-1)]);
         assert_eq!(pressed(Key::Escape, &state).len(), 1);
+    }
+
+    #[test]
+    fn over_a_floating_window_only_chords_with_ctrl_count() {
+        let mut state = UiState::default();
+        state.choose(&[BoxId(3)], Choose::Only);
+        let hands = Hands {
+            over_window: true,
+            ..Hands::default()
+        };
+        for key in [Key::B, Key::Delete, Key::Escape, Key::ArrowUp] {
+            assert_eq!(with(key, Modifiers::NONE, &state, hands), [], "{key:?}");
+        }
+        assert_eq!(with(Key::Z, Modifiers::CTRL, &state, hands), [Command::Undo]);
     }
 
     #[test]

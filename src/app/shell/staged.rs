@@ -58,6 +58,11 @@ pub struct Staged {
     compare: CompareMode, // the user's, before both states were shown
 }
 
+/// The bar of the result that waits.
+pub(super) fn bar_id() -> egui::Id {
+    egui::Id::unique("staged")
+}
+
 impl SceneloomApp {
     /// Makes the present state, one step after `before`, a result that waits. If another seed can give another result, both
     /// states are shown side by side.
@@ -278,7 +283,7 @@ impl SceneloomApp {
     /// Draws the bar of the result that waits, over the lower edge of `over`.
     pub(crate) fn staged_ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
         let Some(staged) = self.staged() else { return };
-        let area = egui::Area::new(egui::Id::unique("staged"))
+        let area = egui::Area::new(bar_id())
             .order(Order::Middle)
             .pivot(Align2::CENTER_BOTTOM)
             .fixed_pos(over.center_bottom() + egui::vec2(0.0, -12.0));

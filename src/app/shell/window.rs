@@ -31,6 +31,9 @@ impl SceneloomApp {
     pub fn draw(&mut self, ui: &mut Ui) {
         self.frames.passes = self.frames.passes.saturating_add(1);
         let mut commands = Vec::new();
+        // Asked before: the key that closes a menu or a list is no shortcut.
+        let popup = egui::Popup::is_any_open(ui.ctx());
+        let over_window = is_over_window(ui.ctx());
         self.take_window_events(ui.ctx(), &mut commands);
         self.tidy_staging();
         self.prepare_compare(ui);
@@ -47,11 +50,12 @@ impl SceneloomApp {
         let dialog = self.has_dialog();
         self.overlays(ui, &scene, &mut commands);
         // What is shown is not what a key would change.
-        if !dialog && !self.state.compare.holding_before {
+        if !dialog && !popup && !self.state.compare.holding_before {
             let (primary, secondary) = ui.input(|i| (i.pointer.primary_down(), i.pointer.secondary_down()));
             let hands = Hands {
                 flying: secondary && matches!(self.state.pointed.pane, Some(PaneId::VIEW3D | PaneId::SPLATS)),
                 dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
+                over_window,
             };
             keys::commands(
                 ui.ctx(),
@@ -237,7 +241,7 @@ impl SceneloomApp {
         };
         self.staged_ui(ui, over, commands);
         performance_ui(ui, over, &mut self.frames.perf);
-        self.toasts.show(ui, self.views.center, now_s);
+        self.toasts.show(ui, over, now_s);
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.views.center);
         }
@@ -284,4 +288,9 @@ fn drop_hint(ui: &Ui, over: Rect) {
         font,
         theme::ON_CANVAS,
     );
+}
+/// True if the pointer is over a window, not over the panes or over the bar of a result that waits.
+fn is_over_window(ctx: &egui::Context) -> bool {
+    let layer = ctx.pointer_latest_pos().and_then(|at| ctx.layer_id_at(at));
+    layer.is_some_and(|layer| layer.order == egui::Order::Middle && layer.id != super::staged::bar_id())
 }

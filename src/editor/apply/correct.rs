@@ -74,8 +74,9 @@ fn correct(frame: &mut Frame, edit: &Edit) -> Result<(), EditError> {
         }
         Edit::PaintBev { layer, shape, value } => {
             let mut cells = shape.cells(source.layout.extent())?;
-            if !value {
-                junction::cut_lines(&mut source.layout, *layer, &cells);
+            match value {
+                true => map::replace_ground(&mut source.layout, *layer, &cells),
+                false => junction::cut_lines(&mut source.layout, *layer, &cells),
             }
             cells.retain(|[x, y]| before.layout.has(*layer, *x, *y) != *value);
             for [x, y] in cells {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use scene::shape::at_least;
-use scene::{BevLayout, Edit, EditError, Frame, Polyline, SceneBox, raster};
+use scene::{BevLayer, BevLayout, Edit, EditError, Frame, Polyline, SceneBox, raster};
 
 use crate::{immediate, junction};
 
@@ -16,8 +16,9 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
                 return Err(EditError::ObjectLayer(*layer));
             }
             let mut cells = shape.cells(frame.extent())?;
-            if !value {
-                junction::cut_lines(&mut frame.layout, *layer, &cells);
+            match value {
+                true => replace_ground(&mut frame.layout, *layer, &cells),
+                false => junction::cut_lines(&mut frame.layout, *layer, &cells),
             }
             cells.retain(|&[x, y]| frame.layout.has(*layer, x, y) != *value);
             for &[x, y] in &cells {
@@ -34,6 +35,32 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
         _ => return Ok(false),
     }
     Ok(true)
+}
+
+/// Takes other ground away where a layer of the ground is painted, and under a walkway the markings of the road.
+pub(super) fn replace_ground(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize; 2]]) {
+    if !BevLayer::GROUND.contains(&layer) {
+        return;
+    }
+    let others = BevLayer::GROUND.into_iter().filter(|other| *other != layer);
+    let markings: &[BevLayer] = match layer {
+        BevLayer::Walkway => &[BevLayer::RoadDivider, BevLayer::LaneDivider, BevLayer::StopLine],
+        _ => &[],
+    };
+    for gone in others.chain(markings.iter().copied()) {
+        let there: Vec<[usize; 2]> = cells
+            .iter()
+            .copied()
+            .filter(|[x, y]| layout.has(gone, *x, *y))
+            .collect();
+        if there.is_empty() {
+            continue;
+        }
+        junction::cut_lines(layout, gone, &there);
+        for [x, y] in there {
+            layout.set(gone, x, y, false);
+        }
+    }
 }
 
 pub(super) fn add_lines(layout: &mut BevLayout, lines: &[Polyline]) {

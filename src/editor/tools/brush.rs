@@ -130,7 +130,7 @@ impl Tool for Brush {
 
     fn hint(&self, hand: &Hand, _: Option<ViewKind>) -> Hint {
         let erase = if hand.erase { "Drag erases" } else { "Drag paints" };
-        hint_of(&match hand.shape {
+        let mut parts = match hand.shape {
             PaintShape::Stroke => vec![erase, "Shift erases", "Ctrl straight", "Alt picks", "[ ] size"],
             PaintShape::Line => vec![erase, "Shift in steps of 15°", "[ ] size"],
             PaintShape::Rectangle => vec![erase, "Shift erases", "Alt picks"],
@@ -138,7 +138,14 @@ impl Tool for Brush {
             PaintShape::Street => vec!["Click sets points", "Enter builds", "Backspace takes back"],
             PaintShape::Fill => vec!["Click fills what is alike", "Shift erases", "Alt picks"],
             PaintShape::Pick => vec!["Click takes the layer"],
-        })
+        };
+        if BevLayer::GROUND.contains(&hand.layer)
+            && !matches!(hand.shape, PaintShape::Street | PaintShape::Pick)
+            && !hand.erase
+        {
+            parts.insert(1, "replaces other ground");
+        }
+        hint_of(&parts)
     }
 
     fn cursor(&self, sight: &Sight<'_>) -> Cursor {
@@ -286,11 +293,30 @@ pub(super) fn locked(layer: BevLayer) -> Response {
 }
 
 /// Shows the shape painted; shapes beside the map paint nothing, which is no error to show.
-pub(super) fn show(extent: Extent, layer: BevLayer, shape: Shape, value: bool) -> Response {
-    match shape.cells(extent) {
-        Ok(_) => Response::act(Act::Preview(vec![Edit::PaintBev { layer, shape, value }])),
-        Err(_) => Response::none(),
+/// Ground that is locked is painted around.
+pub(super) fn show(cx: &Context<'_>, layer: BevLayer, shape: Shape, value: bool) -> Response {
+    let layout = &cx.settled.frame().layout;
+    let Ok(mut cells) = shape.cells(layout.extent()) else {
+        return Response::none();
+    };
+    let mut edit = Edit::PaintBev { layer, shape, value };
+    if cx
+        .hand
+        .locked_layer(layout, std::slice::from_ref(&edit))
+        .is_some()
+    {
+        let locked = BevLayer::GROUND
+            .into_iter()
+            .filter(|other| cx.hand.is_locked(*other));
+        let bits = locked.fold(0, |bits, other| bits | other.bit());
+        cells.retain(|[x, y]| layout.cell(*x, *y) & bits == 0);
+        if cells.is_empty() {
+            return Response::none();
+        }
+        let shape = Shape::Cells(cells);
+        edit = Edit::PaintBev { layer, shape, value };
     }
+    Response::act(Act::Preview(vec![edit]))
 }
 
 /// With `snap` the point at the nearest multiple of 15 degrees.
@@ -402,12 +428,7 @@ impl Brush {
             }
             drag.points_m.push(at_m);
         }
-        show(
-            cx.frame().extent(),
-            drag.layer,
-            drag.shape(at_m, pointer.held.shift),
-            !drag.erase,
-        )
+        show(cx, drag.layer, drag.shape(at_m, pointer.held.shift), !drag.erase)
     }
 
     /// Paints the outline or lays the street that was drawn.
@@ -415,7 +436,7 @@ impl Brush {
         if cx.hand.shape == PaintShape::Street {
             let edits = cx.hand.street.edits(&self.points_m, &cx.frame().layout);
             // What was drawn stays until the layer is unlocked.
-            if cx.hand.locked_layer(&edits).is_none() {
+            if cx.hand.locked_layer(&cx.frame().layout, &edits).is_none() {
                 self.points_m.clear();
             }
             return match edits.is_empty() {

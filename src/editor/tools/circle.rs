@@ -96,7 +96,7 @@ impl Circle {
         let extent = cx.frame().extent();
         disc.shown = disc.radius_m >= LEAST_M && disc.shape().cells(extent).is_ok();
         match disc.shown {
-            true => brush::show(extent, disc.layer, disc.shape(), !disc.erase),
+            true => brush::show(cx, disc.layer, disc.shape(), !disc.erase),
             false => Response::act(Act::Cancel),
         }
     }

@@ -11,7 +11,9 @@ use crate::lane_strip::LaneStrip;
 use crate::lanes::nearest_lane;
 use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, Cell};
-use scene::{BevLayer, BoxId, BoxLabel, Class, Extent, Frame, Scene, SceneBox, SceneRev, ThingId, variants};
+use scene::{
+    BevLayer, BevLayout, BoxId, BoxLabel, Class, Extent, Frame, Scene, SceneBox, SceneRev, ThingId, variants,
+};
 
 use super::ToolId;
 use super::beside::ThingState;
@@ -426,11 +428,24 @@ impl Hand {
         })
     }
 
-    /// The first layer that edits would paint although it is locked.
-    pub fn locked_layer(&self, edits: &[Edit]) -> Option<BevLayer> {
+    /// The first layer that edits would change although it is locked: the one they paint, or ground that it would replace.
+    pub fn locked_layer(&self, layout: &BevLayout, edits: &[Edit]) -> Option<BevLayer> {
         edits.iter().find_map(|edit| match edit {
             Edit::PaintBev { layer, .. } if self.is_locked(*layer) => Some(*layer),
-            Edit::Correct { edit } => self.locked_layer(std::slice::from_ref(edit)),
+            Edit::PaintBev {
+                layer,
+                shape,
+                value: true,
+            } if BevLayer::GROUND.contains(layer) => {
+                let mut locked = BevLayer::GROUND
+                    .into_iter()
+                    .filter(|other| self.is_locked(*other))
+                    .peekable();
+                locked.peek()?;
+                let cells = shape.cells(layout.extent()).unwrap_or_default();
+                locked.find(|other| cells.iter().any(|[x, y]| layout.has(*other, *x, *y)))
+            }
+            Edit::Correct { edit } => self.locked_layer(layout, std::slice::from_ref(edit)),
             _ => None,
         })
     }
@@ -536,11 +551,17 @@ mod tests {
             shape: crate::Shape::Cells(vec![[1, 1]]),
             value: true,
         };
-        assert_eq!(ui.locked_layer(&[paint(BevLayer::StopLine)]), None);
+        let mut layout = BevLayout::default();
+        assert_eq!(ui.locked_layer(&layout, &[paint(BevLayer::StopLine)]), None);
+        // Ground replaces other ground.
+        assert_eq!(ui.locked_layer(&layout, &[paint(BevLayer::DrivableArea)]), None);
+        layout.set(BevLayer::Walkway, 1, 1, true);
+        let locked = ui.locked_layer(&layout, &[paint(BevLayer::DrivableArea)]);
+        assert_eq!(locked, Some(BevLayer::Walkway));
         let correct = Edit::Correct {
             edit: Box::new(paint(BevLayer::Walkway)),
         };
-        assert_eq!(ui.locked_layer(&[correct]), Some(BevLayer::Walkway));
+        assert_eq!(ui.locked_layer(&layout, &[correct]), Some(BevLayer::Walkway));
         assert_eq!(ui.size_of(Class::Bus), Some(DVec3::new(11.0, 2.95, 3.5)));
         ui.variants.insert(Class::Bus, 2);
         assert_eq!(ui.size_of(Class::Bus), Some(DVec3::new(18.0, 2.55, 3.1)));

@@ -36,6 +36,25 @@ pub struct Made {
     pub laid: Laid,
 }
 
+/// Letters of a scene's title at most.
+const LONGEST_TITLE: usize = 48;
+
+/// What a scene that is made of words is called: the words, cut between two of them.
+pub fn title(words: &str) -> String {
+    let mut out = String::new();
+    for word in words.split_whitespace() {
+        if out.chars().count() + word.chars().count() > LONGEST_TITLE {
+            let short = match out.is_empty() {
+                true => word.chars().take(LONGEST_TITLE).collect(),
+                false => out.trim_end_matches([',', ';', '.', ' ']).to_owned(),
+            };
+            return short + "…";
+        }
+        out.extend([if out.is_empty() { "" } else { " " }, word]);
+    }
+    out.trim_end_matches(['.', ',']).to_owned()
+}
+
 /// What a prompt says of a new scene.
 #[derive(Clone, Debug)]
 pub struct Prompted {
@@ -385,6 +404,18 @@ pub fn shortfalls(made: &Laid) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn titles_are_cut_between_words() {
+        assert_eq!(super::title("night,  a bus\n ahead."), "night, a bus ahead");
+        let long = "busy intersection at night in the rain, five cones block my lane";
+        assert_eq!(
+            super::title(long),
+            "busy intersection at night in the rain, five…"
+        );
+        assert_eq!(super::title(&"ä".repeat(60)), format!("{}…", "ä".repeat(48)));
+        assert_eq!(super::title(""), "");
+    }
+
     use super::*;
     use editor::Document;
     use scene::Extent;

@@ -213,7 +213,7 @@ impl Prompt {
         let description = &prompted.described.description;
         let mut made = text::make(&self.text, description, self.seed, &How::default());
         made.scene.words = Arc::new(vec![self.text.clone()]);
-        made.scene.name = description.summary.chars().take(48).collect::<String>().into();
+        made.scene.name = text::title(&self.text).into();
         let shortfalls = text::shortfalls(&made.laid);
         let nodes = made.laid.graphed.nodes.clone();
         let placed = made.scene.frame().boxes.clone();

@@ -1,6 +1,54 @@
 //! Layers and lines.
 
 use super::*;
+use scene::PolylineKind;
+
+#[test]
+fn ground_replaces_other_ground_and_a_walkway_the_markings_too() {
+    let mut scene = street();
+    let line = Polyline {
+        kind: PolylineKind::RoadDivider,
+        points_m: vec![DVec2::new(-20.0, 0.1), DVec2::new(20.0, 0.1)],
+    };
+    let across = Shape::Rect {
+        min_m: DVec2::new(-2.0, -8.0),
+        max_m: DVec2::new(2.0, 8.0),
+    };
+    let paint = |layer| Edit::PaintBev {
+        layer,
+        shape: across.clone(),
+        value: true,
+    };
+    let bits = |scene: &Scene| {
+        let cells = across.cells(scene.frame().extent()).expect("inside");
+        let of = |[x, y]: [usize; 2]| scene.frame().layout.cell(x, y);
+        let all: Vec<u32> = cells.into_iter().map(of).collect();
+        (
+            all.iter().fold(u32::MAX, |a, b| a & b),
+            all.iter().fold(0, |a, b| a | b),
+        )
+    };
+    Edit::AddPolylines { lines: vec![line] }
+        .apply(&mut scene)
+        .expect("sound");
+    paint(BevLayer::Walkway).apply(&mut scene).expect("inside");
+    assert_eq!(bits(&scene), (BevLayer::Walkway.bit(), BevLayer::Walkway.bit()));
+    let dividers = scene
+        .frame()
+        .layout
+        .polylines
+        .iter()
+        .filter(|l| l.kind == PolylineKind::RoadDivider);
+    assert_eq!(dividers.count(), 2, "cut where people walk");
+    for layer in [BevLayer::DrivableArea, BevLayer::CarparkArea] {
+        paint(layer).apply(&mut scene).expect("inside");
+        assert_eq!(bits(&scene), (layer.bit(), layer.bit()));
+    }
+    // Lines and crossings lie on the ground and replace nothing.
+    paint(BevLayer::PedCrossing).apply(&mut scene).expect("inside");
+    let both = BevLayer::PedCrossing.bit() | BevLayer::CarparkArea.bit();
+    assert_eq!(bits(&scene), (both, both));
+}
 
 #[test]
 fn painting_a_layer_lays_its_ground_and_lines_do_not() {
@@ -23,7 +71,8 @@ fn painting_a_layer_lays_its_ground_and_lines_do_not() {
     paint(BevLayer::DrivableArea, 0.1, 5.1, false)
         .apply(&mut scene)
         .expect("inside");
-    assert_eq!(label_at(&scene, 0.1, 5.1, 0), Class::Sidewalk.id());
+    // The walkway there was replaced: open ground is left.
+    assert_eq!(label_at(&scene, 0.1, 5.1, 0), Class::Terrain.id());
     paint(BevLayer::DrivableArea, 0.1, 0.1, false)
         .apply(&mut scene)
         .expect("inside");

@@ -68,6 +68,12 @@ fn held(transform: Transform, at_m: DVec2) -> Drag {
     }
 }
 
+/// True over the knob that turns the chosen box: it goes before an arrow that runs under it.
+fn is_over_knob(frame: &Frame, hand: &Hand, at_m: DVec2, reach_m: f64) -> bool {
+    let b = hand.selected.and_then(|id| frame.boxes.get(&id));
+    !hand.lasso && b.is_some_and(|b| pick::handle_at(b, at_m, reach_m) == Some(Handle::Rotate))
+}
+
 /// What a press takes hold of.
 pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let at_m = cx.ground_m(pointer.at)?;
@@ -76,7 +82,8 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let (shift, chosen) = (pointer.held.shift, cx.hand.chosen());
     // The arrows light up under the pointer whatever chooses, so they can be pulled too.
     let gizmo = Gizmo::new(frame, cx.hand, cx.view);
-    if let Some(Part::Axis(axis)) = gizmo.and_then(|g| g.at(pointer.at)) {
+    let over_knob = is_over_knob(frame, cx.hand, at_m, reach_m);
+    if let Some(Part::Axis(axis)) = gizmo.filter(|_| !over_knob).and_then(|g| g.at(pointer.at)) {
         let mut transform = transform(frame, cx.hand, &chosen, cx.hand.gizmo);
         transform.axis = Some(axis);
         return Some(held(transform, at_m));
@@ -383,7 +390,12 @@ pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
     if let None | Some(Drag::Corner { .. }) = drag
         && let Some(gizmo) = Gizmo::new(sight.scene.frame(), sight.hand, sight.view)
     {
-        out.extend(gizmo.marks(sight.pointer.and_then(|p| gizmo.at(p.at))));
+        let reach_m = HANDLE_REACH / sight.view.scale();
+        let over_knob = sight
+            .ground_m()
+            .is_some_and(|at_m| is_over_knob(sight.scene.frame(), sight.hand, at_m, reach_m));
+        let pointer = sight.pointer.filter(|_| !over_knob);
+        out.extend(gizmo.marks(pointer.and_then(|p| gizmo.at(p.at))));
     }
     match drag {
         Some(Drag::Marquee { from_m, to_m, .. }) => {
