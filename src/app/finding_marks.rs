@@ -5,11 +5,15 @@ use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind};
 use glam::{DVec2, DVec3};
 
 use super::canvas::ScreenMap;
+use editor::apply_all;
 use editor::checks::Finding;
-use scene::{BoxId, Extent, Frame};
+use scene::{BoxId, Extent, Frame, Scene, SceneBox};
+use viewport::BrushCells;
 
 /// Colour of the marks in both views; no class and no layer has it.
-pub(super) const COLOR: [u8; 3] = [255, 70, 255];
+const COLOR: [u8; 3] = [255, 70, 255];
+/// Colour of what a repair leaves.
+const REPAIRED: Color32 = Color32::from_rgb(90, 230, 120);
 /// A mark smaller than this would be overlooked, points.
 const LEAST: f32 = 9.0;
 
@@ -22,15 +26,45 @@ pub struct FindingMarks {
     pub box_id: Option<BoxId>,
     /// The middle of it, ego frame, m.
     pub where_m: DVec3,
+    /// Boxes as the first repair leaves them.
+    pub becomes: Vec<SceneBox>,
+}
+
+/// The boxes that the first repair of a finding changes or adds, as it leaves them.
+fn repaired(finding: &Finding, scene: &Scene) -> Vec<SceneBox> {
+    let of_boxes = |fix: &&editor::checks::Fix| fix.edits.iter().any(|e| e.is_of_a_box());
+    let Some(fix) = finding.fixes.first().filter(of_boxes) else {
+        return Vec::new();
+    };
+    let mut after = scene.clone();
+    if apply_all(&fix.edits, &mut after).is_err() {
+        return Vec::new();
+    }
+    let before = &scene.frame().boxes;
+    let new = after
+        .frame()
+        .boxes
+        .values()
+        .filter(|b| before.get(&b.id) != Some(b));
+    new.filter(|b| b.problem().is_none()).copied().collect()
 }
 
 impl FindingMarks {
-    /// By a finding.
-    pub fn by(finding: &Finding) -> Self {
+    /// By a finding of a scene.
+    pub fn by(finding: &Finding, scene: &Scene) -> Self {
         Self {
+            becomes: repaired(finding, scene),
             cells: finding.cells.clone(),
             box_id: finding.box_id,
             where_m: finding.where_m,
+        }
+    }
+
+    /// Its voxels, for the 3D view.
+    pub(super) fn brush(&self) -> BrushCells<'_> {
+        BrushCells {
+            cells: &self.cells,
+            color: COLOR,
         }
     }
 
@@ -60,6 +94,15 @@ impl FindingMarks {
                 color.gamma_multiply(0.35),
                 Stroke::new(2.0, color),
             ));
+        }
+        for b in &self.becomes {
+            let mut outline: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
+            outline.push(outline[0]);
+            let ahead = b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0);
+            let nose = [b.center_m.truncate(), ahead].map(|p| map.to_screen(p));
+            for line in [&outline[..], &nose[..]] {
+                painter.extend(Shape::dashed_line(line, Stroke::new(2.0, REPAIRED), 5.0, 3.0));
+            }
         }
         if !around.is_positive() {
             around = Rect::from_center_size(map.to_screen(self.where_m.truncate()), egui::Vec2::splat(2.0));

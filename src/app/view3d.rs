@@ -375,10 +375,7 @@ impl View3d {
         if cells.is_empty() {
             brush.extend_from_slice(input.marked);
         }
-        if let Some(finding) = finding {
-            let (cells, color) = (&finding.cells[..], super::finding_marks::COLOR);
-            brush.push(BrushCells { cells, color });
-        }
+        brush.extend(finding.map(|m| m.brush()));
         for part in &mut brush {
             part.cells = &part.cells[..part.cells.len().min(MARKED)];
         }
@@ -386,7 +383,8 @@ impl View3d {
             Mark::Ghost(b) => Some(*b),
             _ => None,
         });
-        let boxes: Vec<&SceneBox> = frame.boxes.values().chain(ghost.as_ref()).collect();
+        let shown = frame.boxes.values().chain(ghost.as_ref());
+        let boxes: Vec<&SceneBox> = shown.chain(finding.map_or(&[][..], |m| &m.becomes)).collect();
         let selected: Vec<BoxId> = state.chosen().into_iter().chain(ghost.map(|b| b.id)).collect();
         let hovered = match hit {
             Some(Hit::Box { id, .. }) if state.tool == select::ID => Some(*id),

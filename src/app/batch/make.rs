@@ -358,7 +358,8 @@ fn findings(scene: &Scene) -> Findings {
     for finding in crate::findings::check(scene) {
         match finding.severity {
             Severity::Error => out.errors += 1,
-            _ => out.warnings += 1,
+            Severity::Warning => out.warnings += 1,
+            Severity::Info => out.infos += 1,
         }
         *out.by_check.entry(finding.check.to_owned()).or_default() += 1;
     }

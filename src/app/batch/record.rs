@@ -42,8 +42,11 @@ pub struct Record {
 pub struct Findings {
     /// Of severity error.
     pub errors: usize,
-    /// Others.
+    /// Of severity warning.
     pub warnings: usize,
+    /// Worth knowing and no mistakes: what no sensor sees.
+    #[serde(default)]
+    pub infos: usize,
     /// By the name of the check.
     pub by_check: BTreeMap<String, usize>,
 }

@@ -1,5 +1,6 @@
 //! `sceneloom check`: the quality checks of a scene, and what of it can be repaired.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -10,7 +11,7 @@ use super::{Common, Moment, Outcome, Stop, output};
 use app::findings;
 use app::open;
 use app::panes;
-use editor::checks::{self, Finding, Severity, waive};
+use editor::checks::{self, Counts, Finding, waive};
 use formats::loom;
 use scene::Scene;
 
@@ -78,17 +79,21 @@ impl Check {
         }
         let wall_s = start.elapsed().as_secs_f64();
         let open: Vec<Finding> = waive::open(scene.frame(), &findings).cloned().collect();
-        let errors = open.iter().filter(|f| f.severity == Severity::Error).count();
+        let counts = Counts::of(&open);
+        let mut kinds = BTreeMap::<&str, usize>::new();
+        open.iter().for_each(|f| *kinds.entry(f.check).or_default() += 1);
         let report = json!({
             "findings": findings.iter().map(|f| report_of(&scene, f)).collect::<Vec<_>>(),
-            "errors": errors,
-            "warnings": open.len() - errors,
+            "errors": counts.errors,
+            "warnings": counts.warnings,
+            "infos": counts.infos,
+            "kinds": kinds,
             "waived": findings.len() - open.len(),
             "fixed": fixed,
             "files": files,
             "wall_s": wall_s,
         });
-        let summary = panes::checks::summary(&open);
+        let summary = panes::checks::in_words(counts);
         output::report(&self.common, &report, || {
             let line = |f: &Finding| {
                 let p = f.where_m;
@@ -109,7 +114,7 @@ impl Check {
                 false => findings.iter().map(line).collect::<Vec<_>>().join("\n"),
             }
         });
-        match errors {
+        match counts.errors {
             0 => Ok(()),
             _ => Err(Stop::Short(format!("{}: {summary}", self.scene.display()))),
         }

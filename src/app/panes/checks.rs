@@ -1,18 +1,25 @@
 //! The list of what the quality checks found: a click leads there, a button repairs it.
 
-use egui::accesskit::Role;
-use egui::{Sense, Ui, WidgetInfo, vec2};
+mod row;
+mod triage;
+mod waived;
 
 use std::sync::Arc;
 
+use egui::accesskit::Role;
+use egui::{Ui, WidgetInfo, vec2};
+
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
-use crate::command::{Command, TimeCommand, ViewCommand};
+use crate::command::Command;
 use crate::finding_marks::FindingMarks;
-use editor::Edit;
-use editor::checks::{Finding, Severity, waive};
-use scene::{BoxId, Frame};
-use widgets::icons::Icon;
+use editor::checks::{Counts, Finding, Severity, waive};
+use editor::fix::fix_all;
+use row::{key, row, sign};
+use scene::{BoxId, Frame, Scene};
+use triage::{Grouping, Line, Triage};
+use waived::{reason_ui, waived_ui};
+use widgets::icons::{self, Icon};
 use widgets::theme;
 
 /// What the quality checks found.
@@ -41,7 +48,7 @@ impl Pane for Checks {
             findings: cx.checking.findings().map(|f| f.as_slice()),
             stale: cx.checking.is_stale(settled.rev),
             selected: cx.state.selected,
-            frame: settled.frame(),
+            scene: settled,
             lasts: !settled.clip().stands(),
         };
         let marks = theme::panel_frame()
@@ -63,15 +70,17 @@ pub struct ChecksInput<'a> {
     pub stale: bool,
     /// The chosen box.
     pub selected: Option<BoxId>,
-    /// What the findings are about; it holds the waivers.
-    pub frame: &'a Frame,
+    /// What the findings are about; its frame holds the waivers.
+    pub scene: &'a Scene,
     /// Things move in the scene: most findings are of the moment shown alone.
     pub lasts: bool,
 }
 
-/// What the title of the waived findings takes at the bottom, and what they take unfolded, points.
-const WAIVED_TITLE: f32 = 30.0;
-const WAIVED_LIST: f32 = 94.0;
+impl ChecksInput<'_> {
+    fn frame(&self) -> &Frame {
+        self.scene.frame()
+    }
+}
 
 /// Draws the pane. Returns the marks of the finding under the pointer, else of the one that was clicked last.
 pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Command>) -> Option<FindingMarks> {
@@ -81,15 +90,19 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
     };
     list_ui(ui, input, &mut pointed, commands);
     let clicked = |f: &&Finding| Some(key(f)) == pointed.clicked;
-    let marks = pointed
-        .hovered
-        .or_else(|| input.findings?.iter().find(clicked).map(FindingMarks::by));
+    let marks = pointed.hovered.or_else(|| {
+        input
+            .findings?
+            .iter()
+            .find(clicked)
+            .map(|f| FindingMarks::by(f, input.scene))
+    });
     ui.data_mut(|d| d.insert_temp(clicked_id(), pointed.clicked));
     marks
 }
 
 /// Which finding the user points at.
-struct Pointed {
+pub(super) struct Pointed {
     clicked: Option<String>,
     hovered: Option<FindingMarks>,
 }
@@ -106,24 +119,73 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
         });
         return;
     };
-    let (open, waived): (Vec<&Finding>, Vec<&Finding>) =
-        findings.iter().partition(|f| waive::of(input.frame, f).is_none());
+    let (open, waived): (Vec<&Finding>, Vec<&Finding>) = findings
+        .iter()
+        .partition(|f| waive::of(input.frame(), f).is_none());
+    let counts = Counts::of(open.iter().copied());
     if open.is_empty() {
-        ui.horizontal(|ui| {
-            let (dot, _) = ui.allocate_exact_size(egui::vec2(12.0, 12.0), egui::Sense::hover());
-            ui.painter()
-                .circle_filled(dot.center(), 4.0, widgets::theme::good());
-            ui.label(match waived.len() {
-                0 => "All is well: no check found anything.",
-                _ => "All is well, but for what was waived.",
-            });
-        });
+        all_is_well(ui, counts, &waived);
         ui.weak("Checked while you work: boxes, occupancy, roads, lanes, what cameras and LiDAR see.");
         waived_ui(ui, &waived, input, commands);
         return;
     }
+    let id = egui::Id::unique("triage of the findings");
+    let mut triage: Triage = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    if counts.errors + counts.warnings == 0 {
+        all_is_well(ui, counts, &waived);
+    }
+    bar(ui, input, &open, &mut triage, commands);
+    ui.separator();
+    reason_ui(ui, &open, commands);
+    let lines = triage.lines(&open);
+    if lines.is_empty() {
+        ui.weak("None of these: the filter leaves all of them out.");
+    }
+    let height = (ui.available_height() - waived::height(ui, &waived)).max(3.0 * theme::ROW);
+    egui::ScrollArea::vertical()
+        .auto_shrink([false, false])
+        .max_height(height)
+        .show_rows(ui, theme::ROW, lines.len(), |ui, range| {
+            for (i, line) in range.clone().zip(&lines[range]) {
+                ui.push_id(i, |ui| match line {
+                    Line::Finding(i) => row(ui, open[*i], input, pointed, commands),
+                    Line::Group { .. } => group_row(ui, line, &open, input, &mut triage, commands),
+                });
+            }
+        });
+    ui.data_mut(|d| d.insert_temp(id, triage));
+    waived_ui(ui, &waived, input, commands);
+}
+
+fn all_is_well(ui: &mut Ui, counts: Counts, waived: &[&Finding]) {
     ui.horizontal(|ui| {
-        ui.label(summary(open.iter().copied()));
+        let (dot, _) = ui.allocate_exact_size(vec2(12.0, 12.0), egui::Sense::hover());
+        ui.painter().circle_filled(dot.center(), 4.0, theme::good());
+        ui.label(match (counts.infos, waived.len()) {
+            (0, 0) => "All is well: no check found anything.",
+            (0, _) => "All is well, but for what was waived.",
+            _ => "All is well. Worth knowing:",
+        });
+    });
+}
+
+/// What is listed and how; repairs of all.
+fn bar(
+    ui: &mut Ui,
+    input: &ChecksInput<'_>,
+    open: &[&Finding],
+    triage: &mut Triage,
+    commands: &mut Vec<Command>,
+) {
+    let counts = Counts::of(open.iter().copied());
+    ui.horizontal(|ui| {
+        for (severity, hidden) in Severity::ALL.into_iter().zip(&mut triage.hidden) {
+            let n = counts.count(severity);
+            if n > 0 {
+                severity_button(ui, severity, n, hidden);
+            }
+        }
+        icons::segments(ui, &mut triage.grouping, &Grouping::ALL);
         if input.stale {
             ui.spinner();
         }
@@ -137,254 +199,126 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
             {
                 commands.push(Command::FixAll);
             }
+            let field = egui::TextEdit::singleline(&mut triage.words)
+                .hint_text("Filter")
+                .desired_width(ui.available_width().clamp(40.0, 130.0));
+            ui.add(field).accessible_name("Filter the findings");
         });
     });
-    ui.separator();
-    reason_ui(ui, &open, commands);
-    let row_height = theme::ROW;
-    let unfolded = ui.data(|d| d.get_temp::<bool>(waived_unfolded()).unwrap_or_default());
-    let below = match (waived.is_empty(), unfolded) {
-        (true, _) => 0.0,
-        (false, false) => WAIVED_TITLE,
-        (false, true) => WAIVED_TITLE + WAIVED_LIST,
+}
+
+/// How many there are of a severity; a click leaves them out of the list, or takes them in.
+fn severity_button(ui: &mut Ui, severity: Severity, n: usize, hidden: &mut bool) {
+    let text = words(severity, n);
+    let color = if *hidden {
+        theme::text_weak().gamma_multiply(0.6)
+    } else {
+        theme::text()
     };
-    let height = (ui.available_height() - below).max(3.0 * row_height);
-    egui::ScrollArea::vertical()
-        .auto_shrink([false, false])
-        .max_height(height)
-        .show_rows(ui, row_height, open.len(), |ui, range| {
-            for (i, finding) in range.clone().zip(&open[range]) {
-                ui.push_id(i, |ui| row(ui, finding, input, pointed, commands));
-            }
-        });
-    waived_ui(ui, &waived, input, commands);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        sign(ui, severity);
+        let button = egui::Button::selectable(!*hidden, egui::RichText::new(&text).color(color));
+        let response = ui.add(button).on_hover_text("Listed, or left out");
+        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, !*hidden, format!("List {text}")));
+        if response.clicked() {
+            *hidden ^= true;
+        }
+    });
 }
 
-/// `2 errors, 1 warning`
-pub fn summary<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> String {
-    let severities: Vec<Severity> = findings.into_iter().map(|f| f.severity).collect();
-    let errors = severities.iter().filter(|s| **s == Severity::Error).count();
-    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-    match (errors, severities.len() - errors) {
-        (0, warnings) => count(warnings, "warning"),
-        (errors, 0) => count(errors, "error"),
-        (errors, warnings) => format!("{}, {}", count(errors, "error"), count(warnings, "warning")),
-    }
-}
-
-fn row(
+fn group_row(
     ui: &mut Ui,
-    finding: &Finding,
+    line: &Line,
+    open: &[&Finding],
     input: &ChecksInput<'_>,
-    pointed: &mut Pointed,
+    triage: &mut Triage,
     commands: &mut Vec<Command>,
 ) {
-    let line = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW));
-    if ui.rect_contains_pointer(line) {
-        pointed.hovered = Some(FindingMarks::by(finding));
-    }
+    let Line::Group {
+        title,
+        of,
+        worst,
+        folded,
+    } = line
+    else {
+        return;
+    };
+    let fixable: Vec<usize> = of
+        .iter()
+        .copied()
+        .filter(|i| !open[*i].fixes.is_empty())
+        .collect();
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), theme::ROW),
         egui::Layout::right_to_left(egui::Align::Center),
         |ui| {
-            waive_button(ui, finding);
-            if let Some(first) = finding.fixes.first() {
-                if finding.fixes.len() > 1 {
-                    ui.menu_button("…", |ui| {
-                        for fix in &finding.fixes {
-                            if ui.button(fix.label).clicked() {
-                                commands.push(Command::Apply(fix.label, fix.edits.clone()));
-                                ui.close();
-                            }
-                        }
-                    })
-                    .response
-                    .widget_info(|| {
-                        WidgetInfo::labeled(Role::Button, true, format!("Ways to fix: {}", finding.text))
-                    });
-                }
-                let fix = ui.add(egui::Button::new("Fix").small());
-                fix.widget_info(|| {
-                    WidgetInfo::labeled(Role::Button, true, format!("{}: {}", first.label, finding.text))
-                });
-                if fix.on_hover_text(first.label).clicked() {
-                    commands.push(Command::Apply(first.label, first.edits.clone()));
+            if fixable.len() > 1 {
+                let button = egui::Button::new(format!("Fix {}", fixable.len())).small();
+                let response = ui.add_enabled(!input.stale, button);
+                let name = format!("Fix {}: {title}", fixable.len());
+                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
+                if response
+                    .on_hover_text("Repairs these, as one step to undo")
+                    .clicked()
+                {
+                    let these: Vec<Finding> = fixable.iter().map(|i| open[*i].clone()).collect();
+                    commands.push(Command::Apply(
+                        "Fix findings of a kind",
+                        fix_all(input.scene, &these),
+                    ));
                 }
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                sign(ui, finding.severity);
-                if input.lasts && finding.time_s.is_none() {
-                    ui.weak("now")
-                        .on_hover_text("Found at the moment shown; there may be others at other moments");
-                }
-                let of_box = finding.box_id.is_some() && finding.box_id == input.selected;
-                let chosen = of_box || pointed.clicked.as_ref() == Some(&key(finding));
-                let text = egui::RichText::new(&finding.text);
-                let label = egui::Button::selectable(chosen, text).truncate();
-                let response = ui.add(label);
-                response.widget_info(|| {
-                    let name = format!("{}: {}", theme::sentence(finding.severity.name()), finding.text);
-                    WidgetInfo::selected(Role::Button, true, chosen, name)
-                });
-                // Read already where it fits.
-                let cut = response
-                    .intrinsic_size()
-                    .is_some_and(|s| s.x > response.rect.width() + 1.0);
-                let response = match cut {
-                    true => response.on_hover_text(&finding.text),
-                    false => response,
-                };
-                if response.clicked() {
-                    if finding.box_id.is_some() {
-                        commands.push(Command::Select(finding.box_id));
-                    }
-                    if let Some(time_s) = finding.time_s {
-                        commands.push(Command::Time(TimeCommand::Show(time_s)));
-                    }
-                    commands.push(Command::View(ViewCommand::FrameAt(finding.where_m)));
-                    pointed.clicked = Some(key(finding));
+                sign(ui, *worst);
+                fold_sign(ui, *folded);
+                let text = egui::RichText::new(format!("{}  {}", theme::sentence(title), of.len())).strong();
+                let response = ui.add(egui::Button::new(text).frame(false).truncate());
+                let name = format!("{title}, {}", of.len());
+                response.widget_info(|| WidgetInfo::selected(Role::Button, true, !folded, &name));
+                if response.clicked() && !triage.turned.remove(title) {
+                    triage.turned.insert(title.clone());
                 }
             });
         },
     );
 }
 
-/// Where the reason is kept while it is typed: check and box or place, and the text.
-fn typing() -> egui::Id {
-    egui::Id::unique("reason of a waiver")
-}
-
-type Typing = Option<(String, String)>;
-
-/// Tells findings apart.
-fn key(finding: &Finding) -> String {
-    format!("{} {:?} {:.1}", finding.check, finding.box_id, finding.where_m)
-}
-
-/// The button that begins a waiver.
-fn waive_button(ui: &mut Ui, finding: &Finding) {
-    let button = ui.add(egui::Button::new("Waive").small());
-    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Waive: {}", finding.text)));
-    if button.on_hover_text("Let it stand, with a reason").clicked() {
-        let begun: Typing = Some((key(finding), String::new()));
-        ui.data_mut(|d| d.insert_temp(typing(), begun));
-    }
-}
-
-/// The field for the reason of the finding that is being waived.
-fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Command>) {
-    let Some((of, mut text)) = ui.data(|d| d.get_temp::<Typing>(typing())).flatten() else {
-        return;
+/// A triangle that points to the right where a group is folded, else down.
+fn fold_sign(ui: &mut Ui, folded: bool) {
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), egui::Sense::hover());
+    let turn = match folded {
+        true => egui::emath::Rot2::IDENTITY,
+        false => egui::emath::Rot2::from_angle(std::f32::consts::FRAC_PI_2),
     };
-    let Some(finding) = open.iter().find(|f| key(f) == of) else {
-        return;
+    let corners = [vec2(-2.5, -4.0), vec2(3.5, 0.0), vec2(-2.5, 4.0)].map(|v| rect.center() + turn * v);
+    let shape = egui::Shape::convex_polygon(corners.to_vec(), theme::text_weak(), egui::Stroke::NONE);
+    ui.painter().add(shape);
+}
+
+/// `2 errors`, `1 warning`, `3 infos`
+fn words(severity: Severity, n: usize) -> String {
+    let what = match severity {
+        Severity::Info => "info",
+        other => other.name(),
     };
-    let mut done = false;
-    ui.add(egui::Label::new(&finding.text).truncate());
-    ui.horizontal(|ui| {
-        let field = egui::TextEdit::singleline(&mut text)
-            .hint_text("Why it may stay")
-            .desired_width((ui.available_width() - 150.0).max(120.0));
-        let field = ui.add(field).accessible_name("Reason of the waiver");
-        if text.is_empty() && !field.has_focus() && !field.lost_focus() {
-            field.request_focus();
+    format!(
+        "{n} {what}{}",
+        if n == 1 || severity == Severity::Info {
+            ""
+        } else {
+            "s"
         }
-        let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        let ready = !text.trim().is_empty();
-        let clicked = ui.add_enabled(ready, egui::Button::new("Let it stand")).clicked();
-        if ready && (clicked || entered) {
-            commands.push(Command::Apply(
-                "Waive a finding",
-                vec![Edit::Waive {
-                    check: finding.check.into(),
-                    box_id: finding.box_id,
-                    where_m: finding.where_m,
-                    reason: text.clone(),
-                }],
-            ));
-            done = true;
-        }
-        done |= ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
-    });
-    let left: Typing = (!done).then_some((of, text));
-    ui.data_mut(|d| d.insert_temp(typing(), left));
+    )
 }
 
-/// What was waived, with the reasons, and the way back.
-fn waived_ui(ui: &mut Ui, waived: &[&Finding], input: &ChecksInput<'_>, commands: &mut Vec<Command>) {
-    if waived.is_empty() {
-        return;
-    }
-    ui.add_space(4.0);
-    let title = format!("{} waived", waived.len());
-    let list = egui::CollapsingHeader::new(title)
-        .id_salt("waived findings")
-        .default_open(false)
-        .show(ui, |ui| {
-            egui::ScrollArea::vertical()
-                .id_salt("waived")
-                .max_height(WAIVED_LIST)
-                .show(ui, |ui| {
-                    for finding in waived {
-                        let Some(waiver) = waive::of(input.frame, finding) else {
-                            continue;
-                        };
-                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                            let back = ui.add(egui::Button::new("Take back").small());
-                            back.widget_info(|| {
-                                WidgetInfo::labeled(
-                                    Role::Button,
-                                    true,
-                                    format!("Take back: {}", finding.text),
-                                )
-                            });
-                            if back.clicked() {
-                                commands.push(Command::Apply(
-                                    "Take a waiver back",
-                                    vec![Edit::Unwaive {
-                                        check: waiver.check.to_string(),
-                                        box_id: waiver.box_id,
-                                        where_m: waiver.where_m,
-                                    }],
-                                ));
-                            }
-                            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                                let text = format!("{}  ·  {}", finding.text, waiver.reason);
-                                let label =
-                                    egui::Label::new(egui::RichText::new(&text).color(theme::text_weak()));
-                                ui.add(label.truncate()).on_hover_text(&text);
-                            });
-                        });
-                    }
-                });
-        });
-    ui.data_mut(|d| d.insert_temp(waived_unfolded(), list.fully_open()));
-}
-
-fn waived_unfolded() -> egui::Id {
-    egui::Id::unique("waived findings are unfolded")
-}
-
-/// A disc with a bar through it for errors, a triangle for warnings: told apart by shape, not only by colour.
-fn sign(ui: &mut Ui, severity: Severity) {
-    let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
-    let (painter, c) = (ui.painter(), rect.center());
-    let ink = ui.visuals().window_fill; // dark on bright signs, bright on dark ones
-    let bar = |from: egui::Vec2, to: egui::Vec2| {
-        painter.line_segment([c + from, c + to], egui::Stroke::new(1.8, ink));
-    };
-    match severity {
-        Severity::Error => {
-            painter.circle_filled(c, 6.5, ui.visuals().error_fg_color);
-            bar(vec2(-3.4, 0.0), vec2(3.4, 0.0));
-        }
-        Severity::Warning => {
-            let corners = vec![c + vec2(0.0, -6.5), c + vec2(7.0, 6.0), c + vec2(-7.0, 6.0)];
-            let color = ui.visuals().warn_fg_color;
-            painter.add(egui::Shape::convex_polygon(corners, color, egui::Stroke::NONE));
-            bar(vec2(0.0, -2.4), vec2(0.0, 1.6));
-            bar(vec2(0.0, 3.2), vec2(0.0, 4.6));
-        }
+/// `2 errors, 1 warning`
+pub fn in_words(counts: Counts) -> String {
+    let some = Severity::ALL.into_iter().filter(|s| counts.count(*s) > 0);
+    let all: Vec<String> = some.map(|s| words(s, counts.count(s))).collect();
+    match all.is_empty() {
+        true => "no finding".into(),
+        false => all.join(", "),
     }
 }
 
@@ -394,23 +328,16 @@ mod tests {
 
     #[test]
     fn summaries_count() {
-        let finding = |severity| Finding {
-            check: "unsound",
-            severity,
-            where_m: glam::DVec3::ZERO,
-            box_id: None,
-            time_s: None,
-            cells: Vec::new(),
-            text: "x".into(),
-            fixes: Vec::new(),
+        let of = |errors, warnings, infos| {
+            in_words(Counts {
+                errors,
+                warnings,
+                infos,
+            })
         };
-        let of = |errors: usize, warnings: usize| {
-            let mut all = vec![finding(Severity::Error); errors];
-            all.extend(vec![finding(Severity::Warning); warnings]);
-            summary(&all)
-        };
-        assert_eq!(of(1, 0), "1 error");
-        assert_eq!(of(2, 1), "2 errors, 1 warning");
-        assert_eq!(of(0, 12), "12 warnings");
+        assert_eq!(of(1, 0, 0), "1 error");
+        assert_eq!(of(2, 1, 3), "2 errors, 1 warning, 3 info");
+        assert_eq!(of(0, 12, 0), "12 warnings");
+        assert_eq!(of(0, 0, 0), "no finding");
     }
 }

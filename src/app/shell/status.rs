@@ -10,6 +10,7 @@ use crate::panes::id::PaneId;
 use crate::panes::pointed::Pointed;
 use crate::shell::guard::Pause;
 use crate::shell::live::{Purpose, Running};
+use editor::checks::Counts;
 use job::{GenReport, Stage};
 use widgets::theme;
 
@@ -85,7 +86,7 @@ pub struct StatusInput<'a> {
     /// Something is being dragged.
     pub dragging: bool,
     /// Errors and warnings of the checks that nobody waived; none before the first check.
-    pub findings: Option<(usize, usize)>,
+    pub findings: Option<Counts>,
     /// What the pointer does with the tool in hand.
     pub hint: &'a str,
 }
@@ -116,8 +117,8 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, comman
             if ui.add(button).on_hover_text("What happened so far").clicked() {
                 commands.push(Command::Toggle(Window::Log));
             }
-            if let Some((errors, warnings)) = input.findings.filter(|(e, w)| e + w > 0) {
-                found(ui, errors, warnings, commands);
+            if let Some(counts) = input.findings {
+                found(ui, counts, commands);
             }
             // What is under the pointer, then what the pointer does; the end of the latter gives way first.
             ui.add(
@@ -133,13 +134,19 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, comman
     });
 }
 
-/// How many findings there are; a click lists them.
-fn found(ui: &mut Ui, errors: usize, warnings: usize, commands: &mut Vec<Command>) {
-    let color = if errors > 0 { theme::bad() } else { theme::warn() };
-    let found = errors + warnings;
-    let text = format!("{found} finding{}", if found == 1 { "" } else { "s" });
+/// How many mistakes the checks found; a click lists them.
+fn found(ui: &mut Ui, counts: Counts, commands: &mut Vec<Command>) {
+    let (text, color) = match (counts.errors, counts.errors + counts.warnings) {
+        (_, 0) => ("Checks".to_owned(), theme::text_weak()),
+        (errors, 1) => (
+            "1 finding".to_owned(),
+            if errors > 0 { theme::bad() } else { theme::warn() },
+        ),
+        (0, n) => (format!("{n} findings"), theme::warn()),
+        (_, n) => (format!("{n} findings"), theme::bad()),
+    };
     let button = egui::Button::new(egui::RichText::new(text).color(color)).frame(false);
-    let hint = format!("Checks: {errors} errors, {warnings} warnings");
+    let hint = format!("Checks: {}", crate::panes::checks::in_words(counts));
     let response = ui.add(button).on_hover_text(&hint);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &hint));
     if response.clicked() {

@@ -22,7 +22,7 @@ use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
 use crate::windows::start::start_ui;
 use crate::windows::unsaved::{self, Unsaved};
-use editor::checks::{Severity, waive};
+use editor::checks::{Counts, waive};
 use scene::Scene;
 use widgets::theme;
 
@@ -135,11 +135,11 @@ impl SceneloomApp {
         let touched = self.generation.live.touched_by(&settled, now_s);
         self.generation.unsettled = self.generation.live.parts();
         let unsettled = !touched.is_empty;
-        let findings = self.threads.checking.findings().map(|all| {
-            let open = waive::open(settled.frame(), all);
-            let (errors, warnings): (Vec<_>, Vec<_>) = open.partition(|f| f.severity == Severity::Error);
-            (errors.len(), warnings.len())
-        });
+        let findings = self
+            .threads
+            .checking
+            .findings()
+            .map(|all| Counts::of(waive::open(settled.frame(), all)));
         let status = StatusInput {
             findings,
             running: self.generation.live.running.as_ref(),

@@ -31,6 +31,8 @@ use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 /// How bad a finding is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
+    /// Worth knowing and no mistake: what no sensor sees.
+    Info,
     /// Probably a mistake; the scene can be used.
     Warning,
     /// Wrong: labels, layout or boxes contradict each other or themselves.
@@ -38,9 +40,13 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// As in reports: `warning`, `error`.
+    /// Every one, the worst first.
+    pub const ALL: [Severity; 3] = [Severity::Error, Severity::Warning, Severity::Info];
+
+    /// As in reports: `info`, `warning`, `error`.
     pub fn name(self) -> &'static str {
         match self {
+            Severity::Info => "info",
             Severity::Warning => "warning",
             Severity::Error => "error",
         }
@@ -75,6 +81,41 @@ pub struct Finding {
     pub text: String,
     /// Ways to repair it, the best first; none where a person has to decide.
     pub fixes: Vec<Fix>,
+}
+
+/// How many findings there are of each severity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// See [`Severity::Error`].
+    pub errors: usize,
+    /// See [`Severity::Warning`].
+    pub warnings: usize,
+    /// See [`Severity::Info`].
+    pub infos: usize,
+}
+
+impl Counts {
+    /// Of these findings.
+    pub fn of<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
+        let mut out = Self::default();
+        for finding in findings {
+            match finding.severity {
+                Severity::Error => out.errors += 1,
+                Severity::Warning => out.warnings += 1,
+                Severity::Info => out.infos += 1,
+            }
+        }
+        out
+    }
+
+    /// Of one severity.
+    pub fn count(&self, severity: Severity) -> usize {
+        match severity {
+            Severity::Error => self.errors,
+            Severity::Warning => self.warnings,
+            Severity::Info => self.infos,
+        }
+    }
 }
 
 /// What the sensors return of each box; a box that is missing counts as 0.
@@ -136,6 +177,31 @@ const CHECKS: [(&str, Check); 18] = [
     (unseen::NO_CAMERA, unseen::by_cameras),
     (unseen::NO_LIDAR, unseen::by_lidar),
 ];
+
+/// What a check is called for a person: `Boxes overlap`. The name itself for one that there is not.
+pub fn title(check: &str) -> &str {
+    match check {
+        unsound::NAME => "Numbers that cannot be",
+        out_of_range::NAME => "Beyond the map",
+        overlapping_boxes::NAME => "Boxes overlap",
+        box_without_occupancy::NAME => "Boxes without voxels",
+        occupancy_without_box::NAME => "Voxels without a box",
+        off_road::NAME => "Off the road",
+        against_lane::NAME => "Against the lane",
+        on_the_road::NAME => "Things on the road",
+        floating_voxels::NAME => "Floating voxels",
+        unsupported_parts::NAME => "Parts without support",
+        over_time::COLLISION => "Collisions",
+        over_time::THROUGH_WALL => "Through walls",
+        over_time::TOO_FAST => "Too fast",
+        over_time::TOO_SUDDEN => "Too sudden",
+        over_time::BACKWARDS => "Backwards",
+        over_time::LEAVES_MAP => "Leaves the map",
+        unseen::NO_CAMERA => "In no camera picture",
+        unseen::NO_LIDAR => "No LiDAR return",
+        other => other,
+    }
+}
 
 /// Names of all checks, in the order of reports.
 pub fn names() -> impl Iterator<Item = &'static str> {

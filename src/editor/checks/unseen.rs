@@ -38,7 +38,7 @@ fn unseen(
         if counts.get(&b.id).is_none_or(|n| *n == 0) && voxels(&context.frame.occupancy, b) > 0 {
             out.push(Finding {
                 check,
-                severity: Severity::Warning,
+                severity: Severity::Info,
                 where_m: b.center_m,
                 box_id: Some(b.id),
                 time_s: None,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::call::Operation;
 use crate::desk::{Desk, Done};
 use app::findings;
-use editor::checks::{self, Finding, Severity, waive};
+use editor::checks::{self, Counts, Finding, waive};
 use editor::fix::fix_all;
 use scene::Scene;
 
@@ -38,6 +38,8 @@ pub struct Checked {
     errors: usize,
     /// Open findings that are warnings.
     warnings: usize,
+    /// Open findings that are worth knowing and no mistakes: boxes that no sensor sees.
+    infos: usize,
     /// Findings that were waived: they may stand.
     waived: usize,
     /// What the repairs changed, if they were asked for.
@@ -106,16 +108,17 @@ impl Operation for Check {
             }
         }
         let open: Vec<&Finding> = waive::open(scene.frame(), &findings).collect();
-        let errors = open.iter().filter(|f| f.severity == Severity::Error).count();
-        let (warnings, waived) = (open.len() - errors, findings.len() - open.len());
+        let counts = Counts::of(open.iter().copied());
+        let waived = findings.len() - open.len();
         Ok(Checked {
             findings: findings
                 .iter()
                 .take(MOST_FINDINGS)
                 .map(|f| found(&scene, f))
                 .collect(),
-            errors,
-            warnings,
+            errors: counts.errors,
+            warnings: counts.warnings,
+            infos: counts.infos,
             waived,
             fixed,
             revision: desk.number(scene.content()),

@@ -283,7 +283,8 @@ fn faults(
         let x = track.x(time_s.clamp(0.0, track.length_s));
         let color = match finding.severity {
             Severity::Error => theme::bad(),
-            _ => theme::warn(),
+            Severity::Warning => theme::warn(),
+            Severity::Info => theme::text_weak(),
         };
         let stroke = Stroke::new(1.0, color.gamma_multiply(0.5));
         ui.painter()

@@ -1,0 +1,122 @@
+//! One finding in a line: what it is, and what can be done about it.
+
+use egui::accesskit::Role;
+use egui::{Sense, Ui, WidgetInfo, vec2};
+
+use super::waived::waive_button;
+use super::{ChecksInput, Pointed};
+use crate::command::{Command, TimeCommand, ViewCommand};
+use crate::finding_marks::FindingMarks;
+use editor::checks::{Finding, Severity};
+use widgets::theme;
+
+/// Draws a finding.
+pub(super) fn row(
+    ui: &mut Ui,
+    finding: &Finding,
+    input: &ChecksInput<'_>,
+    pointed: &mut Pointed,
+    commands: &mut Vec<Command>,
+) {
+    let line = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW));
+    if ui.rect_contains_pointer(line) {
+        pointed.hovered = Some(FindingMarks::by(finding, input.scene));
+    }
+    ui.allocate_ui_with_layout(
+        vec2(ui.available_width(), theme::ROW),
+        egui::Layout::right_to_left(egui::Align::Center),
+        |ui| {
+            waive_button(ui, finding);
+            if let Some(first) = finding.fixes.first() {
+                if finding.fixes.len() > 1 {
+                    ui.menu_button("…", |ui| {
+                        for fix in &finding.fixes {
+                            if ui.button(fix.label).clicked() {
+                                commands.push(Command::Apply(fix.label, fix.edits.clone()));
+                                ui.close();
+                            }
+                        }
+                    })
+                    .response
+                    .widget_info(|| {
+                        WidgetInfo::labeled(Role::Button, true, format!("Ways to fix: {}", finding.text))
+                    });
+                }
+                let fix = ui.add(egui::Button::new("Fix").small());
+                fix.widget_info(|| {
+                    WidgetInfo::labeled(Role::Button, true, format!("{}: {}", first.label, finding.text))
+                });
+                if fix.on_hover_text(first.label).clicked() {
+                    commands.push(Command::Apply(first.label, first.edits.clone()));
+                }
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                sign(ui, finding.severity);
+                if input.lasts && finding.time_s.is_none() {
+                    ui.weak("now")
+                        .on_hover_text("Found at the moment shown; there may be others at other moments");
+                }
+                let of_box = finding.box_id.is_some() && finding.box_id == input.selected;
+                let chosen = of_box || pointed.clicked.as_ref() == Some(&key(finding));
+                let text = egui::RichText::new(&finding.text);
+                let label = egui::Button::selectable(chosen, text).truncate();
+                let response = ui.add(label);
+                response.widget_info(|| {
+                    let name = format!("{}: {}", theme::sentence(finding.severity.name()), finding.text);
+                    WidgetInfo::selected(Role::Button, true, chosen, name)
+                });
+                // Read already where it fits.
+                let cut = response
+                    .intrinsic_size()
+                    .is_some_and(|s| s.x > response.rect.width() + 1.0);
+                let response = match cut {
+                    true => response.on_hover_text(&finding.text),
+                    false => response,
+                };
+                if response.clicked() {
+                    if finding.box_id.is_some() {
+                        commands.push(Command::Select(finding.box_id));
+                    }
+                    if let Some(time_s) = finding.time_s {
+                        commands.push(Command::Time(TimeCommand::Show(time_s)));
+                    }
+                    commands.push(Command::View(ViewCommand::FrameAt(finding.where_m)));
+                    pointed.clicked = Some(key(finding));
+                }
+            });
+        },
+    );
+}
+
+/// Tells findings apart.
+pub(super) fn key(finding: &Finding) -> String {
+    format!("{} {:?} {:.1}", finding.check, finding.box_id, finding.where_m)
+}
+
+/// A disc with a bar through it for errors, a triangle for warnings, an i for what is worth knowing: told apart by shape, not only by colour.
+pub(super) fn sign(ui: &mut Ui, severity: Severity) {
+    let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
+    let (painter, c) = (ui.painter(), rect.center());
+    let ink = ui.visuals().window_fill; // dark on bright signs, bright on dark ones
+    let bar = |from: egui::Vec2, to: egui::Vec2| {
+        painter.line_segment([c + from, c + to], egui::Stroke::new(1.8, ink));
+    };
+    match severity {
+        Severity::Error => {
+            painter.circle_filled(c, 6.5, ui.visuals().error_fg_color);
+            bar(vec2(-3.4, 0.0), vec2(3.4, 0.0));
+        }
+        Severity::Info => {
+            painter.circle_filled(c, 6.5, ui.visuals().weak_text_color());
+            bar(vec2(0.0, -0.6), vec2(0.0, 3.6));
+            bar(vec2(0.0, -3.4), vec2(0.0, -2.4));
+        }
+        Severity::Warning => {
+            let corners = vec![c + vec2(0.0, -6.5), c + vec2(7.0, 6.0), c + vec2(-7.0, 6.0)];
+            let color = ui.visuals().warn_fg_color;
+            painter.add(egui::Shape::convex_polygon(corners, color, egui::Stroke::NONE));
+            bar(vec2(0.0, -2.4), vec2(0.0, 1.6));
+            bar(vec2(0.0, 3.2), vec2(0.0, 4.6));
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! Which findings are listed, and in which groups: by severity, by words, by kind or by object.
+
+use std::collections::BTreeSet;
+
+use editor::checks::{Finding, Severity, title};
+
+/// How the list is parted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Grouping {
+    /// By the check that found it.
+    #[default]
+    Kind,
+    /// By the box that it is about.
+    Object,
+    /// Not at all.
+    List,
+}
+
+impl Grouping {
+    /// Every one, with name and hint.
+    pub(super) const ALL: [(Grouping, &'static str, &'static str); 3] = [
+        (Grouping::Kind, "By kind", "What a check found, together"),
+        (Grouping::Object, "By object", "What is about a box, together"),
+        (Grouping::List, "List", "The worst first"),
+    ];
+}
+
+/// What the user wants to see.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Triage {
+    /// How the list is parted.
+    pub grouping: Grouping,
+    /// Severities that are left out.
+    pub hidden: [bool; Severity::ALL.len()],
+    /// Words that all have to be in a finding.
+    pub words: String,
+    /// Groups that were folded, or unfolded, by a click: what is worth knowing alone is folded at first.
+    pub turned: BTreeSet<String>,
+}
+
+/// A line of the list.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Line {
+    /// The head of a group.
+    Group {
+        /// What it is called.
+        title: String,
+        /// Its findings, by index.
+        of: Vec<usize>,
+        /// The worst of them.
+        worst: Severity,
+        /// They are not listed.
+        folded: bool,
+    },
+    /// A finding, by index.
+    Finding(usize),
+}
+
+impl Triage {
+    fn shows(&self, finding: &Finding) -> bool {
+        let hidden = Severity::ALL
+            .iter()
+            .zip(self.hidden)
+            .any(|(s, hidden)| hidden && *s == finding.severity);
+        let text = || format!("{} {} {}", finding.text, title(finding.check), finding.check).to_lowercase();
+        !hidden
+            && (self.words.is_empty() || {
+                let text = text();
+                self.words
+                    .to_lowercase()
+                    .split_whitespace()
+                    .all(|word| text.contains(word))
+            })
+    }
+
+    fn group(&self, finding: &Finding) -> String {
+        match (self.grouping, finding.box_id) {
+            (Grouping::Kind | Grouping::List, _) => title(finding.check).to_owned(),
+            (Grouping::Object, Some(id)) => match finding.text.split(&format!(" {} ", id.0)).next() {
+                Some(name) if name.len() < finding.text.len() => format!("{name} {}", id.0),
+                _ => format!("box {}", id.0),
+            },
+            (Grouping::Object, None) => "Of no object".to_owned(),
+        }
+    }
+
+    /// The lines for findings that are sorted by severity, the worst first.
+    pub(super) fn lines(&self, findings: &[&Finding]) -> Vec<Line> {
+        let shown = (0..findings.len()).filter(|i| self.shows(findings[*i]));
+        if self.grouping == Grouping::List {
+            return shown.map(Line::Finding).collect();
+        }
+        let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+        for i in shown {
+            let name = self.group(findings[i]);
+            match groups.iter_mut().find(|(of, _)| *of == name) {
+                Some((_, list)) => list.push(i),
+                None => groups.push((name, vec![i])),
+            }
+        }
+        let mut out = Vec::new();
+        for (title, of) in groups {
+            // One alone that is a mistake needs no head.
+            if let ([only], true) = (&of[..], findings[of[0]].severity > Severity::Info) {
+                out.push(Line::Finding(*only));
+                continue;
+            }
+            let worst = findings[of[0]].severity;
+            let folded = (worst == Severity::Info) != self.turned.contains(&title);
+            let below: Vec<Line> = of.iter().filter(|_| !folded).map(|i| Line::Finding(*i)).collect();
+            out.push(Line::Group {
+                title,
+                of,
+                worst,
+                folded,
+            });
+            out.extend(below);
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::BoxId;
+
+    fn finding(check: &'static str, severity: Severity, id: u32, text: &str) -> Finding {
+        Finding {
+            check,
+            severity,
+            where_m: glam::DVec3::ZERO,
+            time_s: None,
+            box_id: (id > 0).then_some(BoxId(id)),
+            cells: Vec::new(),
+            text: text.into(),
+            fixes: Vec::new(),
+        }
+    }
+
+    fn titles(lines: &[Line]) -> Vec<(String, usize, bool)> {
+        let of = |line: &Line| match line {
+            Line::Group {
+                title, of, folded, ..
+            } => Some((title.clone(), of.len(), *folded)),
+            Line::Finding(_) => None,
+        };
+        lines.iter().filter_map(of).collect()
+    }
+
+    #[test]
+    fn findings_are_grouped_filtered_and_folded() {
+        let all = [
+            finding("off_road", Severity::Error, 7, "car 7 is off the road"),
+            finding(
+                "floating_voxels",
+                Severity::Warning,
+                0,
+                "3 voxels of manmade float",
+            ),
+            finding("no_lidar_returns", Severity::Info, 7, "car 7 has no LiDAR return"),
+            finding("no_lidar_returns", Severity::Info, 9, "bus 9 has no LiDAR return"),
+        ];
+        let all: Vec<&Finding> = all.iter().collect();
+        let mut triage = Triage::default();
+        let by_kind = triage.lines(&all);
+        let expected = [("Off the road", 2, false), ("No LiDAR return", 2, true)];
+        assert_eq!(titles(&by_kind), expected.map(|(t, n, f)| (t.to_owned(), n, f)));
+        assert_eq!(by_kind.len(), 5, "what is folded is not listed");
+        assert!(by_kind.contains(&Line::Finding(2)), "alone, without a head");
+        triage.turned.insert("No LiDAR return".into());
+        assert_eq!(triage.lines(&all).len(), 7);
+        triage.grouping = Grouping::Object;
+        let names: Vec<String> = titles(&triage.lines(&all)).into_iter().map(|(t, ..)| t).collect();
+        assert_eq!(names, ["car 7", "bus 9"]);
+        triage.grouping = Grouping::List;
+        triage.words = "LIDAR car".into();
+        assert_eq!(triage.lines(&all), [Line::Finding(3)]);
+        triage.words.clear();
+        triage.hidden = [false, false, true];
+        assert_eq!(triage.lines(&all), [0, 1, 2].map(Line::Finding));
+    }
+}

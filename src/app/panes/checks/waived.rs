@@ -1,0 +1,142 @@
+//! Findings that were waived, and how one is.
+
+use egui::Ui;
+use egui::WidgetInfo;
+use egui::accesskit::Role;
+
+use super::ChecksInput;
+use super::row::key;
+use crate::command::Command;
+use editor::Edit;
+use editor::checks::{Finding, waive};
+use widgets::theme;
+
+/// What the title of the waived findings takes at the bottom, and what they take unfolded, points.
+const WAIVED_TITLE: f32 = 30.0;
+const WAIVED_LIST: f32 = 94.0;
+
+/// How much room the waived findings take, points.
+pub(super) fn height(ui: &Ui, waived: &[&Finding]) -> f32 {
+    let unfolded = ui.data(|d| d.get_temp::<bool>(waived_unfolded()).unwrap_or_default());
+    match (waived.is_empty(), unfolded) {
+        (true, _) => 0.0,
+        (false, false) => WAIVED_TITLE,
+        (false, true) => WAIVED_TITLE + WAIVED_LIST,
+    }
+}
+
+/// Where the reason is kept while it is typed: check and box or place, and the text.
+fn typing() -> egui::Id {
+    egui::Id::unique("reason of a waiver")
+}
+
+type Typing = Option<(String, String)>;
+
+/// The button that begins a waiver.
+pub(super) fn waive_button(ui: &mut Ui, finding: &Finding) {
+    let button = ui.add(egui::Button::new("Waive").small());
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Waive: {}", finding.text)));
+    if button.on_hover_text("Let it stand, with a reason").clicked() {
+        let begun: Typing = Some((key(finding), String::new()));
+        ui.data_mut(|d| d.insert_temp(typing(), begun));
+    }
+}
+
+/// The field for the reason of the finding that is being waived.
+pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Command>) {
+    let Some((of, mut text)) = ui.data(|d| d.get_temp::<Typing>(typing())).flatten() else {
+        return;
+    };
+    let Some(finding) = open.iter().find(|f| key(f) == of) else {
+        return;
+    };
+    let mut done = false;
+    ui.add(egui::Label::new(&finding.text).truncate());
+    ui.horizontal(|ui| {
+        let field = egui::TextEdit::singleline(&mut text)
+            .hint_text("Why it may stay")
+            .desired_width((ui.available_width() - 150.0).max(120.0));
+        let field = ui.add(field).accessible_name("Reason of the waiver");
+        if text.is_empty() && !field.has_focus() && !field.lost_focus() {
+            field.request_focus();
+        }
+        let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let ready = !text.trim().is_empty();
+        let clicked = ui.add_enabled(ready, egui::Button::new("Let it stand")).clicked();
+        if ready && (clicked || entered) {
+            commands.push(Command::Apply(
+                "Waive a finding",
+                vec![Edit::Waive {
+                    check: finding.check.into(),
+                    box_id: finding.box_id,
+                    where_m: finding.where_m,
+                    reason: text.clone(),
+                }],
+            ));
+            done = true;
+        }
+        done |= ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
+    });
+    let left: Typing = (!done).then_some((of, text));
+    ui.data_mut(|d| d.insert_temp(typing(), left));
+}
+
+/// What was waived, with the reasons, and the way back.
+pub(super) fn waived_ui(
+    ui: &mut Ui,
+    waived: &[&Finding],
+    input: &ChecksInput<'_>,
+    commands: &mut Vec<Command>,
+) {
+    if waived.is_empty() {
+        return;
+    }
+    ui.add_space(4.0);
+    let title = format!("{} waived", waived.len());
+    let list = egui::CollapsingHeader::new(title)
+        .id_salt("waived findings")
+        .default_open(false)
+        .show(ui, |ui| {
+            egui::ScrollArea::vertical()
+                .id_salt("waived")
+                .max_height(WAIVED_LIST)
+                .show(ui, |ui| {
+                    for finding in waived {
+                        let Some(waiver) = waive::of(input.frame(), finding) else {
+                            continue;
+                        };
+                        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                            let back = ui.add(egui::Button::new("Take back").small());
+                            back.widget_info(|| {
+                                WidgetInfo::labeled(
+                                    Role::Button,
+                                    true,
+                                    format!("Take back: {}", finding.text),
+                                )
+                            });
+                            if back.clicked() {
+                                commands.push(Command::Apply(
+                                    "Take a waiver back",
+                                    vec![Edit::Unwaive {
+                                        check: waiver.check.to_string(),
+                                        box_id: waiver.box_id,
+                                        where_m: waiver.where_m,
+                                    }],
+                                ));
+                            }
+                            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                                let text = format!("{}  ·  {}", finding.text, waiver.reason);
+                                let label =
+                                    egui::Label::new(egui::RichText::new(&text).color(theme::text_weak()));
+                                ui.add(label.truncate()).on_hover_text(&text);
+                            });
+                        });
+                    }
+                });
+        });
+    ui.data_mut(|d| d.insert_temp(waived_unfolded(), list.fully_open()));
+}
+
+fn waived_unfolded() -> egui::Id {
+    egui::Id::unique("waived findings are unfolded")
+}
