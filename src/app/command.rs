@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use editor::Edit;
 use scene::{BoxId, Class, SceneRev};
+use sensors::cameras::ViewId;
 use viewport::ViewPreset;
 
 use super::tools::ToolId;
@@ -82,6 +83,8 @@ pub enum ViewCommand {
     Preset(ViewPreset),
     /// Looks through that camera of the rig in the 3D view.
     LookThrough(usize),
+    /// Shows that in the cameras: classes, depth, pictures.
+    Cameras(ViewId),
     /// Enlarges that camera, or shows the strip again.
     Inspect(Option<usize>),
     /// Keeps where the large views stand under a number.

@@ -32,14 +32,21 @@ pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
             }
         });
     if (time, weather) != (now.time, now.weather) {
-        let prompt = with_conditions(&scene.prompt, time.name(), weather.name());
-        let conditions = now.at(time).under(weather);
-        let edits = vec![Edit::SetPrompt { prompt }, Edit::SetConditions { conditions }];
-        commands.push(Command::Apply(STEP, edits));
+        commands.push(becomes(scene, time, weather));
     }
     ui.menu_button("Air and sun…", |ui| air_and_sun(ui, now, commands))
         .response
         .on_hover_text("Wet ground, visibility, sun and seed of the pictures");
+}
+
+/// What gives a scene another time of day and weather, the words of its style with them.
+pub fn becomes(scene: &Scene, time: TimeOfDay, weather: Weather) -> Command {
+    let prompt = with_conditions(&scene.prompt, time.name(), weather.name());
+    let conditions = scene.conditions.at(time).under(weather);
+    Command::Apply(
+        STEP,
+        vec![Edit::SetPrompt { prompt }, Edit::SetConditions { conditions }],
+    )
 }
 
 /// The numbers behind the names.

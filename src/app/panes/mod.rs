@@ -12,7 +12,7 @@ mod cameras;
 pub mod checks;
 pub mod compare;
 pub mod comparing;
-mod conditions;
+pub mod conditions;
 pub mod history;
 pub mod id;
 mod label;

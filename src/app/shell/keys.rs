@@ -29,6 +29,7 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
     if ctx.text_edit_focused() {
         return;
     }
+    let focused = ctx.memory(|m| m.focused().is_some());
     for Pressed {
         key,
         physical,
@@ -37,6 +38,10 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
     } in pressed(ctx)
     {
         let chord = Chord::pressed(key, modifiers);
+        // What has the focus answers to these itself.
+        if focused && (is_arrow(key) || matches!(key, Key::Space | Key::Enter)) {
+            continue;
+        }
         if hands.over_window && !chord.ctrl {
             continue;
         }
@@ -66,22 +71,10 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
         if hands.dragging && !DURING_A_DRAG.contains(&action.id) {
             continue;
         }
-        if key == Key::Tab {
-            drop_focus(ctx);
-        }
         if !repeat || action.repeats {
             commands.push(action.command());
         }
     }
-}
-
-/// Tab belongs to the views here, so what egui has given the focus for it loses it again.
-fn drop_focus(ctx: &Context) {
-    ctx.memory_mut(|m| {
-        if let Some(id) = m.focused() {
-            m.surrender_focus(id);
-        }
-    });
 }
 
 /// Longest time between two events of a key that is held, s; X waits 0.66 s before the first.
@@ -134,6 +127,13 @@ fn pressed(ctx: &Context) -> Vec<Pressed> {
         }
     });
     keys
+}
+
+fn is_arrow(key: Key) -> bool {
+    matches!(
+        key,
+        Key::ArrowUp | Key::ArrowDown | Key::ArrowLeft | Key::ArrowRight
+    )
 }
 
 fn is_flight(key: Key) -> bool {

@@ -204,7 +204,7 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         }
     });
     on(
-        item(ui, "Swap views", "Tab", true),
+        item(ui, "Swap views", "Ctrl+Tab", true),
         Command::View(ViewCommand::SwapPanes),
     );
     on(

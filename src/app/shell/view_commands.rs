@@ -26,7 +26,20 @@ impl SceneloomApp {
                     self.state.compare.mode = CompareMode::Wipe;
                 }
             }
-            ViewCommand::CycleCompare => self.state.compare.mode = self.state.compare.mode.next(),
+            ViewCommand::CycleCompare => {
+                let rev = self.document.settled_scene().content();
+                let other = self
+                    .views
+                    .compare
+                    .chosen
+                    .as_ref()
+                    .is_some_and(|s| s.content() != rev);
+                let off = self.state.compare.mode == CompareMode::Off;
+                if off && !other && self.generation.versions.before(rev).is_none() {
+                    return self.note("Nothing to compare with yet: each generation makes a version");
+                }
+                self.state.compare.mode = self.state.compare.mode.next();
+            }
             ViewCommand::FrameSelection => self.frame_selection(),
             ViewCommand::FrameAll => match self.state.pointed.pane {
                 Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_map(self.extent()),
@@ -36,6 +49,7 @@ impl SceneloomApp {
             ViewCommand::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
             ViewCommand::LookThrough(index) => self.look_through(index),
+            ViewCommand::Cameras(view) => self.state.cameras.view = view,
             ViewCommand::Inspect(camera) => self.state.cameras.enlarged = camera,
             ViewCommand::SwapPanes => self.views.dock.swap(PaneId::BEV, PaneId::VIEW3D),
             ViewCommand::ShowPane(pane) => self.views.dock.open(pane),
@@ -52,6 +66,9 @@ impl SceneloomApp {
             }
             ViewCommand::Workspace(workspace) => {
                 self.preferences.settings.workspace = workspace;
+                // What is drawn over the views for one kind of work goes with its controls.
+                self.state.compare.mode = CompareMode::Off;
+                self.generation.tuning.show_modelled &= workspace == Workspace::Trade;
                 self.views.dock = Dock::workspace(workspace);
                 // Its tool comes to hand, unless one of the kind is there already.
                 self.state.tool = match (workspace, self.state.tool) {

@@ -17,6 +17,7 @@ use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
 use crate::state::UiState;
+use crate::windows::palette::Known;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
@@ -215,10 +216,12 @@ impl SceneloomApp {
             sensors_ui(ui, &scene.rig, windows, cameras, commands);
         }
         crate::windows::row::show(ui, scene.frame(), &mut self.state.tools, commands);
-        let recent = &self.preferences.settings.recent;
-        self.overlays
-            .palette
-            .show(ui, &self.preferences.keymap, recent, commands);
+        let known = Known {
+            keymap: &self.preferences.keymap,
+            recent: &self.preferences.settings.recent,
+            scene,
+        };
+        self.overlays.palette.show(ui, &known, commands);
         self.overlays
             .shortcuts
             .show(ui, &mut self.preferences.keymap, &mut self.state.windows.keys);

@@ -1,18 +1,12 @@
-//! The command palette: every action, pane, workspace, class and recent file, found by a few letters.
+//! The command palette: whatever the window can do or show, found by a few letters.
 
-use std::path::PathBuf;
+mod items;
 
 use egui::{Id, Key, Modal, Ui, vec2};
 
-use crate::command::{Command, FileCommand, ViewCommand};
-use crate::panes;
+use crate::command::Command;
 use crate::shell::actions::ACTIONS;
-use crate::shell::keymap::Keymap;
-use crate::tools::ToolCommand;
-use crate::tools::things::tree::TREES;
-use crate::tools::things::{ThingCommand, ThingKind};
-use scene::Class;
-use scene::background::{LineKind, PostKind};
+pub use items::Known;
 use widgets::theme;
 
 /// Lines that are shown at most.
@@ -49,11 +43,11 @@ impl Palette {
     }
 
     /// Draws it while it is open.
-    pub fn show(&mut self, ui: &Ui, keymap: &Keymap, recent: &[PathBuf], commands: &mut Vec<Command>) {
+    pub fn show(&mut self, ui: &Ui, known: &Known<'_>, commands: &mut Vec<Command>) {
         if !self.open {
             return;
         }
-        let mut items = matching(items(keymap, recent), &self.query);
+        let mut items = matching(items::items(known), &self.query);
         let lines = items.len();
         let (up, down, enter) = ui.input_mut(|i| {
             let none = egui::Modifiers::NONE;
@@ -75,7 +69,7 @@ impl Palette {
         let shown = modal.show(ui.ctx(), |ui| {
             ui.set_width(520.0);
             let field = egui::TextEdit::singleline(&mut self.query)
-                .hint_text("Type to find a command, a pane, a class, a recent file")
+                .hint_text("Type to find a command, a setting, weather, an object, a file")
                 .desired_width(f32::INFINITY)
                 .margin(vec2(8.0, 6.0));
             let field = ui.add(field);
@@ -85,6 +79,8 @@ impl Palette {
             }
             ui.add_space(theme::GAP);
             ui.spacing_mut().item_spacing.y = 1.0;
+            // As high with few lines as with many: the field stays where it is.
+            ui.set_min_height(SHOWN as f32 * (theme::ROW + 1.0));
             // The chosen line stays in sight.
             let first = self.chosen.saturating_sub(SHOWN - 1);
             for (i, item) in items.iter().enumerate().skip(first).take(SHOWN) {
@@ -119,70 +115,39 @@ impl Palette {
     }
 }
 
-fn items(keymap: &Keymap, recent: &[PathBuf]) -> Vec<Item> {
-    let mut out: Vec<Item> = ACTIONS
-        .iter()
-        .enumerate()
-        .filter(|(_, a)| a.id != "palette")
-        .map(|(i, a)| Item {
-            title: a.title.to_owned(),
-            right: keymap.first(a.id),
-            does: Does::Action(i),
-        })
-        .collect();
-    let mut add = |title: String, right: &str, command| {
-        out.push(Item {
-            title,
-            right: right.to_owned(),
-            does: Does::Command(command),
-        });
-    };
-    for pane in panes::infos() {
-        add(
-            format!("Pane: {}", pane.title),
-            "pane",
-            Command::View(ViewCommand::ShowPane(pane.id)),
-        );
-    }
-    for class in Class::OBJECTS {
-        let title = format!("Place a box: {}", class.label());
-        add(title, "box", Command::PlaceClass(class));
-    }
-    for (kind, name) in kinds() {
-        let title = format!("Beside the road: {name}");
-        add(
-            title,
-            "thing",
-            Command::Tools(ToolCommand::Thing(ThingCommand::Take(kind))),
-        );
-    }
-    for path in recent {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        add(
-            format!("Open {name}"),
-            "recent file",
-            Command::File(FileCommand::OpenPath(path.clone())),
-        );
-    }
-    out
-}
-
-/// Every kind of thing that a tool draws or puts down.
-fn kinds() -> Vec<(ThingKind, String)> {
-    let trees = TREES.map(|(kind, name, _)| (ThingKind::Tree(kind), format!("{} tree", name.to_lowercase())));
-    let lines = LineKind::ALL.map(|kind| (ThingKind::Line(kind), kind.name().to_owned()));
-    let posts = PostKind::ALL.map(|kind| (ThingKind::Post(kind), kind.name().to_owned()));
-    trees.into_iter().chain(lines).chain(posts).collect()
-}
-
-/// Those that hold the letters of the query in order, the best ones first.
+/// Those in which every word of the query begins a word, then those that hold it, the best ones first. If there are none, those
+/// that hold its letters in order and not far apart.
 fn matching(items: Vec<Item>, query: &str) -> Vec<Item> {
-    let mut found: Vec<(u32, Item)> = items
-        .into_iter()
-        .filter_map(|item| Some((score(&item.title, query)?, item)))
-        .collect();
+    let mut found: Vec<(u32, Item)> = Vec::new();
+    let mut others = Vec::new();
+    for item in items {
+        match by_words(&item.title, query) {
+            Some(score) => found.push((score, item)),
+            None => others.push(item),
+        }
+    }
+    if found.is_empty() {
+        let near = |item: Item| Some((score(&item.title, query)?, item));
+        found.extend(others.into_iter().filter_map(near));
+    }
     found.sort_by_key(|(score, _)| *score);
     found.into_iter().map(|(_, item)| item).collect()
+}
+
+/// How well a text holds every word of a query: lower is better, none if it lacks one.
+fn by_words(text: &str, query: &str) -> Option<u32> {
+    let text = text.to_lowercase();
+    let mut cost = 0;
+    for wanted in query.to_lowercase().split_whitespace() {
+        let words = || text.split(|c: char| !c.is_alphanumeric());
+        cost += match () {
+            () if words().any(|word| word == wanted) => 0,
+            () if words().any(|word| word.starts_with(wanted)) => 1,
+            () if wanted.chars().count() > 1 && text.contains(wanted) => 4,
+            () => return None,
+        };
+    }
+    Some(cost * 256 + text.chars().count() as u32)
 }
 
 /// How far apart the letters of a query lie in a text, first ones counted from the beginning of a word; none if they
@@ -202,23 +167,62 @@ fn score(text: &str, query: &str) -> Option<u32> {
         cost += gap;
         at = next + 1;
     }
-    Some(cost * 64 + text.len() as u32)
+    // Letters that lie all over a text were not meant.
+    let most = query.chars().count() as u32;
+    (cost <= most).then_some(cost * 64 + text.len() as u32)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::items::{Known, items};
     use super::*;
+    use crate::shell::keymap::Keymap;
+    use scene::{BoxLabel, BoxName, Extent, Frame, Scene, SceneBox};
+
+    fn scene() -> Scene {
+        let b = SceneBox {
+            id: scene::BoxId(4),
+            class: scene::Class::Bus,
+            center_m: glam::DVec3::ZERO,
+            size_m: glam::DVec3::ONE,
+            yaw_rad: 0.0,
+            velocity_mps: glam::DVec2::ZERO,
+            label: BoxLabel {
+                name: BoxName::new("school bus"),
+                paint: None,
+            },
+        };
+        let layout = scene::BevLayout::over(Extent::WINDOW);
+        let frame = Frame::new(layout, [(b.id, b)].into(), scene::VoxelGrid::new());
+        Scene::single("a", frame, Default::default(), 0)
+    }
 
     #[test]
-    fn a_few_letters_find_the_command() {
-        let keymap = Keymap::default();
-        let first = |query: &str| matching(items(&keymap, &[]), query).remove(0).title;
+    fn a_few_letters_find_whatever_there_is() {
+        let (keymap, scene) = (Keymap::default(), scene());
+        let known = Known {
+            keymap: &keymap,
+            recent: &[],
+            scene: &scene,
+        };
+        let first = |query: &str| matching(items(&known), query).remove(0).title;
         assert_eq!(first("undo"), "Undo");
         assert_eq!(first("gen ev"), "Generate everything");
         assert_eq!(first("cone"), "Place a box: traffic cone");
         assert_eq!(first("lidar"), "Pane: LiDAR sweep");
         assert_eq!(first("swap"), "Swap bird's-eye and 3D view");
-        assert!(matching(items(&keymap, &[]), "zzzz").is_empty());
-        assert_eq!(matching(items(&keymap, &[]), "").len(), items(&keymap, &[]).len());
+        assert_eq!(first("rain"), "Weather: rain");
+        assert_eq!(first("night"), "Time of day: night");
+        assert_eq!(first("school"), "Choose school bus, number 4");
+        assert_eq!(first("bus 4"), "Choose school bus, number 4");
+        assert_eq!(first("depth"), "Cameras: depth");
+        assert_eq!(first("roundabout"), "New scene: roundabout");
+        assert_eq!(first("ui scale"), "Settings: UI scale, size of everything");
+        assert_eq!(first("theme"), "Settings: theme, dark or light");
+        assert_eq!(first("grd"), "Grid", "letters in order, if no word is meant");
+        for nothing in ["zzzz", "german"] {
+            assert!(matching(items(&known), nothing).is_empty(), "{nothing}");
+        }
+        assert_eq!(matching(items(&known), "").len(), items(&known).len());
     }
 }

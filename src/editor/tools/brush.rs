@@ -139,11 +139,8 @@ impl Tool for Brush {
             PaintShape::Fill => vec!["Click fills what is alike", "Shift erases", "Alt picks"],
             PaintShape::Pick => vec!["Click takes the layer"],
         };
-        if BevLayer::GROUND.contains(&hand.layer)
-            && !matches!(hand.shape, PaintShape::Street | PaintShape::Pick)
-            && !hand.erase
-        {
-            parts.insert(1, "replaces other ground");
+        if BevLayer::GROUND.contains(&hand.layer) && parts[0] == "Drag paints" {
+            parts[0] = "Drag replaces ground";
         }
         hint_of(&parts)
     }

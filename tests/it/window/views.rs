@@ -18,10 +18,10 @@ fn views_and_layers_answer_their_controls() {
     bench.click("Show walkway");
     assert!(!bench.app().state.shows(BevLayer::Walkway));
     let bev = bench.pane("Bird's-eye view");
-    bench.key(Modifiers::NONE, Key::Tab);
+    bench.key(Modifiers::CTRL, Key::Tab);
     let swapped = bench.pane("Bird's-eye view");
     assert!(swapped.left() > bev.left() + 100.0, "{bev:?} {swapped:?}");
-    bench.key(Modifiers::NONE, Key::Tab);
+    bench.key(Modifiers::CTRL, Key::Tab);
     bench.key(Modifiers::NONE, Key::G);
     assert!(!bench.app().state.shown.grid);
     // The wheel keeps the point under the pointer where it is.

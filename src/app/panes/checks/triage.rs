@@ -152,6 +152,7 @@ mod tests {
     fn findings_are_grouped_filtered_and_folded() {
         let all = [
             finding("off_road", Severity::Error, 7, "car 7 is off the road"),
+            finding("off_road", Severity::Warning, 8, "car 8 is off the road"),
             finding(
                 "floating_voxels",
                 Severity::Warning,

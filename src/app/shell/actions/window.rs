@@ -131,9 +131,13 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Time, "timeline", "Timeline", "", || {
         Command::View(ViewCommand::TogglePane(PaneId::TIMELINE))
     }),
-    action(Views, "swap_views", "Swap bird's-eye and 3D view", "Tab", || {
-        Command::View(ViewCommand::SwapPanes)
-    }),
+    action(
+        Views,
+        "swap_views",
+        "Swap bird's-eye and 3D view",
+        "Ctrl+Tab",
+        || Command::View(ViewCommand::SwapPanes),
+    ),
     action(
         Views,
         "maximize",
