@@ -24,7 +24,7 @@ pub struct Palette {
 /// What a line of the palette does.
 enum Does {
     Action(usize),
-    Command(Command),
+    Commands(Vec<Command>),
 }
 
 struct Item {
@@ -107,7 +107,7 @@ impl Palette {
             self.open = false;
             match items.swap_remove(i).does {
                 Does::Action(i) => commands.push(ACTIONS[i].command()),
-                Does::Command(command) => commands.push(command),
+                Does::Commands(all) => commands.extend(all),
             }
         } else if shown.should_close() {
             self.open = false;

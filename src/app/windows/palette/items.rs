@@ -17,6 +17,8 @@ use world::template::TEMPLATES;
 
 /// Objects that are listed at most.
 const MOST_OBJECTS: usize = 2000;
+/// What is said of lines that change light and air.
+const CONDITIONS: &str = "conditions";
 /// What the window of settings holds, as it is looked for.
 const SETTINGS: [&str; 6] = [
     "theme, dark or light",
@@ -50,11 +52,18 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
             does: Does::Action(i),
         })
         .collect();
-    let mut add = |title: String, right: &str, command| {
+    let mut add = |title: String, right: &str, command: Command| {
         out.push(Item {
             title,
             right: right.to_owned(),
-            does: Does::Command(command),
+            does: Does::Commands(match right {
+                // Light and air are seen in pictures.
+                CONDITIONS => vec![
+                    command,
+                    Command::View(ViewCommand::Cameras(cameras::pictures::VIEW.id)),
+                ],
+                _ => vec![command],
+            }),
         });
     };
     for pane in panes::infos() {
@@ -78,11 +87,11 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     }
     for weather in Weather::ALL {
         let command = conditions::becomes(scene, scene.conditions.time, weather);
-        add(format!("Weather: {}", weather.name()), "conditions", command);
+        add(format!("Weather: {}", weather.name()), CONDITIONS, command);
     }
     for time in TimeOfDay::ALL {
         let command = conditions::becomes(scene, time, scene.conditions.weather);
-        add(format!("Time of day: {}", time.name()), "conditions", command);
+        add(format!("Time of day: {}", time.name()), CONDITIONS, command);
     }
     for view in cameras::views() {
         let title = format!("Cameras: {}", view.title.to_lowercase());
