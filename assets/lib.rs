@@ -60,6 +60,26 @@ pub mod trade {
     pub static PRESETS: &str = include_str!("trade/presets.json");
 }
 
+/// Files of `assets/thumbnails`.
+pub mod thumbnails {
+    /// `curve.png`.
+    pub static CURVE: &[u8] = include_bytes!("thumbnails/curve.png");
+    /// `highway.png`.
+    pub static HIGHWAY: &[u8] = include_bytes!("thumbnails/highway.png");
+    /// `intersection.png`.
+    pub static INTERSECTION: &[u8] = include_bytes!("thumbnails/intersection.png");
+    /// `parking.png`.
+    pub static PARKING: &[u8] = include_bytes!("thumbnails/parking.png");
+    /// `roundabout.png`.
+    pub static ROUNDABOUT: &[u8] = include_bytes!("thumbnails/roundabout.png");
+    /// `straight.png`.
+    pub static STRAIGHT: &[u8] = include_bytes!("thumbnails/straight.png");
+    /// `suburb.png`.
+    pub static SUBURB: &[u8] = include_bytes!("thumbnails/suburb.png");
+    /// `t_junction.png`.
+    pub static T_JUNCTION: &[u8] = include_bytes!("thumbnails/t_junction.png");
+}
+
 /// Files of `assets/weights`.
 pub mod weights {
     /// `f3d.safetensors`.

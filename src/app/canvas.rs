@@ -17,7 +17,8 @@ use scene::{BevLayer, Class, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerStyle};
 use super::canvas_draw::{
-    BoxStyle, around, draw_box, draw_boxes, draw_ego, draw_grid, draw_lines, draw_points, draw_scale_bar,
+    BoxStyle, around, draw_box, draw_boxes, draw_ego, draw_fields_of_view, draw_grid, draw_lines,
+    draw_points, draw_scale_bar,
 };
 use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
@@ -31,6 +32,7 @@ use super::track_marks;
 use super::unsettled_marks;
 use super::views_shown::Underlay;
 use crate::shell::live::Bounds;
+use crate::windows::open::SensorChoice;
 use crate::windows::row;
 use widgets::theme;
 
@@ -311,7 +313,15 @@ impl Canvas {
         let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));
         thing_outlines::outlines(&inside, map, scene, &state.things, hovered);
         track_marks::from_above(&inside, map, scene, state);
-        draw_ego(ui, map, &scene.rig, &scene.frame().world_from_ego);
+        let pose = &scene.frame().world_from_ego;
+        draw_ego(ui, map, &scene.rig, pose);
+        if state.windows.sensors {
+            let chosen = match state.windows.sensor {
+                SensorChoice::Camera(i) => Some(i),
+                SensorChoice::Lidar(_) => None,
+            };
+            draw_fields_of_view(ui, map, &scene.rig, pose, chosen);
+        }
         if state.shown.boxes {
             draw_boxes(ui, map, response, input.scene, &state.tools);
         }

@@ -136,6 +136,41 @@ pub(super) fn draw_ego(ui: &Ui, map: &ScreenMap, rig: &SensorRig, world_from_ego
     ));
 }
 
+/// How far the fields of view are drawn, m.
+const VIEW_M: f64 = 14.0;
+/// Parts of the arc of a field of view.
+const ARC_STEPS: usize = 16;
+
+/// Draws what the cameras of the rig look at, the chosen one over the others.
+pub(super) fn draw_fields_of_view(
+    ui: &Ui,
+    map: &ScreenMap,
+    rig: &SensorRig,
+    world_from_ego: &Pose,
+    chosen: Option<usize>,
+) {
+    let others = (0..rig.cameras.len()).filter(|i| Some(*i) != chosen);
+    for i in others.chain(chosen) {
+        let Some(camera) = rig.cameras.get(i) else {
+            continue;
+        };
+        let pose = *world_from_ego * camera.ego_from_camera();
+        let ahead = (pose.rotation * DVec3::Z).truncate().normalize_or(DVec2::X);
+        let (from_m, half_rad) = (pose.translation_m.truncate(), camera.fov_deg().to_radians() / 2.0);
+        let arc = (0..=ARC_STEPS).map(|k| {
+            let turn = half_rad * (2.0 * k as f64 / ARC_STEPS as f64 - 1.0);
+            map.to_screen(from_m + DVec2::from_angle(turn).rotate(ahead) * VIEW_M)
+        });
+        let mut outline: Vec<_> = std::iter::once(map.to_screen(from_m)).chain(arc).collect();
+        outline.push(outline[0]);
+        let (color, width) = match Some(i) == chosen {
+            true => (theme::accent(), 2.0),
+            false => (Color32::from_white_alpha(110), 1.0),
+        };
+        ui.painter().add(Shape::line(outline, Stroke::new(width, color)));
+    }
+}
+
 /// How a box is drawn.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum BoxStyle {

@@ -42,6 +42,8 @@ pub enum FileCommand {
     New,
     /// Starts from a ready-made road.
     NewFrom(&'static str),
+    /// A new scene of these words.
+    Describe(String),
     /// Starts from what words describe, drawn from a seed.
     NewFromPrompt(Box<super::prompting::Ask>),
     /// Asks for a file and opens it.
@@ -224,6 +226,10 @@ pub enum Command {
     Generation(GenerationCommand),
     /// What moment is shown, and how things move.
     Time(TimeCommand),
+    /// Shows the settings.
+    OpenSettings,
+    /// Begins the tour of the first minutes.
+    BeginTour,
     /// Shows or hides a window.
     Toggle(Window),
 }

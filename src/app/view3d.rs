@@ -395,6 +395,7 @@ impl View3d {
         let options = ViewOptions {
             grid_lines: state.shown.grid,
             boxes: state.shown.boxes,
+            frusta: self.options.frusta || state.windows.sensors,
             samples: if coarse || gpu.software { 1 } else { 4 },
             point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
             pixels_per_point: self.pixels_per_point * if coarse { 0.5 } else { 1.0 },

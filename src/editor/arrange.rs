@@ -1,6 +1,8 @@
 //! Several boxes at once: copied, pasted, put in rows, mirrored, turned, set down. Each function makes the
 //! edits of one undo step; boxes that are not in the frame are left out.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3};
 
 use scene::{BoxId, Frame, SceneBox};
@@ -27,6 +29,28 @@ pub struct Added {
 pub struct Clipboard {
     /// As they were.
     pub boxes: Vec<SceneBox>,
+    /// Voxels of those that have their own, as [`Edit::SetShape`] takes them.
+    pub shapes: Shapes,
+}
+
+/// Voxels of boxes that have their own.
+pub type Shapes = BTreeMap<BoxId, Vec<[i32; 3]>>;
+
+impl Clipboard {
+    /// The boxes of those names that are there.
+    pub fn of(frame: &Frame, ids: &[BoxId]) -> Self {
+        Self {
+            boxes: boxes_of(frame, ids),
+            shapes: shapes_of(frame, ids),
+        }
+    }
+}
+
+fn shapes_of(frame: &Frame, ids: &[BoxId]) -> Shapes {
+    let own = ids
+        .iter()
+        .filter_map(|id| Some((*id, frame.own_shapes.get(id)?.cells())));
+    own.collect()
 }
 
 /// About what several boxes turn.
@@ -138,7 +162,7 @@ pub fn duplicate(frame: &Frame, ids: &[BoxId]) -> Added {
         center_m: b.center_m + shift_m,
         ..b
     });
-    add(frame, copies.collect())
+    add(frame, copies.collect(), &shapes_of(frame, ids))
 }
 
 /// A step to the left of the first box's heading that clears all of them, m.
@@ -166,13 +190,13 @@ pub fn paste(frame: &Frame, clipboard: &Clipboard, at_m: Option<DVec2>) -> Added
         center_m: b.center_m + shift_m,
         ..*b
     });
-    add(frame, copies.collect())
+    add(frame, copies.collect(), &clipboard.shapes)
 }
 
 /// Rows of copies of each box; at most [`MAX_COPIES`] each. A copy along a lane keeps its distance to the
 /// lane's middle and turns with it.
 pub fn row(frame: &Frame, ids: &[BoxId], row: &Row) -> Added {
-    add(frame, row_boxes(frame, ids, row))
+    add(frame, row_boxes(frame, ids, row), &shapes_of(frame, ids))
 }
 
 /// The copies of a row, not yet named; those beside the map are left out.
@@ -222,7 +246,12 @@ pub fn mirror(frame: &Frame, ids: &[BoxId], keep_direction: bool) -> Vec<Edit> {
 /// Adds mirrored copies instead.
 pub fn mirror_copy(frame: &Frame, ids: &[BoxId], keep_direction: bool) -> Added {
     let boxes = boxes_of(frame, ids);
-    add(frame, boxes.iter().map(|b| mirrored(b, keep_direction)).collect())
+    let mut shapes = shapes_of(frame, ids);
+    for [_, left, _] in shapes.values_mut().flatten() {
+        *left = -1 - *left;
+    }
+    let copies = boxes.iter().map(|b| mirrored(b, keep_direction));
+    add(frame, copies.collect(), &shapes)
 }
 
 fn mirrored(b: &SceneBox, keep_direction: bool) -> SceneBox {
@@ -301,14 +330,19 @@ pub fn adding(b: &SceneBox) -> Edit {
     add_edit(b, None)
 }
 
-/// Adds boxes under names that are free; those for which none is left are left out.
-pub fn add(frame: &Frame, boxes: Vec<SceneBox>) -> Added {
+/// Adds boxes under names that are free, with the voxels that those of their old names have; those for which no name is left
+/// are left out.
+pub fn add(frame: &Frame, boxes: Vec<SceneBox>, shapes: &Shapes) -> Added {
     let highest = frame.boxes.keys().next_back().map_or(0, |id| id.0);
     let above = (highest..u32::MAX).map(|id| BoxId(id + 1));
     let gaps = (1..highest).map(BoxId).filter(|id| !frame.boxes.contains_key(id));
     let mut added = Added::default();
     for (b, id) in boxes.iter().zip(above.chain(gaps)) {
         added.edits.push(add_edit(b, Some(id)));
+        if let Some(cells) = shapes.get(&b.id) {
+            let cells = cells.clone();
+            added.edits.push(Edit::SetShape { id, cells });
+        }
         added.ids.push(id);
     }
     added

@@ -77,9 +77,7 @@ fn copies_get_free_names_and_a_place_of_their_own() {
         DVec3::new(0.0, 5.0 + 1.9 + 0.6, 0.85)
     );
     assert_eq!(now.boxes[&BoxId(4)].velocity_mps, DVec2::new(5.0, 1.0));
-    let clipboard = Clipboard {
-        boxes: boxes_of(&frame, &[BoxId(1), BoxId(2)]),
-    };
+    let clipboard = Clipboard::of(&frame, &[BoxId(1), BoxId(2)]);
     let pasted = paste(&frame, &clipboard, Some(DVec2::new(10.0, 10.0)));
     let now = after(&frame, &pasted.edits);
     assert_eq!(now.boxes[&BoxId(3)].center_m, DVec3::new(10.0, 7.5, 0.85));

@@ -8,6 +8,15 @@ use crate::checks::{self, Finding, waive};
 /// The first fix of every finding that has one, as edits to be applied together. A fix that no longer applies after
 /// those before it (the box is gone already) is left out, and so is that of a finding that is waived.
 pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
+    fix(scene, findings, MOST_ROUNDS)
+}
+
+/// The same for these findings alone: no others are repaired after them.
+pub fn fix_these(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
+    fix(scene, findings, 0)
+}
+
+fn fix(scene: &Scene, findings: &[Finding], rounds: usize) -> Vec<Edit> {
     let mut scratch = scene.clone();
     let mut edits = Vec::new();
     let mut fix = |findings: &[&Finding], scratch: &mut Scene| {
@@ -24,7 +33,7 @@ pub fn fix_all(scene: &Scene, findings: &[Finding]) -> Vec<Edit> {
         &mut scratch,
     );
     // A box that is moved out of one may come to stand in the next.
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..rounds {
         let left = checks::overlaps(&scratch);
         let frame = scratch.frame().clone();
         let crowded: Vec<&Finding> = waive::open(&frame, &left).collect();

@@ -80,7 +80,9 @@ impl LaneStrip {
         if walk_m > 0.0 {
             for (from_m, to_m) in [(half_m + walk_m, half_m), (-half_m, -half_m - walk_m)] {
                 let mut cells = band(from_m, to_m);
-                cells.retain(|cell| !area.holds(*cell));
+                // A walkway ends where it comes to a road.
+                let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
+                cells.retain(|[x, y]| !area.holds([*x, *y]) && layout.cell(*x, *y) & road == 0);
                 areas.push((BevLayer::Walkway, cells, true));
             }
         }

@@ -210,6 +210,48 @@ mod tests {
     }
 
     #[test]
+    fn a_model_that_is_lifted_or_stands_on_a_slope_keeps_its_shape() {
+        let (mut scene, id) = with_a_wedge();
+        let moved = |center_m: DVec3| Edit::MoveBox {
+            id,
+            center_m: Some(center_m),
+            yaw_deg: None,
+            size_m: None,
+        };
+        apply_all(&[moved(DVec3::new(12.0, 4.0, 1.6))], &mut scene).expect("sound");
+        let lifted = Model::of(&scene, Some(id)).expect("there");
+        assert_eq!(lifted.cells, wedge().cells);
+        assert!((lifted.above_ground_m - 0.8).abs() < 1e-9);
+        assert!(scene.clip().tracks[&id].settled && scene.frame().own_shapes.contains_key(&id));
+        // A slope: whatever the height of the ground, it is the same shape.
+        let mut scene = empty();
+        scene.change_canvas(|canvas| {
+            let extent = canvas.extent();
+            canvas.layout.relief = scene::Relief::from_fn(extent, |p| p.x * 0.05);
+        });
+        let placed = place(&scene, &wedge(), DVec2::new(12.0, 4.0), Some(0.0)).expect("room");
+        apply_all(&placed.edits, &mut scene).expect("sound");
+        for x in [12.0, 13.3, 17.1, -9.0] {
+            let z_m = scene.frame().layout.relief.height_m(DVec2::new(x, 4.0)) + 0.8;
+            apply_all(&[moved(DVec3::new(x, 4.0, z_m))], &mut scene).expect("sound");
+            assert_eq!(
+                Model::of(&scene, Some(placed.id)).map(|m| m.cells),
+                Ok(wedge().cells),
+                "{x}"
+            );
+            assert!(scene.clip().tracks[&placed.id].settled);
+        }
+    }
+
+    #[test]
+    fn copies_have_the_shape_too() {
+        let (mut scene, id) = with_a_wedge();
+        let copies = crate::arrange::duplicate(scene.frame(), &[id]);
+        apply_all(&copies.edits, &mut scene).expect("sound");
+        assert_eq!(Model::of(&scene, Some(copies.ids[0])), Ok(wedge()));
+    }
+
+    #[test]
     fn without_cells_a_box_has_the_voxels_of_its_class_again() {
         let (mut scene, id) = with_a_wedge();
         let b = scene.frame().boxes[&id];

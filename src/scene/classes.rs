@@ -290,6 +290,22 @@ impl BevLayer {
         1 << self as u32
     }
 
+    /// Layers that are taken away where this one is painted: other ground, and under a walkway the markings of the road.
+    pub fn replaces(self) -> &'static [BevLayer] {
+        match self {
+            Self::DrivableArea => &[Self::Walkway, Self::CarparkArea],
+            Self::CarparkArea => &[Self::DrivableArea, Self::Walkway],
+            Self::Walkway => &[
+                Self::DrivableArea,
+                Self::CarparkArea,
+                Self::RoadDivider,
+                Self::LaneDivider,
+                Self::StopLine,
+            ],
+            _ => &[],
+        }
+    }
+
     /// Layers that say what the ground is. A cell has one of them at most: painting one takes the others away.
     pub const GROUND: [BevLayer; 3] = [Self::DrivableArea, Self::Walkway, Self::CarparkArea];
 

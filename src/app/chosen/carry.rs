@@ -106,14 +106,14 @@ impl SceneloomApp {
     }
 
     fn copy_all(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form], ctx: &egui::Context) {
-        let boxes = arrange::boxes_of(frame, boxes);
-        let mut edits: Vec<Edit> = boxes.iter().map(arrange::adding).collect();
+        let clipboard = Clipboard::of(frame, boxes);
+        let mut edits: Vec<Edit> = clipboard.boxes.iter().map(arrange::adding).collect();
         edits.push(Edit::AddThings {
             forms: forms.to_vec(),
         });
         // Without a text on its clipboard the window system would not tell of the chord that pastes.
         ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
-        self.state.tools.clipboard = Clipboard { boxes };
+        self.state.tools.clipboard = clipboard;
         self.state.tools.things.clipboard = forms.to_vec();
     }
 

@@ -67,6 +67,11 @@ impl SceneloomApp {
                 let label = of(&added.ids, "Paste box", "Paste boxes");
                 self.add_boxes(label, added);
             }
+            ToolCommand::PasteAt(at_m) => {
+                self.state.tools.pointer_m = Some(at_m);
+                self.state.pointed.pane = Some(PaneId::BEV);
+                self.tool_command(ToolCommand::Paste, ctx);
+            }
             ToolCommand::Nudge(step_m) => {
                 let label = of(&ids, "Nudge box", "Nudge boxes");
                 self.apply_some(label, arrange::shift(&frame, &ids, step_m));
@@ -138,11 +143,11 @@ impl SceneloomApp {
     /// Keeps the chosen boxes, and gives the window system the edits that add them: without a text on its clipboard it
     /// would not tell of the chord that pastes.
     fn copy(&mut self, frame: &Frame, ctx: &egui::Context) {
-        let boxes = arrange::boxes_of(frame, &self.state.chosen());
-        if !boxes.is_empty() {
-            let edits: Vec<Edit> = boxes.iter().map(arrange::adding).collect();
+        let clipboard = Clipboard::of(frame, &self.state.chosen());
+        if !clipboard.boxes.is_empty() {
+            let edits: Vec<Edit> = clipboard.boxes.iter().map(arrange::adding).collect();
             ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
-            self.state.tools.clipboard = Clipboard { boxes };
+            self.state.tools.clipboard = clipboard;
             self.state.tools.things.clipboard.clear();
         }
     }

@@ -3,6 +3,7 @@
 use egui::{Rect, Ui};
 
 use super::areas::{clipped, halves, in_rect, left_part, sides};
+use super::box_menu::{self, Under};
 use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
@@ -10,6 +11,7 @@ use crate::canvas::CanvasInput;
 use crate::command::Command;
 use crate::map_edges;
 use crate::views_shown::Underlay;
+use editor::pick;
 use widgets::icons::{self, Icon};
 
 /// The bird's-eye view.
@@ -70,7 +72,17 @@ impl Pane for Bev {
         }
         let (canvas, state) = (&mut *cx.canvas, &mut *cx.state);
         in_rect(ui, rect, |ui| {
-            canvas.show(ui, &input, state, commands);
+            box_menu::hold(ui, PaneId::BEV);
+            let response = canvas.show(ui, &input, state, commands);
+            if let Some(map) = canvas.map {
+                box_menu::of_view(ui, &response, (PaneId::BEV, scene, state), commands, |at| {
+                    let at_m = map.to_ego(at);
+                    Under {
+                        id: pick::box_at(scene.frame(), at_m),
+                        at_m: Some(at_m),
+                    }
+                });
+            }
             if mode == CompareMode::Off
                 && let Some(map) = &canvas.map
             {

@@ -14,7 +14,7 @@ use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use crate::finding_marks::FindingMarks;
 use editor::checks::{Counts, Finding, Severity, waive};
-use editor::fix::fix_all;
+use editor::fix::fix_these;
 use row::{key, row, sign};
 use scene::{BoxId, Frame, Scene};
 use triage::{Grouping, Line, Triage};
@@ -95,10 +95,25 @@ pub fn checks_ui(ui: &mut Ui, input: &ChecksInput<'_>, commands: &mut Vec<Comman
             .findings?
             .iter()
             .find(clicked)
-            .map(|f| FindingMarks::by(f, input.scene))
+            .map(|f| marks_of(ui, f, input.scene))
     });
     ui.data_mut(|d| d.insert_temp(clicked_id(), pointed.clicked));
     marks
+}
+
+/// The marks of a finding, made once for a state of the scene.
+pub(super) fn marks_of(ui: &Ui, finding: &Finding, scene: &Scene) -> FindingMarks {
+    type Kept = (String, scene::SceneRev, FindingMarks);
+    let (id, of) = (egui::Id::unique("marks of a finding"), key(finding));
+    let kept: Option<Kept> = ui.data(|d| d.get_temp(id));
+    match kept {
+        Some((kept, rev, marks)) if kept == of && rev == scene.rev => marks,
+        _ => {
+            let marks = FindingMarks::by(finding, scene);
+            ui.data_mut(|d| d.insert_temp::<Kept>(id, (of, scene.rev, marks.clone())));
+            marks
+        }
+    }
 }
 
 /// Which finding the user points at.
@@ -137,7 +152,11 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     bar(ui, input, &open, &mut triage, commands);
     ui.separator();
     reason_ui(ui, &open, commands);
-    let lines = triage.lines(&open);
+    let name = |id: BoxId| match input.frame().boxes.get(&id) {
+        Some(b) => format!("{} {}", b.called(), id.0),
+        None => format!("box {}", id.0),
+    };
+    let lines = triage.lines(&open, &name);
     if lines.is_empty() {
         ui.weak("None of these: the filter leaves all of them out.");
     }
@@ -200,6 +219,7 @@ fn bar(
                 commands.push(Command::FixAll);
             }
             let field = egui::TextEdit::singleline(&mut triage.words)
+                .id(egui::Id::unique("filter of the findings"))
                 .hint_text("Filter")
                 .desired_width(ui.available_width().clamp(40.0, 130.0));
             ui.add(field).accessible_name("Filter the findings");
@@ -265,7 +285,7 @@ fn group_row(
                     let these: Vec<Finding> = fixable.iter().map(|i| open[*i].clone()).collect();
                     commands.push(Command::Apply(
                         "Fix findings of a kind",
-                        fix_all(input.scene, &these),
+                        fix_these(input.scene, &these),
                     ));
                 }
             }

@@ -3,6 +3,7 @@
 
 pub(crate) mod areas;
 mod bev;
+mod box_menu;
 pub mod box_outlines;
 pub mod box_views;
 mod camera;
@@ -18,6 +19,7 @@ pub mod id;
 mod label;
 pub mod lidar;
 mod modelled;
+mod object_order;
 pub mod objects;
 pub mod pane;
 pub mod pointed;

@@ -3,7 +3,9 @@
 use egui::{DragValue, Ui};
 use glam::DVec3;
 
+use super::box_menu;
 use super::id::PaneId;
+use super::object_order::listing_ui;
 use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::command::{Command, ViewCommand};
@@ -54,12 +56,13 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     let room = ui.available_height();
     let wanted: Option<f32> = ui.data(|d| d.get_temp(list_height_id()));
     let most = (room - LEAST_INSPECTOR).max(LEAST_LIST);
-    let below = wanted.unwrap_or(LEAST_LIST).clamp(LEAST_LIST, most);
+    // The list stays where it is whatever the inspector shows: a second click is on what the first was on.
+    let below = wanted.unwrap_or(room - INSPECTOR).clamp(LEAST_LIST, most);
     let gap = theme::GAP / 2.0 + ui.spacing().item_spacing.y;
     egui::ScrollArea::vertical()
         .id_salt("inspector")
         .max_height((room - below - gap).max(LEAST_INSPECTOR))
-        .auto_shrink([false, wanted.is_none()])
+        .auto_shrink(false)
         .show(ui, |ui| {
             inferred(ui, frame, &mut state.correcting, commands);
             section(ui, "Inspector");
@@ -88,9 +91,15 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         n => format!("{boxes}, {n} things"),
     };
     divide(ui, &title, below, most);
+    let listing = listing_ui(ui);
     let list_height = ui.available_height().max(80.0);
-    let mut boxes: Vec<&SceneBox> = frame.boxes.values().collect();
-    boxes.sort_by_key(|b| (Class::OBJECTS.iter().position(|c| *c == b.class), b.id));
+    let ego_m = frame.world_from_ego.translation_m.truncate();
+    let boxes = listing.of(frame.boxes.values(), ego_m);
+    // Things beside the road have no place among what was looked for.
+    let rows = if listing.filters() { Vec::new() } else { rows };
+    if boxes.is_empty() && listing.filters() {
+        ui.weak("No object of that name, class, paint or number.");
+    }
     let list = egui::ScrollArea::vertical()
         .id_salt("boxes")
         .max_height(list_height)
@@ -102,7 +111,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             match boxes.get(i) {
                 Some(b) => {
                     let guess = frame.inferred.boxes.contains(&b.id);
-                    box_row(ui, b, guess, state.is_chosen(b.id), commands);
+                    ui.push_id(b.id.0, |ui| box_row(ui, b, guess, (scene, state), commands));
                 }
                 None => thing_list::row_ui(ui, &rows[i - boxes.len()], frame, &mut state.tools, commands),
             }
@@ -113,6 +122,8 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
 /// What the list of boxes keeps, its title included, however tall the inspector is; and the inspector, points.
 const LEAST_LIST: f32 = 118.0;
 const LEAST_INSPECTOR: f32 = 60.0;
+/// What the inspector of a box takes, points.
+const INSPECTOR: f32 = 178.0;
 
 /// How high the user wants the list to be; none: what the inspector leaves.
 fn list_height_id() -> egui::Id {
@@ -213,10 +224,22 @@ fn inferred(ui: &mut Ui, frame: &Frame, correcting: &mut bool, commands: &mut Ve
     ui.add_space(theme::GAP);
 }
 
-fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut Vec<Command>) {
+fn box_row(
+    ui: &mut Ui,
+    b: &SceneBox,
+    guess: bool,
+    (scene, state): (&Scene, &mut UiState),
+    commands: &mut Vec<Command>,
+) {
+    let chosen = state.is_chosen(b.id);
+    let ego_m = scene.frame().world_from_ego.translation_m.truncate();
     let name = theme::sentence(&b.called());
     let mark = if guess { "guess   " } else { "" };
-    let right = format!("{mark}#{}   {:.0} m", b.id.0, b.center_m.truncate().length());
+    let right = format!(
+        "{mark}#{}   {:.0} m",
+        b.id.0,
+        b.center_m.truncate().distance(ego_m)
+    );
     let label = format!("Box {} {}", b.id.0, b.called());
     let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
@@ -228,6 +251,7 @@ fn box_row(ui: &mut Ui, b: &SceneBox, guess: bool, chosen: bool, commands: &mut 
     if row.double_clicked() {
         commands.push(Command::View(ViewCommand::FrameSelection));
     }
+    box_menu::of_row(&row, scene, state, b.id, commands);
 }
 
 fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>) {

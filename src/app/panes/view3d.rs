@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use super::areas::{clipped, halves, in_rect, left_part, sides};
+use super::box_menu::{self, Under};
 use super::compare::{CompareMode, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
@@ -11,6 +12,8 @@ use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use crate::views_shown::ViewsShown;
+use editor::pick::{self, Hit};
+use scene::Scene;
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 use widgets::icons::{self, Icon};
 use widgets::theme;
@@ -86,7 +89,11 @@ impl Pane for View3dPane {
             return;
         }
         in_rect(ui, rect, |ui| {
-            view.show(ui, &input, state, commands);
+            box_menu::hold(ui, PaneId::VIEW3D);
+            let response = view.show(ui, &input, state, commands);
+            box_menu::of_view(ui, &response, (PaneId::VIEW3D, scene, state), commands, |at| {
+                under(view, scene, at)
+            });
         });
         if let Some(entries) = entries {
             legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
@@ -119,6 +126,27 @@ impl Pane for View3dPane {
             clipped(ui, part, |ui| other.still(ui, area, seen_from, &input, cx.state));
             wipe_line(ui, area, &mut cx.state.compare.wipe_at);
         }
+    }
+}
+
+/// What is under a point of the screen.
+fn under(view: &View3d, scene: &Scene, at: egui::Pos2) -> Under {
+    let ray = view.pointer(at).map(|p| p.ray);
+    let hit = ray.and_then(|ray| pick::pick(scene.frame(), &ray).map(|hit| (ray, hit)));
+    match hit {
+        None => Under::default(),
+        Some((_, Hit::Box { id, .. })) => Under {
+            id: Some(id),
+            at_m: None,
+        },
+        Some((ray, Hit::Voxel(v))) => Under {
+            id: None,
+            at_m: Some(ray.at(v.distance_m).truncate()),
+        },
+        Some((_, Hit::Ground { point_in_ego })) => Under {
+            id: None,
+            at_m: Some(point_in_ego.truncate()),
+        },
     }
 }
 

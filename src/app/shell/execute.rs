@@ -13,6 +13,7 @@ use crate::command::Command;
 use crate::map_edges::with_scenery;
 use crate::panes::objects::neighbour;
 use crate::tools::{Choose, ToolState};
+use crate::windows::tour::Tour;
 
 impl SceneloomApp {
     /// Carries out one command.
@@ -60,6 +61,8 @@ impl SceneloomApp {
             }
             Command::ClearPaint => self.apply("Unlock painted voxels", &[Edit::ClearPaint {}]),
             Command::FixAll => self.fix_all(ctx),
+            Command::OpenSettings => self.state.windows.settings = true,
+            Command::BeginTour => self.state.windows.tour = Some(Tour::begin(&self.document)),
             Command::PlaceClass(class) => {
                 self.state.tool = add_box::ID;
                 self.state.box_class = class;

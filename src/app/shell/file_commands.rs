@@ -49,6 +49,19 @@ impl SceneloomApp {
             }
             FileCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             FileCommand::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
+            FileCommand::Describe(words) => {
+                let scene = self.document.settled_scene().clone();
+                let mut commands = Vec::new();
+                self.views.prompt.describe(&words, &scene, &mut commands);
+                if commands.is_empty() {
+                    // What was not understood is said there.
+                    self.views.dock.open(crate::panes::id::PaneId::PROMPT);
+                    self.note("No scene was read from these words");
+                }
+                for command in commands {
+                    self.execute(command, ctx);
+                }
+            }
             FileCommand::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
             FileCommand::PlaceModel => self.ask_model(false, ctx),
             FileCommand::ShapeOfChosen => self.ask_model(true, ctx),

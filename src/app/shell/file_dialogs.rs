@@ -85,7 +85,8 @@ struct Waiting {
 struct Field {
     purpose: Purpose,
     text: String,
-    focus: bool,
+    /// Frames in which it still asks for the focus: a dialog that closes may take the first.
+    focus: u8,
     error: Option<String>,
     confirmed: bool, // the user has agreed to replace the file
 }
@@ -180,7 +181,7 @@ impl FileDialogs {
         self.field = Some(Field {
             purpose,
             text: suggestion.display().to_string(),
-            focus: true,
+            focus: 3,
             error: None,
             confirmed: false,
         });
@@ -239,9 +240,14 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
     let edit = egui::TextEdit::singleline(&mut field.text)
         .desired_width(f32::INFINITY)
         .margin(egui::Margin::symmetric(8, 6))
-        .hint_text("/path/to/scene.loom");
+        .hint_text(match field.purpose {
+            Purpose::Model | Purpose::ModelShape => "/path/to/model.glb",
+            Purpose::ImportRig | Purpose::ExportRig => "/path/to/sensors.json",
+            _ => "/path/to/scene.loom",
+        });
     let response = ui.add(edit).accessible_name("File path");
-    if std::mem::take(&mut field.focus) {
+    if field.focus > 0 {
+        field.focus -= 1;
         response.request_focus();
     }
     if response.changed() {
@@ -343,7 +349,7 @@ mod tests {
         let mut field = Field {
             purpose: Purpose::Open,
             text: String::new(),
-            focus: false,
+            focus: 0,
             error: None,
             confirmed: false,
         };

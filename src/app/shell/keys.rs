@@ -42,7 +42,9 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
         if focused && (is_arrow(key) || matches!(key, Key::Space | Key::Enter)) {
             continue;
         }
-        if hands.over_window && !chord.ctrl {
+        // What is under way can be ended, wherever the pointer is.
+        let under_way = hands.dragging || hands.flying || key == Key::Escape;
+        if hands.over_window && !under_way && !chord.ctrl {
             continue;
         }
         if hands.flying && is_flight(key) && !chord.ctrl {
@@ -235,10 +237,14 @@ mod tests {
             over_window: true,
             ..Hands::default()
         };
-        for key in [Key::B, Key::Delete, Key::Escape, Key::ArrowUp] {
+        for key in [Key::B, Key::Delete, Key::ArrowUp] {
             assert_eq!(with(key, Modifiers::NONE, &state, hands), [], "{key:?}");
         }
         assert_eq!(with(Key::Z, Modifiers::CTRL, &state, hands), [Command::Undo]);
+        assert_eq!(
+            with(Key::Escape, Modifiers::NONE, &state, hands),
+            [Command::Escape]
+        );
     }
 
     #[test]

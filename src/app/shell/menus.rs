@@ -281,6 +281,7 @@ fn help_menu(ui: &mut Ui, on: &mut On<'_>) {
     );
     on(item(ui, "Keys", "?", true), Command::Toggle(Window::Keys));
     on(item(ui, "Start screen", "", true), Command::Toggle(Window::Start));
+    on(item(ui, "Tour in three steps", "", true), Command::BeginTour);
     ui.separator();
     on(
         item(ui, "Settings…", "Ctrl+,", true),

@@ -22,6 +22,7 @@ use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
 use crate::windows::settings::settings_ui;
 use crate::windows::start::start_ui;
+use crate::windows::tour::tour_ui;
 use crate::windows::unsaved::{self, Unsaved};
 use editor::checks::{Counts, waive};
 use scene::Scene;
@@ -245,6 +246,9 @@ impl SceneloomApp {
         self.staged_ui(ui, over, commands);
         performance_ui(ui, over, &mut self.frames.perf);
         self.toasts.show(ui, over, now_s);
+        let mut tour = self.state.windows.tour.take();
+        tour_ui(ui, self.views.center, &mut tour, &self.document);
+        self.state.windows.tour = tour;
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.views.center);
         }

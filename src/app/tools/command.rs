@@ -1,6 +1,6 @@
 //! What a user can ask of the tools, as values; carried out in `chosen/`.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use editor::arrange::Row;
 use editor::tools::{Act, Choose};
@@ -27,6 +27,8 @@ pub enum ToolCommand {
     Cut,
     /// Puts down what was taken along: at the pointer over the bird's-eye view, else beside where it was.
     Paste,
+    /// Puts it down at a place of the ground, world frame, m.
+    PasteAt(DVec2),
     /// Shifts the chosen boxes in the ego frame, m.
     Nudge(DVec3),
     /// Turns the chosen boxes counter-clockwise, degrees.

@@ -14,4 +14,5 @@ pub mod sensors;
 pub mod settings;
 pub mod shortcuts;
 pub mod start;
+pub mod tour;
 pub mod unsaved;

@@ -1,5 +1,7 @@
 //! Which windows are open over the panes, and what is chosen in them.
 
+use super::tour::Tour;
+
 /// A sensor of the rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorChoice {
@@ -26,6 +28,8 @@ pub struct OpenWindows {
     pub settings: bool,
     /// The start screen.
     pub start: bool,
+    /// The tour of the first minutes; none while nobody is on it.
+    pub tour: Option<Tour>,
     /// The sensors' window.
     pub sensors: bool,
     /// The sensor chosen in it.

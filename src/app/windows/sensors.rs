@@ -32,7 +32,8 @@ pub fn sensors_ui(
     egui::Window::new("Sensors")
         .id(egui::Id::unique("sensors"))
         .open(&mut open)
-        .default_pos(egui::pos2(330.0, 120.0))
+        // Beside the views, in which the fields of view are shown.
+        .default_pos(egui::pos2(ui.max_rect().right() - 356.0, 60.0))
         .default_width(330.0)
         .resizable(false)
         .collapsible(true)

@@ -1,17 +1,14 @@
-//! The start screen: recent files, ready-made roads, import.
+//! The start screen: a description, recent files, ready-made roads, import, a tour.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, FileCommand};
 use crate::shell::settings::Settings;
-use scene::BevLayout;
 use widgets::theme;
-use widgets::thumbnail;
-use world::template::{TEMPLATES, layout};
+use world::template::TEMPLATES;
 
 /// Draws the start screen while it is open.
 pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mut Vec<Command>) {
@@ -32,7 +29,11 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
         );
         let text = "Paint a street, place what stands on it, and see what the sensors would see.";
         ui.label(egui::RichText::new(text).color(theme::text_weak()));
-        ui.add_space(2.0 * theme::GAP);
+        ui.add_space(theme::GAP);
+        if let Some(words) = describe(ui) {
+            choose(open, Command::File(FileCommand::Describe(words)));
+        }
+        ui.add_space(theme::GAP);
         ui.columns_const(|[left, right]: &mut [Ui; 2]| {
             widgets::icons::section(left, "Begin");
             if wide(left, "Go on with this scene", "Esc").clicked() {
@@ -44,13 +45,13 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
             if wide(left, "New random scene", "Ctrl+N").clicked() {
                 choose(open, Command::File(FileCommand::New));
             }
+            if wide(left, "Tour in three steps", "").clicked() {
+                choose(open, Command::BeginTour);
+            }
             left.add_space(theme::GAP);
             widgets::icons::section(left, "Recent");
             if settings.recent.is_empty() {
-                let text = format!(
-                    "Scenes that you open or save appear here. Files can also be dropped on the window: {}.",
-                    formats::import::in_words()
-                );
+                let text = "Scenes that you open or save appear here. A file can also be dropped on the window: a scene, a road (OpenDRIVE, Lanelet2, CommonRoad), labels, a point cloud, a glTF model.";
                 // Columns justify what is in them; words do not want that.
                 left.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
                     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
@@ -96,22 +97,84 @@ fn wide(ui: &mut Ui, name: &str, keys: &str) -> egui::Response {
     response
 }
 
-/// A template as it looks from above, with its name below.
+/// What is typed at the start.
+#[derive(Clone, Default)]
+struct Described {
+    words: String,
+    /// The last pass in which it was drawn: the field takes the focus when it comes.
+    drawn: u64,
+}
+
+/// The field in which a scene is described; the words once they are to become one.
+fn describe(ui: &mut Ui) -> Option<String> {
+    let id = Id::unique("described at the start");
+    let mut typed: Described = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    let made = ui
+        .horizontal(|ui| {
+            let field = egui::TextEdit::singleline(&mut typed.words)
+                .hint_text("Describe a scene: night, rain, a roundabout, five cones block my lane")
+                .margin(vec2(8.0, 6.0))
+                .desired_width(ui.available_width() - 96.0);
+            let field = ui.add(field).accessible_name("Describe a scene");
+            let pass = ui.ctx().cumulative_pass_nr();
+            if std::mem::replace(&mut typed.drawn, pass) + 2 < pass {
+                field.request_focus();
+            }
+            let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let some = !typed.words.trim().is_empty();
+            let button = egui::Button::new("Make it")
+                .fill(theme::accent_fill())
+                .min_size(vec2(84.0, 28.0));
+            let clicked = ui.add_enabled(some, button).clicked();
+            some && (clicked || entered)
+        })
+        .inner;
+    let words = made.then(|| typed.words.trim().to_owned());
+    ui.data_mut(|d| match made {
+        true => d.remove_temp::<Described>(id).map_or((), drop),
+        false => d.insert_temp(id, typed),
+    });
+    words
+}
+
+/// A scene on a road of that kind; none if there is no picture.
+fn picture(ui: &Ui, name: &str) -> Option<egui::TextureHandle> {
+    let bytes = match name {
+        "straight" => assets::thumbnails::STRAIGHT,
+        "curve" => assets::thumbnails::CURVE,
+        "t-junction" => assets::thumbnails::T_JUNCTION,
+        "intersection" => assets::thumbnails::INTERSECTION,
+        "roundabout" => assets::thumbnails::ROUNDABOUT,
+        "highway" => assets::thumbnails::HIGHWAY,
+        "parking" => assets::thumbnails::PARKING,
+        "suburb" => assets::thumbnails::SUBURB,
+        _ => return None,
+    };
+    // The same picture each time: decoded once.
+    let id = Id::unique(("road to begin with", name));
+    let kept: Option<egui::TextureHandle> = ui.data(|d| d.get_temp(id));
+    kept.or_else(|| {
+        let image = image::load_from_memory(bytes).ok()?.to_rgb8();
+        let size = [image.width() as usize, image.height() as usize];
+        let image = egui::ColorImage::from_rgb(size, image.as_raw());
+        let texture = ui.ctx().load_texture(name, image, egui::TextureOptions::LINEAR);
+        ui.data_mut(|d| d.insert_temp(id, texture.clone()));
+        Some(texture)
+    })
+}
+
+/// A template as a picture, with its name below.
 fn road(ui: &mut Ui, name: &'static str) -> egui::Response {
-    const HEIGHT: f32 = 78.0;
+    const HEIGHT: f32 = 100.0;
     let label = theme::sentence(&name.replace('_', " "));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     let (above, below) = rect.split_top_bottom_at_y(rect.bottom() - 18.0);
     ui.painter().rect_filled(rect, theme::RADIUS, theme::field());
-    // The same picture each time: made once.
-    let id = Id::unique(("road to begin with", name));
-    let layout: Option<Arc<BevLayout>> = ui.data_mut(|d| {
-        d.get_temp_mut_or_insert_with(id, || layout(name, 1).map(Arc::new))
-            .clone()
-    });
-    if let Some(layout) = layout {
-        thumbnail::road(ui, above.shrink(3.0), &layout);
+    if let Some(picture) = picture(ui, name) {
+        let uv = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+        ui.painter()
+            .image(picture.id(), above.shrink(3.0), uv, egui::Color32::WHITE);
     }
     let color = match response.hovered() {
         true => theme::text_strong(),

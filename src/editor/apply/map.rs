@@ -16,14 +16,18 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
                 return Err(EditError::ObjectLayer(*layer));
             }
             let mut cells = shape.cells(frame.extent())?;
+            let before: Vec<u32> = cells.iter().map(|[x, y]| frame.layout.cell(*x, *y)).collect();
             match value {
                 true => replace_ground(&mut frame.layout, *layer, &cells),
                 false => junction::cut_lines(&mut frame.layout, *layer, &cells),
             }
-            cells.retain(|&[x, y]| frame.layout.has(*layer, x, y) != *value);
             for &[x, y] in &cells {
-                frame.layout.set(*layer, x, y, *value);
+                if frame.layout.has(*layer, x, y) != *value {
+                    frame.layout.set(*layer, x, y, *value);
+                }
             }
+            let mut before = before.into_iter();
+            cells.retain(|[x, y]| before.next() != Some(frame.layout.cell(*x, *y)));
             if immediate::shapes_ground(*layer) {
                 immediate::lay_ground(frame, &cells);
             }
@@ -37,28 +41,17 @@ pub(super) fn apply(edit: &Edit, frame: &mut Frame) -> Result<bool, EditError> {
     Ok(true)
 }
 
-/// Takes other ground away where a layer of the ground is painted, and under a walkway the markings of the road.
+/// Takes away what a layer replaces where it is painted.
 pub(super) fn replace_ground(layout: &mut BevLayout, layer: BevLayer, cells: &[[usize; 2]]) {
-    if !BevLayer::GROUND.contains(&layer) {
-        return;
-    }
-    let others = BevLayer::GROUND.into_iter().filter(|other| *other != layer);
-    let markings: &[BevLayer] = match layer {
-        BevLayer::Walkway => &[BevLayer::RoadDivider, BevLayer::LaneDivider, BevLayer::StopLine],
-        _ => &[],
-    };
-    for gone in others.chain(markings.iter().copied()) {
-        let there: Vec<[usize; 2]> = cells
-            .iter()
-            .copied()
-            .filter(|[x, y]| layout.has(gone, *x, *y))
-            .collect();
+    for gone in layer.replaces() {
+        let there = cells.iter().copied().filter(|[x, y]| layout.has(*gone, *x, *y));
+        let there: Vec<[usize; 2]> = there.collect();
         if there.is_empty() {
             continue;
         }
-        junction::cut_lines(layout, gone, &there);
+        junction::cut_lines(layout, *gone, &there);
         for [x, y] in there {
-            layout.set(gone, x, y, false);
+            layout.set(*gone, x, y, false);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use scene::clip::{ObjectVoxels, Track};
+use scene::clip::{ObjectVoxels, Track, upright};
 use scene::{BoxId, Clip, Edit, EditError, Frame, Key, Motion, Scene, SceneBox, SourceFrame};
 
 use crate::immediate;
@@ -34,7 +34,7 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
     };
     let mut next = scene.clone();
     if cells.is_empty() {
-        let Some(track) = next.clip().tracks.get(&id) else {
+        let Some(track) = next.clip().tracks.get(&id).filter(|t| t.own_shape) else {
             return Ok(()); // it has its class's voxels
         };
         let stands = track.stands();
@@ -52,13 +52,14 @@ fn set_shape(scene: &mut Scene, id: BoxId, cells: &[[i32; 3]]) -> Result<(), Edi
         *scene = next;
         return Ok(());
     }
-    let (mut made, voxels) = ObjectVoxels::of_cells(&b, cells).map_err(EditError::BadShape)?;
+    // A track's box is as high above the ground everywhere.
+    let relief = &scene.canvas().layout.relief;
+    let mut made = upright(&b);
+    made.center_m.z += relief.height_m(made.center_m.truncate()) - relief.height_m(b.center_m.truncate());
+    let (mut made, voxels) = ObjectVoxels::of_cells(&made, cells).map_err(EditError::BadShape)?;
     if !next.clip().tracks.contains_key(&id) {
         set(&mut next, Some(id), Some(&standing(&b)), [None; 2])?;
     }
-    // A track's box is as high above the ground everywhere.
-    let relief = &next.canvas().layout.relief;
-    made.center_m.z += relief.height_m(made.center_m.truncate()) - relief.height_m(b.center_m.truncate());
     let mut clip = Clip::clone(next.clip());
     if let Some(track) = clip.tracks.get_mut(&id) {
         made.velocity_mps = track.made.velocity_mps;
@@ -118,7 +119,9 @@ pub(super) fn set(
         }
         (Some(id), None) if clip.tracks.get(&id).is_some_and(|t| t.own_shape) => {
             // It stands as a track: its voxels are its own.
-            let now = scene.frame().boxes.get(&id).copied();
+            let (from_s, relief) = (scene.clip().tracks[&id].there_s[0], &scene.canvas().layout.relief);
+            let at_first = || scene.clip().box_at(id, from_s.unwrap_or(0.0), relief);
+            let now = scene.frame().boxes.get(&id).copied().or_else(at_first);
             if let Some(track) = clip.tracks.get_mut(&id) {
                 track.motion = standing(&now.unwrap_or(track.made));
                 track.there_s = [None; 2];

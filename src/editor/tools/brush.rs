@@ -302,9 +302,7 @@ pub(super) fn show(cx: &Context<'_>, layer: BevLayer, shape: Shape, value: bool)
         .locked_layer(layout, std::slice::from_ref(&edit))
         .is_some()
     {
-        let locked = BevLayer::GROUND
-            .into_iter()
-            .filter(|other| cx.hand.is_locked(*other));
+        let locked = layer.replaces().iter().filter(|other| cx.hand.is_locked(**other));
         let bits = locked.fold(0, |bits, other| bits | other.bit());
         cells.retain(|[x, y]| layout.cell(*x, *y) & bits == 0);
         if cells.is_empty() {

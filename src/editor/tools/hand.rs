@@ -436,9 +436,11 @@ impl Hand {
                 layer,
                 shape,
                 value: true,
-            } if BevLayer::GROUND.contains(layer) => {
-                let mut locked = BevLayer::GROUND
-                    .into_iter()
+            } if !layer.replaces().is_empty() => {
+                let mut locked = layer
+                    .replaces()
+                    .iter()
+                    .copied()
                     .filter(|other| self.is_locked(*other))
                     .peekable();
                 locked.peek()?;

@@ -115,6 +115,19 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
         };
         let moved = (was.center_m, was.yaw_rad) != (now.center_m, now.yaw_rad);
         // What was only moved keeps its voxels, whatever rough ones the move put there.
+        if (was.class, was.size_m) != (now.class, now.size_m) {
+            track.own_shape = false;
+        }
+        if track.own_shape {
+            // Its voxels are its own wherever it stands and however high.
+            let ground_m = |b: &SceneBox| next.layout.relief.height_m(b.center_m.truncate());
+            let lift_m = now.center_m.z - ground_m(now) - (was.center_m.z - ground_m(was));
+            if lift_m.abs() > 1e-9 {
+                lift_own_shape(track, lift_m);
+            }
+            track.settled = true;
+            continue;
+        }
         if !same_shape(was, now) || touched.contains(id) && !moved {
             track.voxels = ObjectVoxels::cut(&after.occupancy, now, |cell, label| {
                 owners.is_of(&next.occupancy, *id, cell, label)
@@ -124,13 +137,20 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
                 ..*now
             };
         }
-        if (was.class, was.size_m) != (now.class, now.size_m) {
-            track.own_shape = false;
-        }
         let source = after.source.boxes.get(id);
         track.settled = source.is_some_and(|b| same_shape(b, now));
     }
     (next, clip_after)
+}
+
+/// Makes a shape of its own again, so much higher above the ground, m; what no longer fits into a grid is cut off.
+fn lift_own_shape(track: &mut Track, lift_m: f64) {
+    let cells = track.voxels.cells(&track.made);
+    let mut made = track.made;
+    made.center_m.z += lift_m;
+    if let Ok((made, voxels)) = ObjectVoxels::of_cells(&made, &cells) {
+        (track.made, track.voxels) = (made, voxels);
+    }
 }
 
 /// Takes over what was changed of a track's box.

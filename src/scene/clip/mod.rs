@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 pub use fold::{Scope, Seen, fold};
 pub use motion::{Key, Motion, Moving, Sampling};
-pub use object_voxels::{MARGIN_M, ObjectVoxels, OwnShape};
+pub use object_voxels::{MARGIN_M, ObjectVoxels, OwnShape, upright};
 pub use path::{Path, Speed};
 pub use template::{Manoeuvre, Pace, Template};
 

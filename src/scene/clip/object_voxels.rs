@@ -35,6 +35,12 @@ impl OwnShape {
     pub fn cells(&self) -> Vec<[i32; 3]> {
         self.voxels.cells(&self.made)
     }
+
+    /// Where the underside of the cells at height 0 is stamped with the box at `now`, counted from the box's underside, m.
+    pub fn bottom_m(&self, now: &SceneBox) -> f64 {
+        let bin = i64::from(bottom_bin(&self.made)) + up(&self.made, now);
+        bin as f64 * Extent::VOXEL_M + Extent::BOTTOM_M - (now.center_m.z - now.size_m.z / 2.0)
+    }
 }
 
 impl ObjectVoxels {
@@ -174,7 +180,7 @@ impl ObjectVoxels {
         // The heading alone turns: cos and sin once, not for every column.
         let turn = glam::DVec2::from_angle(made.yaw_rad - now.yaw_rad);
         let same_heading = made.yaw_rad == now.yaw_rad;
-        let up = ((now.center_m.z - made.center_m.z) * 2.5).round() as i64;
+        let up = up(made, now);
         box_cells(extent, now, MARGIN_M, |x, y| {
             let p = extent.center(x, y, 0).truncate();
             let from_center = p - now.center_m.truncate();
@@ -227,8 +233,13 @@ impl ObjectVoxels {
     }
 }
 
+/// How many bins a shape is lifted from where it was made.
+fn up(made: &SceneBox, now: &SceneBox) -> i64 {
+    ((now.center_m.z - made.center_m.z) * 2.5).round() as i64
+}
+
 /// The box with heading 0, its middle moved by less than a voxel to where four columns meet.
-fn upright(b: &SceneBox) -> SceneBox {
+pub fn upright(b: &SceneBox) -> SceneBox {
     let middle = (b.center_m.truncate() * 2.5).round() / 2.5;
     SceneBox {
         center_m: middle.extend(b.center_m.z),

@@ -56,7 +56,7 @@ pub struct ModelPlaced {
 impl Operation for PlaceModel {
     const NAME: &'static str = "place_model";
     const ABOUT: &'static str = "Puts an object out of a file (a glTF model, a MagicaVoxel shape, a box of another scene) into the scene as a box that keeps the shape of the model wherever it moves, or gives that shape to a box that is there. list_files tells what is there.";
-    const EXAMPLE: &'static str = r#"{"file": "excavator.glb", "at_m": [14, -5]}"#;
+    const EXAMPLE: &'static str = r#"{"file": "a.loom", "of": 1, "at_m": [14, -5]}"#;
     const CHANGES: bool = true;
     type Receipt = ModelPlaced;
 

@@ -184,7 +184,7 @@ fn box_state(scene: &Scene, b: &SceneBox) -> BoxState {
         yaw_deg: tidy(b.yaw_rad.to_degrees()),
         velocity_mps: b.velocity_mps.to_array().map(tidy),
         place: place(scene.frame(), b),
-        moves: scene.clip().tracks.contains_key(&b.id),
+        moves: scene.clip().tracks.get(&b.id).is_some_and(|t| !t.stands()),
     }
 }
 

@@ -4,9 +4,8 @@ use egui::accesskit::Role;
 use egui::{Sense, Ui, WidgetInfo, vec2};
 
 use super::waived::waive_button;
-use super::{ChecksInput, Pointed};
+use super::{ChecksInput, Pointed, marks_of};
 use crate::command::{Command, TimeCommand, ViewCommand};
-use crate::finding_marks::FindingMarks;
 use editor::checks::{Finding, Severity};
 use widgets::theme;
 
@@ -20,7 +19,7 @@ pub(super) fn row(
 ) {
     let line = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW));
     if ui.rect_contains_pointer(line) {
-        pointed.hovered = Some(FindingMarks::by(finding, input.scene));
+        pointed.hovered = Some(marks_of(ui, finding, input.scene));
     }
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), theme::ROW),

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use editor::checks::{Finding, Severity, title};
+use scene::BoxId;
 
 /// How the list is parted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -73,26 +74,23 @@ impl Triage {
             })
     }
 
-    fn group(&self, finding: &Finding) -> String {
+    fn group(&self, finding: &Finding, name: &dyn Fn(BoxId) -> String) -> String {
         match (self.grouping, finding.box_id) {
             (Grouping::Kind | Grouping::List, _) => title(finding.check).to_owned(),
-            (Grouping::Object, Some(id)) => match finding.text.split(&format!(" {} ", id.0)).next() {
-                Some(name) if name.len() < finding.text.len() => format!("{name} {}", id.0),
-                _ => format!("box {}", id.0),
-            },
+            (Grouping::Object, Some(id)) => name(id),
             (Grouping::Object, None) => "Of no object".to_owned(),
         }
     }
 
-    /// The lines for findings that are sorted by severity, the worst first.
-    pub(super) fn lines(&self, findings: &[&Finding]) -> Vec<Line> {
+    /// The lines for findings that are sorted by severity, the worst first; `name` is what a box is called.
+    pub(super) fn lines(&self, findings: &[&Finding], name: &dyn Fn(BoxId) -> String) -> Vec<Line> {
         let shown = (0..findings.len()).filter(|i| self.shows(findings[*i]));
         if self.grouping == Grouping::List {
             return shown.map(Line::Finding).collect();
         }
         let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
         for i in shown {
-            let name = self.group(findings[i]);
+            let name = self.group(findings[i], name);
             match groups.iter_mut().find(|(of, _)| *of == name) {
                 Some((_, list)) => list.push(i),
                 None => groups.push((name, vec![i])),
@@ -123,7 +121,6 @@ impl Triage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::BoxId;
 
     fn finding(check: &'static str, severity: Severity, id: u32, text: &str) -> Finding {
         Finding {
@@ -164,21 +161,25 @@ mod tests {
         ];
         let all: Vec<&Finding> = all.iter().collect();
         let mut triage = Triage::default();
-        let by_kind = triage.lines(&all);
+        let name = |id: BoxId| format!("object {}", id.0);
+        let by_kind = triage.lines(&all, &name);
         let expected = [("Off the road", 2, false), ("No LiDAR return", 2, true)];
         assert_eq!(titles(&by_kind), expected.map(|(t, n, f)| (t.to_owned(), n, f)));
         assert_eq!(by_kind.len(), 5, "what is folded is not listed");
         assert!(by_kind.contains(&Line::Finding(2)), "alone, without a head");
         triage.turned.insert("No LiDAR return".into());
-        assert_eq!(triage.lines(&all).len(), 7);
+        assert_eq!(triage.lines(&all, &name).len(), 7);
         triage.grouping = Grouping::Object;
-        let names: Vec<String> = titles(&triage.lines(&all)).into_iter().map(|(t, ..)| t).collect();
-        assert_eq!(names, ["car 7", "bus 9"]);
+        let names: Vec<String> = titles(&triage.lines(&all, &name))
+            .into_iter()
+            .map(|(t, ..)| t)
+            .collect();
+        assert_eq!(names, ["object 7", "object 9"]);
         triage.grouping = Grouping::List;
         triage.words = "LIDAR car".into();
-        assert_eq!(triage.lines(&all), [Line::Finding(3)]);
+        assert_eq!(triage.lines(&all, &name), [Line::Finding(3)]);
         triage.words.clear();
         triage.hidden = [false, false, true];
-        assert_eq!(triage.lines(&all), [0, 1, 2].map(Line::Finding));
+        assert_eq!(triage.lines(&all, &name), [0, 1, 2].map(Line::Finding));
     }
 }

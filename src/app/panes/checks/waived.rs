@@ -57,7 +57,10 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
             .hint_text("Why it may stay")
             .desired_width((ui.available_width() - 150.0).max(120.0));
         let field = ui.add(field).accessible_name("Reason of the waiver");
-        if text.is_empty() && !field.has_focus() && !field.lost_focus() {
+        // Once, when the waiver begins.
+        let asked = egui::Id::unique("reason that was asked for");
+        if ui.data(|d| d.get_temp::<String>(asked)).as_ref() != Some(&of) {
+            ui.data_mut(|d| d.insert_temp(asked, of.clone()));
             field.request_focus();
         }
         let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
@@ -77,6 +80,9 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
         }
         done |= ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
     });
+    if done {
+        ui.data_mut(|d| d.remove_temp::<String>(egui::Id::unique("reason that was asked for")));
+    }
     let left: Typing = (!done).then_some((of, text));
     ui.data_mut(|d| d.insert_temp(typing(), left));
 }

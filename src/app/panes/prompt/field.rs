@@ -210,6 +210,16 @@ impl PromptField {
         }
     }
 
+    /// Makes a new scene of words that were typed elsewhere.
+    pub fn describe(&mut self, words: &str, scene: &Scene, commands: &mut Vec<Command>) {
+        self.prompt = words.to_owned();
+        self.touched();
+        self.listen(scene);
+        self.remember();
+        self.make(self.seed, scene, commands);
+        self.is_sent = true;
+    }
+
     /// The words are others now: nothing that came of those before holds.
     pub(super) fn touched(&mut self) {
         (self.done, self.asks, self.offers, self.is_sent) = (None, false, false, false);

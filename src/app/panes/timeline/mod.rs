@@ -6,6 +6,7 @@ mod row_menu;
 mod rows;
 mod transport;
 
+pub(super) use motion_menu::motions;
 pub(crate) use transport::scope_name;
 
 use egui::Ui;

@@ -20,14 +20,15 @@ pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut V
     };
     let button = ui.menu_button(format!("{title}…"), |ui| {
         ui.set_min_width(240.0);
-        templates(ui, scene, (id, chosen.map(|b| b.class)), commands);
+        motions(ui, scene, (id, chosen.map(|b| b.class)), commands);
     });
     button
         .response
         .on_hover_text("How it moves from now on; choose an object for its motion");
 }
 
-fn templates(
+/// The ways to move that a box, or (`None`) the ego vehicle, can be given.
+pub(in crate::panes) fn motions(
     ui: &mut Ui,
     scene: &Scene,
     (id, class): (Option<BoxId>, Option<Class>),

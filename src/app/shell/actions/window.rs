@@ -356,6 +356,7 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(File, "prompt", "Prompt", "/", || {
         Command::View(ViewCommand::FocusPrompt)
     }),
+    action(File, "tour", "Tour in three steps", "", || Command::BeginTour),
     action(File, "palette", "Command palette", "Ctrl+K Ctrl+P", || {
         Command::Toggle(Window::Palette)
     }),

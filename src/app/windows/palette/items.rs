@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{Does, Item};
-use crate::command::{Command, FileCommand, ViewCommand, Window};
+use crate::command::{Command, FileCommand, ViewCommand};
 use crate::panes::{self, conditions};
 use crate::shell::actions::ACTIONS;
 use crate::shell::keymap::Keymap;
@@ -109,11 +109,7 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
         add(title, "object", Command::Select(Some(b.id)));
     }
     for name in SETTINGS {
-        add(
-            format!("Settings: {name}"),
-            "settings",
-            Command::Toggle(Window::Settings),
-        );
+        add(format!("Settings: {name}"), "settings", Command::OpenSettings);
     }
     for path in known.recent {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();

@@ -77,7 +77,7 @@ impl Annotations {
                 .entry(b.id)
                 .or_insert_with(|| (categories::of_box(b.class, &b.label.name), Vec::new()));
             rows.push(writing.tables.sample_annotation.len());
-            let is_track = now.clip().tracks.contains_key(&b.id);
+            let is_track = now.clip().tracks.get(&b.id).is_some_and(|t| !t.stands());
             let may_move = is_track || now.clip().stands();
             let attributes =
                 attribute(b, is_track, may_move).map(|i| writing.tokens.token("attribute", i as u64));

@@ -10,7 +10,6 @@ use crate::march::paint::Paint;
 use crate::march::{GroundHeight, ground, remove_voxels};
 use crate::rays::Ray;
 use scene::appearance::{BLOCK_M, FAR_M};
-use scene::clip::OwnShape;
 use scene::{Conditions, Extent, Frame, Pose, SceneBox, SensorRig};
 
 /// Voxels of an object's class this far outside its box are strays of the labels, m.
@@ -105,10 +104,7 @@ impl Appearance {
         let ground = Ground::new(&columns, &layout);
         let mut things: Vec<Thing> = boxes
             .iter()
-            .filter_map(|b| {
-                let own = frame.own_shapes.get(&b.id).map(OwnShape::cells);
-                Thing::of(b, own.as_deref(), seed)
-            })
+            .filter_map(|b| Thing::of(b, frame.own_shapes.get(&b.id), seed))
             .take(60_000)
             .collect();
         let ([blocks_x, blocks_y], from) = (field.shape().blocks, field.shape().blocks_from_m);

@@ -13,6 +13,7 @@ pub use part::Part;
 use super::noise::hash1;
 use build::Builder;
 use part::rounded;
+use scene::clip::OwnShape;
 use scene::{BoxId, Class, Extent, Paint, SceneBox};
 use shapes::shape;
 use voxel_shape::voxel_shape;
@@ -120,8 +121,8 @@ fn usual_paint(name: &str) -> Option<Paint> {
 }
 
 impl Thing {
-    /// A box as a thing to be drawn, by the shape of its class or by cells of its own; `None` if the box has a problem.
-    pub fn of(b: &SceneBox, cells: Option<&[[i32; 3]]>, seed: u32) -> Option<Self> {
+    /// A box as a thing to be drawn, by the shape of its class or by its own; `None` if the box has a problem.
+    pub fn of(b: &SceneBox, own: Option<&OwnShape>, seed: u32) -> Option<Self> {
         if b.problem().is_some() {
             return None;
         }
@@ -151,13 +152,13 @@ impl Thing {
             Class::ConstructionVehicle => rgb(232, 168, 20),
             _ => car_paint(id),
         };
-        match cells {
+        match own {
             None => shape(&mut build, b.class, id),
             // Three voxels across tell a shape; fewer do not.
             Some(_) if b.size_m.truncate().min_element() < 3.0 * Extent::VOXEL_M => {
                 shape(&mut build, b.class, id)
             }
-            Some(cells) => voxel_shape(&mut build, b, cells, Material::Plain(paint)),
+            Some(own) => voxel_shape(&mut build, b, own, Material::Plain(paint)),
         }
         let bottom = b.center_m.z - b.size_m.z / 2.0;
         Some(Self {

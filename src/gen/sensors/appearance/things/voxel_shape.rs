@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::Material;
 use super::build::Builder;
+use scene::clip::OwnShape;
 use scene::{Extent, SceneBox};
 
 /// Blocks at most: what a card's lists hold easily.
@@ -15,12 +16,11 @@ const BEVEL_M: f32 = 0.03;
 
 /// Adds the voxels of an object as blocks, as few as are needed; see [`scene::Edit::SetShape`] for the cells. What reaches
 /// beyond the box is cut off.
-pub(super) fn voxel_shape(build: &mut Builder, b: &SceneBox, cells: &[[i32; 3]], material: Material) {
+pub(super) fn voxel_shape(build: &mut Builder, b: &SceneBox, shape: &OwnShape, material: Material) {
     let voxel = Extent::VOXEL_M as f32;
-    let bottom_m = b.center_m.z - b.size_m.z / 2.0 - Extent::BOTTOM_M;
-    let below = -(bottom_m * 2.5 + 1e-6).rem_euclid(1.0) as f32 * voxel;
+    let below = shape.bottom_m(b) as f32;
     let half = build.s / 2.0;
-    for (lo, hi) in blocks(cells).into_iter().take(MOST) {
+    for (lo, hi) in blocks(&shape.cells()).into_iter().take(MOST) {
         let meters = |cell: [i32; 3]| Vec3::from_array(cell.map(|v| v as f32)) * voxel + Vec3::Z * below;
         let least = Vec3::new(-half.x, -half.y, 0.0);
         let most = Vec3::new(half.x, half.y, build.s.z);

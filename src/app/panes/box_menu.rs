@@ -1,0 +1,213 @@
+//! What a right click offers: for the box under the pointer, or for the place.
+
+use egui::{Layout, PointerButton, Popup, PopupKind, Response, SetOpenCommand, Ui};
+use glam::DVec2;
+
+use super::id::PaneId;
+use super::timeline::motions;
+use crate::command::{Command, FileCommand, ViewCommand};
+use crate::state::UiState;
+use crate::tools::{Choose, ToolCommand};
+use editor::Edit;
+use editor::tools::{Act, lane_heading};
+use scene::{BoxId, Class, Scene, SceneBox};
+use widgets::theme;
+
+/// What was under the pointer when the right button was clicked.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Under {
+    /// The box.
+    pub id: Option<BoxId>,
+    /// The place on the ground, world frame, m; none where the view shows none.
+    pub at_m: Option<DVec2>,
+}
+
+/// Opens the menu of a view where the right button is clicked without being dragged, and draws it. `under` tells what is there.
+pub(super) fn of_view(
+    ui: &Ui,
+    response: &Response,
+    (pane, scene, state): (PaneId, &Scene, &mut UiState),
+    commands: &mut Vec<Command>,
+    under: impl FnOnce(egui::Pos2) -> Under,
+) {
+    let id = response.id.with("what was under the right button");
+    let clicked =
+        response.contains_pointer() && ui.input(|i| i.pointer.button_clicked(PointerButton::Secondary));
+    if let (true, Some(at)) = (clicked, ui.input(|i| i.pointer.interact_pos())) {
+        let under = under(at);
+        choose(state, under.id);
+        ui.data_mut(|d| d.insert_temp(id, under));
+    }
+    let set = clicked.then_some(SetOpenCommand::Bool(true));
+    let shown = Popup::from_response(response)
+        .open_memory(set)
+        .at_pointer_fixed()
+        .kind(PopupKind::Menu)
+        .layout(Layout::top_down_justified(egui::Align::Min))
+        .style(egui::containers::menu::menu_style)
+        .show(|ui| {
+            let under: Under = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+            entries(ui, scene, state, under, commands);
+        });
+    ui.data_mut(|d| d.insert_temp(open_id(pane), shown.is_some()));
+}
+
+fn open_id(pane: PaneId) -> egui::Id {
+    egui::Id::unique(("a menu is open over", pane))
+}
+
+/// While the menu of a view is open its view answers nothing: the press that ends the menu does no more.
+pub(super) fn hold(ui: &mut Ui, pane: PaneId) {
+    if ui.data(|d| d.get_temp(open_id(pane))).unwrap_or(false) {
+        ui.visuals_mut().disabled_alpha = 1.0;
+        ui.disable();
+    }
+}
+
+/// Draws the menu of a row that lists a box.
+pub(super) fn of_row(
+    response: &Response,
+    scene: &Scene,
+    state: &mut UiState,
+    id: BoxId,
+    commands: &mut Vec<Command>,
+) {
+    if response.secondary_clicked() {
+        choose(state, Some(id));
+    }
+    let under = Under {
+        id: Some(id),
+        at_m: None,
+    };
+    response.context_menu(|ui| entries(ui, scene, state, under, commands));
+}
+
+/// What is under the right button is chosen, unless it is one of several that are.
+fn choose(state: &mut UiState, id: Option<BoxId>) {
+    if let Some(id) = id.filter(|id| !state.is_chosen(*id)) {
+        state.choose(&[id], Choose::Only);
+    }
+}
+
+fn entries(ui: &mut Ui, scene: &Scene, state: &UiState, under: Under, commands: &mut Vec<Command>) {
+    ui.set_min_width(190.0);
+    match under.id.and_then(|id| scene.frame().boxes.get(&id)) {
+        Some(b) => of_box(ui, scene, state, b, commands),
+        None => of_place(ui, scene, state, under.at_m, commands),
+    }
+}
+
+fn entry(ui: &mut Ui, name: &str, keys: &str, commands: &mut Vec<Command>, command: Command) {
+    let keys = egui::RichText::new(keys).color(theme::text_weak());
+    if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+        commands.push(command);
+        ui.close();
+    }
+}
+
+fn of_box(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &mut Vec<Command>) {
+    let several = state.chosen().len();
+    let title = match several {
+        0 | 1 => format!("{} #{}", theme::sentence(&b.called()), b.id.0),
+        n => format!("{n} boxes"),
+    };
+    ui.label(egui::RichText::new(title).color(theme::text_weak()));
+    let tools = Command::Tools;
+    entry(
+        ui,
+        "Bring into view",
+        "F",
+        commands,
+        Command::View(ViewCommand::FrameSelection),
+    );
+    entry(ui, "Duplicate", "Ctrl+D", commands, tools(ToolCommand::Duplicate));
+    entry(ui, "Copy", "Ctrl+C", commands, tools(ToolCommand::Copy));
+    entry(ui, "Cut", "Ctrl+X", commands, tools(ToolCommand::Cut));
+    entry(ui, "Delete", "Del", commands, tools(ToolCommand::Delete));
+    ui.separator();
+    entry(ui, "Turn around", "Q", commands, tools(ToolCommand::Turn(180.0)));
+    entry(ui, "Onto its lane", "D", commands, tools(ToolCommand::ToLane));
+    entry(
+        ui,
+        "Onto the ground",
+        "",
+        commands,
+        tools(ToolCommand::DropToGround),
+    );
+    entry(ui, "Row of copies…", "", commands, tools(ToolCommand::AskRow));
+    if several > 1 {
+        return;
+    }
+    ui.separator();
+    ui.menu_button("Let it move", |ui| {
+        ui.set_min_width(220.0);
+        motions(ui, scene, (Some(b.id), Some(b.class)), commands);
+    });
+    ui.menu_button("Make it another class", |ui| {
+        for class in Class::OBJECTS.into_iter().filter(|class| *class != b.class) {
+            let edits = vec![Edit::SetBoxClass { id: b.id, class }];
+            let name = theme::sentence(&class.label());
+            entry(ui, &name, "", commands, Command::Apply("Change class", edits));
+        }
+    });
+    entry(
+        ui,
+        "Shape from a model…",
+        "",
+        commands,
+        Command::File(FileCommand::ShapeOfChosen),
+    );
+}
+
+fn of_place(ui: &mut Ui, scene: &Scene, state: &UiState, at_m: Option<DVec2>, commands: &mut Vec<Command>) {
+    let on_map = at_m.filter(|p| scene.frame().extent().column_at(p.x, p.y).is_some());
+    if let Some(at_m) = on_map {
+        ui.menu_button("Add here", |ui| {
+            for class in Class::OBJECTS {
+                let yaw_rad = lane_heading(scene.frame(), at_m).unwrap_or(0.0);
+                let Some(b) = state.new_box(scene.frame(), class, at_m, yaw_rad) else {
+                    continue;
+                };
+                let name = theme::sentence(&class.label());
+                let act = Act::AddBoxes("Add box".into(), vec![b.into()], vec![b.id]);
+                entry(ui, &name, "", commands, Command::Tools(ToolCommand::Act(act)));
+            }
+        });
+    }
+    if !state.tools.clipboard.boxes.is_empty() || !state.tools.things.clipboard.is_empty() {
+        let command = on_map.map_or(ToolCommand::Paste, ToolCommand::PasteAt);
+        entry(ui, "Paste", "Ctrl+V", commands, Command::Tools(command));
+    }
+    entry(
+        ui,
+        "Place a model…",
+        "",
+        commands,
+        Command::File(FileCommand::PlaceModel),
+    );
+    ui.separator();
+    entry(
+        ui,
+        "Choose all boxes",
+        "Ctrl+A",
+        commands,
+        Command::Tools(ToolCommand::ChooseAll),
+    );
+    if let Some(at_m) = at_m {
+        let place = at_m.extend(scene.frame().layout.relief.height_m(at_m));
+        entry(
+            ui,
+            "Bring this place into view",
+            "",
+            commands,
+            Command::View(ViewCommand::FrameAt(place)),
+        );
+    }
+    entry(
+        ui,
+        "Bring everything into view",
+        "Home",
+        commands,
+        Command::View(ViewCommand::FrameAll),
+    );
+}

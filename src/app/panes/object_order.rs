@@ -1,0 +1,153 @@
+//! Which boxes the list of objects shows, and in what order.
+
+use egui::Ui;
+
+use scene::{Class, SceneBox};
+use widgets::theme;
+
+/// The order of the list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Order {
+    /// By class, then by number.
+    #[default]
+    Class,
+    /// The nearest to the ego vehicle first.
+    Distance,
+    /// By number.
+    Number,
+    /// By name.
+    Name,
+}
+
+const ORDERS: [(Order, &str); 4] = [
+    (Order::Class, "By class"),
+    (Order::Distance, "Nearest first"),
+    (Order::Number, "By number"),
+    (Order::Name, "By name"),
+];
+
+/// What the list shows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Listing {
+    order: Order,
+    words: String,
+}
+
+fn kept() -> egui::Id {
+    egui::Id::unique("listing of objects")
+}
+
+/// Draws the field and the order of the list, and keeps what was set.
+pub(super) fn listing_ui(ui: &mut Ui) -> Listing {
+    let mut listing: Listing = ui.data(|d| d.get_temp(kept())).unwrap_or_default();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let field = egui::TextEdit::singleline(&mut listing.words)
+            .hint_text("Filter: car, red, 12")
+            .desired_width((ui.available_width() - 112.0).max(60.0));
+        ui.add(field).accessible_name("Filter the objects");
+        let name = ORDERS
+            .iter()
+            .find(|(order, _)| *order == listing.order)
+            .map_or("", |(_, name)| name);
+        egui::ComboBox::from_id_salt("order of objects")
+            .width(ui.available_width())
+            .selected_text(name)
+            .show_ui(ui, |ui| {
+                for (order, name) in ORDERS {
+                    ui.selectable_value(&mut listing.order, order, name);
+                }
+            })
+            .response
+            .accessible_name("Order of the objects");
+    });
+    ui.add_space(theme::GAP / 2.0);
+    ui.data_mut(|d| d.insert_temp(kept(), listing.clone()));
+    listing
+}
+
+impl Listing {
+    /// True if words leave some out.
+    pub(super) fn filters(&self) -> bool {
+        !self.words.trim().is_empty()
+    }
+
+    /// The boxes that are shown, in order; `ego_m` is where the ego vehicle is, world frame, m.
+    pub(super) fn of<'a>(
+        &self,
+        boxes: impl Iterator<Item = &'a SceneBox>,
+        ego_m: glam::DVec2,
+    ) -> Vec<&'a SceneBox> {
+        let words = self.words.to_lowercase();
+        let words: Vec<&str> = words.split_whitespace().collect();
+        let holds = |b: &&SceneBox| {
+            let paint = b.label.paint.map_or("", |paint| paint.name());
+            let text = format!("{} {} {paint} ", b.called(), b.class.label()).to_lowercase();
+            let number = b.id.0.to_string();
+            words
+                .iter()
+                .all(|w| text.contains(w) || number == w.trim_start_matches('#'))
+        };
+        let mut out: Vec<&SceneBox> = boxes.filter(holds).collect();
+        let class = |b: &SceneBox| Class::OBJECTS.iter().position(|c| *c == b.class);
+        match self.order {
+            Order::Class => out.sort_by_key(|b| (class(b), b.id)),
+            Order::Number => out.sort_by_key(|b| b.id),
+            Order::Name => out.sort_by_key(|b| (b.called().to_lowercase(), b.id)),
+            Order::Distance => {
+                let away_m = |b: &SceneBox| b.center_m.truncate().distance(ego_m);
+                out.sort_by(|a, b| away_m(a).total_cmp(&away_m(b)));
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec2, DVec3};
+    use scene::{BoxId, BoxLabel, BoxName, Paint};
+
+    fn made(id: u32, class: Class, x: f64, name: &str, paint: Option<Paint>) -> SceneBox {
+        SceneBox {
+            id: BoxId(id),
+            class,
+            center_m: DVec3::new(x, 0.0, 0.0),
+            size_m: DVec3::ONE,
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+            label: BoxLabel {
+                name: BoxName::new(name),
+                paint,
+            },
+        }
+    }
+
+    #[test]
+    fn words_filter_and_orders_sort() {
+        let boxes = [
+            made(1, Class::Bus, 30.0, "", None),
+            made(2, Class::Car, 20.0, "taxi", Some(Paint::Yellow)),
+            made(12, Class::Car, 5.0, "", Some(Paint::Red)),
+        ];
+        let ids = |order, words: &str| -> Vec<u32> {
+            let listing = Listing {
+                order,
+                words: words.into(),
+            };
+            listing
+                .of(boxes.iter(), DVec2::ZERO)
+                .iter()
+                .map(|b| b.id.0)
+                .collect()
+        };
+        assert_eq!(ids(Order::Number, ""), [1, 2, 12]);
+        assert_eq!(ids(Order::Distance, ""), [12, 2, 1]);
+        assert_eq!(ids(Order::Name, ""), [1, 12, 2]);
+        assert_eq!(ids(Order::Class, "car"), [2, 12]);
+        assert_eq!(ids(Order::Class, "YELLOW taxi"), [2]);
+        assert_eq!(ids(Order::Class, "#12"), [12]);
+        assert_eq!(ids(Order::Class, "lorry"), [0; 0]);
+    }
+}
