@@ -130,9 +130,10 @@ fn describe(ui: &mut Ui) -> Option<String> {
         })
         .inner;
     let words = made.then(|| typed.words.trim().to_owned());
-    ui.data_mut(|d| match made {
-        true => d.remove_temp::<Described>(id).map_or((), drop),
-        false => d.insert_temp(id, typed),
+    ui.data_mut(|d| {
+        // Made, it is not there again the next time.
+        let left = if made { Described::default() } else { typed };
+        d.insert_temp(id, left);
     });
     words
 }

@@ -247,7 +247,7 @@ fn the_status_bar_says_what_the_buttons_do() {
     let at = bench.bev(0.0, 0.0);
     bench.harness.hover_at(at);
     bench.key(Modifiers::NONE, Key::B);
-    let hint = "Drag paints  ·  Shift erases  ·  Ctrl straight  ·  Alt picks  ·  [ ] size  ·  Middle pans  ·  Wheel zooms";
+    let hint = "Drag replaces ground  ·  Shift erases  ·  Ctrl straight  ·  Alt picks  ·  [ ] size  ·  Middle pans  ·  Wheel zooms";
     assert!(bench.sees(hint));
     bench.key(Modifiers::NONE, Key::M);
     assert!(bench.sees("Click sets a point  ·  Esc clears  ·  Middle pans  ·  Wheel zooms"));
