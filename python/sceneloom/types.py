@@ -152,6 +152,8 @@ Checked = TypedDict(
         'findings': 'Sequence[Found]',
         # What the repairs changed, if they were asked for.
         'fixed': 'Done | None',
+        # Open findings that are worth knowing and no mistakes: boxes that no sensor sees.
+        'infos': 'int',
         # Number of the state that was checked.
         'revision': 'int',
         # Findings that were waived: they may stand.

@@ -247,7 +247,9 @@ impl SceneloomApp {
         performance_ui(ui, over, &mut self.frames.perf);
         self.toasts.show(ui, over, now_s);
         let mut tour = self.state.windows.tour.take();
-        tour_ui(ui, self.views.center, &mut tour, &self.document);
+        // Over the map, on which its steps begin.
+        let map = self.views.canvas.map.map_or(self.views.center, |map| map.rect);
+        tour_ui(ui, map, &mut tour, &self.document);
         self.state.windows.tour = tour;
         if ui.input(|i| !i.raw.hovered_files.is_empty()) {
             drop_hint(ui, self.views.center);

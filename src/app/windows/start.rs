@@ -102,7 +102,7 @@ fn wide(ui: &mut Ui, name: &str, keys: &str) -> egui::Response {
 struct Described {
     words: String,
     /// The last pass in which it was drawn: the field takes the focus when it comes.
-    drawn: u64,
+    drawn: Option<u64>,
 }
 
 /// The field in which a scene is described; the words once they are to become one.
@@ -117,7 +117,7 @@ fn describe(ui: &mut Ui) -> Option<String> {
                 .desired_width(ui.available_width() - 96.0);
             let field = ui.add(field).accessible_name("Describe a scene");
             let pass = ui.ctx().cumulative_pass_nr();
-            if std::mem::replace(&mut typed.drawn, pass) + 2 < pass {
+            if typed.drawn.replace(pass).is_none_or(|drawn| drawn + 2 < pass) {
                 field.request_focus();
             }
             let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
