@@ -4,7 +4,7 @@ use egui::{Layout, PointerButton, Popup, PopupKind, Response, SetOpenCommand, Ui
 use glam::DVec2;
 
 use super::id::PaneId;
-use super::timeline::motions;
+use super::motion_menu::motions;
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::UiState;
 use crate::tools::{Choose, ToolCommand};

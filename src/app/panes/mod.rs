@@ -19,6 +19,7 @@ pub mod id;
 mod label;
 pub mod lidar;
 mod modelled;
+mod motion_menu;
 mod object_order;
 pub mod objects;
 pub mod pane;

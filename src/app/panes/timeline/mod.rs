@@ -1,17 +1,16 @@
 //! Time: play, scrub, step; what moves, its keyframes and speeds.
 
 mod graph;
-mod motion_menu;
 mod row_menu;
 mod rows;
 mod transport;
 
-pub(super) use motion_menu::motions;
 pub(crate) use transport::scope_name;
 
 use egui::Ui;
 
 use super::id::PaneId;
+use super::motion_menu;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use editor::Edit;

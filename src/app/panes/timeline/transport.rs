@@ -4,8 +4,8 @@ use egui::{DragValue, RichText, Ui};
 
 use scene::{Clip, Scene, Scope};
 
-use super::motion_menu;
 use crate::command::{Command, FileCommand, TimeCommand};
+use crate::panes::motion_menu;
 use crate::playback::Playback;
 use crate::state::UiState;
 use editor::Edit;

@@ -28,7 +28,7 @@ pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut V
 }
 
 /// The ways to move that a box, or (`None`) the ego vehicle, can be given.
-pub(in crate::panes) fn motions(
+pub(super) fn motions(
     ui: &mut Ui,
     scene: &Scene,
     (id, class): (Option<BoxId>, Option<Class>),
