@@ -117,7 +117,7 @@ fn sample_clip() -> Clip {
         there_s: [Some(0.5), None],
         voxels: voxels(made.class.id()),
         settled,
-        own_shape: settled,
+        own_shape: false,
     };
     let path = Motion::Path(scene::clip::Path {
         points_m: vec![
@@ -204,6 +204,15 @@ fn a_file_of_every_version_opens_as_what_it_holds() {
         let manifest = String::from_utf8(entries[0].1.clone()).expect("JSON");
         assert!(manifest.contains(&format!("\"version\":{version}")), "{manifest}");
     }
+}
+
+#[test]
+fn objects_whose_voxels_are_their_own_stay_so() {
+    let mut scene = sample(VERSION);
+    scene.change_clip(|clip| clip.tracks.values_mut().for_each(|t| t.own_shape = t.settled));
+    let read = from_bytes(&to_bytes(&scene).expect("sound")).expect("sound");
+    assert_same(&read, &scene);
+    assert!(read.clip().tracks.values().any(|t| t.own_shape));
 }
 
 /// Written once when a version begins, and kept: `cargo test -p sceneloom-formats --lib -- --ignored bundled_file`.
