@@ -283,10 +283,10 @@ fn group_row(
                     .clicked()
                 {
                     let these: Vec<Finding> = fixable.iter().map(|i| open[*i].clone()).collect();
-                    commands.push(Command::Apply(
-                        "Fix findings of a kind",
-                        fix_these(input.scene, &these),
-                    ));
+                    let edits = fix_these(input.scene, &these);
+                    if !edits.is_empty() {
+                        commands.push(Command::Apply("Fix findings of a kind", edits));
+                    }
                 }
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {

@@ -12,11 +12,6 @@ const SIDE_M: f32 = 84.0;
 /// Width of a lane, m.
 const LANE_M: f32 = 3.6;
 
-/// The road alone, and the ego vehicle.
-pub fn road(ui: &Ui, rect: Rect, layout: &BevLayout) {
-    scene(ui, rect, layout, &[]);
-}
-
 /// Side of an enlarged map, points.
 const LARGE: f32 = 380.0;
 

@@ -30,6 +30,11 @@ fn typing() -> egui::Id {
     egui::Id::unique("reason of a waiver")
 }
 
+/// The waiver for whose reason the field took the focus.
+fn asked() -> egui::Id {
+    egui::Id::unique("reason that was asked for")
+}
+
 type Typing = Option<(String, String)>;
 
 /// The button that begins a waiver.
@@ -58,7 +63,7 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
             .desired_width((ui.available_width() - 150.0).max(120.0));
         let field = ui.add(field).accessible_name("Reason of the waiver");
         // Once, when the waiver begins.
-        let asked = egui::Id::unique("reason that was asked for");
+        let asked = asked();
         if ui.data(|d| d.get_temp::<String>(asked)).as_ref() != Some(&of) {
             ui.data_mut(|d| d.insert_temp(asked, of.clone()));
             field.request_focus();
@@ -81,7 +86,7 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
         done |= ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
     });
     if done {
-        ui.data_mut(|d| d.remove_temp::<String>(egui::Id::unique("reason that was asked for")));
+        ui.data_mut(|d| d.remove_temp::<String>(asked()));
     }
     let left: Typing = (!done).then_some((of, text));
     ui.data_mut(|d| d.insert_temp(typing(), left));
