@@ -244,6 +244,24 @@ mod tests {
     }
 
     #[test]
+    fn a_voxel_painted_onto_a_model_becomes_a_part_of_it() {
+        let (mut scene, id) = with_a_wedge();
+        let [x, y] = scene.frame().extent().column_at(13.0, 4.1).expect("on the map");
+        let top = scene
+            .frame()
+            .occupancy
+            .column(x, y)
+            .iter()
+            .rposition(|l| *l == Class::Truck.id());
+        let cells = vec![[x, y, top.expect("there") + 1]];
+        let class = Class::Truck;
+        apply_all(&[Edit::PaintVoxels { cells, class }], &mut scene).expect("sound");
+        let painted = Model::of(&scene, Some(id)).expect("there");
+        assert_eq!(painted.cells.len(), wedge().cells.len() + 1);
+        assert!(scene.clip().tracks[&id].own_shape && scene.clip().tracks[&id].settled);
+    }
+
+    #[test]
     fn copies_have_the_shape_too() {
         let (mut scene, id) = with_a_wedge();
         let copies = crate::arrange::duplicate(scene.frame(), &[id]);

@@ -114,21 +114,19 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
             (a.class, a.size_m) == (b.class, b.size_m) && (a.center_m.z - b.center_m.z).abs() < 1e-9
         };
         let moved = (was.center_m, was.yaw_rad) != (now.center_m, now.yaw_rad);
-        // What was only moved keeps its voxels, whatever rough ones the move put there.
         if (was.class, was.size_m) != (now.class, now.size_m) {
             track.own_shape = false;
         }
         if track.own_shape {
-            // Its voxels are its own wherever it stands and however high.
             let ground_m = |b: &SceneBox| next.layout.relief.height_m(b.center_m.truncate());
             let lift_m = now.center_m.z - ground_m(now) - (was.center_m.z - ground_m(was));
             if lift_m.abs() > 1e-9 {
                 lift_own_shape(track, lift_m);
             }
-            track.settled = true;
-            continue;
         }
-        if !same_shape(was, now) || touched.contains(id) && !moved {
+        // What was only moved keeps its voxels, whatever rough ones the move put there; its own it keeps at any height.
+        let keeps = track.own_shape || same_shape(was, now);
+        if !keeps || touched.contains(id) && !moved {
             track.voxels = ObjectVoxels::cut(&after.occupancy, now, |cell, label| {
                 owners.is_of(&next.occupancy, *id, cell, label)
             });
@@ -138,7 +136,7 @@ pub fn fold(canvas: &Frame, clip: &Clip, seen: &Seen<'_>, after: &Frame, scope: 
             };
         }
         let source = after.source.boxes.get(id);
-        track.settled = source.is_some_and(|b| same_shape(b, now));
+        track.settled = track.own_shape || source.is_some_and(|b| same_shape(b, now));
     }
     (next, clip_after)
 }
