@@ -133,6 +133,12 @@ impl Area {
         self.covered[self.extent.index(x, y)]
     }
 
+    /// True within; `None` beyond the map.
+    pub(super) fn at(&self, p_m: DVec2) -> Option<bool> {
+        let cell = self.extent.column_at(p_m.x, p_m.y)?;
+        Some(self.holds(cell))
+    }
+
     fn has(&self, p_m: DVec2) -> bool {
         let cell = self.extent.column_at(p_m.x, p_m.y);
         cell.is_some_and(|cell| self.holds(cell))

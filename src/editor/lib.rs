@@ -21,6 +21,7 @@ pub mod part;
 pub mod pick;
 pub mod pick_things;
 mod reaching;
+pub mod roads;
 mod things;
 pub mod tools;
 pub mod traffic;

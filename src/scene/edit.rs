@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::clip::Manoeuvre;
 use crate::grid::Extent;
+use crate::roads::RoadChange;
 use crate::shape::Shape;
 use crate::{
     BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox, Scope, SensorRig,
@@ -130,6 +131,12 @@ pub enum Edit {
     AddPolylines {
         /// What they mean and where they run, world frame, m; at least two vertices each.
         lines: Vec<Polyline>,
+    },
+    /// Changes the road network. What it draws differently from before is drawn anew: layers, lines, ground. In a scene that has
+    /// no network yet, what is painted is recognised first.
+    ChangeRoads {
+        /// What is changed.
+        change: RoadChange,
     },
     /// Sets voxels to a class (`free` removes them) and locks them.
     PaintVoxels {
@@ -322,6 +329,9 @@ pub enum EditError {
     /// The thing that would result is not sound; see [`Form::problem`].
     #[error("{0}")]
     BadThing(String),
+    /// A change of roads that cannot be.
+    #[error("{0}")]
+    BadRoads(String),
     /// A map that is too large.
     #[error("{0}")]
     BadMap(String),

@@ -33,6 +33,7 @@ impl Scene {
         };
         let mut scene = self.still();
         scene.background = Arc::new(self.background.in_frame(&pose.inverse()));
+        scene.roads = Arc::new(self.roads.in_frame(&pose.inverse()));
         scene.change_canvas(|canvas| *canvas = in_ego(frame, extent));
         (scene.rev, scene.content) = (self.rev, self.content);
         Cow::Owned(scene)

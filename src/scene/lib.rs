@@ -32,6 +32,7 @@ pub mod relief;
 pub mod rig;
 pub mod rig_presets;
 pub mod road_map;
+pub mod roads;
 pub mod sensor_data;
 mod settle;
 pub mod shape;
@@ -67,6 +68,7 @@ pub use numeric::splitmix as draw;
 pub use pose::Pose;
 pub use relief::Relief;
 pub use rig::{Camera, LidarPattern, SensorRig};
+pub use roads::{Road, RoadChange, RoadId, RoadLane, RoadNetwork, RoadNode};
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
 pub use shape::Shape;
 pub use truth::{CameraTruth, SeenBox, TruthPixel};
@@ -105,6 +107,8 @@ pub struct Scene {
     pub rig: Arc<SensorRig>,
     /// What stands beside the roads, in the world frame.
     pub background: Arc<Background>,
+    /// The road network behind the layout, in the world frame; empty as long as nobody reshaped a road.
+    pub roads: Arc<RoadNetwork>,
     /// Seed of every random draw made for this scene.
     pub seed: u64,
     /// What its file keeps beside it: no part of any state, so that neither revision says anything of it.
@@ -131,6 +135,7 @@ impl Scene {
             words: Arc::default(),
             rig,
             background: Arc::default(),
+            roads: Arc::default(),
             view: canvas.clone(),
             canvas,
             clip: Arc::default(),

@@ -127,6 +127,7 @@ impl Scene {
             translation_m: by.way_m().extend(0.0),
         };
         scene.background = Arc::new(self.background.in_frame(&pose));
+        scene.roads = Arc::new(self.roads.in_frame(&pose));
         let frame = Arc::new(by.frame(self.frame()));
         (scene.canvas, scene.view) = (frame.clone(), frame);
         scene

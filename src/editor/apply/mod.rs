@@ -78,6 +78,7 @@ impl Apply for Edit {
             Self::SetMotion { .. } | Self::SetLength { .. } | Self::SetShape { .. } => {
                 motion::apply(self, scene)?
             }
+            Self::ChangeRoads { change } => crate::roads::apply(scene, change)?,
             Self::ExtendMap { .. } => extend::apply(self, scene)?,
             Self::LetMove { .. } => all_or_nothing(scene, &let_move::let_move(scene, self)?)?,
             Self::Forecast { seconds } => {

@@ -1,4 +1,4 @@
-//! `scene.json`: all of a scene but its grids, as versions 5 and 6 keep it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as versions 5 to 7 keep it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::{
-    BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, Scene, SceneBox, SensorRig, Thing, Track,
-    Waiver,
+    BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, RoadNetwork, Scene, SceneBox, SensorRig,
+    Thing, Track, Waiver,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -25,6 +25,8 @@ pub(super) struct SceneHeader {
     pub(super) rig: Arc<SensorRig>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) background: Vec<Thing>,
+    #[serde(default, skip_serializing_if = "has_no_roads")]
+    pub(super) roads: Arc<RoadNetwork>,
     pub(super) canvas: FrameHeader,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) clip: Option<ClipHeader>,
@@ -165,6 +167,10 @@ pub(super) struct SourceHeader {
     pub(super) occupancy: bool,
 }
 
+fn has_no_roads(roads: &Arc<RoadNetwork>) -> bool {
+    roads.is_empty()
+}
+
 fn is_false(flag: &bool) -> bool {
     !flag
 }
@@ -189,6 +195,7 @@ impl SceneHeader {
             },
             rig: scene.rig.clone(),
             background: scene.background.iter().cloned().collect(),
+            roads: scene.roads.clone(),
             canvas: frame_header(scene.canvas()),
             clip: ClipHeader::of(scene.clip()),
         }

@@ -3,7 +3,7 @@
 //! | entry | holds |
 //! |---|---|
 //! | `manifest.json` | `format`, `version` |
-//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background; of the canvas its boxes, polylines and the ego vehicle's pose; of the clip its length, and how objects and the ego vehicle move |
+//! | `scene.json` | all but the grids: name, prompt, words, seed, rig, background, road network; of the canvas its boxes, polylines and the ego vehicle's pose; of the clip its length, and how objects and the ego vehicle move |
 //! | `canvas/layout.u32` | map layers as bits, `[x][y]`, a little-endian word per column |
 //! | `canvas/relief.f32` | height of the ground in each column, `[x][y]`, little-endian numbers in m; only if it is not flat |
 //! | `canvas/occupancy.u8` | class labels, `[x][y][z]`, a byte per voxel |

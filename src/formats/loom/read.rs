@@ -50,6 +50,7 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
     scene.conditions = header.conditions;
     scene.words = Arc::new(header.words);
     scene.background = Arc::new(background);
+    scene.roads = header.roads;
     scene.kept = Arc::new(kept);
     scene.change_clip(|empty| *empty = clip);
     check(&scene)?;

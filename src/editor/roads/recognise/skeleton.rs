@@ -1,0 +1,291 @@
+//! The middle of what is paved as a graph: thinned to lines of one column, traced, and freed of spurs.
+
+use glam::DVec2;
+
+use scene::Extent;
+
+use super::mask::Mask;
+
+/// A spur is shorter than so many times the road is deep where it begins, and this, m.
+const SPUR: f64 = 1.35;
+const SPUR_M: f64 = 2.0;
+/// Junctions nearer than so many times the road is deep there are one.
+const ONE: f64 = 1.25;
+
+/// Where lines end or meet.
+#[derive(Clone, Debug)]
+pub(super) struct Knot {
+    /// Where, m.
+    pub at_m: DVec2,
+    /// Distance to the kerb, m.
+    pub depth_m: f64,
+}
+
+/// A line from knot to knot.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    /// Knots at its ends.
+    pub ends: [usize; 2],
+    /// The way between, m.
+    pub points_m: Vec<DVec2>,
+}
+
+impl Chain {
+    /// Its length, m.
+    pub fn length_m(&self) -> f64 {
+        self.points_m
+            .array_windows::<2>()
+            .map(|[a, b]| a.distance(*b))
+            .sum()
+    }
+}
+
+/// Knots and chains.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Graph {
+    pub knots: Vec<Knot>,
+    pub chains: Vec<Chain>,
+}
+
+impl Graph {
+    /// Chains at a knot; one that ends there twice is counted twice.
+    pub fn degree(&self, knot: usize) -> usize {
+        self.chains
+            .iter()
+            .flat_map(|c| c.ends)
+            .filter(|e| *e == knot)
+            .count()
+    }
+}
+
+/// The graph of a mask.
+pub(super) fn trace(mask: &Mask) -> Graph {
+    let thin = thinned(mask);
+    let mut graph = walk(mask, &thin);
+    prune(&mut graph, mask);
+    contract(&mut graph);
+    merge_joints(&mut graph);
+    graph
+}
+
+/// Columns around one, counter-clockwise from the one ahead; `None` beyond the margin.
+fn around(extent: Extent, i: usize) -> [Option<usize>; 8] {
+    const WAYS: [[i64; 2]; 8] = [
+        [1, 0],
+        [1, 1],
+        [0, 1],
+        [-1, 1],
+        [-1, 0],
+        [-1, -1],
+        [0, -1],
+        [1, -1],
+    ];
+    let (nx, ny) = (extent.nx() as i64, extent.ny() as i64);
+    let (x, y) = ((i as i64) / ny, (i as i64) % ny);
+    WAYS.map(|[dx, dy]| {
+        let (x, y) = (x + dx, y + dy);
+        (x >= 0 && x < nx && y >= 0 && y < ny).then(|| (x * ny + y) as usize)
+    })
+}
+
+fn thinned(mask: &Mask) -> Vec<bool> {
+    let mut on = mask.paved.clone();
+    let mut open: Vec<usize> = (0..on.len()).filter(|i| on[*i]).collect();
+    loop {
+        let mut gone_any = false;
+        for first in [true, false] {
+            let goes = |i: &usize| {
+                let p = around(mask.extent, *i).map(|n| n.is_some_and(|n| on[n]));
+                let count = p.iter().filter(|v| **v).count();
+                let turns = (0..8).filter(|k| !p[*k] && p[(k + 1) % 8]).count();
+                // East, north, west, south.
+                let [e, n, w, s] = [p[0], p[2], p[4], p[6]];
+                let sides = match first {
+                    true => !(n && e && s) && !(e && s && w),
+                    false => !(n && e && w) && !(n && s && w),
+                };
+                (2..=6).contains(&count) && turns == 1 && sides
+            };
+            let gone: Vec<usize> = open.iter().copied().filter(goes).collect();
+            gone_any |= !gone.is_empty();
+            gone.iter().for_each(|i| on[*i] = false);
+            open.retain(|i| on[*i]);
+        }
+        if !gone_any {
+            return on;
+        }
+    }
+}
+
+/// Follows the thin lines from knot to knot.
+fn walk(mask: &Mask, thin: &[bool]) -> Graph {
+    let near = |i: usize| -> Vec<usize> {
+        let all = around(mask.extent, i);
+        let set = |k: usize| all[k].filter(|n| thin[*n]);
+        // A corner is no neighbour where a side leads there as well.
+        let is_new = |k: usize| k.is_multiple_of(2) || set(k - 1).or(set((k + 1) % 8)).is_none();
+        (0..8).filter(|k| is_new(*k)).filter_map(set).collect()
+    };
+    let mut knot_of = vec![usize::MAX; thin.len()];
+    let mut graph = Graph::default();
+    let lit = || (0..thin.len()).filter(|i| thin[*i]);
+    let mut parts: Vec<Vec<usize>> = Vec::new();
+    for start in lit().filter(|i| near(*i).len() != 2) {
+        if knot_of[start] != usize::MAX {
+            continue;
+        }
+        let (mut open, mut part) = (vec![start], Vec::new());
+        knot_of[start] = parts.len();
+        while let Some(i) = open.pop() {
+            part.push(i);
+            for j in around(mask.extent, i).into_iter().flatten() {
+                if thin[j] && near(j).len() != 2 && knot_of[j] == usize::MAX {
+                    knot_of[j] = parts.len();
+                    open.push(j);
+                }
+            }
+        }
+        parts.push(part);
+    }
+    let mut seen = vec![false; thin.len()];
+    // A ring without a junction has a knot anywhere.
+    let mut reached = knot_of.iter().map(|k| *k != usize::MAX).collect::<Vec<_>>();
+    let mut follow = |from: usize, first: usize, knot_of: &[usize], reached: &mut Vec<bool>| {
+        let (mut way, mut last, mut now) = (vec![from], from, first);
+        while knot_of[now] == usize::MAX {
+            if std::mem::replace(&mut seen[now], true) {
+                return None;
+            }
+            reached[now] = true;
+            way.push(now);
+            let next = near(now)
+                .into_iter()
+                .find(|n| *n != last && (knot_of[*n] != usize::MAX || !seen[*n]))?;
+            (last, now) = (now, next);
+        }
+        way.push(now);
+        Some((way, knot_of[now]))
+    };
+    let mut chains = Vec::new();
+    for (k, part) in parts.iter().enumerate() {
+        for (i, first) in part
+            .iter()
+            .flat_map(|i| near(*i).into_iter().map(move |n| (*i, n)))
+        {
+            if knot_of[first] == k
+                || (knot_of[first] != usize::MAX && knot_of[first] < k)
+                || seen_of(&chains, first)
+            {
+                continue;
+            }
+            if let Some((way, end)) = follow(i, first, &knot_of, &mut reached) {
+                chains.push(([k, end], way));
+            }
+        }
+    }
+    for start in lit() {
+        if reached[start] {
+            continue;
+        }
+        let k = parts.len();
+        parts.push(vec![start]);
+        knot_of[start] = k;
+        reached[start] = true;
+        if let Some(first) = near(start).first().copied()
+            && let Some((way, end)) = follow(start, first, &knot_of, &mut reached)
+        {
+            chains.push(([k, end], way));
+        }
+    }
+    for part in &parts {
+        let at_m = part.iter().map(|i| mask.point_m(*i)).sum::<DVec2>() / part.len() as f64;
+        let depth_m = part.iter().map(|i| mask.depth_m[*i]).fold(0.0, f64::max);
+        graph.knots.push(Knot { at_m, depth_m });
+    }
+    let points = |(ends, way): ([usize; 2], Vec<usize>)| Chain {
+        ends,
+        points_m: way.into_iter().map(|i| mask.point_m(i)).collect(),
+    };
+    graph.chains = chains.into_iter().map(points).collect();
+    graph
+}
+
+fn seen_of(chains: &[([usize; 2], Vec<usize>)], cell: usize) -> bool {
+    chains
+        .iter()
+        .any(|(_, way)| way.len() > 3 && way[way.len() - 2] == cell)
+}
+
+/// Takes spurs away, the shortest first: lines to a free end that only lead to a corner of what is paved.
+fn prune(graph: &mut Graph, mask: &Mask) {
+    loop {
+        let spur = |c: &Chain| {
+            let free = c.ends.iter().position(|e| graph.degree(*e) == 1)?;
+            let (tip, root) = (c.ends[free], c.ends[1 - free]);
+            if graph.degree(root) < 3 || !mask.is_on_map(graph.knots[tip].at_m) {
+                return None;
+            }
+            let length_m = c.length_m();
+            (length_m < SPUR * graph.knots[root].depth_m + SPUR_M).then_some(length_m)
+        };
+        let all = graph
+            .chains
+            .iter()
+            .enumerate()
+            .filter_map(|(i, c)| Some((spur(c)?, i)));
+        let Some((_, i)) = all.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return;
+        };
+        graph.chains.remove(i);
+        merge_joints(graph);
+    }
+}
+
+/// Makes knots one that are nearer to each other than the road is wide.
+fn contract(graph: &mut Graph) {
+    loop {
+        let short = graph.chains.iter().position(|c| {
+            let [a, b] = c.ends;
+            let deep = graph.knots[a].depth_m.max(graph.knots[b].depth_m);
+            a != b && graph.degree(a) > 2 && graph.degree(b) > 2 && c.length_m() < ONE * deep
+        });
+        let Some(i) = short else { return };
+        let [a, b] = graph.chains.remove(i).ends;
+        let (ka, kb) = (&graph.knots[a], &graph.knots[b]);
+        graph.knots[a] = Knot {
+            at_m: (ka.at_m + kb.at_m) / 2.0,
+            depth_m: ka.depth_m.max(kb.depth_m),
+        };
+        for end in graph.chains.iter_mut().flat_map(|c| &mut c.ends) {
+            if *end == b {
+                *end = a;
+            }
+        }
+    }
+}
+
+/// Two chains that meet at a knot where nothing else does are one.
+pub(super) fn merge_joints(graph: &mut Graph) {
+    for knot in 0..graph.knots.len() {
+        let here: Vec<usize> = (0..graph.chains.len())
+            .filter(|i| graph.chains[*i].ends.contains(&knot))
+            .collect();
+        let [a, b] = here.as_slice() else { continue };
+        if graph.degree(knot) != 2 {
+            continue;
+        }
+        let mut second = graph.chains.remove(*b);
+        let mut first = graph.chains.remove(*a);
+        if first.ends[1] != knot {
+            first.points_m.reverse();
+            first.ends.reverse();
+        }
+        if second.ends[0] != knot {
+            second.points_m.reverse();
+            second.ends.reverse();
+        }
+        first.points_m.extend(second.points_m.into_iter().skip(1));
+        first.ends[1] = second.ends[1];
+        graph.chains.push(first);
+    }
+}

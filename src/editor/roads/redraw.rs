@@ -1,0 +1,127 @@
+//! From one network to the next in the layout: what both draw alike stays as it is, whatever was painted there.
+
+use std::collections::BTreeSet;
+
+use scene::roads::{Drawn, LAYERS, Owner};
+use scene::{BevLayout, Extent, Frame, Polyline, RoadId, RoadNetwork};
+
+use crate::immediate;
+use crate::junction::Area;
+
+/// What was painted a little beside a road goes with it: so many columns.
+const RIM: usize = 3;
+/// A line of which more than this lies on a road that changed is that road's.
+const OWN: f64 = 0.75;
+/// Places on a line are looked at in steps of this length, m.
+const STEP_M: f64 = 0.5;
+
+/// Brings a frame's layout from what `before` draws to what `after` draws. `anew` is a road that is drawn whatever is there.
+pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwork, anew: Option<RoadId>) {
+    let extent = frame.extent();
+    let (old, new) = (before.draw(extent), after.draw(extent));
+    let forced = anew.map(|id| after.surface_of(extent, &[Owner::Road(id)], RIM as f64 * Extent::VOXEL_M));
+    let bits: u32 = LAYERS.iter().map(|l| l.bit()).sum();
+    let drawn = |d: &Drawn, [x, y]: [usize; 2]| d.layout.cell(x, y) & bits;
+    let differs = |at: [usize; 2]| drawn(&old, at) != drawn(&new, at);
+    let mut due = vec![false; extent.columns()];
+    for at in extent.all_columns().filter(|at| differs(*at)) {
+        due[extent.index(at[0], at[1])] = true;
+    }
+    // What lies beside a change and is no road by now is what was left of a road painted a little wider.
+    let edge = grown(extent, &due);
+    let mut cells = Vec::new();
+    for at in extent.all_columns() {
+        let i = extent.index(at[0], at[1]);
+        let is_rest = edge[i] && drawn(&new, at) == 0 && drawn(&old, at) == 0;
+        let is_forced = forced.as_ref().is_some_and(|f| f[i]);
+        if due[i] || is_rest || is_forced {
+            cells.push(at);
+        }
+    }
+    let mut touched = Vec::new();
+    for at in cells {
+        let [x, y] = at;
+        let was = frame.layout.cell(x, y);
+        for layer in LAYERS {
+            frame.layout.set(layer, x, y, drawn(&new, at) & layer.bit() != 0);
+        }
+        if frame.layout.cell(x, y) != was {
+            touched.push(at);
+        }
+    }
+    swap_lines(&mut frame.layout, [before, after], [&old, &new], anew);
+    immediate::lay_ground(frame, &touched);
+}
+
+/// Columns that are set or near to one that is.
+fn grown(extent: Extent, cells: &[bool]) -> Vec<bool> {
+    let mut out = cells.to_vec();
+    for [x, y] in extent.all_columns().filter(|[x, y]| cells[extent.index(*x, *y)]) {
+        for i in x.saturating_sub(RIM)..=(x + RIM).min(extent.nx() - 1) {
+            for j in y.saturating_sub(RIM)..=(y + RIM).min(extent.ny() - 1) {
+                out[extent.index(i, j)] = true;
+            }
+        }
+    }
+    out
+}
+
+/// Takes the lines of what changed out of a layout, and puts the new ones in.
+fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2], anew: Option<RoadId>) {
+    let extent = layout.extent();
+    let [old, new] = drawn.map(|d| &d.owners);
+    let all: BTreeSet<_> = old.keys().chain(new.keys()).copied().collect();
+    let is_anew = |o: &Owner| anew.is_some_and(|id| *o == Owner::Road(id));
+    let due: Vec<_> = all
+        .into_iter()
+        .filter(|o| old.get(o) != new.get(o) || is_anew(o))
+        .collect();
+    if due.is_empty() {
+        return;
+    }
+    let surface = nets[0].surface_of(extent, &due, 0.0);
+    let others: Vec<_> = old.keys().filter(|o| !due.contains(o)).copied().collect();
+    let beside = nets[0].surface_of(extent, &others, 0.0);
+    let on = |cells: &[bool]| -> Vec<[usize; 2]> {
+        let on = extent.all_columns().filter(|[x, y]| cells[extent.index(*x, *y)]);
+        on.collect()
+    };
+    let own: Vec<bool> = surface.iter().zip(&beside).map(|(a, b)| *a && !*b).collect();
+    let (whole, own) = (Area::new(extent, &on(&surface)), Area::new(extent, &on(&own)));
+    let mut lines: Vec<Polyline> = Vec::new();
+    for line in layout.polylines.iter() {
+        if share(&whole, &line.points_m) > OWN {
+            continue;
+        }
+        if !own.touches(&line.points_m) {
+            lines.push(line.clone());
+            continue;
+        }
+        if share(&own, &line.points_m) < 0.02 {
+            lines.push(line.clone());
+            continue;
+        }
+        let pieces = own.outside(&line.points_m).into_iter();
+        lines.extend(pieces.map(|points_m| Polyline {
+            kind: line.kind,
+            points_m,
+        }));
+    }
+    lines.extend(due.iter().filter_map(|o| new.get(o)).flatten().cloned());
+    layout.polylines = lines.into();
+}
+
+/// How much of a line lies on an area, 0 to 1; what lies beyond the map does not count.
+fn share(area: &Area, points_m: &[DVec2]) -> f64 {
+    let (mut all, mut on) = (0usize, 0usize);
+    for [a, b] in points_m.array_windows::<2>() {
+        let steps = (a.distance(*b) / STEP_M).ceil().clamp(1.0, 10_000.0);
+        for k in 0..=steps as usize {
+            let p = a.lerp(*b, k as f64 / steps);
+            let Some(inside) = area.at(p) else { continue };
+            all += 1;
+            on += usize::from(inside);
+        }
+    }
+    if all == 0 { 0.0 } else { on as f64 / all as f64 }
+}

@@ -1,0 +1,174 @@
+//! Junctions: rounded corners between neighbouring arms, and how far along each arm its markings begin.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::{Arm, LaneKind, NodeId, NodeKind, Road, RoadId, RoadNetwork, RoadNode, curve, ring};
+
+/// So far from the node an arm's heading is read, m.
+const HEADING_M: f64 = 8.0;
+/// Corners are looked for so far along an arm, m.
+const REACH_M: f64 = 70.0;
+/// A corner takes at most so much of an arm, m, and this share of it.
+const CORNER_M: f64 = 25.0;
+const CORNER_SHARE: f64 = 0.45;
+/// Markings end so far before the corner does, m.
+const CLEAR_M: f64 = 0.6;
+
+/// What the nodes of a network draw, and how much of each road is theirs.
+#[derive(Debug, Default)]
+pub(super) struct Corners {
+    /// How far markings stay away from an end of a road, m.
+    pub setback_m: BTreeMap<(RoadId, usize), f64>,
+    /// Outlines that are carriageway.
+    pub paved: Vec<Vec<DVec2>>,
+    /// Lines with so much walkway on either side, m.
+    pub walks: Vec<(Vec<DVec2>, f64)>,
+    /// Islands: middle and radius, m. Nothing is drawn there.
+    pub islands: Vec<(DVec2, f64)>,
+    /// Middles of lanes that the nodes have of their own, in driving direction.
+    pub lanes: Vec<(NodeId, Vec<DVec2>)>,
+}
+
+/// An arm as a node sees it.
+pub(super) struct Seen<'a> {
+    pub arm: Arm,
+    pub road: &'a Road,
+    /// Its line from the node outward, m.
+    pub out_m: Vec<DVec2>,
+    pub length_m: f64,
+}
+
+impl Seen<'_> {
+    /// Side of the road that lies left when one looks outward: true for its right side.
+    pub fn side(&self, left: bool) -> bool {
+        (self.arm.end == 1) == left
+    }
+
+    /// The kerb on one side looking outward, m; parking strips count as carriageway.
+    pub fn kerb(&self, left: bool) -> Vec<DVec2> {
+        let off = self.road.kerb_m(self.side(left), true);
+        let line = curve::part(&self.out_m, 0.0, REACH_M);
+        curve::beside(&line, if left { off } else { -off })
+    }
+
+    /// Width of the walkway behind the kerb on one side looking outward, m.
+    pub fn walk_m(&self, left: bool) -> f64 {
+        let lanes = self.road.side(self.side(left));
+        let walks = lanes.iter().filter(|l| l.kind == LaneKind::Walk);
+        walks.map(|l| l.width_m).sum()
+    }
+
+    fn heading_rad(&self) -> f64 {
+        let from = self.out_m.first().copied().unwrap_or_default();
+        (curve::at(&self.out_m, HEADING_M.min(self.length_m)).0 - from).to_angle()
+    }
+}
+
+/// What all nodes draw.
+pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -> Corners {
+    let mut out = Corners::default();
+    for node in &net.nodes {
+        let mut arms: Vec<Seen<'_>> = net
+            .arms(node.id)
+            .into_iter()
+            .filter_map(|arm| seen(net, lines, arm))
+            .collect();
+        arms.sort_by(|a, b| a.heading_rad().total_cmp(&b.heading_rad()));
+        match node.kind {
+            NodeKind::Roundabout { island_m, ring_m } => {
+                ring::draw(node, &arms, [island_m, ring_m], &mut out)
+            }
+            NodeKind::Plain { corner_m } if arms.len() > 2 => junction(node, &arms, corner_m, &mut out),
+            NodeKind::Plain { .. } => {}
+        }
+    }
+    out
+}
+
+fn seen<'a>(net: &'a RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>, arm: Arm) -> Option<Seen<'a>> {
+    let mut out_m = lines.get(&arm.road)?.clone();
+    if arm.end == 1 {
+        out_m.reverse();
+    }
+    let length_m = curve::length_m(&out_m);
+    let road = net.road(arm.road)?;
+    (out_m.len() > 1).then_some(Seen {
+        arm,
+        road,
+        out_m,
+        length_m,
+    })
+}
+
+fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners) {
+    for (i, a) in arms.iter().enumerate() {
+        let b = &arms[(i + 1) % arms.len()];
+        let (kerb_a, kerb_b) = (a.kerb(true), b.kerb(false));
+        let Some((at_a, at_b)) = curve::crossing(&kerb_a, &kerb_b) else {
+            // Side by side: nothing to round, but each reaches as far as the other is wide.
+            continue;
+        };
+        let (meet, way_a) = curve::at(&kerb_a, at_a);
+        let (_, way_b) = curve::at(&kerb_b, at_b);
+        let half = way_a.angle_to(way_b).abs() / 2.0;
+        let room = |seen: &Seen<'_>, at: f64| (seen.length_m * CORNER_SHARE - at).clamp(0.0, CORNER_M);
+        let reach = (corner_m / half.tan().max(0.05))
+            .min(room(a, at_a))
+            .min(room(b, at_b));
+        let (from, to) = (
+            curve::at(&kerb_a, at_a + reach).0,
+            curve::at(&kerb_b, at_b + reach).0,
+        );
+        let round = curve::corner(from, meet, to);
+        let walk_m = a.walk_m(true).min(b.walk_m(false));
+        if walk_m > 0.0 {
+            out.walks.push((round.clone(), walk_m));
+        }
+        if reach > 0.0 {
+            out.paved.push(std::iter::once(meet).chain(round).collect());
+        }
+        for (seen, end) in [(a, from), (b, to)] {
+            set_back(out, seen, end);
+        }
+    }
+    // Where corners of sharp angles lie wide apart the middle belongs to nobody.
+    let middle: Vec<DVec2> = arms
+        .iter()
+        .flat_map(|a| [true, false].map(|left| a.kerb(left).first().copied()))
+        .flatten()
+        .collect();
+    out.paved.push(hull(middle, node.at_m));
+}
+
+/// Markings of an arm begin beyond a point beside it.
+pub(super) fn set_back(out: &mut Corners, seen: &Seen<'_>, beside_m: DVec2) {
+    let along = curve::project(&seen.out_m, beside_m).map_or(0.0, |p| p.0);
+    let at = out.setback_m.entry((seen.arm.road, seen.arm.end)).or_default();
+    *at = at.max((along + CLEAR_M).min(seen.length_m * 0.5));
+}
+
+/// The outline around points, counter-clockwise.
+fn hull(mut points: Vec<DVec2>, about: DVec2) -> Vec<DVec2> {
+    points.push(about);
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let turn = |chain: &[DVec2], p: DVec2| {
+        let [.., a, b] = chain else { return 1.0 };
+        (*b - *a).perp_dot(p - *b)
+    };
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut chain: Vec<DVec2> = Vec::new();
+        for p in points {
+            while turn(&chain, p) <= 0.0 {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut out = half(&mut points.iter().copied());
+    out.extend(half(&mut points.iter().rev().copied()));
+    out
+}

@@ -1,0 +1,261 @@
+//! What a network draws into a layout.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+
+use super::area::alongside;
+use super::corner::{Corners, corners};
+use super::{LaneKind, NodeId, NodeKind, Road, RoadId, RoadNetwork, curve};
+use crate::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, raster};
+
+/// Layers that roads are drawn into.
+pub const LAYERS: [BevLayer; 7] = [
+    BevLayer::DrivableArea,
+    BevLayer::CarparkArea,
+    BevLayer::Walkway,
+    BevLayer::PedCrossing,
+    BevLayer::StopLine,
+    BevLayer::RoadDivider,
+    BevLayer::LaneDivider,
+];
+
+/// What a network draws, and nothing else.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// Layers over the map, on flat ground; no lines.
+    pub layout: BevLayout,
+    /// Lines, and whose they are.
+    pub owners: BTreeMap<Owner, Vec<Polyline>>,
+}
+
+/// Whose a line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Owner {
+    /// A road's.
+    Road(RoadId),
+    /// A roundabout's.
+    Node(NodeId),
+}
+
+/// What lies on top where several are.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Surface {
+    Nothing,
+    Walk,
+    Park,
+    Road,
+}
+
+impl RoadNetwork {
+    /// What it draws over a map. Cells: road over parking over walkway. Lines: lane middles, dividers up to the junctions,
+    /// stop lines and crossings.
+    pub fn draw(&self, extent: Extent) -> Drawn {
+        let lines = self.lines();
+        let corners = corners(self, &lines);
+        let mut surface = vec![Surface::Nothing; extent.columns()];
+        let mut put = |[x, y]: [usize; 2], what: Surface| {
+            let at = &mut surface[extent.index(x, y)];
+            *at = what.max(*at);
+        };
+        for road in &self.roads {
+            let line = &lines[&road.id];
+            let free_m = free_part(road, &corners, curve::length_m(line));
+            for near in alongside(extent, line, road.reach_m(true).max(road.reach_m(false))) {
+                let at_junction = near.along_m < free_m[0] || near.along_m > free_m[1];
+                if let Some(what) = surface_at(road, near.left_m, at_junction) {
+                    put(near.cell, what);
+                }
+            }
+        }
+        for (line, walk_m) in &corners.walks {
+            raster::line_cells(extent, line, *walk_m, |x, y| put([x, y], Surface::Walk));
+        }
+        for outline in &corners.paved {
+            raster::polygon_cells(extent, outline, |x, y| put([x, y], Surface::Road));
+        }
+        for (center, radius_m) in &corners.islands {
+            raster::disc_cells(extent, *center, *radius_m, |x, y| {
+                surface[extent.index(x, y)] = Surface::Nothing;
+            });
+        }
+        let mut layout = BevLayout::over(extent);
+        for ([x, y], what) in extent.all_columns().zip(surface) {
+            let layer = match what {
+                Surface::Nothing => continue,
+                Surface::Walk => BevLayer::Walkway,
+                Surface::Park => BevLayer::CarparkArea,
+                Surface::Road => BevLayer::DrivableArea,
+            };
+            layout.set(layer, x, y, true);
+        }
+        let owners = self.marks(&lines, &corners);
+        for line in owners.values().flatten() {
+            raster::draw_polyline(&mut layout, line);
+        }
+        Drawn { layout, owners }
+    }
+
+    /// All of its roads and roundabouts.
+    pub fn owners(&self) -> Vec<Owner> {
+        let rings = self
+            .nodes
+            .iter()
+            .filter(|n| matches!(n.kind, NodeKind::Roundabout { .. }));
+        let roads = self.roads.iter().map(|r| Owner::Road(r.id));
+        roads.chain(rings.map(|n| Owner::Node(n.id))).collect()
+    }
+
+    /// The columns that roads and roundabouts cover, walkways left out, and so much around them, m.
+    pub fn surface_of(&self, extent: Extent, owners: &[Owner], rim_m: f64) -> Vec<bool> {
+        let mut out = vec![false; extent.columns()];
+        let lines = self.lines();
+        for owner in owners {
+            match owner {
+                Owner::Road(id) => {
+                    let (Some(road), Some(line)) = (self.road(*id), lines.get(id)) else {
+                        continue;
+                    };
+                    let kerbs = [false, true].map(|right| road.kerb_m(right, true) + rim_m);
+                    for near in alongside(extent, line, kerbs[0].max(kerbs[1])) {
+                        let [x, y] = near.cell;
+                        out[extent.index(x, y)] |= near.left_m <= kerbs[0] && -near.left_m <= kerbs[1];
+                    }
+                }
+                Owner::Node(id) => {
+                    let Some(node) = self.node(*id) else { continue };
+                    if let NodeKind::Roundabout { island_m, ring_m } = node.kind {
+                        let radius_m = island_m + ring_m + rim_m;
+                        raster::disc_cells(extent, node.at_m, radius_m, |x, y| {
+                            out[extent.index(x, y)] = true
+                        });
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    fn marks(
+        &self,
+        lines: &BTreeMap<RoadId, Vec<DVec2>>,
+        corners: &Corners,
+    ) -> BTreeMap<Owner, Vec<Polyline>> {
+        let mut out: BTreeMap<Owner, Vec<Polyline>> = BTreeMap::new();
+        for road in &self.roads {
+            out.insert(
+                Owner::Road(road.id),
+                self.marks_of(road, &lines[&road.id], corners),
+            );
+        }
+        for (node, points_m) in &corners.lanes {
+            let line = Polyline {
+                kind: PolylineKind::LaneCenter,
+                points_m: points_m.clone(),
+            };
+            out.entry(Owner::Node(*node)).or_default().push(line);
+        }
+        out
+    }
+
+    fn marks_of(&self, road: &Road, line: &[DVec2], corners: &Corners) -> Vec<Polyline> {
+        let mut out = Vec::new();
+        let mut push = |kind, points_m: Vec<DVec2>| {
+            if points_m.len() > 1 {
+                out.push(Polyline { kind, points_m });
+            }
+        };
+        let length_m = curve::length_m(line);
+        let free_m = free_part(road, corners, length_m);
+        let free = |points: Vec<DVec2>| cut(line, points, free_m);
+        let driven = |right: bool| road.side(right).first().is_some_and(|l| l.kind.is_carriageway());
+        if driven(true) && driven(false) {
+            push(PolylineKind::RoadDivider, free(line.to_vec()));
+        }
+        for right in [true, false] {
+            let (sign, mut off) = (if right { -1.0 } else { 1.0 }, 0.0);
+            let lanes = road.side(right);
+            for (i, lane) in lanes.iter().enumerate() {
+                if lane.kind.is_driven() {
+                    let middle = curve::beside(line, sign * (off + lane.width_m / 2.0));
+                    let mut middle = cut(line, middle, self.lane_part(road, corners, length_m));
+                    if !right {
+                        middle.reverse();
+                    }
+                    push(PolylineKind::LaneCenter, middle);
+                }
+                off += lane.width_m;
+                let marked = |l: &super::RoadLane| l.kind.is_carriageway() && l.kind != LaneKind::Shoulder;
+                if marked(lane) && lanes.get(i + 1).is_some_and(marked) {
+                    push(PolylineKind::LaneDivider, free(curve::beside(line, sign * off)));
+                }
+            }
+        }
+        for stop in &road.stops {
+            let (at, way) = curve::at(line, stop.at_m.clamp(0.0, length_m));
+            let off = road.kerb_m(stop.right, false) * if stop.right { -1.0 } else { 1.0 };
+            push(PolylineKind::StopLine, vec![at, at + way.perp() * off]);
+        }
+        for crossing in &road.crossings {
+            let (at, way) = curve::at(line, crossing.at_m.clamp(0.0, length_m));
+            let half = way * (crossing.width_m / 2.0);
+            let (l, r) = (
+                at + way.perp() * road.kerb_m(false, false),
+                at - way.perp() * road.kerb_m(true, false),
+            );
+            push(
+                PolylineKind::PedCrossing,
+                vec![l - half, r - half, r + half, l + half],
+            );
+        }
+        out
+    }
+
+    /// Along which part of a road its lanes run: up to its nodes, but not into roundabouts.
+    fn lane_part(&self, road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
+        let ring = |end: usize| {
+            let node = self.node(road.ends[end]);
+            node.is_some_and(|n| matches!(n.kind, NodeKind::Roundabout { .. }))
+        };
+        let free = free_part(road, corners, length_m);
+        [
+            if ring(0) { free[0] } else { 0.0 },
+            if ring(1) { free[1] } else { length_m },
+        ]
+    }
+}
+
+/// From where to where along a road it is its own, and not its junctions', m.
+fn free_part(road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
+    let back = |end: usize| corners.setback_m.get(&(road.id, end)).copied().unwrap_or(0.0);
+    [back(0), length_m - back(1)]
+}
+
+/// What lies so far to the left of a road's line; `None` where it has nothing.
+fn surface_at(road: &Road, left_m: f64, at_junction: bool) -> Option<Surface> {
+    let right = left_m < 0.0;
+    let mut edge = 0.0;
+    let lane = road.side(right).iter().find(|lane| {
+        edge += lane.width_m;
+        left_m.abs() <= edge
+    });
+    match lane?.kind {
+        LaneKind::Verge => None,
+        LaneKind::Walk => Some(Surface::Walk),
+        LaneKind::Parking if !at_junction => Some(Surface::Park),
+        _ => Some(Surface::Road),
+    }
+}
+
+/// The part of a line beside another that lies between two places along that one.
+fn cut(line: &[DVec2], beside: Vec<DVec2>, part_m: [f64; 2]) -> Vec<DVec2> {
+    let length_m = curve::length_m(line);
+    if part_m[0] <= 0.0 && part_m[1] >= length_m {
+        return beside;
+    }
+    let on = |along: f64| {
+        let (at, _) = curve::at(line, along);
+        curve::project(&beside, at).map_or(0.0, |p| p.0)
+    };
+    curve::part(&beside, on(part_m[0]), on(part_m[1]))
+}

@@ -1,0 +1,219 @@
+//! The network as a whole: what is where, which roads go on in which, and the course of each.
+
+use std::collections::BTreeMap;
+
+use glam::DVec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{NodeId, NodeKind, Road, RoadId, RoadNode, curve};
+use crate::Pose;
+
+/// Two roads at a junction go on in each other if they bend less than this, rad.
+const GOES_ON_RAD: f64 = 0.7;
+
+/// Roads and the nodes at which they end, world frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoadNetwork {
+    /// Nodes, by number.
+    #[serde(default)]
+    pub nodes: Vec<RoadNode>,
+    /// Roads, by number.
+    #[serde(default)]
+    pub roads: Vec<Road>,
+}
+
+/// One end of a road, as it is seen from the node there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arm {
+    /// The road.
+    pub road: RoadId,
+    /// 0: the road begins here; 1: it ends here.
+    pub end: usize,
+}
+
+impl RoadNetwork {
+    /// Most roads, and most nodes.
+    pub const MOST: usize = 20_000;
+
+    /// True without any road.
+    pub fn is_empty(&self) -> bool {
+        self.roads.is_empty()
+    }
+
+    /// The road of that number.
+    pub fn road(&self, id: RoadId) -> Option<&Road> {
+        self.roads.iter().find(|r| r.id == id)
+    }
+
+    /// The road of that number.
+    pub fn road_mut(&mut self, id: RoadId) -> Option<&mut Road> {
+        self.roads.iter_mut().find(|r| r.id == id)
+    }
+
+    /// The node of that number.
+    pub fn node(&self, id: NodeId) -> Option<&RoadNode> {
+        self.nodes.iter().find(|n| n.id == id)
+    }
+
+    /// The node of that number.
+    pub fn node_mut(&mut self, id: NodeId) -> Option<&mut RoadNode> {
+        self.nodes.iter_mut().find(|n| n.id == id)
+    }
+
+    /// A new plain node; its number.
+    pub fn add_node(&mut self, at_m: DVec2) -> NodeId {
+        let id = NodeId(self.nodes.iter().map(|n| n.id.0 + 1).max().unwrap_or(1));
+        self.nodes.push(RoadNode {
+            id,
+            at_m,
+            kind: NodeKind::default(),
+        });
+        id
+    }
+
+    /// Puts a road in under the next free number, which it returns.
+    pub fn add_road(&mut self, road: Road) -> RoadId {
+        let id = RoadId(self.roads.iter().map(|r| r.id.0 + 1).max().unwrap_or(1));
+        self.roads.push(Road { id, ..road });
+        id
+    }
+
+    /// Ends of roads at a node, in the order of roads.
+    pub fn arms(&self, node: NodeId) -> Vec<Arm> {
+        let ends = self.roads.iter().flat_map(|r| [0, 1].map(|end| (r, end)));
+        let here = ends.filter(|(r, end)| r.ends[*end] == node);
+        here.map(|(r, end)| Arm { road: r.id, end }).collect()
+    }
+
+    /// All points of a road's line that were set, with its ends, m.
+    pub fn points_m(&self, road: &Road) -> Vec<DVec2> {
+        let end = |i: usize| self.node(road.ends[i]).map(|n| n.at_m);
+        end(0)
+            .into_iter()
+            .chain(road.via_m.iter().copied())
+            .chain(end(1))
+            .collect()
+    }
+
+    /// The set point next to a node along an arm.
+    fn next_m(&self, arm: Arm) -> Option<DVec2> {
+        let road = self.road(arm.road)?;
+        let other = || self.node(road.ends[1 - arm.end]).map(|n| n.at_m);
+        match arm.end {
+            0 => road.via_m.first().copied().or_else(other),
+            _ => road.via_m.last().copied().or_else(other),
+        }
+    }
+
+    /// Pairs of arms that go on in each other at a node: the two of a joint, and at a junction those that bend least.
+    fn pairs(&self, node: &RoadNode, arms: &[Arm]) -> Vec<[Arm; 2]> {
+        if let NodeKind::Roundabout { .. } = node.kind {
+            return Vec::new();
+        }
+        if let [a, b] = arms {
+            return vec![[*a, *b]];
+        }
+        let way = |a: &Arm| {
+            self.next_m(*a)
+                .map_or(DVec2::ZERO, |p| (p - node.at_m).normalize_or_zero())
+        };
+        let mut found: Vec<(f64, [Arm; 2])> = Vec::new();
+        for (i, a) in arms.iter().enumerate() {
+            found.extend(arms[i + 1..].iter().map(|b| (way(a).dot(way(b)), [*a, *b])));
+        }
+        found.retain(|(cos, _)| *cos < -GOES_ON_RAD.cos());
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut out: Vec<[Arm; 2]> = Vec::new();
+        for (_, pair) in found {
+            if !out.iter().flatten().any(|a| pair.contains(a)) {
+                out.push(pair);
+            }
+        }
+        out
+    }
+
+    /// The course of every road, from its beginning to its end, m. Where roads go on in each other there is no kink.
+    pub fn lines(&self) -> BTreeMap<RoadId, Vec<DVec2>> {
+        let mut beyond: BTreeMap<(RoadId, usize), DVec2> = BTreeMap::new();
+        for node in &self.nodes {
+            let arms = self.arms(node.id);
+            for [a, b] in self.pairs(node, &arms) {
+                for (from, to) in [(a, b), (b, a)] {
+                    if let Some(p) = self.next_m(to) {
+                        beyond.insert((from.road, from.end), p);
+                    }
+                }
+            }
+        }
+        let line = |r: &Road| {
+            let ghost = |end| beyond.get(&(r.id, end)).copied();
+            (r.id, curve::through(ghost(0), &self.points_m(r), ghost(1)))
+        };
+        self.roads.iter().map(line).collect()
+    }
+
+    /// The road whose surface a point lies on or within `slack_m` of; the one whose line is nearest.
+    pub fn road_at(&self, p_m: DVec2, slack_m: f64) -> Option<RoadId> {
+        let lines = self.lines();
+        let on = self.roads.iter().filter_map(|r| {
+            let (_, left_m) = curve::project(lines.get(&r.id)?, p_m)?;
+            let (right, left) = (r.kerb_m(true, true), r.kerb_m(false, true));
+            let inside = left_m <= left + slack_m && -left_m <= right + slack_m;
+            inside.then(|| ((left_m - (left - right) / 2.0).abs(), r.id))
+        });
+        on.min_by(|a, b| a.0.total_cmp(&b.0)).map(|b| b.1)
+    }
+
+    /// Nodes at which no road ends go.
+    pub fn tidy(&mut self) {
+        let used: Vec<NodeId> = self.roads.iter().flat_map(|r| r.ends).collect();
+        self.nodes.retain(|n| used.contains(&n.id));
+    }
+
+    /// The same seen from another frame: `pose` is that of this frame in the other one.
+    pub fn in_frame(&self, pose: &Pose) -> Self {
+        let mut out = self.clone();
+        let there = |p: DVec2| pose.apply(p.extend(0.0)).truncate();
+        out.nodes.iter_mut().for_each(|n| n.at_m = there(n.at_m));
+        out.roads
+            .iter_mut()
+            .flat_map(|r| &mut r.via_m)
+            .for_each(|p| *p = there(*p));
+        out
+    }
+
+    /// Why it cannot be used, in one line; `None` if it is sound.
+    pub fn problem(&self) -> Option<String> {
+        if self.roads.len().max(self.nodes.len()) > Self::MOST {
+            let (roads, nodes) = (self.roads.len(), self.nodes.len());
+            return Some(format!(
+                "the network has {roads} roads and {nodes} nodes, expected at most {}",
+                Self::MOST
+            ));
+        }
+        let mut nodes: Vec<u32> = self.nodes.iter().map(|n| n.id.0).collect();
+        let mut roads: Vec<u32> = self.roads.iter().map(|r| r.id.0).collect();
+        for (what, ids) in [("node", &mut nodes), ("road", &mut roads)] {
+            ids.sort_unstable();
+            if let Some([id, _]) = ids.array_windows::<2>().find(|[a, b]| a == b) {
+                return Some(format!("there are two of {what} {id}"));
+            }
+            if ids.last() == Some(&u32::MAX) {
+                return Some(format!("{what} {} has the last number there is", u32::MAX));
+            }
+        }
+        for road in &self.roads {
+            let lost = road.ends.iter().find(|e| nodes.binary_search(&e.0).is_err());
+            if let Some(end) = lost {
+                return Some(format!(
+                    "road {} ends at node {}, which does not exist",
+                    road.id.0, end.0
+                ));
+            }
+        }
+        let bad_road = self.roads.iter().find_map(Road::problem);
+        bad_road.or_else(|| self.nodes.iter().find_map(RoadNode::problem))
+    }
+}
