@@ -1,107 +1,11 @@
-//! Where a new street crosses an old one: the columns that belong to both, and lines cut where they pass through them.
+//! Lines cut where they pass through columns.
 
 use glam::DVec2;
 
-use scene::distance::nearest_source;
 use scene::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, raster};
 
-/// From this angle between two streets on they cross; below it one is drawn along the other, to widen or renew it.
-const CROSSES_RAD: f64 = 0.44;
-/// How far from its lines a carriageway reaches at most, m. Without lines nearby nobody knows which way it runs.
-const REACH_M: f64 = 8.0;
-/// Share of a crossing from which on it is one of the junction's.
-const CROSSING_WITHIN: f64 = 0.3;
 /// Lines are looked at in steps of this length, m: a quarter of a cell.
 const STEP_M: f64 = 0.1;
-
-/// The columns `[x, y]` among `band` that are road already, of a road that runs another way than the line `middle_m`.
-pub(super) fn crossed(layout: &BevLayout, middle_m: &[DVec2], band: &[[usize; 2]]) -> Vec<[usize; 2]> {
-    let mut cells = band.to_vec();
-    // Parking strips belong to the street that they line.
-    let road = BevLayer::DrivableArea.bit() | BevLayer::CarparkArea.bit();
-    cells.retain(|[x, y]| layout.cell(*x, *y) & road != 0);
-    if cells.is_empty() {
-        return cells;
-    }
-    let lengthwise = |l: &&Polyline| {
-        matches!(
-            l.kind,
-            PolylineKind::LaneCenter | PolylineKind::RoadDivider | PolylineKind::LaneDivider
-        )
-    };
-    let old = layout.polylines.iter().filter(lengthwise);
-    let (Some(old), Some(new)) = (
-        Ways::of(layout.extent(), old.map(|l| &l.points_m[..])),
-        Ways::of(layout.extent(), std::iter::once(middle_m)),
-    ) else {
-        return Vec::new();
-    };
-    cells.retain(|&[x, y]| {
-        let [old, new] = [old.at(x, y), new.at(x, y)];
-        let near = old.0 <= REACH_M;
-        near && old.1.dot(new.1).abs() < CROSSES_RAD.cos()
-    });
-    cells
-}
-
-/// For every column the direction of the nearest of some lines.
-struct Ways {
-    extent: Extent,
-    directions: Vec<DVec2>,
-    nearest: Vec<u32>,
-}
-
-impl Ways {
-    /// `None` if no line touches the grid.
-    fn of<'a>(extent: Extent, lines: impl Iterator<Item = &'a [DVec2]>) -> Option<Self> {
-        let mut directions = vec![DVec2::ZERO; extent.columns()];
-        for pair in lines.flat_map(|l| l.windows(2)) {
-            let direction = (pair[1] - pair[0]).normalize_or_zero();
-            raster::line_cells(extent, pair, Extent::VOXEL_M, |x, y| {
-                directions[extent.index(x, y)] = direction;
-            });
-        }
-        let nearest = nearest_source(extent, |c| directions[c] != DVec2::ZERO)?;
-        Some(Self {
-            extent,
-            directions,
-            nearest,
-        })
-    }
-
-    /// Distance to the nearest line, m, and its direction there.
-    fn at(&self, x: usize, y: usize) -> (f64, DVec2) {
-        let extent = self.extent;
-        let nearest = self.nearest[extent.index(x, y)] as usize;
-        let [i, j] = extent.column(nearest);
-        let apart = extent.center(x, y, 0).distance(extent.center(i, j, 0));
-        (apart, self.directions[nearest])
-    }
-}
-
-/// The painted crossings that lie in an area by more than [`CROSSING_WITHIN`], whole: nobody crosses within a junction.
-pub(super) fn crossings_in(layout: &BevLayout, area: &Area) -> Vec<[usize; 2]> {
-    let painted = |[x, y]: [usize; 2]| layout.has(BevLayer::PedCrossing, x, y);
-    let extent = layout.extent();
-    let (mut seen, mut found) = (vec![false; extent.columns()], Vec::new());
-    for start in extent.all_columns().filter(|at| painted(*at) && area.holds(*at)) {
-        let (mut crossing, mut open) = (Vec::new(), vec![start]);
-        while let Some(at) = open.pop() {
-            if !painted(at) || std::mem::replace(&mut seen[extent.index(at[0], at[1])], true) {
-                continue;
-            }
-            crossing.push(at);
-            let [x, y] = at;
-            open.extend([[x.saturating_sub(1), y], [(x + 1).min(extent.nx() - 1), y]]);
-            open.extend([[x, y.saturating_sub(1)], [x, (y + 1).min(extent.ny() - 1)]]);
-        }
-        let within = crossing.iter().filter(|at| area.holds(**at)).count();
-        if within as f64 > CROSSING_WITHIN * crossing.len() as f64 {
-            found.extend(crossing);
-        }
-    }
-    found
-}
 
 /// Cells as a set that is asked often.
 pub(super) struct Area {
@@ -116,17 +20,6 @@ impl Area {
             covered[extent.index(x, y)] = true;
         }
         Self { extent, covered }
-    }
-
-    /// The cells and those that touch them: lines that end here do not reach in with their width.
-    pub(super) fn around(extent: Extent, cells: &[[usize; 2]]) -> Self {
-        let mut grown = Vec::new();
-        for &[x, y] in cells {
-            for i in x.saturating_sub(1)..=(x + 1).min(extent.nx() - 1) {
-                grown.extend((y.saturating_sub(1)..=(y + 1).min(extent.ny() - 1)).map(|j| [i, j]));
-            }
-        }
-        Self::new(extent, &grown)
     }
 
     pub(super) fn holds(&self, [x, y]: [usize; 2]) -> bool {

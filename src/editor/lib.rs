@@ -10,7 +10,6 @@ pub mod flood;
 pub mod immediate;
 mod junction;
 pub mod kerb;
-pub mod lane_strip;
 pub mod lanes;
 #[cfg(test)]
 mod map_tests;

@@ -13,8 +13,8 @@ use scene::{
 
 use crate::checks::run_checks;
 use crate::flood::{FillBounds, flood};
-use crate::lane_strip::LaneStrip;
 use crate::pick::{self, Hit, Ray};
+use crate::roads::Street;
 use crate::tools::{Hand, farthest_m};
 use crate::{Apply, Document, Edit, Shape, Stale, kerb, outline, part, voxel_ops};
 
@@ -127,10 +127,9 @@ fn a_place_beyond_the_window_is_like_one_within_it() {
     fn edited(extent: Extent, at: DVec2) -> Scene {
         let mut scene = open_ground(extent);
         let v = |x: f64, y: f64| at + DVec2::new(x, y);
-        let strip = LaneStrip::default();
         let middle_m = [v(5.03, -20.07), v(4.11, 21.03)];
-        let layout = scene.frame().layout.clone();
-        let mut edits = strip.edits(&middle_m, &layout);
+        let change = Street::default().along(&middle_m).expect("two points");
+        let mut edits = vec![Edit::ChangeRoads { change }];
         let shrubs = Shrubs {
             outline_m: outline::of_stroke(extent, &[v(-12.03, 8.11), v(-6.1, 9.07)], 3.0)
                 .expect("on the map"),

@@ -266,6 +266,9 @@ impl Edit {
                 shape: shape(area),
                 value,
             },
+            Self::ChangeRoads { change } => Self::ChangeRoads {
+                change: change.in_frame(pose, turn_deg),
+            },
             Self::AddThings { forms } => Self::AddThings {
                 forms: forms.iter().map(|f| f.in_frame(pose)).collect(),
             },

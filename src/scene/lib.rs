@@ -68,7 +68,7 @@ pub use numeric::splitmix as draw;
 pub use pose::Pose;
 pub use relief::Relief;
 pub use rig::{Camera, LidarPattern, SensorRig};
-pub use roads::{Road, RoadChange, RoadId, RoadLane, RoadNetwork, RoadNode};
+pub use roads::{Road, RoadChange, RoadId, RoadLane, RoadNetwork, RoadNode, RoadWish};
 pub use sensor_data::{CameraMaps, LidarPoint, LidarSweep, MultiPlaneImage, PerspectiveMap};
 pub use shape::Shape;
 pub use truth::{CameraTruth, SeenBox, TruthPixel};

@@ -13,14 +13,30 @@ use crate::shell::toasts::Level;
 use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard};
-use editor::tools::{Act, voxel};
+use editor::tools::{Act, road, voxel};
 use scene::{Extent, Frame};
 
 impl SceneloomApp {
+    /// Deletes what is chosen of the roads; false if nothing is, or their tool is not in hand.
+    fn delete_road(&mut self) -> bool {
+        let tools = &mut self.state.tools.hand;
+        let Some(part) = tools.road.chosen.filter(|_| tools.tool == road::ID) else {
+            return false;
+        };
+        tools.road.chosen = None;
+        if let Some(edits) = road::deletion(self.document.settled_scene(), part) {
+            self.apply_some("Delete road", edits);
+        }
+        true
+    }
+
     /// Carries out one command of the tools.
     pub(crate) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
         let ids = self.state.chosen();
         let frame = self.document.settled_scene().frame().clone();
+        if command == ToolCommand::Delete && self.delete_road() {
+            return;
+        }
         let of_voxels = command == ToolCommand::Delete && self.has_voxels();
         if !of_voxels && self.carry(&command, ctx) {
             return;

@@ -89,6 +89,8 @@ pub enum Icon {
     Bars,
     /// Circle with its middle.
     Circle,
+    /// Road to the horizon.
+    Road,
 }
 
 impl Icon {
@@ -101,6 +103,7 @@ impl Icon {
             "voxel" => Self::Voxel,
             "measure" => Self::Measure,
             "region" => Self::Region,
+            "road" => Self::Road,
             "building" => Self::Building,
             "tree" => Self::Tree,
             "fence" => Self::Fence,
@@ -153,6 +156,7 @@ impl Icon {
             Icon::Tick => shapes::TICK,
             Icon::Bars => shapes::BARS,
             Icon::Circle => shapes::CIRCLE,
+            Icon::Road => shapes::ROAD,
         }
     }
 

@@ -5,7 +5,7 @@ use glam::DVec2;
 use scene::roads::{NodeId, RoadChange, RoadCrossing, RoadStop, curve};
 use scene::{Road, RoadId, RoadNetwork};
 
-use super::add;
+use super::{add, wish};
 
 /// A road is split no nearer to its ends, m.
 const NEAREST_END_M: f64 = 2.0;
@@ -48,6 +48,11 @@ pub(super) fn changed(before: &RoadNetwork, change: &RoadChange) -> Result<RoadN
         }
         RoadChange::Join { node } => join(&mut net, *node)?,
         RoadChange::Connect { node, to } => connect(&mut net, *node, *to)?,
+        RoadChange::Wish {
+            at_m,
+            heading_deg,
+            wish,
+        } => wish::grant(&mut net, *at_m, *heading_deg, *wish)?,
         RoadChange::Straighten { id } => {
             let road = net.road_mut(*id).ok_or_else(|| no_road(*id))?;
             road.via_m.clear();

@@ -4,8 +4,10 @@ mod add;
 mod change;
 mod recognise;
 mod redraw;
+pub mod street;
 #[cfg(test)]
 mod tests;
+mod wish;
 
 use std::sync::Arc;
 
@@ -13,6 +15,7 @@ use scene::roads::RoadChange;
 use scene::{EditError, RoadNetwork, Scene};
 
 pub use recognise::recognise;
+pub use street::Street;
 
 /// The network of a scene: its own or, if it has none, what is recognised in its layout.
 pub fn network_of(scene: &Scene) -> Arc<RoadNetwork> {

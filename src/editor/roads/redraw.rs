@@ -112,7 +112,7 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
 }
 
 /// How much of a line lies on an area, 0 to 1; what lies beyond the map does not count.
-fn share(area: &Area, points_m: &[DVec2]) -> f64 {
+fn share(area: &Area, points_m: &[glam::DVec2]) -> f64 {
     let (mut all, mut on) = (0usize, 0usize);
     for [a, b] in points_m.array_windows::<2>() {
         let steps = (a.distance(*b) / STEP_M).ceil().clamp(1.0, 10_000.0);

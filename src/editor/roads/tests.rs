@@ -382,3 +382,92 @@ fn poor_maps_have_no_roads_and_poor_lines_make_none() {
     let net = network_of(&scene);
     assert!(net.problem().is_none());
 }
+
+#[test]
+fn wishes_change_the_whole_street() {
+    use scene::roads::RoadWish;
+    let mut scene = crossing();
+    let wish = |scene: &mut Scene, wish| {
+        let change = RoadChange::Wish {
+            at_m: DVec2::new(-20.0, 0.0),
+            heading_deg: 0.0,
+            wish,
+        };
+        Edit::ChangeRoads { change }.apply(scene)
+    };
+    wish(&mut scene, RoadWish::Lanes { count: 4 }).expect("sound");
+    let along: Vec<_> = scene
+        .roads
+        .roads
+        .iter()
+        .filter(|r| r.driven(true) == 2 && r.driven(false) == 2)
+        .collect();
+    assert_eq!(along.len(), 2, "both halves, and not the street across");
+    let right = Some(true);
+    wish(
+        &mut scene,
+        RoadWish::Beside {
+            kind: LaneKind::Bus,
+            right,
+        },
+    )
+    .expect("sound");
+    // The bus lane lies on the right as one looks: at negative y.
+    let bus = |r: &&Road| r.right.iter().chain(&r.left).any(|l| l.kind == LaneKind::Bus);
+    for road in scene.roads.roads.iter().filter(bus) {
+        let points = scene.roads.points_m(road);
+        let runs_ahead = points[1].x > points[0].x;
+        assert_eq!(road.right.iter().any(|l| l.kind == LaneKind::Bus), runs_ahead);
+    }
+    assert_eq!(scene.roads.roads.iter().filter(bus).count(), 2);
+    wish(&mut scene, RoadWish::Without { kind: LaneKind::Walk }).expect("sound");
+    wish(&mut scene, RoadWish::OneWay {}).expect("sound");
+    let one_way = scene
+        .roads
+        .roads
+        .iter()
+        .filter(|r| r.driven(true) == 0 || r.driven(false) == 0);
+    assert_eq!(one_way.count(), 2);
+    wish(&mut scene, RoadWish::Widths { times: 100.0 }).expect("sound");
+    assert!(
+        scene
+            .roads
+            .roads
+            .iter()
+            .flat_map(|r| &r.right)
+            .all(|l| l.width_m <= 5.0)
+    );
+    wish(&mut scene, RoadWish::Roundabout {}).expect("sound");
+    let rings = |scene: &Scene| {
+        let round = |n: &&scene::RoadNode| matches!(n.kind, NodeKind::Roundabout { .. });
+        scene.roads.nodes.iter().filter(round).count()
+    };
+    assert_eq!(rings(&scene), 1);
+    wish(&mut scene, RoadWish::Junction {}).expect("sound");
+    assert_eq!(rings(&scene), 0);
+    for bad in [
+        RoadWish::Lanes { count: 0 },
+        RoadWish::Widths { times: f64::NAN },
+        RoadWish::Junction {},
+    ] {
+        assert!(wish(&mut scene, bad).is_err());
+    }
+    assert!(scene.roads.problem().is_none());
+    let far = RoadChange::Wish {
+        at_m: DVec2::splat(9000.0),
+        heading_deg: 0.0,
+        wish: RoadWish::OneWay {},
+    };
+    assert!(Edit::ChangeRoads { change: far }.apply(&mut scene).is_err());
+    // A bend made straight.
+    let mut scene = empty();
+    let bend = [[-40.0, 0.0], [0.0, 0.0], [30.0, 25.0]];
+    add(&mut scene, &bend, &STREET, &STREET);
+    let change = RoadChange::Wish {
+        at_m: DVec2::new(-20.0, 0.0),
+        heading_deg: 0.0,
+        wish: RoadWish::Straight {},
+    };
+    Edit::ChangeRoads { change }.apply(&mut scene).expect("sound");
+    assert!(scene.roads.roads.iter().all(|r| r.via_m.is_empty()));
+}

@@ -12,7 +12,7 @@ use super::{
     Role, Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, When, hint_of,
 };
 use crate::flood::FillBounds;
-use crate::lane_strip::LaneStrip;
+use crate::roads::Street;
 
 /// Its name.
 pub const ID: ToolId = ToolId::BRUSH;
@@ -172,8 +172,8 @@ impl Tool for Brush {
                 "Click points. Enter or a double click closes, Backspace takes one back, Esc drops all.",
             )),
             PaintShape::Street => {
-                let lanes = [0.0, LaneStrip::MAX_LANES as f64];
-                let lane_m = [*LaneStrip::LANE_M.start(), *LaneStrip::LANE_M.end()];
+                let lanes = [0.0, Street::MAX_LANES as f64];
+                let lane_m = [*Street::LANE_M.start(), *Street::LANE_M.end()];
                 out.extend([
                     Setting::number("forward", "Lanes ahead", street.forward as f64, lanes, 0),
                     Setting::number("backward", "Lanes back", street.backward as f64, lanes, 0),
@@ -203,7 +203,7 @@ impl Tool for Brush {
         let lanes = value
             .number()
             .map_or(0, |n| n.round() as usize)
-            .min(LaneStrip::MAX_LANES);
+            .min(Street::MAX_LANES);
         match id {
             "shape" => {
                 setting::take(&mut hand.shape, value, &PaintShape::ALL);
@@ -429,7 +429,11 @@ impl Brush {
     /// Paints the outline or lays the street that was drawn.
     fn close(&mut self, cx: &Context<'_>) -> Response {
         if cx.hand.shape == PaintShape::Street {
-            let edits = cx.hand.street.edits(&self.points_m, &cx.frame().layout);
+            let change = cx.hand.street.along(&self.points_m);
+            let edits: Vec<Edit> = change
+                .map(|change| Edit::ChangeRoads { change })
+                .into_iter()
+                .collect();
             // What was drawn stays until the layer is unlocked.
             if cx.hand.locked_layer(&cx.frame().layout, &edits).is_none() {
                 self.points_m.clear();

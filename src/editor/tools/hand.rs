@@ -7,8 +7,8 @@ use glam::{DVec2, DVec3};
 use crate::Edit;
 use crate::arrange::{Clipboard, LANE_REACH_M, Pivot, Row};
 use crate::flood::FillBounds;
-use crate::lane_strip::LaneStrip;
 use crate::lanes::nearest_lane;
+use crate::roads::Street;
 use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, Cell};
 use scene::{
@@ -17,6 +17,7 @@ use scene::{
 
 use super::ToolId;
 use super::beside::ThingState;
+use super::road::RoadHand;
 
 /// States of the scene whose selection is kept.
 const REMEMBERED_SELECTIONS: usize = 512;
@@ -193,7 +194,9 @@ pub struct Hand {
     /// What the brush draws.
     pub shape: PaintShape,
     /// What a street has.
-    pub street: LaneStrip,
+    pub street: Street,
+    /// What the road tool holds.
+    pub road: RoadHand,
     /// What bounds a fill.
     pub fill: FillBounds,
     /// What the voxel tool does.
@@ -249,7 +252,8 @@ impl Default for Hand {
             snap_ground: false,
             mirror_keeps_direction: true,
             shape: PaintShape::default(),
-            street: LaneStrip::default(),
+            street: Street::default(),
+            road: RoadHand::default(),
             fill: FillBounds::default(),
             voxel_mode: VoxelMode::default(),
             voxel_height: 1,
@@ -447,6 +451,7 @@ impl Hand {
                 let cells = shape.cells(layout.extent()).unwrap_or_default();
                 locked.find(|other| cells.iter().any(|[x, y]| layout.has(*other, *x, *y)))
             }
+            Edit::ChangeRoads { .. } => scene::roads::LAYERS.into_iter().find(|l| self.is_locked(*l)),
             Edit::Correct { edit } => self.locked_layer(layout, std::slice::from_ref(edit)),
             _ => None,
         })

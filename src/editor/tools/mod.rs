@@ -11,6 +11,7 @@ pub mod measure;
 mod rays;
 pub mod region;
 mod response;
+pub mod road;
 pub mod select;
 pub mod setting;
 #[cfg(test)]
@@ -42,6 +43,7 @@ static TOOLS: &[&ToolDef] = &[
     &voxel::DEF,
     &measure::DEF,
     &region::DEF,
+    &road::DEF,
     &beside::building::DEF,
     &beside::tree::DEF,
     &beside::line::DEF,

@@ -11,6 +11,7 @@ use place::holds::{in_role, overlap_m, role_of};
 use place::lanes::LaneMap;
 use scene::clip::Manoeuvre;
 use scene::graph::{LaneRole, ObjectState};
+use scene::roads::{RoadChange, RoadWish};
 use scene::{
     BevLayer, BevLayout, BoxId, BoxLabel, Class, Conditions, Edit, Polyline, PolylineKind, SceneBox, Shape,
 };
@@ -221,6 +222,17 @@ impl<'a> Stage<'a> {
             shape: Shape::Polygon { points_m },
             value: false,
         });
+    }
+
+    /// Asks the road that the ego vehicle stands on for something; ego frame.
+    pub(super) fn wish_of_road(&mut self, wish: RoadWish) {
+        self.done().scene = true;
+        let change = RoadChange::Wish {
+            at_m: DVec2::ZERO,
+            heading_deg: 0.0,
+            wish,
+        };
+        self.out.edits.push(Edit::ChangeRoads { change });
     }
 
     /// Sets light and air.

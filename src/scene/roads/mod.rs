@@ -264,6 +264,43 @@ pub struct RoadNode {
     pub kind: NodeKind,
 }
 
+/// What can be asked of a street as a whole: of all roads that go on in each other.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RoadWish {
+    /// So many lanes for cars in both directions together; as many on the right as on the left, or one more.
+    Lanes {
+        /// How many, 1 to 12.
+        count: u32,
+    },
+    /// Traffic in the direction in which one looks alone; its lanes stay as many as they are in all.
+    OneWay {},
+    /// Lanes for cars so many times as wide, 2.4 to 5 m.
+    Widths {
+        /// How many times.
+        times: f64,
+    },
+    /// A lane of a kind beside those for cars.
+    Beside {
+        /// Its kind.
+        kind: LaneKind,
+        /// True: on the right, as one looks; both sides if left out.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        right: Option<bool>,
+    },
+    /// No lane of a kind on either side.
+    Without {
+        /// Its kind.
+        kind: LaneKind,
+    },
+    /// No bends.
+    Straight {},
+    /// A roundabout at the next junction ahead, or on the street where there is none.
+    Roundabout {},
+    /// A plain junction in place of the next roundabout.
+    Junction {},
+}
+
 /// A change of the network. Numbers are those of the network as it is; of a scene without one, those of what is recognised.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -323,6 +360,17 @@ pub enum RoadChange {
     Remove {
         /// The road.
         id: RoadId,
+    },
+    /// What a person asks of the street at a place, whatever the numbers of its roads are.
+    Wish {
+        /// Where, m: the nearest road is meant.
+        #[schemars(with = "[f64; 2]")]
+        at_m: DVec2,
+        /// Which way one looks there, degrees counter-clockwise from x: right and ahead are meant so.
+        #[serde(default)]
+        heading_deg: f64,
+        /// What.
+        wish: RoadWish,
     },
     /// Draws a road anew: what was painted on it goes.
     Redraw {

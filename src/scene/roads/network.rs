@@ -6,7 +6,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{NodeId, NodeKind, Road, RoadId, RoadNode, curve};
+use super::{NodeId, NodeKind, Road, RoadChange, RoadId, RoadNode, curve};
 use crate::Pose;
 
 /// Two roads at a junction go on in each other if they bend less than this, rad.
@@ -134,6 +134,34 @@ impl RoadNetwork {
         out
     }
 
+    /// The roads that go on in each other through a road, along its line; true for those that run the other way.
+    pub fn street(&self, id: RoadId) -> Vec<(RoadId, bool)> {
+        let mut out = vec![(id, false)];
+        for forward in [false, true] {
+            out.reverse();
+            // From the outermost known road on through its far node.
+            while let Some((last, turned)) = out.last().copied() {
+                let end = usize::from(forward != turned);
+                let here = Arm { road: last, end };
+                let Some(node) = self.road(last).and_then(|r| self.node(r.ends[end])) else {
+                    break;
+                };
+                let pairs = self.pairs(node, &self.arms(node.id));
+                let next = pairs.into_iter().find_map(|[a, b]| match here {
+                    h if h == a => Some(b),
+                    h if h == b => Some(a),
+                    _ => None,
+                });
+                let Some(next) = next.filter(|n| out.iter().all(|o| o.0 != n.road)) else {
+                    break;
+                };
+                // It goes on along its line if it begins at its beginning.
+                out.push((next.road, (next.end == 1) == forward));
+            }
+        }
+        out
+    }
+
     /// The course of every road, from its beginning to its end, m. Where roads go on in each other there is no kink.
     pub fn lines(&self) -> BTreeMap<RoadId, Vec<DVec2>> {
         let mut beyond: BTreeMap<(RoadId, usize), DVec2> = BTreeMap::new();
@@ -215,5 +243,49 @@ impl RoadNetwork {
         }
         let bad_road = self.roads.iter().find_map(Road::problem);
         bad_road.or_else(|| self.nodes.iter().find_map(RoadNode::problem))
+    }
+}
+
+impl RoadChange {
+    /// The same change seen from another frame: `pose` is that of this frame in the other one, `turn_deg` its heading.
+    pub fn in_frame(self, pose: &Pose, turn_deg: f64) -> Self {
+        let there = |p: DVec2| pose.apply(p.extend(0.0)).truncate();
+        match self {
+            Self::Add {
+                points_m,
+                left,
+                right,
+                limit_kph,
+            } => Self::Add {
+                points_m: points_m.into_iter().map(there).collect(),
+                left,
+                right,
+                limit_kph,
+            },
+            Self::Put { mut road } => {
+                road.via_m.iter_mut().for_each(|p| *p = there(*p));
+                Self::Put { road }
+            }
+            Self::PutNode { node } => Self::PutNode {
+                node: RoadNode {
+                    at_m: there(node.at_m),
+                    ..node
+                },
+            },
+            Self::Split { id, at_m } => Self::Split {
+                id,
+                at_m: there(at_m),
+            },
+            Self::Wish {
+                at_m,
+                heading_deg,
+                wish,
+            } => Self::Wish {
+                at_m: there(at_m),
+                heading_deg: heading_deg + turn_deg,
+                wish,
+            },
+            other => other,
+        }
     }
 }

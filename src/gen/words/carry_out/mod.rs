@@ -6,6 +6,7 @@ mod crossing;
 mod destinations;
 mod motion;
 mod moves;
+mod road;
 #[cfg(test)]
 mod tests;
 
@@ -108,13 +109,14 @@ impl Stage<'_> {
             What::Lacks {
                 what: Feature::Crossing,
             } => self.erase_crossing(),
-            What::Has { .. } | What::Lacks { .. } => self.remark(Remark::NotInEdits { what: "the sidewalk" }),
-            What::Road { .. }
+            What::Has { .. }
+            | What::Lacks { .. }
+            | What::Road { .. }
             | What::Lanes { .. }
             | What::OneWay
             | What::Narrow
             | What::Wide
-            | What::OwnLane { .. } => self.remark(Remark::NotInEdits { what: "the road" }),
+            | What::OwnLane { .. } => self.change_road(what),
             What::Env { .. } => self.remark(Remark::NotInEdits {
                 what: "the surroundings",
             }),

@@ -1,0 +1,376 @@
+//! The road tool: chooses roads and the nodes where they meet, and reshapes them by their points and lanes. A scene whose
+//! roads were only painted shows what is recognised in them.
+
+mod marks;
+mod options;
+mod part;
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::Edit;
+use crate::roads::network_of;
+use scene::roads::{NodeId, RoadChange, curve};
+use scene::{Frame, Road, RoadId, RoadNetwork, Scene, SceneRev};
+
+use super::setting::{Setting, Value};
+use super::{
+    Act, Context, Cursor, Event, Group, HANDLE_REACH, Hand, Hint, Key, Mark, Pointer, Response, Shortcut,
+    Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
+};
+pub use part::{RoadHand, RoadPart};
+
+/// Its name.
+pub const ID: ToolId = ToolId("road_tool");
+
+/// Its row of the table.
+pub static DEF: ToolDef = ToolDef {
+    id: ID,
+    title: "Road",
+    key: "H: reshape roads, lanes, junctions",
+    icon: "road",
+    group: Group::Scene,
+    is_brush: false,
+    paints: false,
+    shortcuts: &[Shortcut {
+        id: ID.0,
+        title: "Road",
+        keys: "H",
+        when: When::Always,
+        set: |hand| hand.tool = ID,
+    }],
+    make: || Box::new(Roads::default()),
+};
+
+/// A node that is let go of so near to another one meets it, m.
+const MEET_M: f64 = 3.0;
+
+/// What is being dragged.
+#[derive(Clone, Debug)]
+enum Drag {
+    Node {
+        id: NodeId,
+        moved: bool,
+    },
+    Via {
+        road: Road,
+        index: usize,
+        moved: bool,
+    },
+    /// The line itself, from a place on it: it gets a point there.
+    Line {
+        road: Road,
+        index: usize,
+        from_m: DVec2,
+        moved: bool,
+    },
+}
+
+/// The road tool.
+#[derive(Debug, Default)]
+pub struct Roads {
+    /// The network last seen, with its state and that of its scene: recognising one takes a moment.
+    seen: RefCell<Option<(SceneRev, Arc<RoadNetwork>)>>,
+    drag: Option<Drag>,
+}
+
+impl Roads {
+    fn network(&self, scene: &Scene) -> Arc<RoadNetwork> {
+        let mut seen = self.seen.borrow_mut();
+        if let Some((rev, net)) = &*seen
+            && *rev == scene.content()
+        {
+            return net.clone();
+        }
+        let net = network_of(scene);
+        *seen = Some((scene.content(), net.clone()));
+        net
+    }
+
+    /// The network of the last scene that was looked at.
+    fn last(&self) -> Arc<RoadNetwork> {
+        let seen = self.seen.borrow();
+        seen.as_ref().map(|s| s.1.clone()).unwrap_or_default()
+    }
+
+    fn press(&mut self, cx: &mut Context<'_>, pointer: &Pointer) -> Response {
+        if !cx.from_above() {
+            return Response::none();
+        }
+        let Some(at_m) = cx.ground_m(pointer.at) else {
+            return Response::none();
+        };
+        let net = self.network(cx.settled);
+        let reach_m = HANDLE_REACH / cx.view.scale();
+        let found = part::at(&net, at_m, reach_m, cx.hand.road.chosen);
+        cx.hand.road.chosen = found;
+        cx.hand.road.at_m = at_m;
+        cx.hand.road.lane = None;
+        self.drag = match found {
+            None => return Response::none(),
+            Some(RoadPart::Node(id)) => Some(Drag::Node { id, moved: false }),
+            Some(RoadPart::Via(id, index)) => {
+                if pointer.held.alt {
+                    return self.drop_via(cx, &net, id, index);
+                }
+                let road = net.road(id).cloned();
+                road.map(|road| Drag::Via {
+                    road,
+                    index,
+                    moved: false,
+                })
+            }
+            Some(RoadPart::Road(id)) => {
+                if let Some(road) = net.road(id) {
+                    cx.hand.road.lane = part::lane_at(&net, road, at_m);
+                }
+                part::on_line(&net, id, at_m, reach_m).and_then(|index| {
+                    Some(Drag::Line {
+                        road: net.road(id)?.clone(),
+                        index,
+                        from_m: at_m,
+                        moved: false,
+                    })
+                })
+            }
+        };
+        let mut response = Response::hold();
+        // A scene gets its network as a step of its own, so that a drag need not recognise it at every move.
+        if self.drag.is_some() && cx.settled.roads.is_empty() {
+            response.acts.push(recognised());
+        }
+        response
+    }
+
+    fn drop_via(&mut self, cx: &mut Context<'_>, net: &RoadNetwork, id: RoadId, index: usize) -> Response {
+        let Some(mut road) = net.road(id).cloned().filter(|r| index < r.via_m.len()) else {
+            return Response::none();
+        };
+        road.via_m.remove(index);
+        cx.hand.road.chosen = Some(RoadPart::Road(id));
+        Response::act(apply("Remove road point", RoadChange::Put { road }))
+    }
+
+    fn drag(&mut self, cx: &Context<'_>, pointer: &Pointer) -> Response {
+        let Some(at_m) = cx.ground_m(pointer.at) else {
+            return Response::none();
+        };
+        let at_m = match pointer.held.ctrl {
+            true => (at_m / cx.hand.grid_m).round() * cx.hand.grid_m,
+            false => at_m,
+        };
+        let net = self.network(cx.settled);
+        match &mut self.drag {
+            Some(Drag::Node { id, moved }) => {
+                let Some(node) = net.node(*id) else {
+                    return Response::none();
+                };
+                *moved = true;
+                let node = scene::RoadNode { at_m, ..*node };
+                Response::act(preview(RoadChange::PutNode { node }))
+            }
+            Some(Drag::Via { road, index, moved }) => {
+                if let Some(p) = road.via_m.get_mut(*index) {
+                    *p = at_m;
+                    *moved = true;
+                }
+                Response::act(preview(RoadChange::Put { road: road.clone() }))
+            }
+            Some(Drag::Line {
+                road,
+                index,
+                from_m,
+                moved,
+            }) => {
+                if !*moved && from_m.distance(at_m) * cx.view.scale() < super::CLICK_SLACK {
+                    return Response::none();
+                }
+                if !*moved {
+                    road.via_m.insert((*index).min(road.via_m.len()), at_m);
+                    *moved = true;
+                } else if let Some(p) = road.via_m.get_mut(*index) {
+                    *p = at_m;
+                }
+                Response::act(preview(RoadChange::Put { road: road.clone() }))
+            }
+            None => Response::none(),
+        }
+    }
+
+    fn release(&mut self, cx: &mut Context<'_>, pointer: &Pointer) -> Response {
+        let at_m = cx.ground_m(pointer.at);
+        match self.drag.take() {
+            Some(Drag::Node { id, moved: true }) => {
+                let met = at_m.and_then(|at_m| self.meeting(&self.network(cx.settled), id, at_m));
+                match met {
+                    Some(edits) => Response::act(Act::Cancel).and(Act::Apply("Join roads".into(), edits)),
+                    None => Response::act(Act::Commit("Move road node".into())),
+                }
+            }
+            Some(Drag::Via { moved: true, .. }) => Response::act(Act::Commit("Move road point".into())),
+            Some(Drag::Line {
+                road,
+                index,
+                moved: true,
+                ..
+            }) => {
+                cx.hand.road.chosen = Some(RoadPart::Via(road.id, index));
+                Response::act(Act::Commit("Bend road".into()))
+            }
+            _ => Response::none(),
+        }
+    }
+
+    /// The edits by which a node that is let go of at a place meets what is there.
+    fn meeting(&self, net: &RoadNetwork, id: NodeId, at_m: DVec2) -> Option<Vec<Edit>> {
+        let others = net
+            .nodes
+            .iter()
+            .filter(|n| n.id != id && n.at_m.distance(at_m) < MEET_M);
+        if let Some(to) = others.min_by(|a, b| a.at_m.distance(at_m).total_cmp(&b.at_m.distance(at_m))) {
+            let change = RoadChange::Connect { node: id, to: to.id };
+            return Some(vec![Edit::ChangeRoads { change }]);
+        }
+        // A free end in the middle of another road makes a junction there.
+        let arms = net.arms(id);
+        let [arm] = arms.as_slice() else { return None };
+        let mut rest = net.clone();
+        rest.roads.retain(|r| r.id != arm.road);
+        let road = rest.road_at(at_m, 0.0)?;
+        let line = &net.lines()[&road];
+        let (along_m, _) = curve::project(line, at_m)?;
+        let at_m = curve::at(line, along_m).0;
+        let split = RoadChange::Split { id: road, at_m };
+        // The number that the new node will have.
+        let next = net.nodes.iter().map(|n| n.id.0 + 1).max()?;
+        let connect = RoadChange::Connect {
+            node: id,
+            to: NodeId(next),
+        };
+        Some(vec![
+            Edit::ChangeRoads { change: split },
+            Edit::ChangeRoads { change: connect },
+        ])
+    }
+}
+
+/// The step that gives a scene its network.
+fn recognised() -> Act {
+    apply("Recognise roads", RoadChange::Recognise {})
+}
+
+fn apply(label: &'static str, change: RoadChange) -> Act {
+    Act::Apply(label.into(), vec![Edit::ChangeRoads { change }])
+}
+
+fn preview(change: RoadChange) -> Act {
+    Act::Try(vec![Edit::ChangeRoads { change }])
+}
+
+impl Tool for Roads {
+    fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match event {
+            Event::Press(pointer) => self.press(cx, pointer),
+            Event::Drag(pointer) => self.drag(cx, pointer),
+            Event::Release(pointer) => self.release(cx, pointer),
+            Event::Cancel => {
+                self.drag = None;
+                Response::none()
+            }
+            Event::Key(Key::Escape, ..) => {
+                self.drag = None;
+                cx.hand.road.chosen = None;
+                Response::taken().and(Act::Cancel)
+            }
+            _ => Response::none(),
+        }
+    }
+
+    fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
+        if view == Some(ViewKind::Space) {
+            return hint_of(&["Roads are reshaped in the bird's-eye view"]);
+        }
+        match hand.road.chosen {
+            None => hint_of(&["Click chooses a road or a junction"]),
+            Some(RoadPart::Node(_)) => hint_of(&[
+                "Drag moves it",
+                "let go on another one to join",
+                "Del deletes a joint",
+            ]),
+            Some(_) => hint_of(&[
+                "Drag the line to bend it",
+                "points to move them",
+                "Alt+click removes a point",
+                "Ctrl snaps",
+                "Del deletes",
+            ]),
+        }
+    }
+
+    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
+        if !sight.from_above() {
+            return Cursor::Forbidden;
+        }
+        if self.drag.is_some() {
+            return Cursor::Move;
+        }
+        let Some(at_m) = sight.ground_m() else {
+            return Cursor::Default;
+        };
+        let net = self.network(sight.settled);
+        let reach_m = HANDLE_REACH / sight.view.scale();
+        match part::at(&net, at_m, reach_m, sight.hand.road.chosen) {
+            Some(RoadPart::Node(_) | RoadPart::Via(..)) => Cursor::Move,
+            Some(RoadPart::Road(_)) => Cursor::Pointing,
+            None => Cursor::Default,
+        }
+    }
+
+    fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
+        let net = self.network(sight.settled);
+        let shown = match self.drag.is_some() && !sight.scene.roads.is_empty() {
+            true => sight.scene.roads.clone(),
+            false => net,
+        };
+        match sight.from_above() {
+            true => marks::over_map(&shown, sight),
+            false => Vec::new(),
+        }
+    }
+
+    fn options(&self, hand: &Hand) -> Vec<Setting> {
+        options::of(&self.last(), &hand.road)
+    }
+
+    fn set(&mut self, hand: &mut Hand, _: &Frame, id: &str, value: Value) -> Vec<Act> {
+        options::set(&self.last(), &mut hand.road, id, value)
+    }
+
+    fn wants(&self) -> Wants {
+        Wants::Escape
+    }
+
+    fn put_down(&mut self) {
+        self.drag = None;
+    }
+}
+
+/// The edits by which what is chosen of the roads goes away; `None` if nothing is.
+pub fn deletion(scene: &Scene, part: RoadPart) -> Option<Vec<Edit>> {
+    let net = network_of(scene);
+    let change = match part {
+        RoadPart::Road(id) => RoadChange::Remove { id },
+        RoadPart::Node(node) => RoadChange::Join { node },
+        RoadPart::Via(id, index) => {
+            let mut road = net.road(id)?.clone();
+            (index < road.via_m.len()).then(|| road.via_m.remove(index))?;
+            RoadChange::Put { road }
+        }
+    };
+    Some(vec![Edit::ChangeRoads { change }])
+}
+
+#[cfg(test)]
+mod tests;

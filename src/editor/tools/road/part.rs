@@ -1,0 +1,74 @@
+//! Parts of roads that can be chosen, and which of them lies under the pointer.
+
+use glam::DVec2;
+
+use scene::roads::{NodeId, curve};
+use scene::{Road, RoadId, RoadNetwork};
+
+/// What is chosen of the roads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RoadPart {
+    /// A road.
+    Road(RoadId),
+    /// A point of a road between its ends.
+    Via(RoadId, usize),
+    /// Where roads end or meet.
+    Node(NodeId),
+}
+
+impl RoadPart {
+    /// The road, or the road of the point.
+    pub fn road(self) -> Option<RoadId> {
+        match self {
+            Self::Road(id) | Self::Via(id, _) => Some(id),
+            Self::Node(_) => None,
+        }
+    }
+}
+
+/// What the road tool holds.
+#[derive(Clone, Debug, Default)]
+pub struct RoadHand {
+    /// What is chosen.
+    pub chosen: Option<RoadPart>,
+    /// Where it was chosen, m: what is added to a road is added there.
+    pub at_m: DVec2,
+    /// The lane that was clicked: true right of the line, and its place from the line outward.
+    pub lane: Option<(bool, usize)>,
+}
+
+/// What lies at a point: points of the chosen road before nodes, nodes before roads.
+pub(super) fn at(net: &RoadNetwork, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>) -> Option<RoadPart> {
+    let near = |q: DVec2| q.distance(p_m) <= reach_m;
+    if let Some(road) = chosen.and_then(RoadPart::road).and_then(|id| net.road(id))
+        && let Some(i) = road.via_m.iter().position(|p| near(*p))
+    {
+        return Some(RoadPart::Via(road.id, i));
+    }
+    let nodes = net.nodes.iter().filter(|n| near(n.at_m));
+    let node = nodes.min_by(|a, b| a.at_m.distance(p_m).total_cmp(&b.at_m.distance(p_m)));
+    node.map(|n| RoadPart::Node(n.id))
+        .or_else(|| net.road_at(p_m, 0.0).map(RoadPart::Road))
+}
+
+/// Where among the points of a road's line a place on it lies; `None` beside the line.
+pub(super) fn on_line(net: &RoadNetwork, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
+    let (road, lines) = (net.road(id)?, net.lines());
+    let line = lines.get(&id)?;
+    let (along_m, left_m) = curve::project(line, p_m)?;
+    let before = |p: &&DVec2| curve::project(line, **p).is_some_and(|(along, _)| along < along_m);
+    (left_m.abs() <= reach_m).then(|| road.via_m.iter().filter(before).count())
+}
+
+/// The lane of a road at a point.
+pub(super) fn lane_at(net: &RoadNetwork, road: &Road, p_m: DVec2) -> Option<(bool, usize)> {
+    let lines = net.lines();
+    let (_, left_m) = curve::project(lines.get(&road.id)?, p_m)?;
+    let right = left_m < 0.0;
+    let mut edge = 0.0;
+    let lane = road.side(right).iter().position(|l| {
+        edge += l.width_m;
+        left_m.abs() <= edge
+    });
+    lane.map(|i| (right, i))
+}
