@@ -1,6 +1,7 @@
 //! What the sensors of the window show: which camera source of the table, in which colours, for which cameras; which
 //! LiDAR, in which colours.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use egui::ColorImage;
@@ -28,6 +29,21 @@ pub struct CamerasShown {
     pub hidden: u32,
     /// Camera that is enlarged.
     pub enlarged: Option<usize>,
+    /// What panes of single cameras show, by the index of the pane.
+    pub own: BTreeMap<u8, OwnCamera>,
+}
+
+/// What the pane of one camera shows where the user wants it otherwise than the strip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OwnCamera {
+    /// The camera, counted on from that of the pane.
+    pub on_by: u8,
+    /// What is shown; as in the strip if none.
+    pub view: Option<ViewId>,
+    /// What the colours mean is shown too.
+    pub legend: bool,
+    /// The pane was drawn in the last frame.
+    pub drawn: bool,
 }
 
 impl Default for CamerasShown {
@@ -38,6 +54,7 @@ impl Default for CamerasShown {
             plane_m: 12.0,
             hidden: 0,
             enlarged: None,
+            own: BTreeMap::new(),
         }
     }
 }
@@ -51,6 +68,31 @@ impl CamerasShown {
     /// The source of what the camera strip shows.
     pub fn shown_source(&self) -> &'static dyn CameraSource {
         cameras::source_of(self.view, self.source)
+    }
+
+    /// The camera and the view that the pane of that index shows, in a rig of so many cameras.
+    pub fn of_pane(&self, pane: u8, cameras: usize) -> (usize, ViewId) {
+        let own = self.own.get(&pane).copied().unwrap_or_default();
+        let camera = (usize::from(pane) + usize::from(own.on_by)) % cameras.max(1);
+        (camera, own.view.unwrap_or(self.view))
+    }
+
+    /// What panes show of other sources than the strip.
+    fn others(&self, cameras: usize) -> Others {
+        let mut out = Others::default();
+        for pane in self
+            .own
+            .iter()
+            .filter(|(_, own)| own.drawn)
+            .map(|(pane, _)| *pane)
+        {
+            let (camera, view) = self.of_pane(pane, cameras);
+            let source = cameras::source_of(view, self.source).id();
+            if source != self.shown_source().id() {
+                out.add(source, camera);
+            }
+        }
+        out
     }
 
     /// After a camera was taken away, those behind it move up.
@@ -102,20 +144,45 @@ pub struct Wanted {
     pub lidar: LidarModel,
     /// Echoes that a real sensor would rather lose are in the learned sweep.
     pub lost_echoes: bool,
+    /// What panes of single cameras show of other sources.
+    pub others: Others,
+}
+
+/// Most sources beside that of the strip.
+const MOST_OTHERS: usize = 4;
+
+/// Sources beside that of the strip, each with a bit per camera that is rendered of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Others([Option<(SourceId, u32)>; MOST_OTHERS]);
+
+impl Others {
+    fn add(&mut self, source: SourceId, camera: usize) {
+        let bit = 1u32.checked_shl(camera as u32).unwrap_or(0);
+        let free = |slot: &&mut Option<(SourceId, u32)>| slot.is_none_or(|(of, _)| of == source);
+        if let Some(slot) = self.0.iter_mut().find(free) {
+            *slot = Some((source, slot.map_or(0, |(_, mask)| mask) | bit));
+        }
+    }
+
+    /// Each source and its cameras.
+    pub fn iter(&self) -> impl Iterator<Item = (SourceId, u32)> {
+        self.0.iter().copied().flatten()
+    }
 }
 
 /// What decides the strip of pictures: source, cameras that are not rendered. One rendering holds all views of a source.
 pub type Pictures = (SourceId, u32);
 
 impl Wanted {
-    /// What the window shows.
-    pub fn of(cameras: &CamerasShown, lidar: &LidarShown) -> Self {
+    /// What the window shows, with a rig of so many cameras.
+    pub fn of(cameras: &CamerasShown, lidar: &LidarShown, count: usize) -> Self {
         Self {
             source: cameras.shown_source().id(),
             hidden: cameras.hidden,
             enlarged: cameras.enlarged,
             lidar: lidar.model,
             lost_echoes: lidar.colors == LidarColorMode::Drop,
+            others: cameras.others(count),
         }
     }
 
@@ -193,6 +260,30 @@ fn colors(picture: &CameraPicture, view: ViewId, plane_m: f64) -> ColorImage {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn panes_ask_for_other_sources_than_the_strip() {
+        use sensors::cameras::pictures;
+        let mut shown = CamerasShown::default();
+        let own = |view, on_by, drawn| OwnCamera {
+            view,
+            on_by,
+            drawn,
+            legend: false,
+        };
+        shown.own.insert(0, own(Some(pictures::VIEW.id), 0, true));
+        shown.own.insert(4, own(Some(pictures::VIEW.id), 3, true));
+        shown.own.insert(2, own(Some(ViewId::DEPTH), 0, true));
+        shown.own.insert(3, own(Some(pictures::VIEW.id), 0, false));
+        assert_eq!(shown.of_pane(4, 6), (1, pictures::VIEW.id));
+        let wanted = Wanted::of(&shown, &LidarShown::default(), 6);
+        // Depth comes with the classes of the strip; a pane that is not drawn asks for nothing.
+        let others: Vec<_> = wanted.others.iter().collect();
+        assert_eq!(
+            others,
+            [(cameras::source_of(pictures::VIEW.id, shown.source).id(), 0b11)]
+        );
+    }
 
     #[test]
     fn hidden_cameras_stay_hidden_when_another_goes() {

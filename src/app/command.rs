@@ -58,6 +58,8 @@ pub enum FileCommand {
     ExportScreenshot,
     /// Saves the 3D view beside the scene.
     QuickShot,
+    /// Saves what a camera shows in a view beside the scene.
+    SavePicture(usize, ViewId),
     /// Asks for a file and writes the clip there as moving pictures.
     SaveClip,
     /// Asks for a model and puts it into the scene.

@@ -13,7 +13,7 @@ use job::product::{Ctx, Product, Worker};
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
 use sensors::appearance::Quality;
-use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions};
+use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions, SourceId};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
@@ -35,6 +35,8 @@ struct Request {
 enum News {
     Lidar(SceneRev, LidarSweep, Option<Sampled>),
     Cameras(SceneRev, Wanted, Vec<CameraView>),
+    /// Cameras of another source.
+    Other(SceneRev, SourceId, Vec<CameraView>),
     /// All of a scene was sensed, or a newer one waits.
     Ended,
     Failed(Panicked),
@@ -47,6 +49,7 @@ pub struct Sensing {
     lidar: Option<(SceneRev, Arc<LidarSweep>)>,
     sampled: Option<Sampled>,
     cameras: Option<(SceneRev, Wanted, Arc<Vec<CameraView>>)>,
+    others: Vec<(SceneRev, SourceId, Arc<Vec<CameraView>>)>,
     version: u64,
     problem: Option<String>,
 }
@@ -66,6 +69,7 @@ impl Sensing {
             lidar: None,
             sampled: None,
             cameras: None,
+            others: Vec::new(),
             version: 0,
             problem: None,
         })
@@ -104,6 +108,11 @@ impl Sensing {
                     self.cameras = Some((rev, wanted, Arc::new(views)));
                     self.version += 1;
                 }
+                News::Other(rev, source, views) => {
+                    self.others.retain(|(_, of, _)| *of != source);
+                    self.others.push((rev, source, Arc::new(views)));
+                    self.version += 1;
+                }
                 News::Ended => {}
                 News::Failed(panic) => self.problem = Some(panic.to_string()),
             }
@@ -128,6 +137,29 @@ impl Sensing {
     /// The newest pictures of the cameras that are rendered, in the rig's order.
     pub fn cameras(&self) -> Option<&Arc<Vec<CameraView>>> {
         self.cameras.as_ref().map(|(_, _, views)| views)
+    }
+
+    /// The newest pictures of a source, whether the strip shows it or a pane does.
+    pub fn pictures_of(&self, source: SourceId) -> Option<&Arc<Vec<CameraView>>> {
+        let of_strip = self
+            .cameras
+            .as_ref()
+            .filter(|(_, wanted, _)| wanted.source == source);
+        let other = || {
+            self.others
+                .iter()
+                .find(|(_, of, _)| *of == source)
+                .map(|(.., views)| views)
+        };
+        of_strip.map(|(.., views)| views).or_else(other)
+    }
+
+    /// True if the pictures of a source are not those of this state.
+    pub fn is_stale(&self, source: SourceId, rev: SceneRev) -> bool {
+        match self.asked {
+            Some((_, wanted, _)) if wanted.source == source => self.cameras_stale(rev),
+            _ => !self.others.iter().any(|(at, of, _)| *of == source && *at == rev),
+        }
     }
 
     /// True if the pictures are not those of this state, or not of the kind that was asked for last.
@@ -201,6 +233,8 @@ struct Kept {
     net: Option<Arc<LidarNet>>,
     learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
+    /// What is rendered of other sources: state, source, cameras.
+    others: Vec<(SceneRev, SourceId, u32)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
     /// The graphics card, once views that it can draw were asked for.
     graphics: Option<Option<Graphics>>,
@@ -341,7 +375,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
                 ctx.tell(News::Cameras(scene.rev, *wanted, views));
             }
             if *preview {
-                return;
+                return other_sources(request, kept, ctx);
             }
             let Some(views) = render(false) else { return };
             kept.views = Some((key, views.clone()));
@@ -356,6 +390,68 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     {
         *large = view;
         ctx.tell(News::Cameras(scene.rev, *wanted, views));
+    }
+    other_sources(request, kept, ctx);
+}
+
+/// What panes of single cameras show of other sources than the strip.
+fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
+    let Request {
+        scene,
+        wanted,
+        preview,
+    } = request;
+    for (id, mask) in wanted.others.iter() {
+        let known = (scene.rev, id, mask);
+        if kept.others.contains(&known) {
+            continue;
+        }
+        let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::Shapes);
+        let ready = Ready::new(source, &camera_input(scene, Detail::Live));
+        let graphics = &mut kept.graphics;
+        let on_card = ready.upload_to(|| {
+            let card = graphics.get_or_insert_with(Graphics::find).as_mut();
+            card.map(|card| card as &mut dyn Card)
+        });
+        let mut render = |quick: bool| -> Option<Vec<CameraView>> {
+            let options = RenderOptions {
+                size: if quick { PREVIEW_SIZE } else { VIEW_SIZE },
+                quality: if quick { Quality::Preview } else { Quality::Full },
+            };
+            let chosen = scene
+                .rig
+                .cameras
+                .iter()
+                .enumerate()
+                .take(32)
+                .filter(|(i, _)| mask >> i & 1 == 1);
+            let mut views = Vec::new();
+            for (i, camera) in chosen {
+                if !quick && ctx.should_stop() {
+                    return None;
+                }
+                let card = graphics.as_mut().and_then(Option::as_mut).filter(|_| on_card);
+                let context = RenderContext {
+                    card: card.map(|card| card as &mut dyn Card),
+                    ..RenderContext::processor()
+                };
+                let picture = ready.render(camera, &options, context).ok()?;
+                views.push(CameraView::new(i, picture).colored(source));
+            }
+            Some(views)
+        };
+        if (*preview || source.previews())
+            && let Some(views) = render(true)
+        {
+            ctx.tell(News::Other(scene.rev, id, views));
+        }
+        if *preview {
+            continue;
+        }
+        let Some(views) = render(false) else { return };
+        ctx.tell(News::Other(scene.rev, id, views));
+        kept.others.retain(|(_, of, _)| *of != id);
+        kept.others.push(known);
     }
 }
 

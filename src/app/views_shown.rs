@@ -8,11 +8,11 @@ use super::finding_marks::FindingMarks;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Underlay {
     /// Layers only.
-    #[default]
     Layout,
     /// The occupancy from above, layers off.
     Occupancy,
     /// Both, the layers translucent.
+    #[default]
     Both,
 }
 
@@ -38,7 +38,7 @@ pub struct ViewsShown {
 impl Default for ViewsShown {
     fn default() -> Self {
         Self {
-            underlay: Underlay::Layout,
+            underlay: Underlay::Both,
             boxes: true,
             lines: true,
             grid: true,

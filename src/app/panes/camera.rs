@@ -1,30 +1,50 @@
-//! One camera of the rig, as large as its pane.
+//! One camera of the rig, as large as its pane, with what it shows chosen by itself.
 
 use egui::Ui;
 
 use scene::Scene;
 
-use super::camera_strip::camera_label;
-use super::cameras::compared;
+use super::camera_strip::{CameraStrip, camera_label};
+use super::cameras::{Strips, compared};
+use super::conditions::conditions;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
-use crate::command::Command;
-use widgets::icons::Icon;
+use crate::command::{Command, FileCommand};
+use sensors::cameras;
+use widgets::icons::{self, Icon};
 
-/// The camera of this index.
-pub struct Camera(pub u8);
+/// Narrower panes leave out all but what is shown, points.
+const ROOM_FOR_CONDITIONS: f32 = 420.0;
+
+/// The camera of this index, unless another was taken in its pane.
+pub struct Camera {
+    index: u8,
+    strip: CameraStrip,
+    before: CameraStrip,
+}
+
+impl Camera {
+    /// The pane of that index.
+    pub fn new(index: u8) -> Self {
+        Self {
+            index,
+            strip: CameraStrip::default(),
+            before: CameraStrip::default(),
+        }
+    }
+}
 
 impl Pane for Camera {
     fn id(&self) -> PaneId {
-        PaneId::of_camera(self.0)
+        PaneId::of_camera(self.index)
     }
 
     fn title(&self) -> String {
-        format!("Camera {}", usize::from(self.0) + 1)
+        format!("Camera {}", usize::from(self.index) + 1)
     }
 
     fn title_in(&self, scene: &Scene) -> String {
-        match scene.rig.cameras.get(usize::from(self.0)) {
+        match scene.rig.cameras.get(usize::from(self.index)) {
             Some(camera) => format!("Camera: {}", camera_label(&camera.name)),
             None => self.title(),
         }
@@ -38,22 +58,107 @@ impl Pane for Camera {
         true
     }
 
-    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
-        let views = sensors::cameras::views();
-        let shown = views.iter().find(|view| view.id == cx.state.cameras.view);
-        egui::ComboBox::from_id_salt("camera mode")
-            .selected_text(shown.map_or("", |view| view.title))
-            .width(96.0)
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let rig = &cx.scene.rig;
+        let count = rig.cameras.len();
+        let (camera, view) = cx.state.cameras.of_pane(self.index, count);
+        let views = cameras::views();
+        let strip = cx.state.cameras.view;
+        let own = cx.state.cameras.own.entry(self.index).or_default();
+        let title = |id| views.iter().find(|v| v.id == id).map_or("", |v| v.title);
+        let selected = match own.view {
+            Some(id) => title(id).to_owned(),
+            None => format!("{} (all)", title(strip)),
+        };
+        egui::ComboBox::from_id_salt(("camera mode", self.index))
+            .selected_text(selected)
+            .width(112.0)
             .show_ui(ui, |ui| {
+                ui.selectable_value(&mut own.view, None, "As in the strip")
+                    .on_hover_text("What all cameras show");
                 for view in &views {
-                    ui.selectable_value(&mut cx.state.cameras.view, view.id, view.title);
+                    ui.selectable_value(&mut own.view, Some(view.id), view.title)
+                        .on_hover_text(view.hint);
                 }
             })
             .response
             .accessible_name("Camera picture");
+        // The camera of the pane may be another than that of its name.
+        let name = rig
+            .cameras
+            .get(camera)
+            .map_or(String::new(), |c| camera_label(&c.name));
+        if icons::button(ui, Icon::StepBack, "Previous camera", &name, false, count > 1).clicked() {
+            own.on_by = step(own.on_by, count, false);
+        }
+        if icons::button(ui, Icon::StepForward, "Next camera", &name, false, count > 1).clicked() {
+            own.on_by = step(own.on_by, count, true);
+        }
+        let legend = icons::button(
+            ui,
+            Icon::List,
+            "Legend",
+            "what the colours mean",
+            own.legend,
+            true,
+        );
+        if legend.clicked() {
+            own.legend = !own.legend;
+        }
+        if icons::button(
+            ui,
+            Icon::Camera,
+            "Save picture",
+            "as it is shown, beside the scene",
+            false,
+            count > 0,
+        )
+        .clicked()
+        {
+            commands.push(Command::File(FileCommand::SavePicture(camera, view)));
+        }
+        let source = cameras::source_of(view, cx.state.cameras.source);
+        if source.needs().conditions && ui.available_width() > ROOM_FOR_CONDITIONS {
+            conditions(ui, cx.scene, commands);
+        }
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        compared(ui, cx, Some(usize::from(self.0)), commands);
+        let count = cx.scene.rig.cameras.len();
+        let (camera, view) = cx.state.cameras.of_pane(self.index, count);
+        let own = cx.state.cameras.own.entry(self.index).or_default();
+        own.drawn = true;
+        self.strip.set_legend(own.legend.then_some(camera));
+        // A camera that the vehicle has not is said to be missing.
+        let camera = if usize::from(self.index) < count {
+            camera
+        } else {
+            self.index.into()
+        };
+        let strips = Strips {
+            now: &mut self.strip,
+            before: &mut self.before,
+            camera,
+            view,
+        };
+        compared(ui, cx, Some(strips), commands);
+    }
+}
+
+/// One camera on, or back.
+fn step(on_by: u8, count: usize, forward: bool) -> u8 {
+    let count = count.clamp(1, 255) as u8;
+    let by = if forward { 1 } else { count - 1 };
+    ((u16::from(on_by) + u16::from(by)) % u16::from(count)) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn next_and_previous_go_around() {
+        assert_eq!((step(5, 6, true), step(0, 6, false), step(0, 1, true)), (0, 5, 0));
+        assert_eq!((step(0, 0, true), step(250, 300, true)), (0, 251));
     }
 }

@@ -10,7 +10,9 @@ use egui::{
 use glam::DVec3;
 
 use super::box_outlines;
+use super::camera_difference::Differing;
 use super::camera_header::header;
+use super::camera_legend;
 use crate::camera_views::{CameraView, CamerasShown, march};
 use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
@@ -31,7 +33,11 @@ pub struct CameraStrip {
     stale_since_s: Option<f64>,
     /// Pictures of another state, shown up to this part of the width of each.
     before: Option<(Vec<Option<TextureHandle>>, f32)>,
+    /// Shown in place of the pictures: where they differ from those of another state.
+    differing: Option<Differing>,
+    differs: bool,
     looks_stale: bool,
+    legend_of: Option<usize>,
 }
 
 /// What the strip shows.
@@ -44,16 +50,42 @@ pub struct CamerasInput<'a> {
     pub stale: bool,
     /// Returns of the newest sweep.
     pub lidar_points: Option<usize>,
+    /// What they show.
+    pub view: ViewId,
+    /// Depth of the plane that is shown, m.
+    pub plane_m: f64,
 }
 
 impl<'a> CamerasInput<'a> {
     /// Of a scene and what its sensors returned; `rev` is the state that they should show.
-    pub(crate) fn of(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing) -> Self {
+    pub(crate) fn of(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing, shown: &CamerasShown) -> Self {
         Self {
             scene,
             views: sensing.cameras(),
             stale: sensing.cameras_stale(rev),
             lidar_points: sensing.lidar().map(|l| l.points.len()),
+            view: shown.view,
+            plane_m: shown.plane_m,
+        }
+    }
+
+    /// The same of another view than the strip's.
+    pub(crate) fn of_view(
+        self,
+        rev: SceneRev,
+        sensing: &'a Sensing,
+        shown: &CamerasShown,
+        view: ViewId,
+    ) -> Self {
+        if view == self.view {
+            return self;
+        }
+        let source = sensors::cameras::source_of(view, shown.source).id();
+        Self {
+            views: sensing.pictures_of(source),
+            stale: sensing.is_stale(source, rev),
+            view,
+            ..self
         }
     }
 }
@@ -67,7 +99,7 @@ impl CameraStrip {
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
-        self.refresh(ui, input.views, &state.cameras);
+        self.refresh(ui, input);
         self.note_stale(ui, input.stale);
         let cameras = &input.scene.rig.cameras;
         let shown: Vec<usize> = (0..cameras.len())
@@ -97,14 +129,21 @@ impl CameraStrip {
     }
 
     /// The pictures as textures, brought up to date.
-    pub fn textures(
-        &mut self,
-        ui: &Ui,
-        input: &CamerasInput<'_>,
-        shown: &CamerasShown,
-    ) -> Vec<Option<TextureHandle>> {
-        self.refresh(ui, input.views, shown);
+    pub fn textures(&mut self, ui: &Ui, input: &CamerasInput<'_>) -> Vec<Option<TextureHandle>> {
+        self.refresh(ui, input);
         self.textures.clone()
+    }
+
+    /// Shows where the pictures differ from those of another state; none: the pictures.
+    pub fn differ(&mut self, ui: &Ui, input: &CamerasInput<'_>, other: Option<&CamerasInput<'_>>) {
+        self.differs = match (input.views, other.and_then(|o| o.views)) {
+            (Some(now), Some(before)) => {
+                let differing = self.differing.get_or_insert_default();
+                differing.refresh(ui, now, before, (input.view, input.plane_m));
+                true
+            }
+            _ => false,
+        };
     }
 
     /// Shows these pictures of another state on the left of each, up to a part of its width; none: not at all.
@@ -132,7 +171,7 @@ impl CameraStrip {
         state: &mut UiState,
         commands: &mut Vec<Command>,
     ) {
-        self.refresh(ui, input.views, &state.cameras);
+        self.refresh(ui, input);
         self.note_stale(ui, input.stale);
         let area = ui.available_rect_before_wrap();
         let Some(camera) = input.scene.rig.cameras.get(index) else {
@@ -144,8 +183,23 @@ impl CameraStrip {
         let width = area.width().min(area.height() * aspect).max(40.0);
         let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
         if let Some(part) = self.picture(ui, rect, index, input.scene, state, commands) {
-            state.pointed.readout = self.pixel_text(input.scene, camera, part);
+            let text = self.pixel_text(input.scene, camera, part);
+            // The name of the camera stands in the title.
+            let short = text.split_once("  ·  ").map_or(&*text, |(_, rest)| rest);
+            beside_pointer(ui, rect, rect.min + part * rect.size(), short);
+            state.pointed.readout = text;
         }
+        if self.legend_of == Some(index) {
+            let found = input.views.and_then(|v| v.iter().find(|v| v.camera == index));
+            if let Some(view) = found {
+                camera_legend::draw(ui, rect, &view.picture, input.view);
+            }
+        }
+    }
+
+    /// The camera beside whose picture stands what the colours mean.
+    pub fn set_legend(&mut self, camera: Option<usize>) {
+        self.legend_of = camera;
     }
 
     /// Pictures that are renewed at once should not flicker: only what stays stale looks so.
@@ -164,9 +218,9 @@ impl CameraStrip {
         }
     }
 
-    fn refresh(&mut self, ui: &Ui, views: Option<&Arc<Vec<CameraView>>>, show: &CamerasShown) {
-        let Some(views) = views else { return };
-        let (view, plane_m) = (show.view, show.plane_m);
+    fn refresh(&mut self, ui: &Ui, input: &CamerasInput<'_>) {
+        let Some(views) = input.views else { return };
+        let (view, plane_m) = (input.view, input.plane_m);
         if self
             .made_from
             .as_ref()
@@ -288,7 +342,9 @@ impl CameraStrip {
     }
 
     fn texture(&self, camera: usize) -> Option<&TextureHandle> {
-        self.textures.get(camera).and_then(Option::as_ref)
+        let differing = self.differing.as_ref().filter(|_| self.differs);
+        let differing = differing.and_then(|d| d.texture(camera));
+        differing.or_else(|| self.textures.get(camera).and_then(Option::as_ref))
     }
 
     /// One camera large, over the views; its pixels can be read.
@@ -360,6 +416,27 @@ fn ray_of(camera: &Camera, part: egui::Vec2) -> DVec3 {
 
 fn unit() -> Rect {
     Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0))
+}
+
+/// Text beside the pointer, within a picture.
+fn beside_pointer(ui: &Ui, within: Rect, at: egui::Pos2, text: &str) {
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout_no_wrap(text.to_owned(), font, theme::ON_CANVAS);
+    let size = galley.size() + vec2(10.0, 4.0);
+    let left = (at.x + 14.0).min(within.right() - size.x).max(within.left());
+    let below = at.y + 14.0;
+    let top = if below + size.y > within.bottom() {
+        at.y - 8.0 - size.y
+    } else {
+        below
+    };
+    let rect = Rect::from_min_size(pos2(left, top), size);
+    ui.painter()
+        .rect_filled(rect, 3.0, Color32::from_black_alpha(190));
+    ui.painter()
+        .galley(rect.min + vec2(5.0, 2.0), galley, theme::ON_CANVAS);
 }
 
 fn badge(ui: &Ui, painter: &egui::Painter, left_bottom: egui::Pos2, text: &str, color: Color32) {

@@ -9,6 +9,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
+use sensors::cameras::ViewId;
 use widgets::icons::Icon;
 
 /// All cameras.
@@ -32,7 +33,7 @@ impl Pane for Cameras {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        let cameras = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing);
+        let cameras = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing, &cx.state.cameras);
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
             cx.strip.controls(ui, &cameras, &mut cx.state.cameras, commands);
         });
@@ -43,20 +44,45 @@ impl Pane for Cameras {
     }
 }
 
-/// Draws one camera, or all of them: the present state, the one before it, or both.
+/// Pictures of one camera's pane.
+pub(super) struct Strips<'a> {
+    /// Of the present state.
+    pub now: &'a mut CameraStrip,
+    /// Of the state before.
+    pub before: &'a mut CameraStrip,
+    /// Which camera.
+    pub camera: usize,
+    /// What it shows.
+    pub view: ViewId,
+}
+
+/// Draws one camera, or all of them: the present state, the one before it, both, or where they differ.
 pub(super) fn compared(
     ui: &mut Ui,
     cx: &mut PaneContext<'_>,
-    camera: Option<usize>,
+    one: Option<Strips<'_>>,
     commands: &mut Vec<Command>,
 ) {
     let area = ui.available_rect_before_wrap().shrink2(egui::vec2(8.0, 2.0));
     let mode = cx.compare.mode(&cx.state.compare);
-    let now = CamerasInput::of(cx.scene, cx.document.scene().rev, cx.sensing);
+    let shows_before = cx.compare.shows_before(&cx.state.compare, cx.scene);
+    let rev = cx.document.scene().rev;
+    let cameras = cx.state.cameras.clone();
+    let (view, camera) = one
+        .as_ref()
+        .map_or((cameras.view, None), |o| (o.view, Some(o.camera)));
+    let of = |scene, rev, sensing| {
+        CamerasInput::of(scene, rev, sensing, &cameras).of_view(rev, sensing, &cameras, view)
+    };
+    let now = of(cx.scene, rev, cx.sensing);
     let before = cx.compare.before.clone();
     let other = match (&before, &cx.compare.sensing) {
-        (Some(before), Some(sensing)) => Some(CamerasInput::of(before, before.rev, sensing)),
+        (Some(before), Some(sensing)) => Some(of(before, before.rev, sensing)),
         _ => None,
+    };
+    let (strip, earlier) = match one {
+        Some(one) => (one.now, one.before),
+        None => (&mut *cx.strip, &mut cx.compare.strip),
     };
     let mut draw =
         |ui: &mut Ui, rect: Rect, strip: &mut CameraStrip, input: &CamerasInput<'_>, state: &mut UiState| {
@@ -65,27 +91,29 @@ pub(super) fn compared(
                 None => strip.show(ui, input, state, commands),
             });
         };
+    let differs = mode == CompareMode::Difference;
+    strip.differ(ui, &now, other.as_ref().filter(|_| differs));
+    if mode != CompareMode::Wipe {
+        strip.wipe(None);
+    }
     match (mode, other) {
-        (_, Some(other)) if cx.compare.shows_before(&cx.state.compare, cx.scene) => {
-            draw(ui, area, &mut cx.compare.strip, &other, cx.state);
-        }
+        (_, Some(other)) if shows_before => draw(ui, area, earlier, &other, cx.state),
         (CompareMode::Side, Some(other)) => {
             let (first, second) = match camera {
                 Some(_) => halves(area),
                 None => upper_and_lower(area),
             };
-            cx.strip.wipe(None);
-            draw(ui, first, &mut cx.compare.strip, &other, cx.state);
-            draw(ui, second, cx.strip, &now, cx.state);
+            draw(ui, first, earlier, &other, cx.state);
+            draw(ui, second, strip, &now, cx.state);
         }
         (CompareMode::Wipe, Some(other)) => {
-            let textures = cx.compare.strip.textures(ui, &other, &cx.state.cameras);
-            cx.strip.wipe(Some((textures, cx.state.compare.wipe_at)));
-            draw(ui, area, cx.strip, &now, cx.state);
+            let textures = earlier.textures(ui, &other);
+            strip.wipe(Some((textures, cx.state.compare.wipe_at)));
+            draw(ui, area, strip, &now, cx.state);
         }
         _ => {
-            cx.strip.wipe(None);
-            draw(ui, area, cx.strip, &now, cx.state);
+            strip.wipe(None);
+            draw(ui, area, strip, &now, cx.state);
         }
     }
 }

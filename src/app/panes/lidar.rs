@@ -7,9 +7,10 @@ use egui::{Color32, ColorImage, Rect, Sense, TextureHandle, TextureOptions, Ui, 
 use glam::DVec3;
 
 use super::areas::{clipped, in_rect, left_part, upper_and_lower};
-use super::compare::{CompareMode, wipe_line};
+use super::compare::{CompareMode, DIFFERENCE_COLORS, legend, wipe_line};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
+use crate::camera_views::LidarModel;
 use crate::command::Command;
 use scene::{LidarSweep, Scene};
 use viewport::{LidarColorMode, lidar_colors};
@@ -23,6 +24,7 @@ const COLUMNS: usize = 1080;
 #[derive(Default)]
 pub struct Lidar {
     sweep: SweepPicture,
+    difference: SweepDifference,
 }
 
 impl Pane for Lidar {
@@ -43,6 +45,18 @@ impl Pane for Lidar {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+        let models = [(LidarModel::Exact, "Exact"), (LidarModel::Learned, "Learned")];
+        let model = models.iter().find(|(m, _)| *m == cx.state.lidar.model);
+        egui::ComboBox::from_id_salt("sweep model")
+            .selected_text(model.map_or("Exact", |(_, name)| name))
+            .width(84.0)
+            .show_ui(ui, |ui| {
+                for (model, name) in models {
+                    ui.selectable_value(&mut cx.state.lidar.model, model, name);
+                }
+            })
+            .response
+            .accessible_name("LiDAR model");
         let colors = [
             (LidarColorMode::Range, "Range"),
             (LidarColorMode::Class, "Class"),
@@ -87,6 +101,11 @@ impl Pane for Lidar {
                     .sweep
                     .show(ui, &before, other.as_ref(), colors, readout);
             }),
+            CompareMode::Difference => {
+                if let (Some(now), Some(other)) = (cx.sensing.lidar(), &other) {
+                    in_rect(ui, area, |ui| self.difference.show(ui, scene, now, other));
+                }
+            }
             CompareMode::Wipe => {
                 let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
@@ -98,7 +117,7 @@ impl Pane for Lidar {
                 });
                 wipe_line(ui, area, &mut cx.state.compare.wipe_at);
             }
-            _ => {}
+            CompareMode::Off => {}
         }
     }
 }
@@ -163,6 +182,62 @@ impl SweepPicture {
             };
         }
     }
+}
+
+/// Where two sweeps differ, and what the picture of it was made from.
+#[derive(Default)]
+struct SweepDifference {
+    texture: Option<(Arc<LidarSweep>, Arc<LidarSweep>, TextureHandle)>,
+}
+
+impl SweepDifference {
+    fn show(&mut self, ui: &mut Ui, scene: &Scene, now: &Arc<LidarSweep>, before: &Arc<LidarSweep>) {
+        let Some(lidar) = scene.rig.lidars.first() else {
+            return;
+        };
+        let rings = lidar.elevations_deg.len().max(1);
+        let known =
+            |(a, b, _): &(Arc<LidarSweep>, Arc<LidarSweep>, _)| Arc::ptr_eq(a, now) && Arc::ptr_eq(b, before);
+        if !self.texture.as_ref().is_some_and(known) {
+            let image = difference(now, before, rings, DVec3::from_array(lidar.translation_m));
+            let handle = ui
+                .ctx()
+                .load_texture("sweep difference", image, TextureOptions::NEAREST);
+            self.texture = Some((now.clone(), before.clone(), handle));
+        }
+        let Some((.., handle)) = &self.texture else { return };
+        let rect = ui.available_rect_before_wrap();
+        let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        ui.painter().image(handle.id(), rect, unit, Color32::WHITE);
+        let names = ["nearer or new", "farther or gone"];
+        let colors = DIFFERENCE_COLORS.map(|[r, g, b]| Color32::from_rgb(r, g, b));
+        let entries: Vec<_> = colors.into_iter().zip(names.map(str::to_owned)).collect();
+        legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
+    }
+}
+
+/// Returns that are alike are grey; green are those nearer than before, or where nothing returned; red those farther, or gone.
+fn difference(now: &LidarSweep, before: &LidarSweep, rings: usize, mount: DVec3) -> ColorImage {
+    const ALIKE_M: f32 = 0.1;
+    let ranges = |sweep: &LidarSweep| {
+        let mut out = vec![f32::INFINITY; rings * COLUMNS];
+        for point in sweep.points.iter().filter(|p| usize::from(p.ring) < rings) {
+            let at = usize::from(point.ring) * COLUMNS + column(azimuth_deg(point.position_in_ego, mount));
+            out[at] = out[at].min(point.range_m);
+        }
+        out
+    };
+    let mut image = ColorImage::filled([COLUMNS, rings], theme::well());
+    for (i, (a, b)) in ranges(now).into_iter().zip(ranges(before)).enumerate() {
+        let [r, g, b] = match (a.is_finite(), b.is_finite()) {
+            (false, false) => continue,
+            (true, true) if (a - b).abs() <= ALIKE_M => [70, 74, 80],
+            _ if a < b => DIFFERENCE_COLORS[0],
+            _ => DIFFERENCE_COLORS[1],
+        };
+        image[(i % COLUMNS, rings - 1 - i / COLUMNS)] = Color32::from_rgb(r, g, b);
+    }
+    image
 }
 
 /// Azimuth of a return as seen from the sensor, degrees, counter-clockwise from forward.

@@ -7,7 +7,9 @@ mod box_menu;
 pub mod box_outlines;
 pub mod box_views;
 mod camera;
+mod camera_difference;
 mod camera_header;
+mod camera_legend;
 pub mod camera_strip;
 mod cameras;
 pub mod checks;
@@ -61,7 +63,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
         Box::new(statistics::Statistics::default()),
         Box::new(timeline::Timeline::default()),
     ];
-    table.extend((0..CAMERAS).map(|i| Box::new(camera::Camera(i)) as Box<dyn Pane>));
+    table.extend((0..CAMERAS).map(|i| Box::new(camera::Camera::new(i)) as Box<dyn Pane>));
     table
 }
 

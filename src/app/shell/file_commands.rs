@@ -15,6 +15,7 @@ use crate::command::FileCommand;
 use crate::open;
 use editor::Edit;
 use scene::{Kept, Scene};
+use sensors::cameras::{self, ViewId};
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -47,6 +48,7 @@ impl SceneloomApp {
                 let path = free_name(&self.suggested("png"));
                 self.screenshot(&path);
             }
+            FileCommand::SavePicture(camera, view) => self.save_picture(camera, view),
             FileCommand::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             FileCommand::NewFromPrompt(ask) => self.scene_from_words(*ask, ctx),
             FileCommand::Describe(words) => {
@@ -234,6 +236,33 @@ impl SceneloomApp {
     /// A path beside the scene's file, or in the working folder, named after the scene.
     pub(crate) fn suggested(&self, extension: &str) -> PathBuf {
         self.files.suggested(&self.document.scene().name, extension)
+    }
+
+    /// Saves the picture of a camera as it is shown.
+    fn save_picture(&mut self, camera: usize, view: ViewId) {
+        let source = cameras::source_of(view, self.state.cameras.source).id();
+        let pictures = self.threads.sensing.pictures_of(source);
+        let found = pictures.and_then(|all| all.iter().find(|v| v.camera == camera));
+        let Some(found) = found else {
+            return self.fail("No picture saved: the camera is not rendered yet".into());
+        };
+        let ([width, height], rgba) = found.picture.rgba(view, self.state.cameras.plane_m);
+        let name = self
+            .document
+            .scene()
+            .rig
+            .cameras
+            .get(camera)
+            .map_or("camera", |c| &c.name);
+        let path = self.suggested("png");
+        let path = free_name(&path.with_extension(format!("{}_{}.png", name.to_lowercase(), view.name())));
+        match image::save_buffer(&path, &rgba, width as u32, height as u32, image::ColorType::Rgba8) {
+            Ok(()) => {
+                let text = format!("Saved {} ({width} × {height})", path.display());
+                self.toasts.push(Level::Info, text, self.now_s());
+            }
+            Err(error) => self.fail(format!("No picture saved: {error}")),
+        }
     }
 
     pub(crate) fn screenshot(&mut self, path: &Path) {

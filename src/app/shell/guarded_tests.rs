@@ -109,7 +109,7 @@ fn scenery() {
 #[test]
 fn checks_and_sensors() {
     let mut app = app();
-    let wanted = crate::camera_views::Wanted::of(&app.state.cameras, &app.state.lidar);
+    let wanted = crate::camera_views::Wanted::of(&app.state.cameras, &app.state.lidar, 6);
     panic_next("checks");
     wait_for(
         &mut app,

@@ -194,11 +194,15 @@ impl SceneloomApp {
             .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)
             .cloned();
-        let senses = held || matches!(self.state.compare.mode, CompareMode::Wipe | CompareMode::Side);
+        let senses = active;
         let ctx = ui.ctx().clone();
         self.views.compare.prepare(
             before,
-            Wanted::of(&self.state.cameras, &self.state.lidar),
+            Wanted::of(
+                &self.state.cameras,
+                &self.state.lidar,
+                self.document.scene().rig.cameras.len(),
+            ),
             senses,
             move || ctx.request_repaint(),
         );
@@ -206,7 +210,8 @@ impl SceneloomApp {
 
     pub(crate) fn overlays(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
         let now_s = self.now_s();
-        let cameras = CamerasInput::of(scene, self.document.scene().rev, &self.threads.sensing);
+        let rev = self.document.scene().rev;
+        let cameras = CamerasInput::of(scene, rev, &self.threads.sensing, &self.state.cameras);
         self.views
             .strip
             .enlarged(ui, self.views.center, &cameras, &mut self.state, commands);

@@ -42,7 +42,8 @@ impl SceneloomApp {
             || self.state.playback.playing
             || self.generation.live.running.is_some();
         if self.state.playback.sensors_are_due(now_s) {
-            let wanted = Wanted::of(&self.state.cameras, &self.state.lidar);
+            let count = self.document.scene().rig.cameras.len();
+            let wanted = Wanted::of(&self.state.cameras, &self.state.lidar, count);
             self.threads
                 .sensing
                 .ask(self.document.scene(), wanted, for_a_moment);

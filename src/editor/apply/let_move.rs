@@ -22,7 +22,7 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
     let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
     let usual = Wish::usual(template, class);
     let mut wish = Wish {
-        mps: mps.unwrap_or(usual.mps),
+        mps: mps.or(limit_mps(scene, id)).unwrap_or(usual.mps),
         at_s: from_s.unwrap_or(usual.at_s),
         ..usual
     };
@@ -41,6 +41,17 @@ pub(super) fn let_move(scene: &Scene, edit: &Edit) -> Result<Vec<Edit>, EditErro
         edits.extend(room_for_us(&moved, 0.0));
     }
     Ok(edits)
+}
+
+/// The speed limit where a motor vehicle (the ego vehicle if none) stands, m/s; none where nobody set one.
+fn limit_mps(scene: &Scene, id: Option<BoxId>) -> Option<f64> {
+    let frame = scene.frame();
+    let at_m = match id {
+        None => frame.world_from_ego.translation_m,
+        Some(id) => frame.boxes.get(&id).filter(|b| b.class.is_vehicle())?.center_m,
+    };
+    let road = scene.roads.road_at(at_m.truncate(), 1.0)?;
+    scene.roads.road(road)?.limit_kph.map(|v| v / 3.6)
 }
 
 /// When an object and the ego vehicle are so near to each other, s. Errors in one line.

@@ -14,7 +14,7 @@ pub const EXPORTER: Exporter = Exporter {
     span: Span::Clip,
     needs: &[],
     write: |scene, _| {
-        let bytes = opendrive::write::to_bytes(&scene.name, &scene.canvas().layout);
+        let bytes = opendrive::write::to_bytes(&scene.name, &scene.canvas().layout, &scene.roads);
         Ok(vec![OutFile::new("map.xodr", bytes)])
     },
 };

@@ -25,8 +25,8 @@ use chains::{Chain, Near};
 use connect::{Ground, Junction};
 use on_road::OnRoads;
 use roads::Road;
-use scene::BevLayout;
 use scene::distance::nearest_source;
+use scene::{BevLayout, RoadNetwork};
 use zones::Zones;
 
 /// Ground beside a way of one lane that is still its own, m.
@@ -44,13 +44,19 @@ pub(super) enum Detail {
     Rows,
 }
 
-/// The bytes of an OpenDRIVE file with the roads of a layout. Its frame is that of the layout.
-pub fn to_bytes(name: &str, layout: &BevLayout) -> Vec<u8> {
-    to_text(name, layout, Detail::Rows).into_bytes()
+/// The bytes of an OpenDRIVE file with the roads of a layout. Its frame is that of the layout. Speed limits are those of `limits`,
+/// the scene's network.
+pub fn to_bytes(name: &str, layout: &BevLayout, limits: &RoadNetwork) -> Vec<u8> {
+    text_of(name, layout, limits, Detail::Rows).into_bytes()
 }
 
-/// The same as text, with less in it.
+/// The same as text without limits, with less in it.
+#[cfg(test)]
 pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String {
+    text_of(name, layout, &RoadNetwork::default(), detail)
+}
+
+fn text_of(name: &str, layout: &BevLayout, limits: &RoadNetwork, detail: Detail) -> String {
     let (mut roads, junctions) = network(layout);
     if roads.is_empty() {
         roads.push(on_road::nowhere(layout));
@@ -59,7 +65,7 @@ pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String 
     on_roads.crossings(layout);
     on_roads.stop_lines(layout);
     let header = xml::header(name, layout);
-    let mut body = xml::network(&roads, &junctions, layout);
+    let mut body = xml::network(&roads, &junctions, layout, limits);
     if detail != Detail::Roads {
         // What a reader makes of the roads shows what is missing.
         let text = format!("{header}{body}</OpenDRIVE>\n");
@@ -68,7 +74,7 @@ pub(super) fn to_text(name: &str, layout: &BevLayout, detail: Detail) -> String 
                 .to_layout_over(layout.extent(), glam::DVec2::ZERO, 0.0)
                 .layout;
             OnRoads::new(&mut roads).areas(layout, &found);
-            body = xml::network(&roads, &junctions, layout);
+            body = xml::network(&roads, &junctions, layout, limits);
         }
     }
     let rows = match detail {

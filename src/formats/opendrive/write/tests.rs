@@ -78,8 +78,11 @@ fn a_hundred_random_scenes_come_back_to_the_last_bit() {
         if seed % 2 == 0 {
             layout.polylines = junction().polylines;
         }
-        let bytes = to_bytes("random", &layout);
-        assert!(bytes == to_bytes("random", &layout), "{seed}: the same bytes");
+        let bytes = to_bytes("random", &layout, &scene::RoadNetwork::default());
+        assert!(
+            bytes == to_bytes("random", &layout, &scene::RoadNetwork::default()),
+            "{seed}: the same bytes"
+        );
         let network = opendrive::read(&bytes).unwrap_or_else(|e| panic!("{seed}: {e}"));
         let back = network.to_layout_over(layout.extent(), DVec2::ZERO, 0.0);
         assert!(back.is_own && back.layout == layout, "{seed}");
@@ -323,7 +326,7 @@ fn traffic_on_the_left_stays_there() {
 #[test]
 fn own_rows_that_do_not_fit_are_left_out_and_said_to_be() {
     let layout = junction();
-    let text = String::from_utf8(to_bytes("rows", &layout)).expect("text");
+    let text = String::from_utf8(to_bytes("rows", &layout, &scene::RoadNetwork::default())).expect("text");
     let said = |text: &str, extent: Extent, at: [f64; 2]| -> Option<String> {
         let import = read(text).to_layout_over(extent, at.into(), 0.0);
         let said = import
@@ -392,7 +395,7 @@ fn an_empty_map_is_a_file_too() {
         Extent::new([0, 0], [7, 900]).expect("a map"),
     ] {
         let layout = BevLayout::over(extent);
-        let text = String::from_utf8(to_bytes("<&\">", &layout)).expect("text");
+        let text = String::from_utf8(to_bytes("<&\">", &layout, &scene::RoadNetwork::default())).expect("text");
         let network = read(&text);
         assert_eq!(network.name, "<&\">");
         let back = network.to_layout_over(extent, DVec2::ZERO, 0.0);

@@ -8,7 +8,7 @@ use super::roads::{End, Road};
 use super::strips::Strip;
 use crate::opendrive::geometry::{Geometry, Shape};
 use crate::xml_text::{escaped, number};
-use scene::{BevLayer, BevLayout, Relief};
+use scene::{BevLayer, BevLayout, Relief, RoadNetwork};
 
 /// Widths of lanes are kept to this, m.
 const LANE_M: f64 = 0.01;
@@ -18,6 +18,8 @@ const BESIDE_M: f64 = 0.06;
 const CENTER_M: f64 = 0.004;
 /// Paint is looked for so far to both sides of a border of lanes, m.
 const PAINT_M: [f64; 5] = [0.0, -0.2, 0.2, -0.4, 0.4];
+/// A road that is written so near to one of the network is that one, m.
+const LIMIT_REACH_M: f64 = 1.0;
 /// A painted line, or a gap in one, is not shorter, m.
 const PAINT_RUN_M: f64 = 3.0;
 
@@ -37,10 +39,15 @@ pub(super) fn header(name: &str, layout: &BevLayout) -> String {
 }
 
 /// All roads, then all junctions.
-pub(super) fn network(roads: &[Road], junctions: &[Junction], layout: &BevLayout) -> String {
+pub(super) fn network(
+    roads: &[Road],
+    junctions: &[Junction],
+    layout: &BevLayout,
+    limits: &RoadNetwork,
+) -> String {
     let mut out = String::new();
     for r in roads {
-        road(&mut out, r, layout);
+        road(&mut out, r, layout, limits);
     }
     for j in junctions {
         junction(&mut out, j);
@@ -48,7 +55,7 @@ pub(super) fn network(roads: &[Road], junctions: &[Junction], layout: &BevLayout
     out
 }
 
-fn road(out: &mut String, road: &Road, layout: &BevLayout) {
+fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: &RoadNetwork) {
     let rule = if road.left_hand { "LHT" } else { "RHT" };
     let junction = road.junction.map_or("-1".into(), |j| j.to_string());
     let length = number(road.reference.end_s_m());
@@ -58,6 +65,7 @@ fn road(out: &mut String, road: &Road, layout: &BevLayout) {
         road.id
     );
     link(out, road);
+    limit(out, road, limits);
     out.push_str("    <planView>\n");
     for record in road.reference.records() {
         geometry(out, record);
@@ -73,6 +81,19 @@ fn road(out: &mut String, road: &Road, layout: &BevLayout) {
         }
     }
     out.push_str("  </road>\n");
+}
+
+/// The speed limit at the road's middle.
+fn limit(out: &mut String, road: &Road, limits: &RoadNetwork) {
+    let middle = road.reference.at(road.reference.end_s_m() / 2.0);
+    let found = limits.road_at(middle.position_m, LIMIT_REACH_M);
+    if let Some(kph) = found.and_then(|id| limits.road(id)?.limit_kph) {
+        let max = number(kph);
+        let _ = writeln!(
+            out,
+            "    <type s=\"0\" type=\"unknown\">\n      <speed max=\"{max}\" unit=\"km/h\"/>\n    </type>"
+        );
+    }
 }
 
 fn link(out: &mut String, road: &Road) {

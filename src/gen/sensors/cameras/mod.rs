@@ -17,7 +17,7 @@ pub mod voxels;
 
 pub use bounds::CameraError;
 pub use marched::march_scene;
-pub use picture::CameraPicture;
+pub use picture::{CameraPicture, DEPTH_M};
 pub use view::{Knob, SourceId, View, ViewId};
 
 use rayon::prelude::*;

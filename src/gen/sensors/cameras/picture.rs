@@ -6,7 +6,7 @@ use crate::color::{depth_rgba, perspective_rgba, plane_rgba, semantic_rgba};
 use scene::{CameraMaps, MultiPlaneImage, PerspectiveMap};
 
 /// Depth at which the colours of depths begin and end in the window, m.
-const DEPTH_M: (f32, f32) = (2.0, 60.0);
+pub const DEPTH_M: (f32, f32) = (2.0, 60.0);
 
 /// A picture of one camera, as data.
 #[derive(Clone, Debug, PartialEq)]
