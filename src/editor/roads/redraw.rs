@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec2;
+
 use scene::roads::{Drawn, LAYERS, Owner};
 use scene::{BevLayout, Extent, Frame, Polyline, RoadId, RoadNetwork};
 
@@ -29,12 +31,17 @@ pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwor
     }
     // What lies beside a change and is no road by now is what was left of a road painted a little wider.
     let edge = grown(extent, &due);
+    let junctions = changed_junctions(before, after);
     let mut cells = Vec::new();
     for at in extent.all_columns() {
         let i = extent.index(at[0], at[1]);
         let is_rest = edge[i] && drawn(&new, at) == 0 && drawn(&old, at) == 0;
         let is_forced = forced.as_ref().is_some_and(|f| f[i]);
-        if due[i] || is_rest || is_forced {
+        // A junction that changed is drawn whole: what was painted otherwise there fits no more.
+        let p = extent.center(at[0], at[1], 0).truncate();
+        let at_junction =
+            || junctions.iter().any(|(m, r)| p.distance(*m) < *r) && (drawn(&new, at) | drawn(&old, at)) != 0;
+        if due[i] || is_rest || is_forced || at_junction() {
             cells.push(at);
         }
     }
@@ -51,6 +58,14 @@ pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwor
     }
     swap_lines(&mut frame.layout, [before, after], [&old, &new], anew);
     immediate::lay_ground(frame, &touched);
+}
+
+/// Middle and radius of the junctions that one network draws otherwise than another, in both of them, m.
+fn changed_junctions(before: &RoadNetwork, after: &RoadNetwork) -> Vec<(DVec2, f64)> {
+    let (old, new) = (before.junctions(), after.junctions());
+    let all = old.iter().chain(&new);
+    let due = all.filter(|j| !(old.contains(j) && new.contains(j)));
+    due.map(|j| (j.node.at_m, j.reach_m)).collect()
 }
 
 /// Columns that are set or near to one that is.
@@ -112,7 +127,7 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
 }
 
 /// How much of a line lies on an area, 0 to 1; what lies beyond the map does not count.
-fn share(area: &Area, points_m: &[glam::DVec2]) -> f64 {
+fn share(area: &Area, points_m: &[DVec2]) -> f64 {
     let (mut all, mut on) = (0usize, 0usize);
     for [a, b] in points_m.array_windows::<2>() {
         let steps = (a.distance(*b) / STEP_M).ceil().clamp(1.0, 10_000.0);

@@ -5,13 +5,25 @@ use scene::{BevLayout, Class, VoxelGrid, Window};
 
 /// Lays the layout's ground in columns without any ground in which nothing stands on its place either. Returns how many.
 pub fn close_holes(layout: &BevLayout, generated: &mut VoxelGrid) -> usize {
+    close(layout, generated, |_, _| true)
+}
+
+/// The same only where there was ground before: an edit digs no holes.
+pub fn close_new_holes(layout: &BevLayout, before: &VoxelGrid, generated: &mut VoxelGrid) -> usize {
+    let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);
+    close(layout, generated, |x, y| {
+        before.column(x, y).iter().any(is_ground)
+    })
+}
+
+fn close(layout: &BevLayout, generated: &mut VoxelGrid, may: impl Fn(usize, usize) -> bool) -> usize {
     let mut closed = 0;
     for c in 0..Window::COLUMNS {
         let (x, y) = (c / Window::NY, c % Window::NY);
         let bin = ground_bin(layout, x, y);
         let column = generated.column(x, y);
         let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);
-        if column.iter().any(is_ground) || column[..=bin].iter().any(|l| *l != Class::FREE) {
+        if column.iter().any(is_ground) || column[..=bin].iter().any(|l| *l != Class::FREE) || !may(x, y) {
             continue;
         }
         generated.set(x, y, bin, ground_class(layout.cell(x, y)).id());
@@ -42,9 +54,19 @@ mod tests {
         let wall = ground_bin(&frame.layout, x, y);
         generated.set(x, y, wall, Class::Manmade.id());
         assert_eq!(close_holes(&frame.layout, &mut generated), 2);
-        let mut expected = sound;
+        let mut expected = sound.clone();
         expected.set(5, 5, 12, Class::Vegetation.id());
         expected.set(x, y, wall, Class::Manmade.id());
         assert!(generated == expected);
+        // After an edit only what had ground before gets it again.
+        let before = sound;
+        let mut bare = before.clone();
+        let bin = ground_bin(&frame.layout, 3, 3);
+        bare.set(3, 3, bin, Class::FREE);
+        let mut generated = bare.clone();
+        let (x, y, z) = bins[1];
+        generated.set(x, y, z, Class::FREE);
+        assert_eq!(close_new_holes(&frame.layout, &bare, &mut generated), 1);
+        assert_eq!(generated.get(3, 3, bin), Class::FREE);
     }
 }

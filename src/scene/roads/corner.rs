@@ -21,6 +21,8 @@ const CLEAR_M: f64 = 0.6;
 pub(super) struct Corners {
     /// How far markings stay away from an end of a road, m.
     pub setback_m: BTreeMap<(RoadId, usize), f64>,
+    /// The same of one side alone: true is the right of the road's line.
+    pub side_m: BTreeMap<(RoadId, usize, bool), f64>,
     /// Outlines that are carriageway.
     pub paved: Vec<Vec<DVec2>>,
     /// Lines with so much walkway on either side, m.
@@ -129,8 +131,8 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
         if reach > 0.0 {
             out.paved.push(std::iter::once(meet).chain(round).collect());
         }
-        for (seen, end) in [(a, from), (b, to)] {
-            set_back(out, seen, end);
+        for (seen, left, end) in [(a, true, from), (b, false, to)] {
+            set_back(out, seen, left, end);
         }
     }
     // Where corners of sharp angles lie wide apart the middle belongs to nobody.
@@ -142,11 +144,18 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
     out.paved.push(hull(middle, node.at_m));
 }
 
-/// Markings of an arm begin beyond a point beside it.
-pub(super) fn set_back(out: &mut Corners, seen: &Seen<'_>, beside_m: DVec2) {
+/// Markings of an arm begin beyond a point beside it, on its left or right as one looks outward.
+pub(super) fn set_back(out: &mut Corners, seen: &Seen<'_>, left: bool, beside_m: DVec2) {
     let along = curve::project(&seen.out_m, beside_m).map_or(0.0, |p| p.0);
-    let at = out.setback_m.entry((seen.arm.road, seen.arm.end)).or_default();
-    *at = at.max((along + CLEAR_M).min(seen.length_m * 0.5));
+    let reach = (along + CLEAR_M).min(seen.length_m * 0.5);
+    let arm = seen.arm;
+    let at = out.setback_m.entry((arm.road, arm.end)).or_default();
+    *at = at.max(reach);
+    let side = out
+        .side_m
+        .entry((arm.road, arm.end, seen.side(left)))
+        .or_default();
+    *side = side.max(reach);
 }
 
 /// The outline around points, counter-clockwise.

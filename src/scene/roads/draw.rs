@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::area::alongside;
 use super::corner::{Corners, corners};
-use super::{LaneKind, NodeId, NodeKind, Road, RoadId, RoadNetwork, curve};
+use super::{Arm, LaneKind, NodeId, NodeKind, Road, RoadId, RoadLane, RoadNetwork, RoadNode, curve};
 use crate::{BevLayer, BevLayout, Extent, Polyline, PolylineKind, raster};
 
 /// Layers that roads are drawn into.
@@ -27,6 +27,17 @@ pub struct Drawn {
     pub layout: BevLayout,
     /// Lines, and whose they are.
     pub owners: BTreeMap<Owner, Vec<Polyline>>,
+}
+
+/// A node at which roads meet, with all that its corners depend on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Junction {
+    /// The node.
+    pub node: RoadNode,
+    /// How far it draws, m.
+    pub reach_m: f64,
+    /// Its arms: where each leaves, m, and its lanes on the left and on the right.
+    pub arms: Vec<(Arm, DVec2, Vec<RoadLane>, Vec<RoadLane>)>,
 }
 
 /// Whose a line is.
@@ -60,9 +71,11 @@ impl RoadNetwork {
         };
         for road in &self.roads {
             let line = &lines[&road.id];
-            let free_m = free_part(road, &corners, curve::length_m(line));
+            let length_m = curve::length_m(line);
+            let free_m = [false, true].map(|right| free_side(road, right, &corners, length_m));
             for near in alongside(extent, line, road.reach_m(true).max(road.reach_m(false))) {
-                let at_junction = near.along_m < free_m[0] || near.along_m > free_m[1];
+                let [from_m, to_m] = free_m[usize::from(near.left_m < 0.0)];
+                let at_junction = near.along_m < from_m || near.along_m > to_m;
                 if let Some(what) = surface_at(road, near.left_m, at_junction) {
                     put(near.cell, what);
                 }
@@ -136,6 +149,39 @@ impl RoadNetwork {
         out
     }
 
+    /// The nodes at which roads meet, as they are drawn.
+    pub fn junctions(&self) -> Vec<Junction> {
+        let lines = self.lines();
+        let corners = corners(self, &lines);
+        let meets = self.nodes.iter().filter_map(|node| {
+            let arms = self.arms(node.id);
+            let back = arms
+                .iter()
+                .filter_map(|a| corners.setback_m.get(&(a.road, a.end)));
+            let reach_m = back.copied().fold(0.0, f64::max);
+            let arm = |a: &Arm| {
+                let (road, line) = (self.road(a.road)?, lines.get(&a.road)?);
+                let along = if a.end == 0 {
+                    reach_m
+                } else {
+                    curve::length_m(line) - reach_m
+                };
+                Some((
+                    *a,
+                    curve::at(line, along).0,
+                    road.left.clone(),
+                    road.right.clone(),
+                ))
+            };
+            (reach_m > 0.0).then(|| Junction {
+                node: *node,
+                reach_m,
+                arms: arms.iter().filter_map(arm).collect(),
+            })
+        });
+        meets.collect()
+    }
+
     fn marks(
         &self,
         lines: &BTreeMap<RoadId, Vec<DVec2>>,
@@ -185,19 +231,22 @@ impl RoadNetwork {
                     push(PolylineKind::LaneCenter, middle);
                 }
                 off += lane.width_m;
-                let marked = |l: &super::RoadLane| l.kind.is_carriageway() && l.kind != LaneKind::Shoulder;
+                let marked = |l: &RoadLane| l.kind.is_carriageway() && l.kind != LaneKind::Shoulder;
                 if marked(lane) && lanes.get(i + 1).is_some_and(marked) {
                     push(PolylineKind::LaneDivider, free(curve::beside(line, sign * off)));
                 }
             }
         }
         for stop in &road.stops {
-            let (at, way) = curve::at(line, stop.at_m.clamp(0.0, length_m));
+            let (at, way) = curve::at(line, beyond_corners(stop.at_m, 0.0, free_m));
             let off = road.kerb_m(stop.right, false) * if stop.right { -1.0 } else { 1.0 };
             push(PolylineKind::StopLine, vec![at, at + way.perp() * off]);
         }
         for crossing in &road.crossings {
-            let (at, way) = curve::at(line, crossing.at_m.clamp(0.0, length_m));
+            let (at, way) = curve::at(
+                line,
+                beyond_corners(crossing.at_m, crossing.width_m / 2.0, free_m),
+            );
             let half = way * (crossing.width_m / 2.0);
             let (l, r) = (
                 at + way.perp() * road.kerb_m(false, false),
@@ -228,6 +277,22 @@ impl RoadNetwork {
 /// From where to where along a road it is its own, and not its junctions', m.
 fn free_part(road: &Road, corners: &Corners, length_m: f64) -> [f64; 2] {
     let back = |end: usize| corners.setback_m.get(&(road.id, end)).copied().unwrap_or(0.0);
+    [back(0), length_m - back(1)]
+}
+
+/// A place along a road for what reaches so far on both sides of it: outside of junctions where there is room.
+fn beyond_corners(at_m: f64, reach_m: f64, free_m: [f64; 2]) -> f64 {
+    let (low, high) = (free_m[0] + reach_m, free_m[1] - reach_m);
+    if low < high {
+        at_m.clamp(low, high)
+    } else {
+        (free_m[0] + free_m[1]) / 2.0
+    }
+}
+
+/// The same of one side.
+fn free_side(road: &Road, right: bool, corners: &Corners, length_m: f64) -> [f64; 2] {
+    let back = |end: usize| corners.side_m.get(&(road.id, end, right)).copied().unwrap_or(0.0);
     [back(0), length_m - back(1)]
 }
 

@@ -133,7 +133,7 @@ fn flare(seen: &Seen<'_>, left: bool, center: DVec2, outer_m: f64, out: &mut Cor
         out.walks.push((round.clone(), walk_m));
     }
     out.paved.push(std::iter::once(meet).chain(round).collect());
-    set_back(out, seen, from);
+    set_back(out, seen, left, from);
 }
 
 /// Middles of the driven lanes of an arm that lead to the node, or away from it; from the node outward.

@@ -49,23 +49,20 @@ const MEET_M: f64 = 3.0;
 
 /// What is being dragged.
 #[derive(Clone, Debug)]
-enum Drag {
-    Node {
-        id: NodeId,
-        moved: bool,
-    },
-    Via {
-        road: Road,
-        index: usize,
-        moved: bool,
-    },
-    /// The line itself, from a place on it: it gets a point there.
-    Line {
-        road: Road,
-        index: usize,
-        from_m: DVec2,
-        moved: bool,
-    },
+enum Grip {
+    Node(NodeId),
+    /// A point of the road.
+    Via(Road, usize),
+    /// The line itself: it gets a point there.
+    Line(Road, usize),
+}
+
+/// A press, and whether the pointer has left its place.
+#[derive(Clone, Debug)]
+struct Drag {
+    grip: Grip,
+    from_m: DVec2,
+    moved: bool,
 }
 
 /// The road tool.
@@ -108,40 +105,23 @@ impl Roads {
         cx.hand.road.chosen = found;
         cx.hand.road.at_m = at_m;
         cx.hand.road.lane = None;
-        self.drag = match found {
+        let grip = match found {
             None => return Response::none(),
-            Some(RoadPart::Node(id)) => Some(Drag::Node { id, moved: false }),
-            Some(RoadPart::Via(id, index)) => {
-                if pointer.held.alt {
-                    return self.drop_via(cx, &net, id, index);
-                }
-                let road = net.road(id).cloned();
-                road.map(|road| Drag::Via {
-                    road,
-                    index,
-                    moved: false,
-                })
-            }
+            Some(RoadPart::Node(id)) => Some(Grip::Node(id)),
+            Some(RoadPart::Via(id, index)) if pointer.held.alt => return self.drop_via(cx, &net, id, index),
+            Some(RoadPart::Via(id, index)) => net.road(id).map(|road| Grip::Via(road.clone(), index)),
             Some(RoadPart::Road(id)) => {
-                if let Some(road) = net.road(id) {
-                    cx.hand.road.lane = part::lane_at(&net, road, at_m);
-                }
-                part::on_line(&net, id, at_m, reach_m).and_then(|index| {
-                    Some(Drag::Line {
-                        road: net.road(id)?.clone(),
-                        index,
-                        from_m: at_m,
-                        moved: false,
-                    })
-                })
+                cx.hand.road.lane = net.road(id).and_then(|road| part::lane_at(&net, road, at_m));
+                let index = part::on_line(&net, id, at_m, reach_m);
+                index.and_then(|index| Some(Grip::Line(net.road(id)?.clone(), index)))
             }
         };
-        let mut response = Response::hold();
-        // A scene gets its network as a step of its own, so that a drag need not recognise it at every move.
-        if self.drag.is_some() && cx.settled.roads.is_empty() {
-            response.acts.push(recognised());
-        }
-        response
+        self.drag = grip.map(|grip| Drag {
+            grip,
+            from_m: at_m,
+            moved: false,
+        });
+        Response::hold()
     }
 
     fn drop_via(&mut self, cx: &mut Context<'_>, net: &RoadNetwork, id: RoadId, index: usize) -> Response {
@@ -162,64 +142,57 @@ impl Roads {
             false => at_m,
         };
         let net = self.network(cx.settled);
-        match &mut self.drag {
-            Some(Drag::Node { id, moved }) => {
+        let Some(drag) = &mut self.drag else {
+            return Response::none();
+        };
+        if !drag.moved && drag.from_m.distance(at_m) * cx.view.scale() < super::CLICK_SLACK {
+            return Response::none();
+        }
+        // A scene gets its network as a step of its own, so that a drag need not recognise it at every move.
+        if cx.settled.roads.is_empty() {
+            return Response::act(recognised());
+        }
+        let first = !std::mem::replace(&mut drag.moved, true);
+        match &mut drag.grip {
+            Grip::Node(id) => {
                 let Some(node) = net.node(*id) else {
                     return Response::none();
                 };
-                *moved = true;
                 let node = scene::RoadNode { at_m, ..*node };
                 Response::act(preview(RoadChange::PutNode { node }))
             }
-            Some(Drag::Via { road, index, moved }) => {
+            Grip::Line(road, index) if first => {
+                *index = (*index).min(road.via_m.len());
+                road.via_m.insert(*index, at_m);
+                Response::act(preview(RoadChange::Put { road: road.clone() }))
+            }
+            Grip::Via(road, index) | Grip::Line(road, index) => {
                 if let Some(p) = road.via_m.get_mut(*index) {
                     *p = at_m;
-                    *moved = true;
                 }
                 Response::act(preview(RoadChange::Put { road: road.clone() }))
             }
-            Some(Drag::Line {
-                road,
-                index,
-                from_m,
-                moved,
-            }) => {
-                if !*moved && from_m.distance(at_m) * cx.view.scale() < super::CLICK_SLACK {
-                    return Response::none();
-                }
-                if !*moved {
-                    road.via_m.insert((*index).min(road.via_m.len()), at_m);
-                    *moved = true;
-                } else if let Some(p) = road.via_m.get_mut(*index) {
-                    *p = at_m;
-                }
-                Response::act(preview(RoadChange::Put { road: road.clone() }))
-            }
-            None => Response::none(),
         }
     }
 
     fn release(&mut self, cx: &mut Context<'_>, pointer: &Pointer) -> Response {
-        let at_m = cx.ground_m(pointer.at);
-        match self.drag.take() {
-            Some(Drag::Node { id, moved: true }) => {
+        let Some(drag) = self.drag.take().filter(|d| d.moved) else {
+            return Response::none();
+        };
+        match drag.grip {
+            Grip::Node(id) => {
+                let at_m = cx.ground_m(pointer.at);
                 let met = at_m.and_then(|at_m| self.meeting(&self.network(cx.settled), id, at_m));
                 match met {
                     Some(edits) => Response::act(Act::Cancel).and(Act::Apply("Join roads".into(), edits)),
                     None => Response::act(Act::Commit("Move road node".into())),
                 }
             }
-            Some(Drag::Via { moved: true, .. }) => Response::act(Act::Commit("Move road point".into())),
-            Some(Drag::Line {
-                road,
-                index,
-                moved: true,
-                ..
-            }) => {
+            Grip::Via(..) => Response::act(Act::Commit("Move road point".into())),
+            Grip::Line(road, index) => {
                 cx.hand.road.chosen = Some(RoadPart::Via(road.id, index));
                 Response::act(Act::Commit("Bend road".into()))
             }
-            _ => Response::none(),
         }
     }
 

@@ -93,9 +93,9 @@ fn of_road(net: &RoadNetwork, road: &Road, hand: &RoadHand, out: &mut Vec<Settin
     let names: Vec<(String, &'static str)> = lanes(road)
         .map(|(right, i)| {
             let lane = road.side(right)[i];
-            let side = if right { "right" } else { "left" };
+            let side = if right { "R" } else { "L" };
             (
-                format!("{} {}: {}, {:.1} m", side, i + 1, lane.kind.title(), lane.width_m),
+                format!("{}{} {}, {:.1} m", side, i + 1, lane.kind.title(), lane.width_m),
                 "",
             )
         })

@@ -395,7 +395,8 @@ fn an_empty_map_is_a_file_too() {
         Extent::new([0, 0], [7, 900]).expect("a map"),
     ] {
         let layout = BevLayout::over(extent);
-        let text = String::from_utf8(to_bytes("<&\">", &layout, &scene::RoadNetwork::default())).expect("text");
+        let text =
+            String::from_utf8(to_bytes("<&\">", &layout, &scene::RoadNetwork::default())).expect("text");
         let network = read(&text);
         assert_eq!(network.name, "<&\">");
         let back = network.to_layout_over(extent, DVec2::ZERO, 0.0);
