@@ -22,6 +22,7 @@ mod project;
 mod prompt;
 mod random_commands;
 mod recovery;
+mod roads;
 mod rows;
 mod sensor_scene;
 mod sensors;

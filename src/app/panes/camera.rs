@@ -13,9 +13,6 @@ use crate::command::{Command, FileCommand};
 use sensors::cameras;
 use widgets::icons::{self, Icon};
 
-/// Narrower panes leave out all but what is shown, points.
-const ROOM_FOR_CONDITIONS: f32 = 420.0;
-
 /// The camera of this index, unless another was taken in its pane.
 pub struct Camera {
     index: u8,
@@ -70,6 +67,41 @@ impl Pane for Camera {
             Some(id) => title(id).to_owned(),
             None => format!("{} (all)", title(strip)),
         };
+        // From the right to the left.
+        // The camera of the pane may be another than that of its name.
+        let name = rig
+            .cameras
+            .get(camera)
+            .map_or(String::new(), |c| camera_label(&c.name));
+        if icons::button(
+            ui,
+            Icon::Camera,
+            "Save picture",
+            "as it is shown, beside the scene",
+            false,
+            count > 0,
+        )
+        .clicked()
+        {
+            commands.push(Command::File(FileCommand::SavePicture(camera, view)));
+        }
+        let legend = icons::button(
+            ui,
+            Icon::List,
+            "Legend",
+            "what the colours mean",
+            own.legend,
+            true,
+        );
+        if legend.clicked() {
+            own.legend = !own.legend;
+        }
+        if icons::button(ui, Icon::StepForward, "Next camera", &name, false, count > 1).clicked() {
+            own.on_by = step(own.on_by, count, true);
+        }
+        if icons::button(ui, Icon::StepBack, "Previous camera", &name, false, count > 1).clicked() {
+            own.on_by = step(own.on_by, count, false);
+        }
         egui::ComboBox::from_id_salt(("camera mode", self.index))
             .selected_text(selected)
             .width(112.0)
@@ -83,43 +115,11 @@ impl Pane for Camera {
             })
             .response
             .accessible_name("Camera picture");
-        // The camera of the pane may be another than that of its name.
-        let name = rig
-            .cameras
-            .get(camera)
-            .map_or(String::new(), |c| camera_label(&c.name));
-        if icons::button(ui, Icon::StepBack, "Previous camera", &name, false, count > 1).clicked() {
-            own.on_by = step(own.on_by, count, false);
-        }
-        if icons::button(ui, Icon::StepForward, "Next camera", &name, false, count > 1).clicked() {
-            own.on_by = step(own.on_by, count, true);
-        }
-        let legend = icons::button(
-            ui,
-            Icon::List,
-            "Legend",
-            "what the colours mean",
-            own.legend,
-            true,
-        );
-        if legend.clicked() {
-            own.legend = !own.legend;
-        }
-        if icons::button(
-            ui,
-            Icon::Camera,
-            "Save picture",
-            "as it is shown, beside the scene",
-            false,
-            count > 0,
-        )
-        .clicked()
-        {
-            commands.push(Command::File(FileCommand::SavePicture(camera, view)));
-        }
         let source = cameras::source_of(view, cx.state.cameras.source);
-        if source.needs().conditions && ui.available_width() > ROOM_FOR_CONDITIONS {
-            conditions(ui, cx.scene, commands);
+        if source.needs().conditions {
+            ui.menu_button("Light…", |ui| conditions(ui, cx.scene, commands))
+                .response
+                .on_hover_text("Time of day and weather of the scene");
         }
     }
 

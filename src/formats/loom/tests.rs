@@ -7,10 +7,12 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use scene::background::{Background, Form, Tree, TreeKind};
 use scene::clip::ObjectVoxels;
+use scene::roads::{LaneKind, NodeId, NodeKind, RoadCrossing, RoadStop};
 use scene::{
     BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Kept, KeptVersion, Key, Motion,
     Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
+use scene::{Road, RoadId, RoadLane, RoadNetwork};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
@@ -73,7 +75,41 @@ fn sample(version: u32) -> Scene {
     if version >= 6 {
         scene.kept = Arc::new(kept());
     }
+    if version >= 7 {
+        scene.roads = Arc::new(roads());
+    }
     scene
+}
+
+/// Two roads between three nodes.
+fn roads() -> RoadNetwork {
+    let mut net = RoadNetwork::default();
+    let ends = [[-40.0, 1.0 / 3.0], [0.0, 0.0], [30.0, 20.0]].map(|p| net.add_node(DVec2::from_array(p)));
+    if let Some(node) = net.node_mut(ends[1]) {
+        node.kind = NodeKind::Roundabout {
+            island_m: 6.1,
+            ring_m: 5.0,
+        };
+    }
+    for (from, to) in [(ends[0], ends[1]), (ends[1], ends[2])] {
+        net.add_road(Road {
+            id: RoadId(0),
+            ends: [from, to],
+            via_m: vec![DVec2::new(-0.1, 7.0)],
+            left: vec![RoadLane::usual(LaneKind::Bus)],
+            right: vec![RoadLane::usual(LaneKind::Drive), RoadLane::usual(LaneKind::Walk)],
+            limit_kph: Some(30.0),
+            crossings: vec![RoadCrossing {
+                at_m: 5.0,
+                width_m: 3.0,
+            }],
+            stops: vec![RoadStop {
+                at_m: 3.0,
+                right: true,
+            }],
+        });
+    }
+    net
 }
 
 /// A version with a star and a name, one without, and two lines.
@@ -191,6 +227,7 @@ fn assert_same(a: &Scene, b: &Scene) {
     assert!(a.canvas() == b.canvas(), "the canvas differs");
     assert!(a.clip() == b.clip(), "the clip differs");
     assert!(a.kept == b.kept, "what is kept differs");
+    assert_eq!(a.roads, b.roads);
 }
 
 #[test]
@@ -204,6 +241,19 @@ fn a_file_of_every_version_opens_as_what_it_holds() {
         let manifest = String::from_utf8(entries[0].1.clone()).expect("JSON");
         assert!(manifest.contains(&format!("\"version\":{version}")), "{manifest}");
     }
+}
+
+#[test]
+fn unsound_roads_are_refused() {
+    let mut scene = sample(VERSION);
+    let mut net = roads();
+    net.roads[0].ends[1] = NodeId(99);
+    scene.roads = Arc::new(net);
+    let error = to_bytes(&scene).expect_err("refused").to_string();
+    assert!(
+        error.contains("road 1 ends at node 99, which does not exist"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -380,3 +380,32 @@ fn motions_become_edits() {
     let outcome = base.edit("go the truck stop");
     assert!(outcome.edits.is_empty() && matches!(outcome.remarks[0].1, Remark::Nobody { .. }));
 }
+
+#[test]
+fn roads_of_a_scene_are_reshaped_by_words() {
+    use scene::Edit;
+    use scene::roads::{LaneKind, RoadChange, RoadWish};
+    let base = Base::new("add 1 bus ( ahead ego 15m )");
+    let wish = |line: &str| {
+        let out = base.edit(line);
+        let [
+            Edit::ChangeRoads {
+                change: RoadChange::Wish { wish, .. },
+            },
+        ] = out.edits.as_slice()
+        else {
+            panic!("{line}: {:?}", out.edits);
+        };
+        assert!(out.remarks.is_empty(), "{line}: {:?}", out.remarks);
+        *wish
+    };
+    assert_eq!(wish("lanes 4"), RoadWish::Lanes { count: 4 });
+    assert_eq!(wish("one_way"), RoadWish::OneWay {});
+    assert_eq!(wish("road straight"), RoadWish::Straight {});
+    assert_eq!(wish("road roundabout"), RoadWish::Roundabout {});
+    assert_eq!(wish("road intersection"), RoadWish::Junction {});
+    assert_eq!(wish("lacks sidewalk"), RoadWish::Without { kind: LaneKind::Walk });
+    let kind = LaneKind::Walk;
+    assert_eq!(wish("has sidewalk"), RoadWish::Beside { kind, right: None });
+    assert!(matches!(wish("wide"), RoadWish::Widths { times } if times > 1.0));
+}
