@@ -42,8 +42,8 @@ pub struct OwnCamera {
     pub view: Option<ViewId>,
     /// What the colours mean is shown too.
     pub legend: bool,
-    /// The pane was drawn in the last frame.
-    pub drawn: bool,
+    /// Above 0 the pane was drawn in one of the last frames.
+    pub drawn: u8,
 }
 
 impl Default for CamerasShown {
@@ -77,13 +77,20 @@ impl CamerasShown {
         (camera, own.view.unwrap_or(self.view))
     }
 
+    /// A frame ended: what is not drawn again is soon not rendered any more.
+    pub fn frame_ended(&mut self) {
+        self.own
+            .values_mut()
+            .for_each(|own| own.drawn = own.drawn.saturating_sub(1));
+    }
+
     /// What panes show of other sources than the strip.
     fn others(&self, cameras: usize) -> Others {
         let mut out = Others::default();
         for pane in self
             .own
             .iter()
-            .filter(|(_, own)| own.drawn)
+            .filter(|(_, own)| own.drawn > 0)
             .map(|(pane, _)| *pane)
         {
             let (camera, view) = self.of_pane(pane, cameras);
@@ -268,7 +275,7 @@ mod tests {
         let own = |view, on_by, drawn| OwnCamera {
             view,
             on_by,
-            drawn,
+            drawn: u8::from(drawn),
             legend: false,
         };
         shown.own.insert(0, own(Some(pictures::VIEW.id), 0, true));

@@ -13,6 +13,9 @@ use crate::command::{Command, FileCommand};
 use sensors::cameras;
 use widgets::icons::{self, Icon};
 
+/// A pane that was not drawn for so many frames is not rendered for.
+const FRAMES: u8 = 3;
+
 /// The camera of this index, unless another was taken in its pane.
 pub struct Camera {
     index: u8,
@@ -127,7 +130,7 @@ impl Pane for Camera {
         let count = cx.scene.rig.cameras.len();
         let (camera, view) = cx.state.cameras.of_pane(self.index, count);
         let own = cx.state.cameras.own.entry(self.index).or_default();
-        own.drawn = true;
+        own.drawn = FRAMES;
         self.strip.set_legend(own.legend.then_some(camera));
         // A camera that the vehicle has not is said to be missing.
         let camera = if usize::from(self.index) < count {

@@ -21,13 +21,13 @@ pub(super) fn draw(ui: &Ui, over: Rect, picture: &CameraPicture, view: ViewId) {
     }
 }
 
-/// The classes of a picture, that of most pixels first.
+/// The classes of a picture, that of most pixels first; 0 is where nothing was drawn.
 fn shown(labels: &[u8]) -> Vec<Class> {
     let mut counts = [0u32; 256];
     labels.iter().for_each(|l| counts[usize::from(*l)] += 1);
     let mut all: Vec<(u32, Class)> = (0..=255u8)
         .filter_map(|id| Some((counts[usize::from(id)], Class::from_id(id)?)))
-        .filter(|(n, class)| *n > 0 && *class != Class::Free)
+        .filter(|(n, class)| *n > 0 && *class != Class::Free && *class != Class::Others)
         .collect();
     all.sort_by_key(|c| std::cmp::Reverse(c.0));
     all.into_iter().take(MOST).map(|c| c.1).collect()

@@ -48,6 +48,7 @@ impl SceneloomApp {
                 .sensing
                 .ask(self.document.scene(), wanted, for_a_moment);
         }
+        self.state.cameras.frame_ended();
     }
 
     pub(crate) fn submit(&mut self, scene: Arc<Scene>, params: GenParams) {
