@@ -119,6 +119,12 @@ impl Entry {
             (false, true) => version.label.clone(),
             (false, false) => format!("{} · {}", version.label, version.note),
         };
+        let found = versions.findings_in_words(i);
+        let below = match found {
+            Some(found) if below.is_empty() => found,
+            Some(found) => format!("{found} · {below}"),
+            None => below,
+        };
         line(
             at + vec2(0.0, 21.0),
             &below,

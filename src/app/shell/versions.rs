@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use egui::TextureHandle;
 use rayon::prelude::*;
 
+use editor::checks::Counts;
 use formats::loom;
 use scene::{KeptVersion, Scene, SceneRev};
 
@@ -26,6 +27,8 @@ pub struct Version {
     pub starred: bool,
     /// Its occupancy from above.
     pub(crate) thumbnail: Option<TextureHandle>,
+    /// What the checks found in it, once it was on screen long enough to be checked.
+    pub findings: Option<Counts>,
     packed: Arc<Packed>,
 }
 
@@ -38,6 +41,7 @@ impl Version {
             scene,
             starred: false,
             thumbnail: None,
+            findings: None,
             packed: Arc::default(),
         }
     }
@@ -110,6 +114,40 @@ impl Versions {
     pub const LONGEST_NAME: usize = 80;
     /// Versions kept that have neither star nor name. Scenes share what they have in common: one takes a few hundred kilobytes.
     pub const MAX: usize = 64;
+
+    /// Notes what the checks found in a state, if it is a version.
+    pub fn note_findings(&mut self, rev: SceneRev, counts: Counts) {
+        if let Some(i) = self.of(rev) {
+            self.list[i].findings = Some(counts);
+        }
+    }
+
+    /// What the checks found in a version, and how many more or fewer than in the one before it that was checked: "3 errors,
+    /// 2 warnings (4 fewer)". None as long as it was not checked.
+    pub fn findings_in_words(&self, i: usize) -> Option<String> {
+        let now = self.list.get(i)?.findings?;
+        let count = |n: usize, what: &str| match n {
+            0 => None,
+            1 => Some(format!("1 {what}")),
+            n => Some(format!("{n} {what}s")),
+        };
+        let parts: Vec<String> = [count(now.errors, "error"), count(now.warnings, "warning")]
+            .into_iter()
+            .flatten()
+            .collect();
+        let text = if parts.is_empty() {
+            "no findings".to_owned()
+        } else {
+            parts.join(", ")
+        };
+        let all = |c: Counts| c.errors + c.warnings;
+        let before = self.list[..i].iter().rev().find_map(|v| v.findings);
+        Some(match before.map(|b| (all(now), all(b))) {
+            Some((now, before)) if now > before => format!("{text} ({} more)", now - before),
+            Some((now, before)) if now < before => format!("{text} ({} fewer)", before - now),
+            _ => text,
+        })
+    }
 
     /// Adds a version, unless the newest is the same; the oldest that is not starred may have to go.
     pub fn push(&mut self, label: String, note: String, scene: Arc<Scene>) {
@@ -221,6 +259,38 @@ mod tests {
     fn scene() -> Arc<Scene> {
         let frame = Frame::new(Default::default(), Default::default(), VoxelGrid::new());
         Arc::new(Scene::single("s", frame, Arc::default(), 0))
+    }
+
+    #[test]
+    fn findings_are_kept_with_each_version() {
+        let mut versions = Versions::default();
+        let counts = |errors, warnings| Counts {
+            errors,
+            warnings,
+            infos: 9,
+        };
+        let scenes: Vec<_> = (0..3).map(|_| scene()).collect();
+        for scene in &scenes {
+            versions.push("edit".into(), String::new(), scene.clone());
+        }
+        versions.note_findings(scenes[0].content(), counts(1, 3));
+        versions.note_findings(scenes[2].content(), counts(0, 1));
+        versions.note_findings(SceneRev::fresh(), counts(7, 7));
+        assert_eq!(
+            versions.findings_in_words(0).as_deref(),
+            Some("1 error, 3 warnings")
+        );
+        assert_eq!(versions.findings_in_words(1), None);
+        assert_eq!(
+            versions.findings_in_words(2).as_deref(),
+            Some("1 warning (3 fewer)")
+        );
+        versions.note_findings(scenes[2].content(), counts(0, 0));
+        assert_eq!(
+            versions.findings_in_words(2).as_deref(),
+            Some("no findings (4 fewer)")
+        );
+        assert_eq!(versions.findings_in_words(9), None);
     }
 
     #[test]

@@ -142,6 +142,9 @@ impl SceneloomApp {
             .checking
             .findings()
             .map(|all| Counts::of(waive::open(settled.frame(), all)));
+        if let Some(counts) = findings.filter(|_| !self.threads.checking.is_stale(settled.rev)) {
+            self.generation.versions.note_findings(settled.content(), counts);
+        }
         let status = StatusInput {
             findings,
             running: self.generation.live.running.as_ref(),

@@ -381,6 +381,26 @@ fn poor_maps_have_no_roads_and_poor_lines_make_none() {
     all.apply(&mut scene).expect("sound");
     let net = network_of(&scene);
     assert!(net.problem().is_none());
+    // Strewn about without order, by a simple generator: no network, or a sound one, and soon.
+    for step in [3u64, 7, 11, 2] {
+        let mut scene = empty();
+        let mut state = step;
+        let strewn = Extent::WINDOW.all_columns().filter(|_| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % step.max(3) != 0
+        });
+        let paint = Edit::PaintBev {
+            layer: BevLayer::DrivableArea,
+            shape: Shape::Cells(strewn.collect()),
+            value: true,
+        };
+        paint.apply(&mut scene).expect("sound");
+        let net = network_of(&scene);
+        assert!(net.problem().is_none());
+        net.draw(Extent::WINDOW);
+    }
 }
 
 #[test]

@@ -554,3 +554,8 @@ fn what_is_kept_is_no_part_of_the_scene() {
         assert!(line.contains(expected), "{line}");
     }
 }
+
+#[test]
+fn write_v7_once() {
+    std::fs::write(bundled(7), to_bytes(&sample(7)).expect("sound")).expect("written");
+}

@@ -43,7 +43,8 @@ pub(super) fn read(layout: &BevLayout, middle_m: &[DVec2]) -> Option<Across> {
     let length_m = curve::length_m(middle_m);
     let count = (length_m / STATION_M).floor().clamp(1.0, 400.0) as usize;
     let at = |k: usize| curve::at(middle_m, length_m * (k as f64 + 0.5) / count as f64);
-    let sections: Vec<Section> = (0..count).filter_map(|k| section(layout, at(k))).collect();
+    let near = near_lines(layout, middle_m);
+    let sections: Vec<Section> = (0..count).filter_map(|k| section(layout, &near, at(k))).collect();
     if sections.is_empty() {
         return None;
     }
@@ -110,7 +111,25 @@ fn guess(width_m: f64, divided: bool) -> [usize; 2] {
     }
 }
 
-fn section(layout: &BevLayout, (at, way): (DVec2, DVec2)) -> Option<Section> {
+/// A piece of a lane middle (true) or of a road divider.
+type Piece = (bool, [DVec2; 2]);
+
+/// Pieces of lines that may pass through sections of a road.
+fn near_lines(layout: &BevLayout, middle_m: &[DVec2]) -> Vec<Piece> {
+    let low = middle_m.iter().copied().reduce(DVec2::min).unwrap_or_default() - REACH_M;
+    let high = middle_m.iter().copied().reduce(DVec2::max).unwrap_or_default() + REACH_M;
+    let lines = layout.polylines.iter().filter_map(|line| match line.kind {
+        PolylineKind::LaneCenter => Some((true, line)),
+        PolylineKind::RoadDivider => Some((false, line)),
+        _ => None,
+    });
+    let pieces = lines.flat_map(|(lane, line)| line.points_m.array_windows::<2>().map(move |p| (lane, *p)));
+    pieces
+        .filter(|(_, [a, b])| a.max(*b).cmpge(low).all() && a.min(*b).cmple(high).all())
+        .collect()
+}
+
+fn section(layout: &BevLayout, near: &[Piece], (at, way): (DVec2, DVec2)) -> Option<Section> {
     let extent = layout.extent();
     let left = way.perp();
     let has = |off: f64, layer: BevLayer| {
@@ -148,24 +167,19 @@ fn section(layout: &BevLayout, (at, way): (DVec2, DVec2)) -> Option<Section> {
     let (right, left_side) = (side(-1.0)?, side(1.0)?);
     let kerbs = [-right[0], left_side[0]];
     let (mut lanes, mut divide) = (Vec::new(), None);
-    for line in layout.polylines.iter() {
-        if !matches!(line.kind, PolylineKind::LaneCenter | PolylineKind::RoadDivider) {
+    for (is_lane, [a, b]) in near {
+        let (da, db) = ((*a - at).dot(way), (*b - at).dot(way));
+        if (da <= 0.0) == (db <= 0.0) {
             continue;
         }
-        for [a, b] in line.points_m.array_windows::<2>() {
-            let (da, db) = ((*a - at).dot(way), (*b - at).dot(way));
-            if (da <= 0.0) == (db <= 0.0) {
-                continue;
-            }
-            let p = a.lerp(*b, da / (da - db));
-            let (off, heading) = ((p - at).dot(left), (*b - *a).normalize_or_zero().dot(way));
-            if off < kerbs[0] || off > kerbs[1] || heading.abs() < 0.8 {
-                continue;
-            }
-            match line.kind {
-                PolylineKind::LaneCenter => lanes.push((off, heading > 0.0)),
-                _ => divide = Some(off),
-            }
+        let p = a.lerp(*b, da / (da - db));
+        let (off, heading) = ((p - at).dot(left), (*b - *a).normalize_or_zero().dot(way));
+        if off < kerbs[0] || off > kerbs[1] || heading.abs() < 0.8 {
+            continue;
+        }
+        match is_lane {
+            true => lanes.push((off, heading > 0.0)),
+            false => divide = Some(off),
         }
     }
     lanes.sort_by(|a, b| a.0.total_cmp(&b.0));

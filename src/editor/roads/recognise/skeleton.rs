@@ -1,5 +1,7 @@
 //! The middle of what is paved as a graph: thinned to lines of one column, traced, and freed of spurs.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 
 use scene::Extent;
@@ -9,6 +11,8 @@ use super::mask::Mask;
 /// A spur is shorter than so many times the road is deep where it begins, and this, m.
 const SPUR: f64 = 1.35;
 const SPUR_M: f64 = 2.0;
+/// More lines than this are no roads.
+const MOST: usize = 5000;
 /// Junctions nearer than so many times the road is deep there are one.
 const ONE: f64 = 1.25;
 
@@ -48,6 +52,13 @@ pub(super) struct Graph {
 }
 
 impl Graph {
+    /// How many ends of chains are at each knot.
+    fn degrees(&self) -> Vec<usize> {
+        let mut out = vec![0; self.knots.len()];
+        self.chains.iter().flat_map(|c| c.ends).for_each(|e| out[e] += 1);
+        out
+    }
+
     /// Chains at a knot; one that ends there twice is counted twice.
     pub fn degree(&self, knot: usize) -> usize {
         self.chains
@@ -62,6 +73,10 @@ impl Graph {
 pub(super) fn trace(mask: &Mask) -> Graph {
     let thin = thinned(mask);
     let mut graph = walk(mask, &thin);
+    // What is strewn about is no network.
+    if graph.chains.len() > MOST {
+        return Graph::default();
+    }
     prune(&mut graph, mask);
     contract(&mut graph);
     merge_joints(&mut graph);
@@ -167,18 +182,18 @@ fn walk(mask: &Mask, thin: &[bool]) -> Graph {
         Some((way, knot_of[now]))
     };
     let mut chains = Vec::new();
+    let mut followed = vec![false; thin.len()];
     for (k, part) in parts.iter().enumerate() {
         for (i, first) in part
             .iter()
             .flat_map(|i| near(*i).into_iter().map(move |n| (*i, n)))
         {
-            if knot_of[first] == k
-                || (knot_of[first] != usize::MAX && knot_of[first] < k)
-                || seen_of(&chains, first)
+            if knot_of[first] == k || (knot_of[first] != usize::MAX && knot_of[first] < k) || followed[first]
             {
                 continue;
             }
             if let Some((way, end)) = follow(i, first, &knot_of, &mut reached) {
+                way.iter().for_each(|i| followed[*i] = true);
                 chains.push(([k, end], way));
             }
         }
@@ -210,33 +225,35 @@ fn walk(mask: &Mask, thin: &[bool]) -> Graph {
     graph
 }
 
-fn seen_of(chains: &[([usize; 2], Vec<usize>)], cell: usize) -> bool {
-    chains
-        .iter()
-        .any(|(_, way)| way.len() > 3 && way[way.len() - 2] == cell)
-}
-
-/// Takes spurs away, the shortest first: lines to a free end that only lead to a corner of what is paved.
+/// Takes spurs away: lines to a free end that only lead to a corner of what is paved. At each knot the shortest goes first, and
+/// what is left is looked at again.
 fn prune(graph: &mut Graph, mask: &Mask) {
     loop {
-        let spur = |c: &Chain| {
-            let free = c.ends.iter().position(|e| graph.degree(*e) == 1)?;
-            let (tip, root) = (c.ends[free], c.ends[1 - free]);
-            if graph.degree(root) < 3 || !mask.is_on_map(graph.knots[tip].at_m) {
-                return None;
+        let degrees = graph.degrees();
+        let mut shortest: BTreeMap<usize, (f64, usize)> = BTreeMap::new();
+        for (i, chain) in graph.chains.iter().enumerate() {
+            let Some(free) = chain.ends.iter().position(|e| degrees[*e] == 1) else {
+                continue;
+            };
+            let (tip, root) = (chain.ends[free], chain.ends[1 - free]);
+            if degrees[root] < 3 || !mask.is_on_map(graph.knots[tip].at_m) {
+                continue;
             }
-            let length_m = c.length_m();
-            (length_m < SPUR * graph.knots[root].depth_m + SPUR_M).then_some(length_m)
-        };
-        let all = graph
-            .chains
-            .iter()
-            .enumerate()
-            .filter_map(|(i, c)| Some((spur(c)?, i)));
-        let Some((_, i)) = all.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            let length_m = chain.length_m();
+            let best = shortest.entry(root).or_insert((f64::INFINITY, i));
+            if length_m < SPUR * graph.knots[root].depth_m + SPUR_M && length_m < best.0 {
+                *best = (length_m, i);
+            }
+        }
+        shortest.retain(|_, (length_m, _)| length_m.is_finite());
+        if shortest.is_empty() {
             return;
-        };
-        graph.chains.remove(i);
+        }
+        let mut gone: Vec<usize> = shortest.into_values().map(|s| s.1).collect();
+        gone.sort_unstable();
+        for i in gone.into_iter().rev() {
+            graph.chains.remove(i);
+        }
         merge_joints(graph);
     }
 }
@@ -244,10 +261,11 @@ fn prune(graph: &mut Graph, mask: &Mask) {
 /// Makes knots one that are nearer to each other than the road is wide.
 fn contract(graph: &mut Graph) {
     loop {
+        let degrees = graph.degrees();
         let short = graph.chains.iter().position(|c| {
             let [a, b] = c.ends;
             let deep = graph.knots[a].depth_m.max(graph.knots[b].depth_m);
-            a != b && graph.degree(a) > 2 && graph.degree(b) > 2 && c.length_m() < ONE * deep
+            a != b && degrees[a] > 2 && degrees[b] > 2 && c.length_m() < ONE * deep
         });
         let Some(i) = short else { return };
         let [a, b] = graph.chains.remove(i).ends;
@@ -266,16 +284,21 @@ fn contract(graph: &mut Graph) {
 
 /// Two chains that meet at a knot where nothing else does are one.
 pub(super) fn merge_joints(graph: &mut Graph) {
-    for knot in 0..graph.knots.len() {
-        let here: Vec<usize> = (0..graph.chains.len())
-            .filter(|i| graph.chains[*i].ends.contains(&knot))
-            .collect();
-        let [a, b] = here.as_slice() else { continue };
-        if graph.degree(knot) != 2 {
+    let mut chains: Vec<Option<Chain>> = graph.chains.drain(..).map(Some).collect();
+    let mut at: Vec<Vec<usize>> = vec![Vec::new(); graph.knots.len()];
+    for (i, chain) in chains.iter().enumerate() {
+        for end in chain.iter().flat_map(|c| c.ends) {
+            at[end].push(i);
+        }
+    }
+    for knot in 0..at.len() {
+        let [a, b] = at[knot][..] else { continue };
+        if a == b {
             continue;
         }
-        let mut second = graph.chains.remove(*b);
-        let mut first = graph.chains.remove(*a);
+        let (Some(mut first), Some(mut second)) = (chains[a].take(), chains[b].take()) else {
+            continue;
+        };
         if first.ends[1] != knot {
             first.points_m.reverse();
             first.ends.reverse();
@@ -286,6 +309,12 @@ pub(super) fn merge_joints(graph: &mut Graph) {
         }
         first.points_m.extend(second.points_m.into_iter().skip(1));
         first.ends[1] = second.ends[1];
-        graph.chains.push(first);
+        at[knot].clear();
+        at[second.ends[1]]
+            .iter_mut()
+            .filter(|i| **i == b)
+            .for_each(|i| *i = a);
+        chains[a] = Some(first);
     }
+    graph.chains = chains.into_iter().flatten().collect();
 }
