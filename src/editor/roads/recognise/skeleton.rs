@@ -193,7 +193,7 @@ fn walk(mask: &Mask, thin: &[bool]) -> Graph {
                 continue;
             }
             if let Some((way, end)) = follow(i, first, &knot_of, &mut reached) {
-                way.iter().for_each(|i| followed[*i] = true);
+                way[1..way.len() - 1].iter().for_each(|i| followed[*i] = true);
                 chains.push(([k, end], way));
             }
         }
