@@ -180,6 +180,16 @@ def add_polylines(*, lines: Sequence[types.Polyline]) -> types.EditAddPolylines:
     return cast('types.EditAddPolylines', {"add_polylines": args})
 
 
+def change_roads(*, change: types.RoadChange) -> types.EditChangeRoads:
+    """Changes the road network. What it draws differently from before is drawn anew: layers, lines,
+    ground. In a scene that has no network yet, what is painted is recognised first.
+
+    change: What is changed.
+    """
+    args = _given({'change': change}, ['change'])
+    return cast('types.EditChangeRoads', {"change_roads": args})
+
+
 def paint_voxels(*, cells: Sequence[Sequence[int]], class_: types.Class) -> types.EditPaintVoxels:
     """Sets voxels to a class (`free` removes them) and locks them.
 

@@ -488,6 +488,23 @@ EditAddPolylines = TypedDict(
     },
 )
 
+EditChangeRoadsArgs = TypedDict(
+    'EditChangeRoadsArgs',
+    {
+        # What is changed.
+        'change': 'RoadChange',
+    },
+)
+
+# Changes the road network. What it draws differently from before is drawn anew: layers, lines, ground. In a
+# scene that has no network yet, what is painted is recognised first.
+EditChangeRoads = TypedDict(
+    'EditChangeRoads',
+    {
+        'change_roads': 'EditChangeRoadsArgs',
+    },
+)
+
 EditPaintVoxelsArgs = TypedDict(
     'EditPaintVoxelsArgs',
     {
@@ -815,7 +832,7 @@ EditSetRig = TypedDict(
 
 # One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 # `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
-Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
+Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
 
 # Receipt of `export`.
 Exported = TypedDict(
@@ -992,6 +1009,9 @@ Key = TypedDict(
         'yaw_deg': 'float',
     },
 )
+
+# What a lane is for.
+LaneKind: TypeAlias = "Literal['drive', 'bus', 'bicycle', 'shoulder', 'parking', 'walk', 'verge']"
 
 LensDistortedArgs = TypedDict(
     'LensDistortedArgs',
@@ -1236,6 +1256,46 @@ Moved = TypedDict(
     },
 )
 
+# Number of a node in its network.
+NodeId: TypeAlias = 'int'
+
+NodeKindPlainArgs = TypedDict(
+    'NodeKindPlainArgs',
+    {
+        # Radius of the kerb at its corners, m.
+        'corner_m': 'float',
+    },
+)
+
+# An end, a joint, or a junction with rounded corners.
+NodeKindPlain = TypedDict(
+    'NodeKindPlain',
+    {
+        'plain': 'NodeKindPlainArgs',
+    },
+)
+
+NodeKindRoundaboutArgs = TypedDict(
+    'NodeKindRoundaboutArgs',
+    {
+        # Radius of the island, m.
+        'island_m': 'float',
+        # Width of the ring, m.
+        'ring_m': 'float',
+    },
+)
+
+# A ring around an island, driven counter-clockwise.
+NodeKindRoundabout = TypedDict(
+    'NodeKindRoundabout',
+    {
+        'roundabout': 'NodeKindRoundaboutArgs',
+    },
+)
+
+# What is where roads meet.
+NodeKind: TypeAlias = 'NodeKindPlain | NodeKindRoundabout'
+
 # Words that had no effect.
 NotUnderstood = TypedDict(
     'NotUnderstood',
@@ -1411,6 +1471,365 @@ Rendered = TypedDict(
         'wall_s': 'dict[str, float]',
     },
 )
+
+# A road between two nodes, world frame.
+Road = TypedDict(
+    'Road',
+    {
+        # Crossings.
+        'crossings': 'NotRequired[Sequence[RoadCrossing]]',
+        # Where its reference line begins and ends.
+        'ends': 'Sequence[NodeId]',
+        # Its number.
+        'id': 'RoadId',
+        # Lanes left of the line, from the line outward; driven against it.
+        'left': 'NotRequired[Sequence[RoadLane]]',
+        # Speed limit, km/h.
+        'limit_kph': 'NotRequired[float | None]',
+        # Lanes right of the line, from the line outward; driven along it.
+        'right': 'Sequence[RoadLane]',
+        # Lines to halt at.
+        'stops': 'NotRequired[Sequence[RoadStop]]',
+        # Points between, through which the line runs in a smooth curve, m.
+        'via_m': 'NotRequired[Sequence[Sequence[float]]]',
+    },
+)
+
+# Takes what is painted and not in the network yet for roads. No cell changes.
+RoadChangeRecognise = TypedDict(
+    'RoadChangeRecognise',
+    {
+        'recognise': 'dict[str, Any]',
+    },
+)
+
+RoadChangeAddArgs = TypedDict(
+    'RoadChangeAddArgs',
+    {
+        # Lanes left of the line, from the line outward; driven against it.
+        'left': 'NotRequired[Sequence[RoadLane]]',
+        # Speed limit, km/h.
+        'limit_kph': 'NotRequired[float | None]',
+        # Its reference line, m; at least two points.
+        'points_m': 'Sequence[Sequence[float]]',
+        # Lanes right of the line, from the line outward; driven along it.
+        'right': 'Sequence[RoadLane]',
+    },
+)
+
+# Lays a road along points; where it meets or crosses others there are junctions.
+RoadChangeAdd = TypedDict(
+    'RoadChangeAdd',
+    {
+        'add': 'RoadChangeAddArgs',
+    },
+)
+
+RoadChangePutArgs = TypedDict(
+    'RoadChangePutArgs',
+    {
+        # The road of that number from now on; its ends stay.
+        'road': 'Road',
+    },
+)
+
+# Gives a road another course, other lanes, marks or limit.
+RoadChangePut = TypedDict(
+    'RoadChangePut',
+    {
+        'put': 'RoadChangePutArgs',
+    },
+)
+
+RoadChangePutNodeArgs = TypedDict(
+    'RoadChangePutNodeArgs',
+    {
+        # The node of that number from now on.
+        'node': 'RoadNode',
+    },
+)
+
+# Moves a node, or makes it a roundabout or a plain junction.
+RoadChangePutNode = TypedDict(
+    'RoadChangePutNode',
+    {
+        'put_node': 'RoadChangePutNodeArgs',
+    },
+)
+
+RoadChangeSplitArgs = TypedDict(
+    'RoadChangeSplitArgs',
+    {
+        # Near which point of it, m.
+        'at_m': 'Sequence[float]',
+        # The road.
+        'id': 'RoadId',
+    },
+)
+
+# Makes two roads of one.
+RoadChangeSplit = TypedDict(
+    'RoadChangeSplit',
+    {
+        'split': 'RoadChangeSplitArgs',
+    },
+)
+
+RoadChangeJoinArgs = TypedDict(
+    'RoadChangeJoinArgs',
+    {
+        # The node.
+        'node': 'NodeId',
+    },
+)
+
+# Makes one road of the two that meet at a node; the lanes are those of the longer one.
+RoadChangeJoin = TypedDict(
+    'RoadChangeJoin',
+    {
+        'join': 'RoadChangeJoinArgs',
+    },
+)
+
+RoadChangeConnectArgs = TypedDict(
+    'RoadChangeConnectArgs',
+    {
+        # The node that goes.
+        'node': 'NodeId',
+        # The node that stays.
+        'to': 'NodeId',
+    },
+)
+
+# Makes two nodes one: their roads meet.
+RoadChangeConnect = TypedDict(
+    'RoadChangeConnect',
+    {
+        'connect': 'RoadChangeConnectArgs',
+    },
+)
+
+RoadChangeStraightenArgs = TypedDict(
+    'RoadChangeStraightenArgs',
+    {
+        # The road.
+        'id': 'RoadId',
+    },
+)
+
+# Lets a road run straight from end to end.
+RoadChangeStraighten = TypedDict(
+    'RoadChangeStraighten',
+    {
+        'straighten': 'RoadChangeStraightenArgs',
+    },
+)
+
+RoadChangeRemoveArgs = TypedDict(
+    'RoadChangeRemoveArgs',
+    {
+        # The road.
+        'id': 'RoadId',
+    },
+)
+
+# Takes a road away.
+RoadChangeRemove = TypedDict(
+    'RoadChangeRemove',
+    {
+        'remove': 'RoadChangeRemoveArgs',
+    },
+)
+
+RoadChangeWishArgs = TypedDict(
+    'RoadChangeWishArgs',
+    {
+        # Where, m: the nearest road is meant.
+        'at_m': 'Sequence[float]',
+        # Which way one looks there, degrees counter-clockwise from x: right and ahead are meant so.
+        'heading_deg': 'NotRequired[float]',
+        # What.
+        'wish': 'RoadWish',
+    },
+)
+
+# What a person asks of the street at a place, whatever the numbers of its roads are.
+RoadChangeWish = TypedDict(
+    'RoadChangeWish',
+    {
+        'wish': 'RoadChangeWishArgs',
+    },
+)
+
+RoadChangeRedrawArgs = TypedDict(
+    'RoadChangeRedrawArgs',
+    {
+        # The road.
+        'id': 'RoadId',
+    },
+)
+
+# Draws a road anew: what was painted on it goes.
+RoadChangeRedraw = TypedDict(
+    'RoadChangeRedraw',
+    {
+        'redraw': 'RoadChangeRedrawArgs',
+    },
+)
+
+# A change of the network. Numbers are those of the network as it is; of a scene without one, those of what is
+# recognised.
+RoadChange: TypeAlias = 'RoadChangeRecognise | RoadChangeAdd | RoadChangePut | RoadChangePutNode | RoadChangeSplit | RoadChangeJoin | RoadChangeConnect | RoadChangeStraighten | RoadChangeRemove | RoadChangeWish | RoadChangeRedraw'
+
+# A crossing over a road.
+RoadCrossing = TypedDict(
+    'RoadCrossing',
+    {
+        # Where its middle is, m along the reference line from its beginning.
+        'at_m': 'float',
+        # How wide it is along the road, m.
+        'width_m': 'float',
+    },
+)
+
+# Number of a road in its network.
+RoadId: TypeAlias = 'int'
+
+# One lane of a road.
+RoadLane = TypedDict(
+    'RoadLane',
+    {
+        # What it is for.
+        'kind': 'LaneKind',
+        # How wide it is, m.
+        'width_m': 'float',
+    },
+)
+
+# Where roads end or meet, world frame.
+RoadNode = TypedDict(
+    'RoadNode',
+    {
+        # Where it is, m.
+        'at_m': 'Sequence[float]',
+        # Its number.
+        'id': 'NodeId',
+        # What it is.
+        'kind': 'NotRequired[NodeKind]',
+    },
+)
+
+# A line at which one side of a road halts.
+RoadStop = TypedDict(
+    'RoadStop',
+    {
+        # Where, m along the reference line from its beginning.
+        'at_m': 'float',
+        # True: the lanes on the right, which are driven along the line.
+        'right': 'bool',
+    },
+)
+
+RoadWishLanesArgs = TypedDict(
+    'RoadWishLanesArgs',
+    {
+        # How many, 1 to 12.
+        'count': 'int',
+    },
+)
+
+# So many lanes for cars in both directions together; as many on the right as on the left, or one more.
+RoadWishLanes = TypedDict(
+    'RoadWishLanes',
+    {
+        'lanes': 'RoadWishLanesArgs',
+    },
+)
+
+# Traffic in the direction in which one looks alone; its lanes stay as many as they are in all.
+RoadWishOneWay = TypedDict(
+    'RoadWishOneWay',
+    {
+        'one_way': 'dict[str, Any]',
+    },
+)
+
+RoadWishWidthsArgs = TypedDict(
+    'RoadWishWidthsArgs',
+    {
+        # How many times.
+        'times': 'float',
+    },
+)
+
+# Lanes for cars so many times as wide, 2.4 to 5 m.
+RoadWishWidths = TypedDict(
+    'RoadWishWidths',
+    {
+        'widths': 'RoadWishWidthsArgs',
+    },
+)
+
+RoadWishBesideArgs = TypedDict(
+    'RoadWishBesideArgs',
+    {
+        # Its kind.
+        'kind': 'LaneKind',
+        # True: on the right, as one looks; both sides if left out.
+        'right': 'NotRequired[bool | None]',
+    },
+)
+
+# A lane of a kind beside those for cars.
+RoadWishBeside = TypedDict(
+    'RoadWishBeside',
+    {
+        'beside': 'RoadWishBesideArgs',
+    },
+)
+
+RoadWishWithoutArgs = TypedDict(
+    'RoadWishWithoutArgs',
+    {
+        # Its kind.
+        'kind': 'LaneKind',
+    },
+)
+
+# No lane of a kind on either side.
+RoadWishWithout = TypedDict(
+    'RoadWishWithout',
+    {
+        'without': 'RoadWishWithoutArgs',
+    },
+)
+
+# No bends.
+RoadWishStraight = TypedDict(
+    'RoadWishStraight',
+    {
+        'straight': 'dict[str, Any]',
+    },
+)
+
+# A roundabout at the next junction ahead, or on the street where there is none.
+RoadWishRoundabout = TypedDict(
+    'RoadWishRoundabout',
+    {
+        'roundabout': 'dict[str, Any]',
+    },
+)
+
+# A plain junction in place of the next roundabout.
+RoadWishJunction = TypedDict(
+    'RoadWishJunction',
+    {
+        'junction': 'dict[str, Any]',
+    },
+)
+
+# What can be asked of a street as a whole: of all roads that go on in each other.
+RoadWish: TypeAlias = 'RoadWishLanes | RoadWishOneWay | RoadWishWidths | RoadWishBeside | RoadWishWithout | RoadWishStraight | RoadWishRoundabout | RoadWishJunction'
 
 # Lines of the map, world frame, m; long ones are thinned out.
 Roads = TypedDict(
