@@ -116,7 +116,8 @@ pub fn at(points_m: &[DVec2], along_m: f64) -> (DVec2, DVec2) {
 /// The part of a line between two distances along it, m; empty if there is none.
 pub fn part(points_m: &[DVec2], from_m: f64, to_m: f64) -> Vec<DVec2> {
     let (from_m, to_m) = (from_m.max(0.0), to_m.min(length_m(points_m)));
-    if !(to_m - from_m > APART_M) {
+    let is_some = to_m - from_m > APART_M;
+    if !is_some {
         return Vec::new();
     }
     let mut out = vec![at(points_m, from_m).0];

@@ -435,7 +435,10 @@ impl Road {
             .map(|c| c.at_m)
             .chain(self.stops.iter().map(|s| s.at_m));
         let widths = self.crossings.iter().map(|c| c.width_m);
-        if let Some(v) = places.chain(widths).find(|v| !(v.abs() <= SceneBox::LIMIT_M)) {
+        if let Some(v) = places
+            .chain(widths)
+            .find(|v| !(-SceneBox::LIMIT_M..=SceneBox::LIMIT_M).contains(v))
+        {
             return Some(format!(
                 "{name} has a crossing or stop line at {v} m, expected a number within 10000 m"
             ));

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::close_holes::{close_holes, close_new_holes};
+use crate::close_holes::{close_holes, close_holes_of_edit};
 use crate::composite::{composite, seam_change_share, untouched_hash, untouched_voxels_changed};
 use crate::contract::{
     GenError, GenParams, GenReport, GenResult, Job, JobCtx, Named, Pipeline, Quality, RegionMode, Stage,
@@ -464,11 +464,8 @@ impl OccPipeline {
             report.ground_kept = keep_ground(frame, &region, &mut generated);
             report.unobserved_kept = keep_unobserved(frame, &region, inpainted, &request, &mut generated);
             report.invented_cleared = keep_clear(frame, &region, inpainted, &request, &mut generated);
-            if is_new && named.completeness.is_some_and(|share| share >= COMPLETE) {
-                report.holes_closed = close_holes(&frame.layout, &mut generated);
-            } else {
-                report.holes_closed = close_new_holes(&frame.layout, before, &mut generated);
-            }
+            let complete = is_new && named.completeness.is_some_and(|share| share >= COMPLETE);
+            report.holes_closed = close_holes_of_edit(&frame.layout, before, complete, &mut generated);
             report.grounded(keep_grounded(frame, &region, false, &request, &mut generated));
         }
         let result = self.finish(job, before, &generated, &region, &mut report);
