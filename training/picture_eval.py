@@ -186,7 +186,7 @@ def strip(pictures):
     return np.concatenate(list(pictures), 1)
 
 
-def write_sheets(trainer, folder, per_sheet=3, sheets=3):
+def write_sheets(trainer, folder, per_sheet=2, sheets=3):
     """JPEG sheets of held-out frames, six views wide: what was asked for, the render, drawn from noise alone, and drawn after that a moment later
     (with the render of that moment above it)."""
     chosen = spread(trainer, per_sheet * (sheets - 1))

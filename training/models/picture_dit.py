@@ -107,7 +107,9 @@ class Told(nn.Module):
 
 def rows(index, table):
     """Rows of a short table by a product with ones and zeros: on a card the gradient of a look-up of millions in a few rows takes far longer."""
-    hot = (index[..., None] == torch.arange(len(table), device=index.device, dtype=index.dtype)).to(table.dtype)
+    kind = index.device.type
+    dtype = torch.get_autocast_dtype(kind) if torch.is_autocast_enabled(kind) else table.dtype
+    hot = (index[..., None] == torch.arange(len(table), device=index.device, dtype=index.dtype)).to(dtype)
     return hot @ table
 
 

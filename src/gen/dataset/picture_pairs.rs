@@ -1,17 +1,17 @@
 //! Two moments of a drive as six cameras see them, and what the voxels alone tell of each pixel: for the network that draws pictures.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use safetensors::tensor::Dtype;
 
 use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera, place_of};
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
-    BevLayout, Camera, CameraTruth, Conditions, Frame, PolylineKind, Pose, SceneBox, SensorRig, TimeOfDay,
-    VoxelGrid, Weather,
+    BevLayout, Camera, CameraTruth, Conditions, Frame, PolylineKind, Pose, SensorRig, TimeOfDay, VoxelGrid,
+    Weather,
 };
-use sensors::appearance::Appearance;
 pub use sensors::appearance::Quality;
-use sensors::march::{GroundHeight, MarchOptions, MarchScene};
+use sensors::appearance::{Appearance, light_direction};
+use sensors::picture_hints::{HintedFrame, PictureHints};
 use world::World;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
@@ -24,13 +24,6 @@ const WAY_M: [f64; 2] = [0.5, 2.5];
 const STEP_M: f64 = 1.0;
 /// How far from the middle of the map a place is wanted, along x and y, m.
 const AROUND_M: f64 = 12.0;
-/// Directions that a box may face, as seen along a ray.
-const FACINGS: f64 = 16.0;
-/// A voxel of a box lies in it, or this far outside, m.
-const MARGIN_M: f64 = 0.35;
-/// Flag of a pixel whose left or upper neighbour shows another box.
-pub const EDGE: u8 = 0x80;
-
 /// How pictures are made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
@@ -40,17 +33,6 @@ pub struct Look {
     pub quality: Quality,
 }
 
-/// What the voxels, and the boxes around them, tell of a picture; planes are row-major, `height * width` values each.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
-    /// Render id of what the ray through a pixel's middle meets, 0 where it meets nothing.
-    pub class: Vec<u8>,
-    /// Depth of it along the optical axis, m; 0 where there is nothing.
-    pub depth_m: Vec<f32>,
-    /// Of a box's voxels 1 + how it faces: its heading against the ray in sixteenths of a turn; and [`EDGE`]. 0 elsewhere.
-    pub facing: Vec<u8>,
-}
-
 /// What one moment's cameras see.
 pub struct PictureMoment {
     /// Of each camera, sRGB, three bytes a pixel.
@@ -58,7 +40,7 @@ pub struct PictureMoment {
     /// Of each camera.
     pub truth: Vec<CameraTruth>,
     /// Of each camera.
-    pub told: Vec<Told>,
+    pub told: Vec<PictureHints>,
     /// Of each camera, where sun or moon stand, a unit vector in the optical frame.
     pub sun: Vec<[f32; 3]>,
 }
@@ -73,66 +55,6 @@ pub struct PicturePair {
     pub moments: [PictureMoment; MOMENTS],
 }
 
-/// What a rig's cameras are told of a frame.
-pub struct Teller<'a> {
-    scene: MarchScene,
-    boxes: Vec<&'a SceneBox>,
-}
-
-impl<'a> Teller<'a> {
-    /// Makes a frame ready: voxels with the ground at its physical height, paint on the road, boxes for their headings.
-    pub fn new(frame: &'a Frame) -> Self {
-        let options = MarchOptions {
-            ground: GroundHeight::Physical,
-            boxes: false,
-            lines: true,
-            seed: 0,
-        };
-        Self {
-            scene: MarchScene::new(&frame.occupancy, &frame.layout, &frame.boxes, &options),
-            boxes: frame.boxes.values().collect(),
-        }
-    }
-
-    /// Of each pixel of a camera at a size in px.
-    pub fn of(&self, camera: &Camera, [width, height]: [u32; 2]) -> Told {
-        let (w, maps) = (width as usize, self.scene.render(camera, width, height));
-        let sized = camera.resized(width, height);
-        let (pose, [fx, fy], [cx, cy]) = (sized.ego_from_camera(), sized.focal_px, sized.center_px);
-        let mut told = Told::default();
-        let mut owners: Vec<Option<usize>> = Vec::with_capacity(maps.hits.len());
-        for (i, hit) in maps.hits.iter().enumerate() {
-            told.class.push(hit.as_ref().map_or(0, |h| h.id));
-            told.depth_m.push(hit.as_ref().map_or(0.0, |h| h.t as f32));
-            let (u, v) = ((i % w) as f64 + 0.5, (i / w) as f64 + 0.5);
-            let way = pose.rotation * DVec3::new((u - cx) / fx, (v - cy) / fy, 1.0);
-            let owner = hit.as_ref().filter(|h| (1..11).contains(&h.id)).and_then(|h| {
-                let p = pose.translation_m + way * h.t;
-                self.boxes
-                    .iter()
-                    .position(|b| b.class.id() == h.id && is_in(b, p))
-            });
-            let other = |back: usize, inside: bool| inside && owners[i - back] != owner;
-            let facing = owner.map_or(0, |o| {
-                let turn = (self.boxes[o].yaw_rad - way.y.atan2(way.x)) / std::f64::consts::TAU;
-                let edge = other(1, i % w > 0) || other(w, i >= w);
-                let sector = (turn * FACINGS).round().rem_euclid(FACINGS) as u8;
-                1 + sector + if edge { EDGE } else { 0 }
-            });
-            told.facing.push(facing);
-            owners.push(owner);
-        }
-        told
-    }
-}
-
-/// True for a point in a box or close to it.
-fn is_in(b: &SceneBox, p: DVec3) -> bool {
-    let (ahead, off) = (b.heading(), p - b.center_m);
-    let local = DVec3::new(off.truncate().dot(ahead), off.truncate().dot(ahead.perp()), off.z);
-    local.abs().cmple(b.size_m / 2.0 + MARGIN_M).all()
-}
-
 /// Frame `index` of the data set of `seed`; the same arguments give the same frame.
 pub fn picture_pair(
     seed: u64,
@@ -142,7 +64,7 @@ pub fn picture_pair(
 ) -> PicturePair {
     let (world, seed) = world_of(seed, index, roads);
     let frame = frame_of(&world);
-    let teller = Teller::new(&frame);
+    let teller = HintedFrame::new(&frame);
     let mut draw = Draw::new(seed, "picture pairs");
     let time = TimeOfDay::ALL[draw.weighted(&[0.16, 0.46, 0.16, 0.22])];
     let weather = Weather::ALL[draw.weighted(&[0.32, 0.18, 0.2, 0.14, 0.1, 0.06])];
@@ -165,7 +87,7 @@ fn frame_of(world: &World) -> Frame {
 
 fn moment(
     frame: &Frame,
-    teller: &Teller<'_>,
+    teller: &HintedFrame<'_>,
     conditions: &Conditions,
     pose: &Pose,
     look: Look,
@@ -182,7 +104,7 @@ fn moment(
             (rgb.collect(), truth)
         })
         .unzip();
-    let to_sun = appearance.light_from().as_dvec3();
+    let to_sun = light_direction(conditions).as_dvec3();
     let sun = |camera: &Camera| {
         let local = camera.ego_from_camera().rotation.inverse() * to_sun;
         local.as_vec3().to_array()
@@ -250,7 +172,7 @@ impl Shard for PicturePair {
     ];
 
     /// Of two moments and six cameras: u8 `rgb` `[N,2,6,h,w,3]`, `class` `[N,2,6,h,w]` (the truth, see [`scene::truth`]), `told_class` (render ids), u16
-    /// `told_depth` (cm, 0 none) and u8 `told_facing` as in [`Told`], f32 `intrinsic` `[N,2,6,3,3]` (px), `map_from_camera`
+    /// `told_depth` (cm, 0 none) and u8 `told_facing` as in [`PictureHints`], f32 `intrinsic` `[N,2,6,3,3]` (px), `map_from_camera`
     /// `[N,2,6,4,4]` and `sun` `[N,2,6,3]`; u8 `dense` `[N,200,200,16]`; u8 `conditions` `[N,2]`: time of day and weather by
     /// their place in the lists.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
@@ -319,6 +241,8 @@ impl Shard for PicturePair {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     const SMALL: Look = Look {

@@ -174,11 +174,6 @@ impl Appearance {
         self.turn * d
     }
 
-    /// Towards sun or moon, a unit vector in the ego frame.
-    pub fn light_from(&self) -> Vec3 {
-        self.to_sun()
-    }
-
     /// Towards the sun in the ego frame.
     pub(super) fn to_sun(&self) -> Vec3 {
         self.turn.conjugate() * self.air.to_sun
