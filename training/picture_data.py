@@ -4,6 +4,7 @@ Arrays of a shard: rgb u8 [N,2,6,h,w,3], class u8 [N,2,6,h,w] (what the picture 
 [N,2,6,h,w] (what the voxels tell), intrinsic f32 [N,2,6,3,3], map_from_camera f32 [N,2,6,4,4], sun f32 [N,2,6,3], dense u8 [N,200,200,16], conditions u8
 [N,2]. Cameras stand in a ring, clockwise: front left, front, front right, back right, back, back left.
 """
+import functools
 import json
 import queue
 import shlex
@@ -20,6 +21,12 @@ VIEWS, MOMENTS = 6, 2
 MIRRORED = [2, 1, 0, 5, 4, 3]  # cameras in the order of the ring, seen in a mirror
 DEPTH_M = 0.01
 PIXELS = ("rgb", "class", "told_class", "told_depth", "told_facing")
+
+
+@functools.lru_cache
+def constant(values, device):
+    """A short tensor kept on the device, so that a step which needs it can be recorded."""
+    return torch.tensor(values, device=device)
 
 
 def shard_arrays(data):
@@ -92,9 +99,12 @@ class Pool:
         kinds = {"told_depth": torch.int16, "way": torch.float32, "camera": torch.float32, "intrinsic": torch.float32, "pose": torch.float32}
         self.arrays = {name: torch.zeros(room, MOMENTS, VIEWS, *shape, dtype=kinds.get(name, torch.uint8), device=device)
                        for name, shape in shapes.items()}
+        for name in ("intrinsic", "way", "pose"):
+            self.arrays[name][:] = torch.eye(self.arrays[name].shape[-1], device=device)
         self.arrays["conditions"] = torch.zeros(room, 2, dtype=torch.uint8, device=device)
         if planes:
             self.arrays["dense"] = torch.zeros(room, 200, 200, 16, dtype=torch.uint8, device=device)
+        self.known = torch.zeros(2, device=device)  # frames, and those of which latents are known: read by recorded steps
         self.latents = None
         self.encoded = 0  # frames whose latents are known, counted as `seen`
 
@@ -112,6 +122,7 @@ class Pool:
             kept[at] = torch.from_numpy(np.array(values)).to(self.device)
         self.seen += n
         self.count = min(self.room, self.seen)
+        self.known[0] = self.count
 
     def take_all(self, streams):
         """Takes in what has come; how many frames."""
@@ -128,27 +139,37 @@ class Pool:
             self.latents = torch.zeros(self.room, 2, MOMENTS, VIEWS, h // CELL, w // CELL, vae.config.latent, dtype=torch.float16,
                                        device=self.device)
         last = min(self.seen, self.encoded + most)
-        for i in range(self.encoded, last):
-            place = i % self.room
-            pictures = as_pictures(self.arrays["rgb"][place].flatten(0, 1))
+        for begin in range(self.encoded, last, 8):
+            places = torch.tensor([i % self.room for i in range(begin, min(last, begin + 8))], device=self.device)
+            pictures = as_pictures(self.arrays["rgb"][places].flatten(0, 2))
             with amp():
-                both = vae.encode(torch.cat([pictures, pictures.flip(-1)]))
-            both = both.view(2, MOMENTS, VIEWS, *both.shape[1:])
-            self.latents[place, 0], self.latents[place, 1] = both[0], both[1][:, MIRRORED]
+                both = [vae.encode(p).view(len(places), MOMENTS, VIEWS, h // CELL, w // CELL, -1) for p in (pictures, pictures.flip(-1))]
+            self.latents[places, 0], self.latents[places, 1] = both[0].half(), self.mirror(both[1], 2).half()
         self.encoded = last
+        self.known[1] = min(self.room, self.encoded)
 
-    def pictures(self, n, generator=None):
+    def mirror(self, values, axis):
+        """Cameras of the ring as a mirror shows them."""
+        return values.index_select(axis, constant(tuple(MIRRORED), self.device))
+
+    def random_frames(self, n, encoded=False):
+        """Random frames i64 [n]; their number is read on the device."""
+        known = self.known[int(encoded)]
+        return (torch.rand(n, device=self.device) * known).minimum(known - 1).long().clamp(min=0)
+
+    def pictures(self, n):
         """Random pictures [n,3,h,w], -1 to 1, and what they show u8 [n,h,w]; half of them in a mirror."""
-        at = [torch.randint(m, (n,), device=self.device, generator=generator) for m in (self.count, MOMENTS, VIEWS)]
+        at = [self.random_frames(n)] + [torch.randint(m, (n,), device=self.device) for m in (MOMENTS, VIEWS)]
         rgb, shown = as_pictures(self.arrays["rgb"][tuple(at)]), self.arrays["class"][tuple(at)]
         half = n // 2
         return torch.cat([rgb[:half], rgb[half:].flip(-1)]), torch.cat([shown[:half], shown[half:].flip(-1)])
 
-    def drawn(self, n, generator=None):
+    def drawn(self, n):
         """Random latents [n,h/8,w/8,C] and their pictures [n,3,h,w]."""
-        known = min(self.count, self.encoded)
-        frame, moment, view = (torch.randint(m, (n,), device=self.device, generator=generator) for m in (known, MOMENTS, VIEWS))
-        return self.latents[frame, 0, moment, view].float(), as_pictures(self.arrays["rgb"][frame, moment, view])
+        frame = self.random_frames(n, encoded=True)
+        moment, view = (torch.randint(m, (n,), device=self.device) for m in (MOMENTS, VIEWS))
+        side = torch.zeros_like(frame)
+        return self.latents[frame, side, moment, view].float(), as_pictures(self.arrays["rgb"][frame, moment, view])
 
     def moments(self, frames, moment, mirrored):
         """What the transformer learns from, of frames i64 [B] at moments i64 [B], in a mirror where `mirrored` (bool, one for all)."""
@@ -158,14 +179,14 @@ class Pool:
         camera, way, intrinsic = a["camera"][frames, moment], a["way"][frames, moment], a["intrinsic"][frames, moment].clone()
         pose = a["pose"][frames, moment]
         if mirrored:
-            depth, depth_before = (d[:, MIRRORED].flip(-1) for d in (depth, depth_before))
-            told = {name: v[:, MIRRORED].flip(-1) for name, v in told.items()}
+            depth, depth_before = (self.mirror(d, 1).flip(-1) for d in (depth, depth_before))
+            told = {name: self.mirror(v, 1).flip(-1) for name, v in told.items()}
             told["told_facing"] = mirrored_facing(told["told_facing"])
-            sign = torch.tensor([-1.0, 1, 1, -1, 1, 1, 1], device=self.device)
-            flip = torch.diag(torch.tensor([-1.0, 1, 1, 1], device=self.device))
-            camera, way, intrinsic = camera[:, MIRRORED] * sign, flip @ way[:, MIRRORED] @ flip, intrinsic[:, MIRRORED]
+            sign = constant((-1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0), self.device)
+            flip = torch.outer(constant((-1.0, 1.0, 1.0, 1.0), self.device), constant((-1.0, 1.0, 1.0, 1.0), self.device))
+            camera, way, intrinsic = self.mirror(camera, 1) * sign, self.mirror(way, 1) * flip, self.mirror(intrinsic, 1)
             intrinsic[..., 0, 2] = self.size[0] - intrinsic[..., 0, 2]
-        side = int(mirrored)
+        side = torch.full_like(frames, int(mirrored))
         out = {"classes": told["told_class"], "facing": told["told_facing"], "depth_m": depth, "depth_before_m": depth_before, "camera": camera,
                "way": way, "intrinsic": intrinsic, "pose": pose, "time": a["conditions"][frames, 0].long(),
                "weather": a["conditions"][frames, 1].long()}
@@ -194,7 +215,7 @@ def metres(depth):
 def mirrored_facing(facing):
     """Facings as a mirror shows them: 1 + s becomes 1 + (16 - s) % 16; flags stay."""
     edge, sector = facing & 0x80, (facing & 0x7F).int()
-    turned = torch.where(sector > 0, (17 - sector) % 16 + 1, 0)
+    turned = ((17 - sector) % 16 + 1) * (sector > 0)
     return turned.to(torch.uint8) | edge
 
 
@@ -204,16 +225,14 @@ def planes_of(dense, pose, intrinsic, size, planes):
     w, h = size[0] // 2, size[1] // 2
     device = dense.device
     v, u = torch.meshgrid(torch.arange(h, device=device) * 2 + 1.0, torch.arange(w, device=device) * 2 + 1.0, indexing="ij")
-    f, c = intrinsic[..., (0, 1), (0, 1)], intrinsic[..., :2, 2]
-    rays = torch.stack([(u - c[..., 0, None, None]) / f[..., 0, None, None], (v - c[..., 1, None, None]) / f[..., 1, None, None],
-                        torch.ones_like(u).expand(*f.shape[:2], h, w)], -1)
-    turned = torch.einsum("bvij,bvhwj->bvhwi", pose[..., :3, :3], rays)
+    fx, fy, cx, cy = (intrinsic[..., i, j, None, None] for i, j in ((0, 0), (1, 1), (0, 2), (1, 2)))
+    ray = ((u - cx) / fx, (v - cy) / fy, torch.ones_like(u))
+    turned = torch.stack([sum(pose[..., i, j, None, None] * ray[j] for j in range(3)) for i in range(3)], -1)
     depth = torch.exp(torch.linspace(0, float(np.log(50)), planes, device=device))
     p = turned[:, :, None] * depth[:, None, None, None] + pose[:, :, None, None, None, :3, 3]
-    low = torch.tensor([-40.0, -40.0, -1.0], device=device)
-    cell = ((p - low) / 0.4).floor().long()
-    inside = ((cell >= 0) & (cell < torch.tensor([200, 200, 16], device=device))).all(-1)
-    cell = cell.clamp(min=0).minimum(torch.tensor([199, 199, 15], device=device))
+    cell = ((p - constant((-40.0, -40.0, -1.0), device)) / 0.4).floor().long()
+    inside = ((cell >= 0) & (cell < constant((200, 200, 16), device))).all(-1)
+    cell = cell.clamp(min=0).minimum(constant((199, 199, 15), device))
     index = (cell[..., 0] * 200 + cell[..., 1]) * 16 + cell[..., 2]
     labels = dense.flatten(1).gather(1, index.flatten(1)).view(index.shape)
-    return torch.where(inside, labels, torch.full_like(labels, 17))
+    return labels.masked_fill(~inside, 17)

@@ -10,6 +10,8 @@ import itertools
 import json
 import math
 import os
+import random
+import re
 import time
 from pathlib import Path
 
@@ -17,11 +19,12 @@ import torch
 from safetensors.torch import load_file, save_file
 from torch.nn import functional as F
 
-from loop import optimizers, pick_device
+from loop import pick_device
+from muon import orthogonalised
 from models.picture_dit import PictureDit, PictureDitConfig, cell_depth, warp
 from models.picture_vae import CELL, Critic, PictureVae, PictureVaeConfig
 from models.segmenter import OUTSIDE, Segmenter, SegmenterConfig
-from picture_data import Pool, Streams, planes_of
+from picture_data import Pool, Streams, constant, planes_of
 from picture_eval import figures_of, write_sheets
 from schedule import STEPS, alpha_bar
 
@@ -33,44 +36,124 @@ OBJECT_WEIGHT = 2.0
 SAVE_S = 60.0
 
 
+class RecordedMuon(torch.optim.Optimizer):
+    """As `muon.Muon`, with a learning rate that is a tensor on the device."""
+
+    def __init__(self, parameters, rate, momentum=0.95, weight_decay=0.01):
+        super().__init__(parameters, dict(momentum=momentum, weight_decay=weight_decay))
+        self.rate = rate
+        self.velocities = {p: torch.zeros_like(p) for group in self.param_groups for p in group["params"]}
+
+    @torch.no_grad()
+    def step(self):
+        for group in self.param_groups:
+            alike = {}
+            for p in group["params"]:
+                if p.grad is None:
+                    continue
+                velocity = self.velocities[p].lerp_(p.grad, 1 - group["momentum"])
+                ahead = p.grad.lerp(velocity, group["momentum"]).reshape(len(p), -1)
+                alike.setdefault(ahead.shape, []).append((p, ahead))
+            for (rows, columns), found in alike.items():
+                updates = orthogonalised(torch.stack([ahead for _, ahead in found])) * (-0.2 * max(rows, columns) ** 0.5 * self.rate)
+                for (p, _), update in zip(found, updates):
+                    p.mul_(1 - self.rate * group["weight_decay"]).add_(update.reshape(p.shape))
+
+
 class Learner:
-    """A network with its optimisers, average and learning rate; its time runs from 0 to 1."""
+    """A network with its optimisers, average and learning rate. All that a step computes stays on the device, so that it can be recorded."""
 
     def __init__(self, model, lr, kind="muon", ema=0.999, warmup=100, betas=(0.9, 0.98), weight_decay=0.01):
-        self.model, self.lr, self.warmup, self.decay = model, lr, warmup, ema
+        self.model, self.lr, self.warmup, self.most = model, lr, warmup, ema
         self.ema = copy.deepcopy(model).requires_grad_(False).eval()
-        self.optimizers = optimizers(model, kind, lr, betas, weight_decay)
-        self.parameters = [p for p in model.parameters() if p.requires_grad]
-        self.step, self.skipped, self.mean = 0, 0, {}
+        self.kind, self.betas, self.weight_decay = kind, betas, weight_decay
+        device = next(model.parameters()).device
+        self.rate, self.decay, self.norm = (torch.zeros((), device=device) for _ in range(3))
+        self.step, self.mean = 0, {}
+        self.make_optimizers()
 
-    def update(self, loss, done, told=None):
-        """One step; `done` is the share of the time that is over. Gradients that are not finite change nothing."""
+    def make_optimizers(self):
+        inner = {m.weight for name, m in self.model.named_modules() if self.kind == "muon" and isinstance(m, (torch.nn.Conv2d, torch.nn.Linear))
+                 and re.match(self.model.INNER, name) and m.weight.requires_grad and getattr(m, "groups", 1) == 1}
+        self.parameters = [p for p in self.model.parameters() if p.requires_grad]
+        rest = [p for p in self.parameters if p not in inner]
+        groups = [{"params": [p for p in rest if p.ndim >= 2], "weight_decay": self.weight_decay},
+                  {"params": [p for p in rest if p.ndim < 2], "weight_decay": 0.0}]
+        card = self.rate.is_cuda
+        self.optimizers = [torch.optim.AdamW(groups, lr=self.rate if card else self.lr, betas=self.betas, fused=True, capturable=card)]
+        if inner:
+            self.optimizers.append(RecordedMuon([p for p in self.parameters if p in inner], self.rate, weight_decay=self.weight_decay))
+        self.trained = [(e, p.data) for e, p in zip(self.ema.parameters(), self.model.parameters()) if p.requires_grad]
+
+    def before(self, done):
+        """Learning rate and average of the next step; `done` is the share of the time that is over."""
         self.step += 1
         rate = self.lr * min(1.0, self.step / self.warmup) * 0.5 * (1 + math.cos(math.pi * min(1.0, done)))
-        for optimizer in self.optimizers:
-            for group in optimizer.param_groups:
+        self.rate.fill_(rate)
+        self.decay.fill_(min(self.most, (1 + self.step) / (10 + self.step)))
+        if not self.rate.is_cuda:
+            for group in self.optimizers[0].param_groups:
                 group["lr"] = rate
-            optimizer.zero_grad(set_to_none=True)
+
+    def update(self, loss, told=None):
+        """One step. Gradients that are not finite count as 0."""
+        for p in self.parameters:
+            p.grad = None
         loss.backward()
         gradients = [p.grad for p in self.parameters if p.grad is not None]
-        norm = torch.nn.utils.get_total_norm(gradients)
-        finite = norm.isfinite()
-        shrink = torch.where(finite, (1 / (norm + 1e-6)).clamp(max=1.0), torch.zeros_like(norm))
-        torch._foreach_mul_(gradients, shrink)
-        if self.step % 50 == 0 and not finite.item():
-            self.skipped += 1
-            self.model.load_state_dict(self.ema.state_dict())
-            return
+        for g in gradients:
+            g.nan_to_num_(0.0, 0.0, 0.0)
+        self.norm.copy_(torch.nn.utils.get_total_norm(gradients))
+        torch._foreach_mul_(gradients, (1 / (self.norm + 1e-6)).clamp(max=1.0))
         for optimizer in self.optimizers:
             optimizer.step()
-        decay = min(self.decay, (1 + self.step) / (10 + self.step))
-        torch._foreach_lerp_(list(self.ema.parameters()), [p.data for p in self.model.parameters()], 1 - decay)
+        averages, values = zip(*self.trained)
+        torch._foreach_mul_(averages, self.decay)
+        torch._foreach_add_(averages, torch._foreach_mul(values, 1 - self.decay))
         for name, value in (told or {}).items():
-            value = value.detach()
-            self.mean[name] = value if name not in self.mean else self.mean[name].lerp(value, 0.02)
+            value = value.detach().float()
+            if name in self.mean:
+                self.mean[name].lerp_(value, 0.02)
+            else:
+                self.mean[name] = value.clone()
 
     def means(self):
         return {name: round(value.item(), 4) for name, value in self.mean.items()}
+
+
+class Recorded:
+    """A step without arguments. On a card its kernels are recorded once (a CUDA graph) and replayed: else a processor with other things to do
+    cannot keep such small networks busy. What cannot be recorded goes on as it is."""
+
+    WARM = 3
+
+    def __init__(self, step, record):
+        self.step, self.record, self.graph, self.calls = step, record, None, 0
+
+    def __call__(self):
+        if self.graph is not None:
+            return self.graph.replay()
+        self.calls += 1
+        if not self.record:
+            return self.step()
+        if self.calls <= self.WARM:
+            stream = torch.cuda.Stream()
+            stream.wait_stream(torch.cuda.current_stream())
+            with torch.cuda.stream(stream):
+                self.step()
+            return torch.cuda.current_stream().wait_stream(stream)
+        try:
+            torch.cuda.synchronize()
+            graph = torch.cuda.CUDAGraph()
+            with torch.cuda.graph(graph):
+                self.step()
+            graph.replay()
+            self.graph = graph
+        except Exception as error:
+            print(f"not recorded: {type(error).__name__} {str(error)[:300]}", flush=True)
+            self.record = False
+            torch.cuda.synchronize()
+            self.step()
 
 
 def pyramid_loss(drawn, truth):
@@ -91,9 +174,7 @@ class Trainer:
             self.dtype = None
         torch.manual_seed(args.seed)
         torch.backends.cuda.matmul.allow_tf32 = torch.backends.cudnn.allow_tf32 = True
-        torch.backends.cudnn.benchmark = True
-        self.random = torch.Generator(self.device).manual_seed(args.seed)
-        self.coin = torch.Generator().manual_seed(args.seed)  # on the processor: what it says is asked at once
+        self.coin, self.steps = random.Random(args.seed), {}
         self.out = Path(args.output)
         self.out.mkdir(parents=True, exist_ok=True)
         self.log = open(self.out / "log.jsonl", "a")
@@ -123,7 +204,7 @@ class Trainer:
         return model.to(self.device, memory_format=torch.channels_last)
 
     def amp(self):
-        return torch.autocast(self.device.type, self.dtype) if self.dtype is not None else contextlib.nullcontext()
+        return torch.autocast(self.device.type, self.dtype, cache_enabled=False) if self.dtype is not None else contextlib.nullcontext()
 
     def seconds(self):
         return time.monotonic() - self.started
@@ -134,25 +215,42 @@ class Trainer:
         self.log.flush()
         print(json.dumps(row), flush=True)
 
+    def recorded(self, name, *what):
+        """The step of a method with some arguments, recorded at its fourth call."""
+        key = (name, *what)
+        if key not in self.steps:
+            self.steps[key] = Recorded(lambda: getattr(self, name)(*what), self.device.type == "cuda" and not self.args.eager)
+        return self.steps[key]
+
+    def forget(self, *names):
+        """Gives back the memory of steps that are done with."""
+        self.steps = {key: step for key, step in self.steps.items() if key[0] not in names}
+
     # The VAE and the segmenter.
 
     def segment_loss(self, pictures, shown):
         logits = self.seg.model(pictures).float()
         target = shown.long()
-        target = torch.where(target == OUTSIDE, -100, target.clamp(max=logits.shape[1] - 1))
-        return F.cross_entropy(logits, target, ignore_index=-100)
+        return F.cross_entropy(logits, target.clamp(max=logits.shape[1] - 1).masked_fill(target == OUTSIDE, -100), ignore_index=-100)
 
-    def step_segmenter(self, done):
-        pictures, shown = self.pool.pictures(self.args.pictures, self.random)
+    def segmenter_step(self):
+        pictures, shown = self.pool.pictures(self.args.pictures)
         with self.amp():
             loss = self.segment_loss(pictures, shown)
-        self.seg.update(loss, done, {"seg": loss})
+        self.seg.update(loss, {"seg": loss})
 
-    def picture_losses(self, drawn, pictures):
+    def step_segmenter(self, done):
+        self.seg.before(done)
+        self.recorded("segmenter_step")()
+
+    def picture_losses(self, drawn, pictures, like):
         """What is wrong with drawn pictures, and by name."""
         near = pyramid_loss(drawn, pictures)
-        like = self.seg.ema.likeness(drawn, pictures) if self.seg.step > 100 else drawn.new_zeros(())
-        return near + self.args.like * like, {"l1": (drawn - pictures).abs().mean(), "like": like}
+        told = {"l1": (drawn - pictures).abs().mean()}
+        if like:
+            told["like"] = self.seg.ema.likeness(drawn, pictures)
+            near = near + self.args.like * told["like"]
+        return near, told
 
     def against_critic(self, loss, drawn):
         """Adds what the critic says, weighed so that it pulls so much of what the loss does at the last layer (VQGAN, 2012.09841)."""
@@ -166,57 +264,59 @@ class Trainer:
     def teach_critic(self, drawn, pictures):
         with self.amp():
             true, false = self.critic.model(pictures), self.critic.model(drawn.detach())
-        self.critic.update(F.relu(1 - true).mean() + F.relu(1 + false).mean(), 0.0, {"true": true.mean(), "false": false.mean()})
+        self.critic.update(F.relu(1 - true).mean() + F.relu(1 + false).mean(), {"true": true.mean(), "false": false.mean()})
 
-    def step_vae(self, done):
-        pictures, _ = self.pool.pictures(self.args.pictures, self.random)
+    def vae_step(self, like, taught, judged):
+        pictures, _ = self.pool.pictures(self.args.pictures)
         model = self.vae.model
         with self.amp():
             mean, logvar = model.moments(pictures)
-            latent = mean + (0.5 * logvar).exp() * torch.randn(mean.shape, device=self.device, generator=self.random)
-            drawn = model.draw(latent)
-            loss, told = self.picture_losses(drawn, pictures)
+            drawn = model.draw(mean + (0.5 * logvar).exp() * torch.randn_like(mean))
+            loss, told = self.picture_losses(drawn, pictures, like)
         kl = 0.5 * (mean.square() + logvar.exp() - 1 - logvar).mean()
         loss = loss + self.args.kl * kl
-        judged = done > self.args.critic_from
         if judged:
             loss = self.against_critic(loss, drawn)
-        self.vae.update(loss, done, told | {"kl": kl})
-        if done > self.args.critic_from - 0.05:
+        self.vae.update(loss, told | {"kl": kl})
+        if taught:
             self.teach_critic(drawn, pictures)
 
-    def step_decoder(self, done):
+    def step_vae(self, done):
+        self.vae.before(done)
+        self.critic.before(0.0)
+        self.recorded("vae_step", self.seg.step > 200, done > self.args.critic_from - 0.05, done > self.args.critic_from)()
+
+    def decoder_step(self):
         """The decoder alone, on latents as a generator may leave them."""
-        latent, pictures = self.pool.drawn(self.args.pictures, self.random)
-        noise = torch.randn(latent.shape, device=self.device, generator=self.random)
-        latent = latent + self.args.latent_noise * torch.rand(len(latent), 1, 1, 1, device=self.device, generator=self.random) * noise
+        latent, pictures = self.pool.drawn(self.args.pictures)
+        latent = latent + self.args.latent_noise * torch.rand(len(latent), 1, 1, 1, device=self.device) * torch.randn_like(latent)
         model = self.vae.model
         with self.amp():
             drawn = model.draw((latent * model.latent_std + model.latent_mean).permute(0, 3, 1, 2))
-            loss, told = self.picture_losses(drawn, pictures)
+            loss, told = self.picture_losses(drawn, pictures, True)
         loss = self.against_critic(loss, drawn)
-        self.vae.update(loss, 0.5 + 0.5 * done, told)
+        self.vae.update(loss, told)
         self.teach_critic(drawn, pictures)
+
+    def step_decoder(self, done):
+        self.vae.before(0.5 + 0.5 * done)
+        self.critic.before(0.0)
+        self.recorded("decoder_step")()
 
     @torch.no_grad()
     def fix_latents(self):
         """The encoder is done: statistics of its mean, and what the transformer will see."""
-        pictures = torch.cat([self.pool.pictures(self.args.pictures, self.random)[0] for _ in range(8)])
+        self.forget("vae_step")
         with self.amp():
-            mean = torch.cat([self.vae.ema.moments(part)[0] for part in pictures.split(self.args.pictures)])
+            mean = torch.cat([self.vae.ema.moments(self.pool.pictures(self.args.pictures)[0])[0] for _ in range(8)])
+        self.vae.model.load_state_dict(self.vae.ema.state_dict())
         for model in (self.vae.model, self.vae.ema):
-            if model is self.vae.model:
-                model.load_state_dict(self.vae.ema.state_dict())
             model.latent_mean.copy_(mean.mean((0, 2, 3)))
             model.latent_std.copy_(mean.std((0, 2, 3)))
-        frozen = [self.vae.model.stem, self.vae.model.encoder, self.vae.model.down, self.vae.model.encoder_norm, self.vae.model.encoder_head]
-        for part in frozen:
+        model = self.vae.model
+        for part in (model.stem, model.encoder, model.down, model.encoder_norm, model.encoder_head):
             part.requires_grad_(False)
-        self.vae.parameters = [p for p in self.vae.model.parameters() if p.requires_grad]
-        self.vae.optimizers = optimizers(self.vae.model, "muon", self.vae.lr, (0.9, 0.98), 0.0)
-        for optimizer in self.vae.optimizers:
-            for group in optimizer.param_groups:
-                group["params"] = [p for p in group["params"] if p.requires_grad]
+        self.vae.make_optimizers()
         self.held.encode(self.vae.ema, self.amp, self.held.seen)
         self.encode_new(10**6)
 
@@ -239,7 +339,7 @@ class Trainer:
 
     def warped(self, part, latent):
         """Latents of the frame before [B,6,h,w,C] as the cells of this one see them."""
-        scale = torch.tensor([1 / CELL, 1 / CELL, 1.0], device=self.device)
+        scale = constant((1 / CELL, 1 / CELL, 1.0), self.device)
         intrinsic = (part["intrinsic"] * scale[:, None]).flatten(0, 1)
         depths = (cell_depth(part[name]).flatten(0, 1) for name in ("depth_m", "depth_before_m"))
         return warp(latent.flatten(0, 1), *depths, intrinsic, part["way"].flatten(0, 1)).view(*latent.shape[:4], -1)
@@ -266,23 +366,22 @@ class Trainer:
         heavy = 1 + (OBJECT_WEIGHT - 1) * F.max_pool2d(objects, CELL)[..., None]
         return (error * weight * heavy).mean(), error.mean()
 
-    def batch(self, n, pool, random):
-        known = min(pool.count, pool.encoded)
-        frames = torch.randint(known, (n,), device=self.device, generator=random)
-        moment = torch.randint(2, (n,), device=self.device, generator=random)
-        mirrored = pool is self.pool and torch.rand((), generator=self.coin).item() < 0.5
-        return pool.moments(frames, moment, mirrored)
+    def dit_step(self, name, n, mirrored):
+        """A step of the transformer, or of an ablation by its name, on n frames."""
+        learner = self.ablations[name] if name else self.dit
+        frames, moment = self.pool.random_frames(n, encoded=True), torch.randint(2, (n,), device=self.device)
+        part = self.pool.moments(frames, moment, mirrored)
+        u, told, after = (torch.rand(n, device=self.device) for _ in range(3))
+        part["time"], part["weather"] = part["time"].masked_fill(u < 0.05, 4), part["weather"].masked_fill((u > 0.03) & (u < 0.08), 6)
+        told = told >= self.args.silent
+        for key in ("classes", "facing", "depth_m"):
+            part[key] = part[key] * told.view(n, 1, 1, 1)
+        loss, v = self.v_loss(learner.model, part, None, before=(after < self.args.before) & told)
+        learner.update(loss, {"v": v})
 
-    def step_dit(self, learner, n, done):
-        part = self.batch(n, self.pool, self.random)
-        u = torch.rand(n, device=self.device, generator=self.random)
-        part["time"], part["weather"] = torch.where(u < 0.05, 4, part["time"]), torch.where((u > 0.03) & (u < 0.08), 6, part["weather"])
-        silent = torch.rand(n, device=self.device, generator=self.random) < self.args.silent
-        for name in ("classes", "facing", "depth_m"):
-            part[name] = part[name] * ~silent.view(n, 1, 1, 1)
-        before = torch.rand(n, device=self.device, generator=self.random) < self.args.before
-        loss, v = self.v_loss(learner.model, part, self.random, before=before & ~silent)
-        learner.update(loss, done, {"v": v})
+    def step_dit(self, name, n, done):
+        (self.ablations[name] if name else self.dit).before(done)
+        self.recorded("dit_step", name, n, not name and self.coin.random() < 0.5)()
 
     @torch.no_grad()
     def held_v(self, model):
@@ -291,7 +390,9 @@ class Trainer:
         for with_before in (False, True):
             random, errors = torch.Generator(self.device).manual_seed(7), []
             for _ in range(max(1, self.args.held_out // self.args.batch)):
-                part = self.batch(self.args.batch, self.held, random)
+                frames = torch.randint(min(self.held.count, self.held.encoded), (self.args.batch,), device=self.device, generator=random)
+                moment = torch.randint(2, (self.args.batch,), device=self.device, generator=random)
+                part = self.held.moments(frames, moment, False)
                 before = torch.full((self.args.batch,), with_before, device=self.device)
                 errors.append(self.v_loss(model, part, random, before=before)[1])
             found.append(round(torch.stack(errors).mean().item(), 4))
@@ -311,6 +412,17 @@ class Trainer:
             os.replace(part, self.out / f"{name}.safetensors")
         self.last_save = self.seconds()
 
+    def warm(self):
+        """Loads what the steps need, while no frames are there: they learn nothing of the empty pool, the rates being 0."""
+        self.pool.encode(self.vae.ema, self.amp, 0)
+        self.segmenter_step()
+        self.vae_step(True, True, True)
+        self.dit_step(None, self.args.batch, False)
+        self.sync()
+        for learner in (self.seg, self.vae, self.critic, self.dit):
+            learner.mean.clear()
+        self.note(event="warm")
+
     def gather(self, streams, wait=None):
         """Takes frames in; waits for a number of them if there are fewer."""
         while True:
@@ -323,6 +435,7 @@ class Trainer:
         args = self.args
         streams = Streams([args.stream.format(i=i, start=i * 10**6) for i in range(args.streams)])
         held = Streams([args.held_stream])
+        self.warm()
         self.gather(streams, args.first)
         self.note(event="first frames")
         whole = 60 * args.minutes
@@ -340,10 +453,12 @@ class Trainer:
                 self.step_segmenter(0.5 * done)
             self.gather(streams)
             self.pool_held(held)
+            if step % 4 == 0:
+                self.sync()
             if self.seconds() - noted > args.note_s:
                 self.sync()
                 noted = self.seconds()
-                self.note(part="vae", step=self.vae.step, seg_step=self.seg.step, **self.vae.means(), **self.seg.means(), **self.critic.means())
+                self.note(part="vae", step=self.vae.step, seg_step=self.seg.step, recorded=sum(x.graph is not None for x in self.steps.values()), **self.vae.means(), **self.seg.means(), **self.critic.means())
             self.maybe_save()
         while self.held.seen < args.held_out and held.running:
             self.pool_held(held)
@@ -364,7 +479,6 @@ class Trainer:
         args, begin = self.args, self.seconds()
         noted, spent = begin, {"dit": 0.0, "decoder": 0.0, "ablations": 0.0}
         shares = {"decoder": args.decoder_share, "ablations": args.ablation_share if self.ablations else 0.0}
-        turns = itertools.cycle(self.ablations.items())
         for step in itertools.count():
             now = self.seconds()
             done = (now - begin) / max(1e-9, end - begin)
@@ -373,14 +487,18 @@ class Trainer:
             behind = [k for k, share in shares.items() if spent[k] < share * (now - begin)]
             what = behind[0] if behind and step % 2 else "dit"
             if what == "dit":
-                self.step_dit(self.dit, args.batch, done)
+                self.step_dit(None, args.batch, done)
             elif what == "decoder":
                 self.step_decoder(done)
                 if self.vae.step % 2 == 0:
                     self.step_segmenter(0.5 + 0.5 * done)
             else:
-                for name, learner in itertools.islice(turns, len(self.ablations)):
-                    self.step_dit(learner, args.ablation_batch, done)
+                for name in list(self.ablations):
+                    try:
+                        self.step_dit(name, args.ablation_batch, done)
+                    except torch.OutOfMemoryError as error:
+                        self.note(event="dropped", ablation=name, why=str(error)[:200])
+                        del self.ablations[name]
             if step % 8 == 0:
                 self.gather(streams)
                 self.encode_new(4)
@@ -390,10 +508,10 @@ class Trainer:
             if self.seconds() - noted > args.note_s:
                 self.sync()
                 noted = self.seconds()
-                self.note(part="dit", step=self.dit.step, encoded=self.pool.encoded, **self.dit.means(), **self.held_v(self.dit.ema), **self.vae.means(), **self.seg.means(), vae_step=self.vae.step)
+                self.note(part="dit", step=self.dit.step, encoded=self.pool.encoded, recorded=sum(x.graph is not None for x in self.steps.values()), spent={k: round(v, 1) for k, v in spent.items()}, **self.dit.means(), **self.held_v(self.dit.ema), **self.vae.means(), **self.seg.means(), vae_step=self.vae.step)
             self.maybe_save()
         self.figures["ablations"] = {n: {"steps": a.step, **a.means(), **self.held_v(a.ema)} for n, a in self.ablations.items()}
-        self.note(event="trained", ablations=self.figures["ablations"], skipped=[x.skipped for x in (self.vae, self.seg, self.dit)])
+        self.note(event="trained", ablations=self.figures["ablations"])
 
     def maybe_save(self):
         if self.seconds() - self.last_save > SAVE_S:
@@ -450,6 +568,7 @@ def arguments():
     p.add_argument("--note-s", type=float, default=20.0)
     p.add_argument("--tiny", action="store_true", help="toy widths, for tests")
     p.add_argument("--f32", action="store_true")
+    p.add_argument("--eager", action="store_true", help="record no steps")
     return p
 
 

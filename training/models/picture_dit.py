@@ -14,7 +14,7 @@ import torch
 from torch import nn
 from torch.nn import functional as F
 
-from models.occ_dit import attention, timestep_embedding
+from models.occ_dit import attention
 from models.occ_vae import ChannelNorm, Level, fold, unfold
 from models.picture_vae import CELL
 
@@ -59,6 +59,18 @@ def positions(down, along, width, device):
         return torch.cat([angle.sin(), angle.cos()], 1)
 
     return torch.cat([axis(along).expand(down, -1, -1), axis(down)[:, None].expand(-1, along, -1)], 2).float().to(device)
+
+
+@functools.lru_cache
+def frequencies(half, device):
+    """10000^(-i/half), as in `occ_dit.timestep_embedding`; kept on the device, so that a step can be recorded."""
+    return torch.exp(-math.log(10000) * torch.arange(half, dtype=torch.float64) / half).to(device)
+
+
+def timestep_embedding(t, dim):
+    """[cos | sin] of t * 10000^(-i/half), t in 0..=999, fractions allowed."""
+    args = t.double()[:, None] * frequencies(dim // 2, t.device)
+    return torch.cat([args.cos(), args.sin()], 1).float()
 
 
 def depth_numbers(depth_m):
@@ -123,7 +135,7 @@ def warp(latent, depth_m, depth_before_m, intrinsic, way):
     way [B,4,4] from the camera now to the camera then -> [B,h,w,4C+3]: the four latents around the place, how far it is between them (row,
     column; 0 to 1), and 1 where that surface was seen; all 0 where it was outside or hidden."""
     b, h, w, channels = latent.shape
-    at_u, at_v, z = seen_then(depth_m, intrinsic, way)
+    at_u, at_v, z = (x.nan_to_num() for x in seen_then(depth_m, intrinsic, way))
     inside = (at_u > -0.5) & (at_u < w - 0.5) & (at_v > -0.5) & (at_v < h - 0.5) & (z > 0.1)
     low_u, low_v = at_u.floor(), at_v.floor()
 
@@ -131,12 +143,16 @@ def warp(latent, depth_m, depth_before_m, intrinsic, way):
         index = ((low_v + dv).clamp(0, h - 1) * w + (low_u + du).clamp(0, w - 1)).long().view(b, -1, 1)
         return values.gather(1, index.expand(-1, -1, values.shape[-1])).view(b, h, w, -1)
 
-    near = torch.where(depth_before_m > 0, depth_before_m, FAR_M).reshape(b, h * w, 1)
+    near = far_where_none(depth_before_m).reshape(b, h * w, 1)
     seen = inside & (read(near, (at_v - low_v).round(), (at_u - low_u).round())[..., 0] > HIDDEN * z)
     flat = latent.reshape(b, h * w, channels)
     four = [read(flat, dv, du) for dv in (0, 1) for du in (0, 1)]
     flag = seen[..., None].float()
     return torch.cat([torch.cat([*four, (at_v - low_v)[..., None], (at_u - low_u)[..., None]], -1) * flag, flag], -1)
+
+
+def far_where_none(depth_m):
+    return depth_m.masked_fill(depth_m <= 0, FAR_M)
 
 
 def seen_then(depth_m, intrinsic, way):
@@ -145,12 +161,12 @@ def seen_then(depth_m, intrinsic, way):
     device = depth_m.device
     v, u = torch.meshgrid(torch.arange(h, device=device) + 0.5, torch.arange(w, device=device) + 0.5, indexing="ij")
     fx, fy, cx, cy = (intrinsic[:, i, j, None, None] for i, j in ((0, 0), (1, 1), (0, 2), (1, 2)))
-    deep = torch.where(depth_m > 0, depth_m, FAR_M)
-    p = torch.stack([(u - cx) / fx * deep, (v - cy) / fy * deep, deep], -1) @ way[:, None, :3, :3].transpose(-1, -2)
-    p = p + way[:, None, None, :3, 3]
-    z = p[..., 2]
+    deep = far_where_none(depth_m)
+    ray = ((u - cx) / fx * deep, (v - cy) / fy * deep, deep)
+    # Not as a product of matrices: autocast would make that one of bf16.
+    x, y, z = (sum(way[:, i, j, None, None] * ray[j] for j in range(3)) + way[:, i, 3, None, None] for i in range(3))
     ahead = z.clamp(min=0.1)
-    return p[..., 0] / ahead * fx + cx - 0.5, p[..., 1] / ahead * fy + cy - 0.5, z
+    return x / ahead * fx + cx - 0.5, y / ahead * fy + cy - 0.5, z
 
 
 def modulated(x, shift, scale):
