@@ -49,13 +49,20 @@ def golden(folder):
     deep, deep_before = cell_depth(depth_m)[0], cell_depth(depth_m.flip(-1))[0]
     before = warp(uniform(cells * c, 4).view(shape)[0], deep, deep_before, intrinsic, way.expand(VIEWS, 4, 4))[None]
 
+    nothing = torch.zeros_like(classes)
+    silent = dit.condition(nothing, torch.zeros_like(depth_m), nothing, torch.tensor([2]), torch.tensor([3]), cameras)
+
     def v(t, heard):
         return dit(x, torch.tensor([t]), told, heard)
+
+    def guided(y, t):
+        return dit(y, t, told, before).lerp(dit(y, t, silent, None), -1.0)  # guidance 2
 
     return {
         "latent": vae.encode(pictures.permute(0, 3, 1, 2)), "picture": vae.decode(x[0]).permute(0, 2, 3, 1), "told": told[0].permute(0, 2, 3, 1),
         "before": before, "v_alone": torch.stack([v(t, None) for t in (0.0, 437.5, 999.0)]), "v_after": torch.stack([v(t, before) for t in (0.0, 437.5, 999.0)]),
-        "sampled": ddim_sample(lambda y, t: dit(y, t, told, before), x, 8),
+        "v_silent": dit(x, torch.tensor([437.5]), silent, None),
+        "sampled": ddim_sample(lambda y, t: dit(y, t, told, before), x, 8), "sampled_guided": ddim_sample(guided, x, 4),
     }
 
 
@@ -63,8 +70,9 @@ def main(folder):
     OUT.mkdir(parents=True, exist_ok=True)
     for name in KEPT:
         shutil.copy(folder / name, OUT / name)
-        (OUT / name).chmod(0o644)
     save_file({k: v.contiguous() for k, v in golden(OUT).items()}, OUT / "golden.safetensors")
+    for path in OUT.iterdir():
+        path.chmod(0o644)
     print({p.name: p.stat().st_size for p in OUT.iterdir()})
 
 

@@ -3,7 +3,6 @@ import colorsys
 
 import numpy as np
 import torch
-from PIL import Image
 from torch.nn import functional as F
 
 from models.picture_dit import seen_then
@@ -16,16 +15,21 @@ PIECE = 8  # frames that are drawn at once
 
 @torch.no_grad()
 def sample(trainer, part, noise, before=None):
-    """DDIM, eta 0, from noise [B,6,h,w,C] -> latents; `before` are the latents of the frame before, if any."""
-    model, n = trainer.dit.ema, trainer.args.sampling
+    """DDIM, eta 0, from noise [B,6,h,w,C] -> latents; `before` are the latents of the frame before, if any. With guidance w the network is asked once
+    more, told nothing of pixels and of the frame before, and goes w times as far from that answer to the other."""
+    model, n, guidance = trainer.dit.ema, trainer.args.sampling, trainer.args.guidance
     abar, steps, x = alpha_bar(), ddim_timesteps(n), noise
     with trainer.amp():
         told = trainer.condition(model, part)
+        silent = trainer.condition(model, part, hears=False) if guidance != 1 else None
         heard = None if before is None else trainer.warped(part, before)
         for i, t in enumerate(steps):
             a = abar[t].item()
             b = abar[steps[i + 1]].item() if i + 1 < n else 1.0
-            v = model(x, torch.full((len(x),), float(t), device=x.device), told, heard)
+            times = torch.full((len(x),), float(t), device=x.device)
+            v = model(x, times, told, heard)
+            if silent is not None:
+                v = v.lerp(model(x, times, silent, None), 1 - guidance)
             x0, eps = a**0.5 * x - (1 - a) ** 0.5 * v, (1 - a) ** 0.5 * x + a**0.5 * v
             x = b**0.5 * x0 + (1 - b) ** 0.5 * eps
     return x
@@ -167,6 +171,7 @@ def figures_of(trainer):
     return {
         "held_out": len(frames),
         "sampling_steps": trainer.args.sampling,
+        "guidance": trainer.args.guidance,
         "quality": {name: round(value / len(frames), 4) for name, value in quality.items()},
         "agreement": {name: judge.figures() for name, judge in judges.items()},
         "warp_error": {name: round((v[0] / v[1].clamp(min=1)).item(), 4) for name, v in time_gaps.items()},
@@ -232,6 +237,8 @@ def spread(trainer, n):
 
 
 def save_jpeg(rows, path, most=290_000):
+    from PIL import Image  # needed for nothing else
+
     for quality in (88, 80, 70, 60, 50):
         Image.fromarray(rows).save(path, quality=quality)
         if path.stat().st_size <= most:
