@@ -18,7 +18,7 @@ const STEP_M: f64 = 2.0;
 const MIDDLE_M: f64 = 1.4;
 const REACH_M: f64 = 5.5;
 /// Steps of a depth, m; 0 where there is none.
-const DEPTH_STEP_M: f32 = 0.01;
+pub(super) const DEPTH_STEP_M: f32 = 0.01;
 
 /// One frame: a world under some light and weather, seen by the six cameras of the default rig from a free place on a lane.
 pub struct PictureFrame {
@@ -95,7 +95,7 @@ fn ego_pose(frame: &Frame) -> Pose {
 }
 
 /// True if a vehicle has room there: no box within reach, and nothing but ground in its footprint.
-fn is_free(frame: &Frame, at: DVec2, yaw: f64) -> bool {
+pub(super) fn is_free(frame: &Frame, at: DVec2, yaw: f64) -> bool {
     let (ahead, extent) = (DVec2::from_angle(yaw), frame.extent());
     let is_near = |b: &SceneBox| {
         let reach = (b.size_m.truncate().length() + REACH_M) / 2.0;
@@ -139,20 +139,9 @@ impl Shard for PictureFrame {
         let image = vec![cameras, h, w];
         let truths = || frames.iter().flat_map(|f| &f.truth);
         let pixels = || truths().flat_map(|t| &t.pixels);
-        let floats = |values: Vec<f64>| {
-            values
-                .into_iter()
-                .flat_map(|v| (v as f32).to_le_bytes())
-                .collect()
-        };
         let depth = |m: f32| (m / DEPTH_STEP_M).round().clamp(0.0, 65535.0) as u16;
         let instance = |id: u32| u16::try_from(id).unwrap_or(u16::MAX);
         let with = |last: &[usize]| [vec![cameras], last.to_vec()].concat();
-        let place = |f: &Self| {
-            let time = TimeOfDay::ALL.iter().position(|t| *t == f.conditions.time);
-            let weather = Weather::ALL.iter().position(|w| *w == f.conditions.weather);
-            [time, weather].map(|i| i.unwrap_or_default() as u8)
-        };
         vec![
             (
                 Dtype::U8,
@@ -205,19 +194,36 @@ impl Shard for PictureFrame {
                     .flat_map(|f| f.bev.iter().flat_map(|v| v.to_le_bytes()))
                     .collect(),
             ),
-            (Dtype::U8, vec![2], frames.iter().flat_map(place).collect()),
+            (
+                Dtype::U8,
+                vec![2],
+                frames.iter().flat_map(|f| place_of(&f.conditions)).collect(),
+            ),
         ]
     }
 }
 
+/// As f32, little-endian.
+pub(super) fn floats(values: Vec<f64>) -> Vec<u8> {
+    let bytes = |v: f64| (v as f32).to_le_bytes();
+    values.into_iter().flat_map(bytes).collect()
+}
+
+/// Time of day and weather by their place in the lists.
+pub(super) fn place_of(conditions: &Conditions) -> [u8; 2] {
+    let time = TimeOfDay::ALL.iter().position(|t| *t == conditions.time);
+    let weather = Weather::ALL.iter().position(|w| *w == conditions.weather);
+    [time, weather].map(|i| i.unwrap_or_default() as u8)
+}
+
 /// Row-major 3 x 3, px.
-fn intrinsic(truth: &CameraTruth) -> [f64; 9] {
+pub(super) fn intrinsic(truth: &CameraTruth) -> [f64; 9] {
     let ([fx, fy], [cx, cy]) = (truth.camera.focal_px, truth.camera.center_px);
     [fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]
 }
 
 /// Row-major 4 x 4.
-fn map_from_camera(truth: &CameraTruth) -> [f64; 16] {
+pub(super) fn map_from_camera(truth: &CameraTruth) -> [f64; 16] {
     let [w, x, y, z] = truth.camera.rotation_wxyz;
     let rotation = glam::DQuat::from_xyzw(x, y, z, w);
     let at = DVec3::from(truth.camera.translation_m);

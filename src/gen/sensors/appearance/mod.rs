@@ -19,6 +19,7 @@ pub use prepared::Appearance;
 pub(crate) use probe::Probe;
 pub use truth::NextMoment;
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use scene::{Conditions, Frame, SensorRig};
@@ -87,6 +88,11 @@ pub trait ViewSynthesizer: Send + Sync {
     /// One picture per camera of the rig, in the rig's order. The same input gives the same pictures,
     /// whatever the number of threads.
     fn synthesize(&self, input: &SynthesisInput<'_>) -> Result<Vec<CameraImage>, SynthesisError>;
+}
+
+/// Towards sun or moon under some conditions, a unit vector in the frame of the sensors' poses.
+pub fn light_direction(conditions: &Conditions) -> Vec3 {
+    sky::Air::new(conditions).to_sun
 }
 
 /// The renderer of this module: ray marching on the CPU.
