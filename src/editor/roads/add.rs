@@ -81,11 +81,10 @@ fn beside(net: &RoadNetwork, line: &[DVec2]) -> Option<RoadId> {
         let (road, of) = (net.road(*id), &lines[id]);
         let on = (0..=steps).filter(|k| {
             let (p, way) = curve::at(line, length_m * *k as f64 / steps as f64);
-            let inside = curve::project(of, p).is_some_and(|(along, left)| {
+            curve::project(of, p).is_some_and(|(along, left)| {
                 let reach = road.map_or(0.0, |r| r.kerb_m(left < 0.0, false));
                 left.abs() < reach && curve::at(of, along).1.dot(way).abs() > CROSSES_RAD.cos()
-            });
-            inside
+            })
         });
         on.count() as f64 > ALONG * (steps + 1) as f64
     })

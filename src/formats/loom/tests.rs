@@ -359,8 +359,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3, v4, v5] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3, v4, v5];
+    let [v1, v2, v3, v4, v5, v6] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4, v5, v6];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.

@@ -8,11 +8,16 @@ pub fn close_holes(layout: &BevLayout, generated: &mut VoxelGrid) -> usize {
     close(layout, generated, |_, _| true)
 }
 
-/// The same only where there was ground before: an edit digs no holes.
-pub fn close_new_holes(layout: &BevLayout, before: &VoxelGrid, generated: &mut VoxelGrid) -> usize {
+/// The same after an edit, which digs no holes: where there was ground before or, if all is to be complete, everywhere.
+pub fn close_holes_of_edit(
+    layout: &BevLayout,
+    before: &VoxelGrid,
+    complete: bool,
+    generated: &mut VoxelGrid,
+) -> usize {
     let is_ground = |l: &u8| Class::from_id(*l).is_some_and(Class::is_ground);
     close(layout, generated, |x, y| {
-        before.column(x, y).iter().any(is_ground)
+        complete || before.column(x, y).iter().any(is_ground)
     })
 }
 
@@ -66,7 +71,10 @@ mod tests {
         let mut generated = bare.clone();
         let (x, y, z) = bins[1];
         generated.set(x, y, z, Class::FREE);
-        assert_eq!(close_new_holes(&frame.layout, &bare, &mut generated), 1);
+        assert_eq!(
+            close_holes_of_edit(&frame.layout, &bare, false, &mut generated),
+            1
+        );
         assert_eq!(generated.get(3, 3, bin), Class::FREE);
     }
 }

@@ -116,8 +116,8 @@ fn thinned(mask: &Mask) -> Vec<bool> {
                 // East, north, west, south.
                 let [e, n, w, s] = [p[0], p[2], p[4], p[6]];
                 let sides = match first {
-                    true => !(n && e && s) && !(e && s && w),
-                    false => !(n && e && w) && !(n && s && w),
+                    true => !(e && s && (n || w)),
+                    false => !(n && w && (e || s)),
                 };
                 (2..=6).contains(&count) && turns == 1 && sides
             };

@@ -261,7 +261,7 @@ fn set_road(net: &RoadNetwork, mut road: Road, hand: &mut RoadHand, id: &str, va
     match id {
         "lane" => {
             hand.lane = value.index().and_then(|i| lanes(&road).nth(i));
-            return None;
+            None
         }
         "kind" | "width" | "add" | "drop" => {
             let (right, i) = lane?;
