@@ -84,6 +84,16 @@ impl CamerasShown {
             .for_each(|own| own.drawn = own.drawn.saturating_sub(1));
     }
 
+    /// Bit per camera that a pane shows from the strip's source, whether the strip shows it or not.
+    fn in_panes(&self, cameras: usize) -> u32 {
+        let drawn = self.own.iter().filter(|(_, own)| own.drawn > 0);
+        let shown = drawn.map(|(pane, _)| self.of_pane(*pane, cameras));
+        let own =
+            shown.filter(|(_, view)| cameras::source_of(*view, self.source).id() == self.shown_source().id());
+        own.map(|(camera, _)| 1u32.checked_shl(camera as u32).unwrap_or(0))
+            .fold(0, |a, b| a | b)
+    }
+
     /// What panes show of other sources than the strip.
     fn others(&self, cameras: usize) -> Others {
         let mut out = Others::default();
@@ -156,7 +166,7 @@ pub struct Wanted {
 }
 
 /// Most sources beside that of the strip.
-const MOST_OTHERS: usize = 4;
+const MOST_OTHERS: usize = 8;
 
 /// Sources beside that of the strip, each with a bit per camera that is rendered of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -185,7 +195,7 @@ impl Wanted {
     pub fn of(cameras: &CamerasShown, lidar: &LidarShown, count: usize) -> Self {
         Self {
             source: cameras.shown_source().id(),
-            hidden: cameras.hidden,
+            hidden: cameras.hidden & !cameras.in_panes(count),
             enlarged: cameras.enlarged,
             lidar: lidar.model,
             lost_echoes: lidar.colors == LidarColorMode::Drop,

@@ -95,6 +95,13 @@ pub fn carry_out(acts: Vec<Act>, commands: &mut Vec<Command>) {
     for act in acts {
         match act {
             Act::Preview(edits) => preview(commands, edits),
+            // Of what is tried within one frame the last is shown.
+            Act::Try(edits) => {
+                if let Some(Command::Tools(ToolCommand::Act(Act::Try(_)))) = commands.last() {
+                    commands.pop();
+                }
+                commands.push(Command::Tools(ToolCommand::Act(Act::Try(edits))));
+            }
             Act::Cancel => commands.push(Command::CancelDrag),
             act => commands.push(Command::Tools(ToolCommand::Act(act))),
         }

@@ -234,7 +234,7 @@ struct Kept {
     learned: Option<(Arc<SensorRig>, LearnedCaster)>,
     views: Option<((SceneRev, Pictures), Vec<CameraView>)>,
     /// What is rendered of other sources: state, source, cameras.
-    others: Vec<(SceneRev, SourceId, u32)>,
+    others: Vec<(SceneRev, SourceId, u32, Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
     /// The graphics card, once views that it can draw were asked for.
     graphics: Option<Option<Graphics>>,
@@ -402,8 +402,9 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         preview,
     } = request;
     for (id, mask) in wanted.others.iter() {
-        let known = (scene.rev, id, mask);
-        if kept.others.contains(&known) {
+        let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
+        if let Some((.., views)) = kept.others.iter().find(is_known) {
+            ctx.tell(News::Other(scene.rev, id, views.clone()));
             continue;
         }
         let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::Shapes);
@@ -449,9 +450,9 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
             continue;
         }
         let Some(views) = render(false) else { return };
-        ctx.tell(News::Other(scene.rev, id, views));
-        kept.others.retain(|(_, of, _)| *of != id);
-        kept.others.push(known);
+        ctx.tell(News::Other(scene.rev, id, views.clone()));
+        kept.others.retain(|(_, of, ..)| *of != id);
+        kept.others.push((scene.rev, id, mask, views));
     }
 }
 

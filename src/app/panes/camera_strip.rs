@@ -359,9 +359,10 @@ impl CameraStrip {
         let Some(index) = state.cameras.enlarged else {
             return;
         };
-        let (Some(texture), Some(camera)) =
-            (self.texture(index).cloned(), input.scene.rig.cameras.get(index))
-        else {
+        // Without the strip on screen nobody else keeps its pictures up to date.
+        self.refresh(ui, input);
+        let texture = self.textures.get(index).and_then(Option::as_ref).cloned();
+        let (Some(texture), Some(camera)) = (texture, input.scene.rig.cameras.get(index)) else {
             return;
         };
         let aspect = camera.width as f32 / camera.height.max(1) as f32;

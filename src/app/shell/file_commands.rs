@@ -254,8 +254,19 @@ impl SceneloomApp {
             .cameras
             .get(camera)
             .map_or("camera", |c| &c.name);
+        let tidy: String = name
+            .chars()
+            .map(|c| {
+                if c.is_alphanumeric() || c == '-' {
+                    c.to_ascii_lowercase()
+                } else {
+                    '_'
+                }
+            })
+            .collect();
         let path = self.suggested("png");
-        let path = free_name(&path.with_extension(format!("{}_{}.png", name.to_lowercase(), view.name())));
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let path = free_name(&path.with_file_name(format!("{stem}_{tidy}_{}.png", view.name())));
         match image::save_buffer(&path, &rgba, width as u32, height as u32, image::ColorType::Rgba8) {
             Ok(()) => {
                 let text = format!("Saved {} ({width} × {height})", path.display());

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use scene::roads::{NodeId, NodeKind, curve};
-use scene::{Road, RoadId, RoadNetwork};
+use scene::{Road, RoadId, RoadNetwork, SceneBox};
 
 use super::change::split_at;
 
@@ -32,6 +32,19 @@ pub(super) fn add(net: &mut RoadNetwork, points_m: &[DVec2], like: Road) -> Resu
             Road::MAX_VIA
         ));
     }
+    let limit = DVec2::splat(SceneBox::LIMIT_M);
+    if let Some(p) = points.iter().find(|p| !p.abs().cmple(limit).all()) {
+        return Err(format!(
+            "the road runs through {p}, expected numbers within 10000 m"
+        ));
+    }
+    let straight_m = curve::length_m(&points);
+    if straight_m > Road::MAX_M {
+        return Err(format!(
+            "the road is {straight_m:.0} m long, expected at most {:.0} m",
+            Road::MAX_M
+        ));
+    }
     let line = curve::through(None, &points, None);
     let length_m = curve::length_m(&line);
     if let Some(road) = beside(net, &line) {
@@ -51,6 +64,13 @@ pub(super) fn add(net: &mut RoadNetwork, points_m: &[DVec2], like: Road) -> Resu
     cross(net, &line, &mut stations)?;
     stations.sort_by(|a, b| a.0.total_cmp(&b.0));
     stations.dedup_by(|b, a| a.1 == b.1);
+    // A loop comes back to where it began.
+    if stations.len() == 1 && points.len() > 3 {
+        stations.push((length_m, stations[0].1));
+    }
+    if stations.len() < 2 {
+        return Err("the road would end where it begins, expected it to lead somewhere".into());
+    }
     let last = points.len() - 1;
     let inner: Vec<(f64, DVec2)> = points[1..last]
         .iter()
@@ -119,36 +139,33 @@ fn nearest_end(net: &RoadNetwork, road: RoadId, p: DVec2) -> Option<NodeId> {
 /// Splits the roads that a line crosses, and notes where.
 fn cross(net: &mut RoadNetwork, line: &[DVec2], stations: &mut Vec<(f64, NodeId)>) -> Result<(), String> {
     let mut open: Vec<RoadId> = net.roads.iter().map(|r| r.id).collect();
+    let mut lines = net.axes();
     while let Some(id) = open.pop() {
-        let Some(of) = net.lines().remove(&id) else {
-            continue;
-        };
-        let Some((along, there)) = curve::crossing(line, &of) else {
-            continue;
-        };
-        let (p, way) = curve::at(line, along);
-        let is_known = stations.iter().any(|(at, n)| {
-            (at - along).abs() < NODE_M || net.node(*n).is_some_and(|n| n.at_m.distance(p) < NODE_M)
-        });
-        if is_known || curve::at(&of, there).1.dot(way).abs() > CROSSES_RAD.cos() {
-            continue;
-        }
-        let near = net
-            .nodes
-            .iter()
-            .find(|n| n.at_m.distance(p) < NODE_M)
-            .map(|n| n.id);
-        let node = match near {
-            Some(node) => node,
-            None => {
-                let node = split_at(net, id, p)?;
-                // The rest of the road may cross the line again.
-                open.push(id);
-                open.extend(net.roads.last().map(|r| r.id));
-                node
+        let Some(of) = lines.get(&id) else { continue };
+        let all: Vec<(f64, f64)> = curve::crossings(line, of).collect();
+        for (along, there) in all {
+            let (p, way) = curve::at(line, along);
+            let Some(road) = net.road(id) else { break };
+            let end = road
+                .ends
+                .into_iter()
+                .find(|e| net.node(*e).is_some_and(|n| n.at_m.distance(p) < NODE_M));
+            let is_flat = curve::at(&lines[&id], there).1.dot(way).abs() > CROSSES_RAD.cos();
+            if is_flat || end.is_some_and(|e| stations.iter().any(|(_, n)| *n == e)) {
+                continue;
             }
-        };
-        stations.push((along, node));
+            if let Some(end) = end {
+                stations.push((along, end));
+                continue;
+            }
+            let node = split_at(net, id, p)?;
+            stations.push((along, node));
+            // Both parts may cross the line again.
+            lines = net.axes();
+            open.push(id);
+            open.extend(net.roads.last().map(|r| r.id));
+            break;
+        }
     }
     Ok(())
 }

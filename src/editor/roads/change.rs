@@ -26,6 +26,7 @@ pub(super) fn changed(before: &RoadNetwork, change: &RoadChange) -> Result<RoadN
                 id: RoadId(0),
                 ends: [NodeId(0); 2],
                 via_m: Vec::new(),
+                offset_m: 0.0,
                 left: left.clone(),
                 right: right.clone(),
                 limit_kph: *limit_kph,
@@ -76,7 +77,7 @@ fn no_node(id: NodeId) -> String {
 
 /// Splits a road near a point; the new node.
 pub(super) fn split_at(net: &mut RoadNetwork, id: RoadId, at_m: DVec2) -> Result<NodeId, String> {
-    let line = net.lines().remove(&id).ok_or_else(|| no_road(id))?;
+    let line = net.axes().remove(&id).ok_or_else(|| no_road(id))?;
     let (along_m, _) = curve::project(&line, at_m).ok_or_else(|| format!("road {} has no length", id.0))?;
     let length_m = curve::length_m(&line);
     // Written so that NaN fails too.
@@ -180,6 +181,7 @@ fn join(net: &mut RoadNetwork, node: NodeId) -> Result<(), String> {
         id: a.road,
         ends: [first.ends[0], second.ends[1]],
         via_m,
+        offset_m: like.offset_m,
         left: like.left.clone(),
         right: like.right.clone(),
         limit_kph: like.limit_kph,

@@ -25,38 +25,32 @@ pub fn network_of(scene: &Scene) -> Arc<RoadNetwork> {
     }
 }
 
-/// The network after a change; the layout says what is painted. Errors say what cannot be.
-pub fn changed(
-    before: &RoadNetwork,
-    change: &RoadChange,
-    layout: &scene::BevLayout,
-) -> Result<RoadNetwork, EditError> {
-    let after = match change {
-        RoadChange::Recognise {} => recognise(layout, before),
-        change => change::changed(before, change).map_err(EditError::BadRoads)?,
-    };
-    match after.problem() {
-        Some(problem) => Err(EditError::BadRoads(problem)),
-        None => Ok(after),
-    }
-}
-
 /// Applies a change of the network to a scene. One that changes nothing keeps the revision.
 pub(crate) fn apply(scene: &mut Scene, change: &RoadChange) -> Result<(), EditError> {
-    let before = network_of(scene);
-    let after = changed(&before, change, &scene.canvas().layout)?;
+    let (known, before) = (!scene.roads.is_empty(), network_of(scene));
+    let sound = |net: &RoadNetwork| net.problem().map_or(Ok(()), |p| Err(EditError::BadRoads(p)));
+    if *change == (RoadChange::Recognise {}) {
+        let after = match known {
+            true => Arc::new(recognise(&scene.canvas().layout, &before)),
+            false => before,
+        };
+        sound(&after)?;
+        if after != scene.roads {
+            scene.touch();
+            scene.roads = after;
+        }
+        return Ok(());
+    }
+    let after = change::changed(&before, change).map_err(EditError::BadRoads)?;
+    sound(&after)?;
     let anew = match change {
         RoadChange::Redraw { id } => Some(*id),
         _ => None,
     };
-    if after == *scene.roads && anew.is_none() {
+    if after == *before && anew.is_none() {
         return Ok(());
     }
-    if after != *before || anew.is_some() {
-        scene.change_canvas(|frame| redraw::redraw(frame, &before, &after, anew));
-    } else {
-        scene.touch();
-    }
+    scene.change_canvas(|frame| redraw::redraw(frame, &before, &after, anew));
     scene.roads = Arc::new(after);
     Ok(())
 }

@@ -40,7 +40,7 @@ pub(super) fn redraw(frame: &mut Frame, before: &RoadNetwork, after: &RoadNetwor
         // A junction that changed is drawn whole: what was painted otherwise there fits no more.
         let p = extent.center(at[0], at[1], 0).truncate();
         let at_junction =
-            || junctions.iter().any(|(m, r)| p.distance(*m) < *r) && (drawn(&new, at) | drawn(&old, at)) != 0;
+            || (drawn(&new, at) | drawn(&old, at)) != 0 && junctions.iter().any(|(m, r)| p.distance(*m) < *r);
         if due[i] || is_rest || is_forced || at_junction() {
             cells.push(at);
         }
@@ -103,9 +103,16 @@ fn swap_lines(layout: &mut BevLayout, nets: [&RoadNetwork; 2], drawn: [&Drawn; 2
     };
     let own: Vec<bool> = surface.iter().zip(&beside).map(|(a, b)| *a && !*b).collect();
     let (whole, own) = (Area::new(extent, &on(&surface)), Area::new(extent, &on(&own)));
+    // What lies under a new road belongs to nobody any more, but for what other roads have there.
+    let under = Area::new(extent, &on(&nets[1].surface_of(extent, &due, 0.0)));
+    let of_others: Vec<&Polyline> = others.iter().filter_map(|o| new.get(o)).flatten().collect();
     let mut lines: Vec<Polyline> = Vec::new();
     for line in layout.polylines.iter() {
-        if share(&whole, &line.points_m) > OWN {
+        if of_others.contains(&line) {
+            lines.push(line.clone());
+            continue;
+        }
+        if share(&whole, &line.points_m) > OWN || share(&under, &line.points_m) > OWN {
             continue;
         }
         if !own.touches(&line.points_m) {

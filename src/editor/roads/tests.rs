@@ -491,3 +491,109 @@ fn wishes_change_the_whole_street() {
     Edit::ChangeRoads { change }.apply(&mut scene).expect("sound");
     assert!(scene.roads.roads.iter().all(|r| r.via_m.is_empty()));
 }
+
+#[test]
+fn the_only_painted_road_can_be_deleted_and_recognising_paints_nothing() {
+    let mut scene = empty();
+    add(&mut scene, &[[-30.0, 0.0], [30.0, 0.0]], &STREET, &STREET);
+    // A pocket beside the road, wider than any rim.
+    let pocket = Edit::PaintBev {
+        layer: BevLayer::DrivableArea,
+        shape: Shape::Rect {
+            min_m: DVec2::new(0.0, 3.0),
+            max_m: DVec2::new(12.0, 9.0),
+        },
+        value: true,
+    };
+    pocket.apply(&mut scene).expect("sound");
+    let apply = |scene: &mut Scene, change| Edit::ChangeRoads { change }.apply(scene);
+    let layout = scene.canvas().layout.clone();
+    apply(&mut scene, RoadChange::Recognise {}).expect("sound");
+    assert!(scene.canvas().layout == layout, "a known network");
+    let mut scene = empty();
+    add(&mut scene, &[[-30.0, 0.0], [30.0, 0.0]], &STREET, &STREET);
+    scene.roads = Arc::default();
+    let layout = scene.canvas().layout.clone();
+    apply(&mut scene, RoadChange::Recognise {}).expect("sound");
+    assert!(scene.canvas().layout == layout && scene.roads.roads.len() == 1);
+    scene.roads = Arc::default();
+    let id = network_of(&scene).roads[0].id;
+    apply(&mut scene, RoadChange::Remove { id }).expect("sound");
+    assert!(scene.canvas().layout.count(BevLayer::DrivableArea) < 20);
+    assert!(scene.canvas().layout.polylines.is_empty());
+}
+
+#[test]
+fn another_direction_leaves_the_carriageway_where_it_is() {
+    use scene::roads::RoadWish;
+    let mut scene = empty();
+    add(&mut scene, &[[-45.0, 0.0], [45.0, 0.0]], &STREET, &STREET);
+    let before = scene.canvas().layout.clone();
+    let wish = |heading_deg| RoadChange::Wish {
+        at_m: DVec2::ZERO,
+        heading_deg,
+        wish: RoadWish::OneWay {},
+    };
+    for heading_deg in [0.0, 180.0] {
+        let mut scene = scene.clone();
+        let change = wish(heading_deg);
+        Edit::ChangeRoads { change }.apply(&mut scene).expect("sound");
+        assert!(iou(&before, &scene.canvas().layout, BevLayer::DrivableArea) > 0.99);
+        let road = scene.roads.roads[0].turned();
+        let stays = RoadChange::Put { road };
+        Edit::ChangeRoads { change: stays }
+            .apply(&mut scene)
+            .expect("sound");
+        assert!(iou(&before, &scene.canvas().layout, BevLayer::DrivableArea) > 0.99);
+        let lines = &scene.canvas().layout.polylines;
+        let runs: Vec<f64> = lines.iter().map(|l| l.points_m[1].x - l.points_m[0].x).collect();
+        let ahead = heading_deg != 0.0;
+        assert!(
+            runs.iter().filter(|r| (**r > 0.0) == ahead).count() >= 2,
+            "{runs:?}"
+        );
+    }
+}
+
+#[test]
+fn streets_that_lead_nowhere_or_too_far_are_refused_and_loops_close() {
+    let mut scene = empty();
+    let add_points = |scene: &mut Scene, points_m: Vec<DVec2>| {
+        let change = RoadChange::Add {
+            points_m,
+            left: vec![],
+            right: lanes(&[LaneKind::Drive]),
+            limit_kph: None,
+        };
+        Edit::ChangeRoads { change }.apply(scene)
+    };
+    let short = vec![DVec2::ZERO, DVec2::X * 2.0];
+    assert!(add_points(&mut scene, short).is_err());
+    let zigzag = (0..9000)
+        .map(|k| DVec2::new(f64::from(k % 2) * 9000.0, f64::from(k)))
+        .collect();
+    let error = add_points(&mut scene, zigzag).expect_err("too long").to_string();
+    assert!(error.contains("expected at most 50000 m"), "{error}");
+    let ring = (0..=12)
+        .map(|k| DVec2::from_angle(f64::from(k) / 12.0 * 6.283) * 20.0)
+        .collect();
+    add_points(&mut scene, ring).expect("a loop");
+    assert_eq!((scene.roads.roads.len(), scene.roads.nodes.len()), (1, 1));
+    // A street across a divided road has a junction with each carriageway.
+    let mut scene = empty();
+    for y in [-2.5, 2.5] {
+        add_points(
+            &mut scene,
+            vec![DVec2::new(-40.0, y + 3.0), DVec2::new(40.0, y + 3.0)],
+        )
+        .expect("sound");
+    }
+    add(&mut scene, &[[0.0, -40.0], [0.0, 40.0]], &STREET, &STREET);
+    let met = scene
+        .roads
+        .nodes
+        .iter()
+        .filter(|n| scene.roads.arms(n.id).len() == 4)
+        .count();
+    assert_eq!(met, 2, "{:#?}", scene.roads);
+}

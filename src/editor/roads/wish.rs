@@ -197,10 +197,24 @@ fn lanes(road: &mut Road, count: u32, with_us: bool) -> Result<(), String> {
     Ok(())
 }
 
+/// All lanes of the carriageway are driven one way; it stays where it is.
 fn one_way(road: &mut Road, with_us: bool) {
-    let (width_m, count) = (drive_m(road), road.driven(true) + road.driven(false));
+    let width_m = drive_m(road);
+    let driven_m = |side: &[RoadLane]| -> f64 {
+        let driven = side.iter().filter(|l| l.kind.is_driven());
+        driven.map(|l| l.width_m).sum()
+    };
+    let (theirs_m, count) = (
+        driven_m(road.side(!with_us)),
+        road.driven(true) + road.driven(false),
+    );
+    // The line goes where the other side's lanes ended.
+    road.offset_m += if with_us { theirs_m } else { -theirs_m };
+    for right in [true, false] {
+        road.side_mut(right).retain(|l| !l.kind.is_driven());
+    }
     set_count(road.side_mut(with_us), count.clamp(1, MOST as usize), width_m);
-    set_count(road.side_mut(!with_us), 0, width_m);
+    road.stops.retain(|s| s.right == with_us);
 }
 
 fn widths(road: &mut Road, times: f64) -> Result<(), String> {

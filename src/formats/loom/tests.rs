@@ -96,6 +96,7 @@ fn roads() -> RoadNetwork {
             id: RoadId(0),
             ends: [from, to],
             via_m: vec![DVec2::new(-0.1, 7.0)],
+            offset_m: 0.0,
             left: vec![RoadLane::usual(LaneKind::Bus)],
             right: vec![RoadLane::usual(LaneKind::Drive), RoadLane::usual(LaneKind::Walk)],
             limit_kph: Some(30.0),

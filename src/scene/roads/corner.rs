@@ -71,11 +71,19 @@ impl Seen<'_> {
 /// What all nodes draw.
 pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -> Corners {
     let mut out = Corners::default();
+    let mut at: BTreeMap<NodeId, Vec<(Arm, &Road)>> = BTreeMap::new();
+    for road in &net.roads {
+        for end in [0, 1] {
+            let arm = Arm { road: road.id, end };
+            at.entry(road.ends[end]).or_default().push((arm, road));
+        }
+    }
     for node in &net.nodes {
-        let mut arms: Vec<Seen<'_>> = net
-            .arms(node.id)
+        let mut arms: Vec<Seen<'_>> = at
+            .get(&node.id)
             .into_iter()
-            .filter_map(|arm| seen(net, lines, arm))
+            .flatten()
+            .filter_map(|(arm, road)| seen(road, lines, *arm))
             .collect();
         arms.sort_by(|a, b| a.heading_rad().total_cmp(&b.heading_rad()));
         match node.kind {
@@ -89,13 +97,12 @@ pub(super) fn corners(net: &RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>) -
     out
 }
 
-fn seen<'a>(net: &'a RoadNetwork, lines: &BTreeMap<RoadId, Vec<DVec2>>, arm: Arm) -> Option<Seen<'a>> {
+fn seen<'a>(road: &'a Road, lines: &BTreeMap<RoadId, Vec<DVec2>>, arm: Arm) -> Option<Seen<'a>> {
     let mut out_m = lines.get(&arm.road)?.clone();
     if arm.end == 1 {
         out_m.reverse();
     }
     let length_m = curve::length_m(&out_m);
-    let road = net.road(arm.road)?;
     (out_m.len() > 1).then_some(Seen {
         arm,
         road,

@@ -153,23 +153,30 @@ pub fn project(points_m: &[DVec2], p_m: DVec2) -> Option<(f64, f64)> {
 
 /// Where two lines first cross: how far along the first and along the second, m.
 pub fn crossing(a_m: &[DVec2], b_m: &[DVec2]) -> Option<(f64, f64)> {
+    crossings(a_m, b_m).next()
+}
+
+/// Where two lines cross, in the order of the first.
+pub fn crossings<'a>(a_m: &'a [DVec2], b_m: &'a [DVec2]) -> impl Iterator<Item = (f64, f64)> + 'a {
     let mut along_a = 0.0;
-    for [a, b] in a_m.array_windows::<2>() {
-        let (d, mut along_b) = (*b - *a, 0.0);
+    a_m.array_windows::<2>().flat_map(move |[a, b]| {
+        let (d, from_a, mut along_b) = (*b - *a, along_a, 0.0);
+        along_a += d.length();
+        let mut found = Vec::new();
         for [p, q] in b_m.array_windows::<2>() {
             let e = *q - *p;
             let cross = d.perp_dot(e);
             if cross.abs() > 1e-9 {
                 let (t, u) = ((*p - *a).perp_dot(e) / cross, (*p - *a).perp_dot(d) / cross);
                 if (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u) {
-                    return Some((along_a + t * d.length(), along_b + u * e.length()));
+                    found.push((from_a + t * d.length(), along_b + u * e.length()));
                 }
             }
             along_b += e.length();
         }
-        along_a += d.length();
-    }
-    None
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found
+    })
 }
 
 /// A rounded corner from one point to another about a third (quadratic Bézier), in steps of half a metre or so.

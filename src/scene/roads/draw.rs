@@ -240,7 +240,9 @@ impl RoadNetwork {
         for stop in &road.stops {
             let (at, way) = curve::at(line, beyond_corners(stop.at_m, 0.0, free_m));
             let off = road.kerb_m(stop.right, false) * if stop.right { -1.0 } else { 1.0 };
-            push(PolylineKind::StopLine, vec![at, at + way.perp() * off]);
+            if off != 0.0 {
+                push(PolylineKind::StopLine, vec![at, at + way.perp() * off]);
+            }
         }
         for crossing in &road.crossings {
             let (at, way) = curve::at(

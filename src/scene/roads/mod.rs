@@ -145,6 +145,9 @@ pub struct Road {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<[f64; 2]>")]
     pub via_m: Vec<DVec2>,
+    /// Lanes are counted from so far to the left of that line, m.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset_m: f64,
     /// Lanes left of the line, from the line outward; driven against it.
     #[serde(default)]
     pub left: Vec<RoadLane>,
@@ -205,9 +208,25 @@ impl Road {
         Self {
             ends: [to, from],
             via_m: self.via_m.iter().rev().copied().collect(),
+            offset_m: -self.offset_m,
             left: self.right.clone(),
             right: self.left.clone(),
             crossings: self.crossings.iter().map(crossing).collect(),
+            stops: self.stops.iter().map(turned).collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same carriageway driven the other way.
+    pub fn turned(&self) -> Self {
+        let turned = |s: &RoadStop| RoadStop {
+            right: !s.right,
+            ..*s
+        };
+        Self {
+            offset_m: self.offset_m + self.reach_m(false) - self.reach_m(true),
+            left: self.right.clone(),
+            right: self.left.clone(),
             stops: self.stops.iter().map(turned).collect(),
             ..self.clone()
         }
@@ -388,6 +407,10 @@ impl Road {
     pub const LIMIT_KPH: std::ops::RangeInclusive<f64> = 1.0..=300.0;
     /// Most points between its ends.
     pub const MAX_VIA: usize = 10_000;
+    /// Greatest length, m.
+    pub const MAX_M: f64 = 50_000.0;
+    /// Farthest that lanes may lie off the line, m.
+    pub const OFFSET_M: std::ops::RangeInclusive<f64> = -100.0..=100.0;
 
     /// Why it cannot be used, in one line; `None` if it is sound.
     pub fn problem(&self) -> Option<String> {
@@ -424,6 +447,12 @@ impl Road {
         if let Some(p) = self.via_m.iter().find(|p| !is_within(**p)) {
             return Some(format!(
                 "{name} runs through {p}, expected numbers within 10000 m"
+            ));
+        }
+        if !Self::OFFSET_M.contains(&self.offset_m) {
+            return Some(format!(
+                "{name} has an offset of {} m, expected -100 to 100 m",
+                self.offset_m
             ));
         }
         if let Some(v) = self.limit_kph.filter(|v| !Self::LIMIT_KPH.contains(v)) {
@@ -475,6 +504,10 @@ impl RoadNode {
             }
         }
     }
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 /// True for finite points near enough to the origin.

@@ -1,6 +1,6 @@
 //! The network as a whole: what is where, which roads go on in which, and the course of each.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 use schemars::JsonSchema;
@@ -97,18 +97,8 @@ impl RoadNetwork {
             .collect()
     }
 
-    /// The set point next to a node along an arm.
-    fn next_m(&self, arm: Arm) -> Option<DVec2> {
-        let road = self.road(arm.road)?;
-        let other = || self.node(road.ends[1 - arm.end]).map(|n| n.at_m);
-        match arm.end {
-            0 => road.via_m.first().copied().or_else(other),
-            _ => road.via_m.last().copied().or_else(other),
-        }
-    }
-
     /// Pairs of arms that go on in each other at a node: the two of a joint, and at a junction those that bend least.
-    fn pairs(&self, node: &RoadNode, arms: &[Arm]) -> Vec<[Arm; 2]> {
+    fn pairs(&self, index: &Index<'_>, node: &RoadNode, arms: &[Arm]) -> Vec<[Arm; 2]> {
         if let NodeKind::Roundabout { .. } = node.kind {
             return Vec::new();
         }
@@ -116,8 +106,8 @@ impl RoadNetwork {
             return vec![[*a, *b]];
         }
         let way = |a: &Arm| {
-            self.next_m(*a)
-                .map_or(DVec2::ZERO, |p| (p - node.at_m).normalize_or_zero())
+            let next = index.next_m(*a);
+            next.map_or(DVec2::ZERO, |p| (p - node.at_m).normalize_or_zero())
         };
         let mut found: Vec<(f64, [Arm; 2])> = Vec::new();
         for (i, a) in arms.iter().enumerate() {
@@ -136,7 +126,7 @@ impl RoadNetwork {
 
     /// The roads that go on in each other through a road, along its line; true for those that run the other way.
     pub fn street(&self, id: RoadId) -> Vec<(RoadId, bool)> {
-        let mut out = vec![(id, false)];
+        let (mut out, index) = (vec![(id, false)], Index::of(self));
         for forward in [false, true] {
             out.reverse();
             // From the outermost known road on through its far node.
@@ -146,7 +136,7 @@ impl RoadNetwork {
                 let Some(node) = self.road(last).and_then(|r| self.node(r.ends[end])) else {
                     break;
                 };
-                let pairs = self.pairs(node, &self.arms(node.id));
+                let pairs = self.pairs(&index, node, &self.arms(node.id));
                 let next = pairs.into_iter().find_map(|[a, b]| match here {
                     h if h == a => Some(b),
                     h if h == b => Some(a),
@@ -162,14 +152,27 @@ impl RoadNetwork {
         out
     }
 
-    /// The course of every road, from its beginning to its end, m. Where roads go on in each other there is no kink.
+    /// Where every road's lanes begin on both sides, from its beginning to its end, m: its line, shifted by its offset. Where
+    /// roads go on in each other there is no kink.
     pub fn lines(&self) -> BTreeMap<RoadId, Vec<DVec2>> {
+        let mut out = self.axes();
+        for road in self.roads.iter().filter(|r| r.offset_m != 0.0) {
+            if let Some(line) = out.get_mut(&road.id) {
+                *line = curve::beside(line, road.offset_m);
+            }
+        }
+        out
+    }
+
+    /// The line of every road through its points, m.
+    pub fn axes(&self) -> BTreeMap<RoadId, Vec<DVec2>> {
+        let index = Index::of(self);
         let mut beyond: BTreeMap<(RoadId, usize), DVec2> = BTreeMap::new();
         for node in &self.nodes {
-            let arms = self.arms(node.id);
-            for [a, b] in self.pairs(node, &arms) {
+            let arms = index.arms.get(&node.id).map_or(&[][..], |a| a);
+            for [a, b] in self.pairs(&index, node, arms) {
                 for (from, to) in [(a, b), (b, a)] {
-                    if let Some(p) = self.next_m(to) {
+                    if let Some(p) = index.next_m(to) {
                         beyond.insert((from.road, from.end), p);
                     }
                 }
@@ -177,14 +180,29 @@ impl RoadNetwork {
         }
         let line = |r: &Road| {
             let ghost = |end| beyond.get(&(r.id, end)).copied();
-            (r.id, curve::through(ghost(0), &self.points_m(r), ghost(1)))
+            let end = |i: usize| index.nodes.get(&r.ends[i]).map(|n| n.at_m);
+            let points: Vec<DVec2> = end(0)
+                .into_iter()
+                .chain(r.via_m.iter().copied())
+                .chain(end(1))
+                .collect();
+            (r.id, curve::through(ghost(0), &points, ghost(1)))
         };
         self.roads.iter().map(line).collect()
     }
 
     /// The road whose surface a point lies on or within `slack_m` of; the one whose line is nearest.
     pub fn road_at(&self, p_m: DVec2, slack_m: f64) -> Option<RoadId> {
-        let lines = self.lines();
+        self.road_among(&self.lines(), p_m, slack_m)
+    }
+
+    /// The same with the lines at hand.
+    pub fn road_among(
+        &self,
+        lines: &BTreeMap<RoadId, Vec<DVec2>>,
+        p_m: DVec2,
+        slack_m: f64,
+    ) -> Option<RoadId> {
         let on = self.roads.iter().filter_map(|r| {
             let (_, left_m) = curve::project(lines.get(&r.id)?, p_m)?;
             let (right, left) = (r.kerb_m(true, true), r.kerb_m(false, true));
@@ -196,7 +214,7 @@ impl RoadNetwork {
 
     /// Nodes at which no road ends go.
     pub fn tidy(&mut self) {
-        let used: Vec<NodeId> = self.roads.iter().flat_map(|r| r.ends).collect();
+        let used: BTreeSet<NodeId> = self.roads.iter().flat_map(|r| r.ends).collect();
         self.nodes.retain(|n| used.contains(&n.id));
     }
 
@@ -241,8 +259,79 @@ impl RoadNetwork {
                 ));
             }
         }
+        if let Some(problem) = self.too_long() {
+            return Some(problem);
+        }
         let bad_road = self.roads.iter().find_map(Road::problem);
         bad_road.or_else(|| self.nodes.iter().find_map(RoadNode::problem))
+    }
+}
+
+/// What is where, to look up fast.
+struct Index<'a> {
+    roads: BTreeMap<RoadId, &'a Road>,
+    nodes: BTreeMap<NodeId, &'a RoadNode>,
+    arms: BTreeMap<NodeId, Vec<Arm>>,
+}
+
+impl<'a> Index<'a> {
+    fn of(net: &'a RoadNetwork) -> Self {
+        let mut arms: BTreeMap<NodeId, Vec<Arm>> = BTreeMap::new();
+        for road in &net.roads {
+            for end in [0, 1] {
+                arms.entry(road.ends[end])
+                    .or_default()
+                    .push(Arm { road: road.id, end });
+            }
+        }
+        Self {
+            roads: net.roads.iter().map(|r| (r.id, r)).collect(),
+            nodes: net.nodes.iter().map(|n| (n.id, n)).collect(),
+            arms,
+        }
+    }
+
+    /// The set point next to a node along an arm.
+    fn next_m(&self, arm: Arm) -> Option<DVec2> {
+        let road = self.roads.get(&arm.road)?;
+        let other = || self.nodes.get(&road.ends[1 - arm.end]).map(|n| n.at_m);
+        match arm.end {
+            0 => road.via_m.first().copied().or_else(other),
+            _ => road.via_m.last().copied().or_else(other),
+        }
+    }
+}
+
+impl RoadNetwork {
+    /// Greatest length of all roads together, m.
+    pub const MAX_M: f64 = 2_000_000.0;
+
+    fn too_long(&self) -> Option<String> {
+        let index = Index::of(self);
+        let mut all_m = 0.0;
+        for road in &self.roads {
+            let end = |i: usize| index.nodes.get(&road.ends[i]).map(|n| n.at_m);
+            let points: Vec<DVec2> = end(0)
+                .into_iter()
+                .chain(road.via_m.iter().copied())
+                .chain(end(1))
+                .collect();
+            let length_m = curve::length_m(&points);
+            if length_m > Road::MAX_M {
+                let most = Road::MAX_M;
+                return Some(format!(
+                    "road {} is {length_m:.0} m long, expected at most {most:.0} m",
+                    road.id.0
+                ));
+            }
+            all_m += length_m;
+        }
+        (all_m > Self::MAX_M).then(|| {
+            format!(
+                "the network is {all_m:.0} m long, expected at most {:.0} m",
+                Self::MAX_M
+            )
+        })
     }
 }
 

@@ -76,6 +76,7 @@ pub(super) fn network(graph: &Graph, rings: &[Ring], mask: &Mask, layout: &BevLa
             id: RoadId(0),
             ends: [a, b],
             via_m,
+            offset_m: 0.0,
             left: draft.across.left,
             right: draft.across.right,
             limit_kph: None,

@@ -11,6 +11,8 @@ use super::mask::Mask;
 /// A spur is shorter than so many times the road is deep where it begins, and this, m.
 const SPUR: f64 = 1.35;
 const SPUR_M: f64 = 2.0;
+/// Wider than twice so many columns nothing is thinned to a line: that is a place.
+const ROUNDS: usize = 90;
 /// More lines than this are no roads.
 const MOST: usize = 5000;
 /// Junctions nearer than so many times the road is deep there are one.
@@ -106,7 +108,7 @@ fn around(extent: Extent, i: usize) -> [Option<usize>; 8] {
 fn thinned(mask: &Mask) -> Vec<bool> {
     let mut on = mask.paved.clone();
     let mut open: Vec<usize> = (0..on.len()).filter(|i| on[*i]).collect();
-    loop {
+    for _ in 0..ROUNDS {
         let mut gone_any = false;
         for first in [true, false] {
             let goes = |i: &usize| {
@@ -127,9 +129,10 @@ fn thinned(mask: &Mask) -> Vec<bool> {
             open.retain(|i| on[*i]);
         }
         if !gone_any {
-            return on;
+            break;
         }
     }
+    on
 }
 
 /// Follows the thin lines from knot to knot.

@@ -5,18 +5,21 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use scene::roads::{NodeKind, RoadNode, curve};
-use scene::{Road, RoadId, RoadNetwork};
+use scene::{Road, RoadId};
 
-use super::RoadPart;
+use super::{RoadPart, Seen};
 use crate::tools::{At, Mark, Role, Sight};
 
 /// Directions are shown every so many metres.
 const ARROW_M: f64 = 16.0;
+/// More roads are drawn as plain lines.
+const MOST_DASHED: usize = 40;
 /// Size of an arrow, points.
 const ARROW: f64 = 5.0;
 
-pub(super) fn over_map(net: &RoadNetwork, sight: &Sight<'_>) -> Vec<Mark> {
-    let (mut out, lines) = (Vec::new(), net.lines());
+pub(super) fn over_map(seen: &Seen, sight: &Sight<'_>) -> Vec<Mark> {
+    let (net, lines) = (&*seen.net, &*seen.lines);
+    let mut out = Vec::new();
     let chosen = sight.hand.road.chosen;
     let point_m = 1.0 / sight.view.scale();
     for road in &net.roads {
@@ -26,7 +29,11 @@ pub(super) fn over_map(net: &RoadNetwork, sight: &Sight<'_>) -> Vec<Mark> {
             chosen_road(road, line, sight, &mut out);
             continue;
         }
-        out.push(Mark::Dashed(at(line), Role::Measure));
+        // Dashes of many roads are too much to draw in every frame.
+        out.push(match net.roads.len() > MOST_DASHED {
+            true => Mark::Line(at(line), Role::Measure),
+            false => Mark::Dashed(at(line), Role::Measure),
+        });
         arrows(road, line, point_m, &mut out);
     }
     for node in &net.nodes {
@@ -39,7 +46,7 @@ pub(super) fn over_map(net: &RoadNetwork, sight: &Sight<'_>) -> Vec<Mark> {
             out.extend(ring(node));
         }
     }
-    if let Some(id) = under(net, sight).filter(|id| chosen.and_then(RoadPart::road) != Some(*id))
+    if let Some(id) = under(seen, sight).filter(|id| chosen.and_then(RoadPart::road) != Some(*id))
         && let Some(road) = net.road(id)
     {
         out.extend(outline(road, &lines[&id]).map(|points| Mark::Line(at(&points), Role::Hand)));
@@ -50,8 +57,8 @@ pub(super) fn over_map(net: &RoadNetwork, sight: &Sight<'_>) -> Vec<Mark> {
     out
 }
 
-fn under(net: &RoadNetwork, sight: &Sight<'_>) -> Option<RoadId> {
-    net.road_at(sight.ground_m()?, 0.0)
+fn under(seen: &Seen, sight: &Sight<'_>) -> Option<RoadId> {
+    seen.net.road_among(&seen.lines, sight.ground_m()?, 0.0)
 }
 
 fn at(points: &[DVec2]) -> Vec<At> {

@@ -6,6 +6,7 @@ mod options;
 mod part;
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -13,7 +14,7 @@ use glam::DVec2;
 use crate::Edit;
 use crate::roads::network_of;
 use scene::roads::{NodeId, RoadChange, curve};
-use scene::{Frame, Road, RoadId, RoadNetwork, Scene, SceneRev};
+use scene::{BevLayout, Frame, Road, RoadId, RoadNetwork, Scene};
 
 use super::setting::{Setting, Value};
 use super::{
@@ -63,31 +64,66 @@ struct Drag {
     grip: Grip,
     from_m: DVec2,
     moved: bool,
+    /// The scene was asked to have a network.
+    asked: bool,
+}
+
+/// A network and the lines of its roads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub net: Arc<RoadNetwork>,
+    pub lines: Arc<BTreeMap<RoadId, Vec<DVec2>>>,
+}
+
+impl Seen {
+    fn of(net: Arc<RoadNetwork>) -> Self {
+        let lines = Arc::new(net.lines());
+        Self { net, lines }
+    }
+}
+
+/// What a network depends on, by the memory that it lies in.
+#[derive(Clone, Debug)]
+struct Known {
+    roads: Arc<RoadNetwork>,
+    layout: BevLayout,
+}
+
+impl Known {
+    fn is_of(&self, scene: &Scene) -> bool {
+        let layout = &scene.canvas().layout;
+        let same = self.layout.shares_cells(layout) && Arc::ptr_eq(&self.layout.polylines, &layout.polylines);
+        Arc::ptr_eq(&self.roads, &scene.roads) && (same || !scene.roads.is_empty())
+    }
 }
 
 /// The road tool.
 #[derive(Debug, Default)]
 pub struct Roads {
-    /// The network last seen, with its state and that of its scene: recognising one takes a moment.
-    seen: RefCell<Option<(SceneRev, Arc<RoadNetwork>)>>,
+    /// The network last seen: recognising one takes a moment.
+    seen: RefCell<Option<(Known, Seen)>>,
     drag: Option<Drag>,
 }
 
 impl Roads {
-    fn network(&self, scene: &Scene) -> Arc<RoadNetwork> {
+    fn network(&self, scene: &Scene) -> Seen {
         let mut seen = self.seen.borrow_mut();
-        if let Some((rev, net)) = &*seen
-            && *rev == scene.content()
+        if let Some((known, net)) = &*seen
+            && known.is_of(scene)
         {
             return net.clone();
         }
-        let net = network_of(scene);
-        *seen = Some((scene.content(), net.clone()));
+        let known = Known {
+            roads: scene.roads.clone(),
+            layout: scene.canvas().layout.clone(),
+        };
+        let net = Seen::of(network_of(scene));
+        *seen = Some((known, net.clone()));
         net
     }
 
     /// The network of the last scene that was looked at.
-    fn last(&self) -> Arc<RoadNetwork> {
+    fn last(&self) -> Seen {
         let seen = self.seen.borrow();
         seen.as_ref().map(|s| s.1.clone()).unwrap_or_default()
     }
@@ -99,20 +135,26 @@ impl Roads {
         let Some(at_m) = cx.ground_m(pointer.at) else {
             return Response::none();
         };
-        let net = self.network(cx.settled);
+        let change = RoadChange::Recognise {};
+        let edits = [Edit::ChangeRoads { change }];
+        if let Some(layer) = cx.hand.locked_layer(&cx.frame().layout, &edits) {
+            return super::brush::locked(layer);
+        }
+        let seen = self.network(cx.settled);
+        let net = &*seen.net;
         let reach_m = HANDLE_REACH / cx.view.scale();
-        let found = part::at(&net, at_m, reach_m, cx.hand.road.chosen);
+        let found = part::at(&seen, at_m, reach_m, cx.hand.road.chosen);
         cx.hand.road.chosen = found;
         cx.hand.road.at_m = at_m;
         cx.hand.road.lane = None;
         let grip = match found {
             None => return Response::none(),
             Some(RoadPart::Node(id)) => Some(Grip::Node(id)),
-            Some(RoadPart::Via(id, index)) if pointer.held.alt => return self.drop_via(cx, &net, id, index),
+            Some(RoadPart::Via(id, index)) if pointer.held.alt => return self.drop_via(cx, net, id, index),
             Some(RoadPart::Via(id, index)) => net.road(id).map(|road| Grip::Via(road.clone(), index)),
             Some(RoadPart::Road(id)) => {
-                cx.hand.road.lane = net.road(id).and_then(|road| part::lane_at(&net, road, at_m));
-                let index = part::on_line(&net, id, at_m, reach_m);
+                cx.hand.road.lane = net.road(id).and_then(|road| part::lane_at(&seen, road, at_m));
+                let index = part::on_line(&seen, id, at_m, reach_m);
                 index.and_then(|index| Some(Grip::Line(net.road(id)?.clone(), index)))
             }
         };
@@ -120,6 +162,7 @@ impl Roads {
             grip,
             from_m: at_m,
             moved: false,
+            asked: false,
         });
         Response::hold()
     }
@@ -141,7 +184,7 @@ impl Roads {
             true => (at_m / cx.hand.grid_m).round() * cx.hand.grid_m,
             false => at_m,
         };
-        let net = self.network(cx.settled);
+        let net = self.network(cx.settled).net;
         let Some(drag) = &mut self.drag else {
             return Response::none();
         };
@@ -150,6 +193,10 @@ impl Roads {
         }
         // A scene gets its network as a step of its own, so that a drag need not recognise it at every move.
         if cx.settled.roads.is_empty() {
+            if std::mem::replace(&mut drag.asked, true) {
+                self.drag = None;
+                return Response::none();
+            }
             return Response::act(recognised());
         }
         let first = !std::mem::replace(&mut drag.moved, true);
@@ -182,7 +229,7 @@ impl Roads {
         match drag.grip {
             Grip::Node(id) => {
                 let at_m = cx.ground_m(pointer.at);
-                let met = at_m.and_then(|at_m| self.meeting(&self.network(cx.settled), id, at_m));
+                let met = at_m.and_then(|at_m| self.meeting(&self.network(cx.settled).net, id, at_m));
                 match met {
                     Some(edits) => Response::act(Act::Cancel).and(Act::Apply("Join roads".into(), edits)),
                     None => Response::act(Act::Commit("Move road node".into())),
@@ -292,9 +339,9 @@ impl Tool for Roads {
         let Some(at_m) = sight.ground_m() else {
             return Cursor::Default;
         };
-        let net = self.network(sight.settled);
+        let seen = self.network(sight.settled);
         let reach_m = HANDLE_REACH / sight.view.scale();
-        match part::at(&net, at_m, reach_m, sight.hand.road.chosen) {
+        match part::at(&seen, at_m, reach_m, sight.hand.road.chosen) {
             Some(RoadPart::Node(_) | RoadPart::Via(..)) => Cursor::Move,
             Some(RoadPart::Road(_)) => Cursor::Pointing,
             None => Cursor::Default,
@@ -302,15 +349,14 @@ impl Tool for Roads {
     }
 
     fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
-        let net = self.network(sight.settled);
-        let shown = match self.drag.is_some() && !sight.scene.roads.is_empty() {
-            true => sight.scene.roads.clone(),
-            false => net,
-        };
-        match sight.from_above() {
-            true => marks::over_map(&shown, sight),
-            false => Vec::new(),
+        if !sight.from_above() {
+            return Vec::new();
         }
+        let shown = match self.drag.is_some() && !sight.scene.roads.is_empty() {
+            true => Seen::of(sight.scene.roads.clone()),
+            false => self.network(sight.settled),
+        };
+        marks::over_map(&shown, sight)
     }
 
     fn options(&self, hand: &Hand) -> Vec<Setting> {
@@ -332,12 +378,11 @@ impl Tool for Roads {
 
 /// The edits by which what is chosen of the roads goes away; `None` if nothing is.
 pub fn deletion(scene: &Scene, part: RoadPart) -> Option<Vec<Edit>> {
-    let net = network_of(scene);
     let change = match part {
         RoadPart::Road(id) => RoadChange::Remove { id },
         RoadPart::Node(node) => RoadChange::Join { node },
         RoadPart::Via(id, index) => {
-            let mut road = net.road(id)?.clone();
+            let mut road = network_of(scene).road(id)?.clone();
             (index < road.via_m.len()).then(|| road.via_m.remove(index))?;
             RoadChange::Put { road }
         }

@@ -6,7 +6,7 @@ use scene::roads::{LaneKind, NodeKind, RoadChange, RoadCrossing, RoadLane, RoadS
 use scene::{Road, RoadId, RoadNetwork, RoadNode};
 
 use super::part::{RoadHand, RoadPart};
-use super::{apply, recognised};
+use super::{Seen, apply, recognised};
 use crate::tools::Act;
 use crate::tools::setting::{Choice, Control, Setting, Value};
 
@@ -28,7 +28,8 @@ const NODES: [Choice; 2] = [
     ("Roundabout", "a ring around an island"),
 ];
 
-pub(super) fn of(net: &RoadNetwork, hand: &RoadHand) -> Vec<Setting> {
+pub(super) fn of(seen: &Seen, hand: &RoadHand) -> Vec<Setting> {
+    let net = &*seen.net;
     let mut out = vec![Setting::title("Road")];
     let road = hand.chosen.and_then(RoadPart::road).and_then(|id| net.road(id));
     let node = match hand.chosen {
@@ -36,7 +37,7 @@ pub(super) fn of(net: &RoadNetwork, hand: &RoadHand) -> Vec<Setting> {
         _ => None,
     };
     match (road, node) {
-        (Some(road), _) => of_road(net, road, hand, &mut out),
+        (Some(road), _) => of_road(seen, road, hand, &mut out),
         (None, Some(node)) => of_node(net, node, &mut out),
         _ => {
             let count = net.roads.len();
@@ -82,9 +83,8 @@ fn list(id: &'static str, title: &'static str, value: f64, all: &[f64], unit: &s
     Setting::new(id, control)
 }
 
-fn of_road(net: &RoadNetwork, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
-    let lines = net.lines();
-    let length_m = lines.get(&road.id).map_or(0.0, |l| curve::length_m(l));
+fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
+    let length_m = seen.lines.get(&road.id).map_or(0.0, |l| curve::length_m(l));
     out.push(Setting::text(format!(
         "Road {}: {}, {length_m:.0} m",
         road.id.0,
@@ -212,7 +212,8 @@ fn chosen_lane(road: &Road, hand: &RoadHand) -> Option<(bool, usize)> {
 }
 
 /// The user set an option.
-pub(super) fn set(net: &RoadNetwork, hand: &mut RoadHand, id: &str, value: Value) -> Vec<Act> {
+pub(super) fn set(seen: &Seen, hand: &mut RoadHand, id: &str, value: Value) -> Vec<Act> {
+    let net = &*seen.net;
     match id {
         "draw" => return vec![Act::Ask("shape_street")],
         "recognise" => return vec![recognised()],
@@ -226,7 +227,7 @@ pub(super) fn set(net: &RoadNetwork, hand: &mut RoadHand, id: &str, value: Value
     let Some(road) = road.cloned() else {
         return Vec::new();
     };
-    set_road(net, road, hand, id, value).into_iter().collect()
+    set_road(seen, road, hand, id, value).into_iter().collect()
 }
 
 fn pick(value: Value, all: &[f64]) -> Option<f64> {
@@ -255,7 +256,7 @@ fn set_node(node: RoadNode, id: &str, value: Value) -> Option<Act> {
     Some(apply("Change junction", RoadChange::PutNode { node }))
 }
 
-fn set_road(net: &RoadNetwork, mut road: Road, hand: &mut RoadHand, id: &str, value: Value) -> Option<Act> {
+fn set_road(seen: &Seen, mut road: Road, hand: &mut RoadHand, id: &str, value: Value) -> Option<Act> {
     let put = |label, road| Some(apply(label, RoadChange::Put { road }));
     let lane = chosen_lane(&road, hand);
     match id {
@@ -284,11 +285,11 @@ fn set_road(net: &RoadNetwork, mut road: Road, hand: &mut RoadHand, id: &str, va
             put("Change lanes", road)
         }
         "limit" => {
-            road.limit_kph = pick(value, &LIMITS_KPH).filter(|v| *v > 0.0);
+            road.limit_kph = Some(pick(value, &LIMITS_KPH)?).filter(|v| *v > 0.0);
             put("Change speed limit", road)
         }
         "crossing" | "stop" => {
-            let (along_m, left_m) = place(net, road.id, hand.at_m)?;
+            let (along_m, left_m) = place(seen, road.id, hand.at_m)?;
             mark(&mut road, id == "stop", along_m, left_m);
             put("Change road marks", road)
         }
@@ -299,9 +300,8 @@ fn set_road(net: &RoadNetwork, mut road: Road, hand: &mut RoadHand, id: &str, va
         }
         "straighten" => Some(apply("Straighten road", RoadChange::Straighten { id: road.id })),
         "turn" => {
-            let (left, right) = (road.right.clone(), road.left.clone());
-            (road.left, road.right) = (left, right);
-            put("Turn road around", road)
+            hand.lane = None;
+            put("Turn road around", road.turned())
         }
         "redraw" => Some(apply("Draw road anew", RoadChange::Redraw { id: road.id })),
         "delete" => {
@@ -312,8 +312,8 @@ fn set_road(net: &RoadNetwork, mut road: Road, hand: &mut RoadHand, id: &str, va
     }
 }
 
-fn place(net: &RoadNetwork, id: RoadId, at_m: DVec2) -> Option<(f64, f64)> {
-    curve::project(net.lines().get(&id)?, at_m)
+fn place(seen: &Seen, id: RoadId, at_m: DVec2) -> Option<(f64, f64)> {
+    curve::project(seen.lines.get(&id)?, at_m)
 }
 
 /// Puts a mark at a place along a road, or takes away the one that is there.

@@ -3,7 +3,9 @@
 use glam::DVec2;
 
 use scene::roads::{NodeId, curve};
-use scene::{Road, RoadId, RoadNetwork};
+use scene::{Road, RoadId};
+
+use super::Seen;
 
 /// What is chosen of the roads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,7 @@ pub struct RoadHand {
 
 /// What lies at a point: points of the chosen road before nodes, nodes before roads.
 pub(super) fn at(net: &RoadNetwork, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>) -> Option<RoadPart> {
+    let net = &*seen.net;
     let near = |q: DVec2| q.distance(p_m) <= reach_m;
     if let Some(road) = chosen.and_then(RoadPart::road).and_then(|id| net.road(id))
         && let Some(i) = road.via_m.iter().position(|p| near(*p))
@@ -48,22 +51,20 @@ pub(super) fn at(net: &RoadNetwork, p_m: DVec2, reach_m: f64, chosen: Option<Roa
     let nodes = net.nodes.iter().filter(|n| near(n.at_m));
     let node = nodes.min_by(|a, b| a.at_m.distance(p_m).total_cmp(&b.at_m.distance(p_m)));
     node.map(|n| RoadPart::Node(n.id))
-        .or_else(|| net.road_at(p_m, 0.0).map(RoadPart::Road))
+        .or_else(|| net.road_among(&seen.lines, p_m, 0.0).map(RoadPart::Road))
 }
 
 /// Where among the points of a road's line a place on it lies; `None` beside the line.
-pub(super) fn on_line(net: &RoadNetwork, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
-    let (road, lines) = (net.road(id)?, net.lines());
-    let line = lines.get(&id)?;
+pub(super) fn on_line(seen: &Seen, id: RoadId, p_m: DVec2, reach_m: f64) -> Option<usize> {
+    let (road, line) = (seen.net.road(id)?, seen.lines.get(&id)?);
     let (along_m, left_m) = curve::project(line, p_m)?;
     let before = |p: &&DVec2| curve::project(line, **p).is_some_and(|(along, _)| along < along_m);
     (left_m.abs() <= reach_m).then(|| road.via_m.iter().filter(before).count())
 }
 
 /// The lane of a road at a point.
-pub(super) fn lane_at(net: &RoadNetwork, road: &Road, p_m: DVec2) -> Option<(bool, usize)> {
-    let lines = net.lines();
-    let (_, left_m) = curve::project(lines.get(&road.id)?, p_m)?;
+pub(super) fn lane_at(seen: &Seen, road: &Road, p_m: DVec2) -> Option<(bool, usize)> {
+    let (_, left_m) = curve::project(seen.lines.get(&road.id)?, p_m)?;
     let right = left_m < 0.0;
     let mut edge = 0.0;
     let lane = road.side(right).iter().position(|l| {

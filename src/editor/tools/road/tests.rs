@@ -79,7 +79,7 @@ fn a_line_is_bent_and_a_point_moved_and_taken_away() {
 fn painted_roads_are_recognised_when_they_are_first_reshaped() {
     let (mut table, mut tool) = table();
     table.scene.roads = Default::default();
-    assert_eq!(tool.network(&table.scene).roads.len(), 4);
+    assert_eq!(tool.network(&table.scene).net.roads.len(), 4);
     drag(&mut table, &mut tool, [0.1, 0.1], [4.0, 6.0]);
     assert_eq!(table.scene.roads.roads.len(), 4);
     assert!(matches!(table.hand.road.chosen, Some(RoadPart::Node(_))));

@@ -1,6 +1,9 @@
 //! Roads and junctions as text.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
+
+use glam::DVec2;
 
 use super::connect::Junction;
 use super::profile::{Record, elevation, straight, superelevation};
@@ -8,7 +11,7 @@ use super::roads::{End, Road};
 use super::strips::Strip;
 use crate::opendrive::geometry::{Geometry, Shape};
 use crate::xml_text::{escaped, number};
-use scene::{BevLayer, BevLayout, Relief, RoadNetwork};
+use scene::{BevLayer, BevLayout, Relief, RoadId, RoadNetwork};
 
 /// Widths of lanes are kept to this, m.
 const LANE_M: f64 = 0.01;
@@ -38,6 +41,9 @@ pub(super) fn header(name: &str, layout: &BevLayout) -> String {
     )
 }
 
+/// Roads with their limits, and the lines of them.
+type Limits<'a> = (&'a RoadNetwork, &'a BTreeMap<RoadId, Vec<DVec2>>);
+
 /// All roads, then all junctions.
 pub(super) fn network(
     roads: &[Road],
@@ -46,8 +52,9 @@ pub(super) fn network(
     limits: &RoadNetwork,
 ) -> String {
     let mut out = String::new();
+    let lines = limits.lines();
     for r in roads {
-        road(&mut out, r, layout, limits);
+        road(&mut out, r, layout, (limits, &lines));
     }
     for j in junctions {
         junction(&mut out, j);
@@ -55,7 +62,7 @@ pub(super) fn network(
     out
 }
 
-fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: &RoadNetwork) {
+fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: Limits<'_>) {
     let rule = if road.left_hand { "LHT" } else { "RHT" };
     let junction = road.junction.map_or("-1".into(), |j| j.to_string());
     let length = number(road.reference.end_s_m());
@@ -84,9 +91,9 @@ fn road(out: &mut String, road: &Road, layout: &BevLayout, limits: &RoadNetwork)
 }
 
 /// The speed limit at the road's middle.
-fn limit(out: &mut String, road: &Road, limits: &RoadNetwork) {
+fn limit(out: &mut String, road: &Road, (limits, lines): Limits<'_>) {
     let middle = road.reference.at(road.reference.end_s_m() / 2.0);
-    let found = limits.road_at(middle.position_m, LIMIT_REACH_M);
+    let found = limits.road_among(lines, middle.position_m, LIMIT_REACH_M);
     if let Some(kph) = found.and_then(|id| limits.road(id)?.limit_kph) {
         let max = number(kph);
         let _ = writeln!(
