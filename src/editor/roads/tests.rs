@@ -575,7 +575,7 @@ fn streets_that_lead_nowhere_or_too_far_are_refused_and_loops_close() {
     let error = add_points(&mut scene, zigzag).expect_err("too long").to_string();
     assert!(error.contains("expected at most 50000 m"), "{error}");
     let ring = (0..=12)
-        .map(|k| DVec2::from_angle(f64::from(k) / 12.0 * 6.283) * 20.0)
+        .map(|k| DVec2::from_angle(f64::from(k) / 12.0 * std::f64::consts::TAU) * 20.0)
         .collect();
     add_points(&mut scene, ring).expect("a loop");
     assert_eq!((scene.roads.roads.len(), scene.roads.nodes.len()), (1, 1));

@@ -40,7 +40,7 @@ pub struct RoadHand {
 }
 
 /// What lies at a point: points of the chosen road before nodes, nodes before roads.
-pub(super) fn at(net: &RoadNetwork, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>) -> Option<RoadPart> {
+pub(super) fn at(seen: &Seen, p_m: DVec2, reach_m: f64, chosen: Option<RoadPart>) -> Option<RoadPart> {
     let net = &*seen.net;
     let near = |q: DVec2| q.distance(p_m) <= reach_m;
     if let Some(road) = chosen.and_then(RoadPart::road).and_then(|id| net.road(id))
