@@ -1486,6 +1486,8 @@ Road = TypedDict(
         'left': 'NotRequired[Sequence[RoadLane]]',
         # Speed limit, km/h.
         'limit_kph': 'NotRequired[float | None]',
+        # Lanes are counted from so far to the left of that line, m.
+        'offset_m': 'NotRequired[float]',
         # Lanes right of the line, from the line outward; driven along it.
         'right': 'Sequence[RoadLane]',
         # Lines to halt at.
