@@ -500,14 +500,14 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 6; open it with the sceneloom that wrote it"
+        "manifest.json: version is 0, expected 7; open it with the sceneloom that wrote it"
     );
-    for version in ["7", "4294967298", "18446744073709551615"] {
+    for version in ["8", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
         let bytes = pack(&[("manifest.json".to_owned(), manifest.into_bytes())]);
         let line = from_bytes(&bytes).expect_err("newer").to_string();
         assert!(
-            line.starts_with(&format!("manifest.json: version is {version}, expected 6;")),
+            line.starts_with(&format!("manifest.json: version is {version}, expected 7;")),
             "{line}"
         );
     }

@@ -7,7 +7,7 @@ use glam::DVec2;
 use scene::roads::{NodeKind, RoadNode, curve};
 use scene::{Road, RoadId};
 
-use super::{RoadPart, Seen};
+use super::part::{RoadPart, Seen};
 use crate::tools::{At, Mark, Role, Sight};
 
 /// Directions are shown every so many metres.

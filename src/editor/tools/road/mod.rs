@@ -6,7 +6,6 @@ mod options;
 mod part;
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -21,6 +20,7 @@ use super::{
     Act, Context, Cursor, Event, Group, HANDLE_REACH, Hand, Hint, Key, Mark, Pointer, Response, Shortcut,
     Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
 };
+use part::Seen;
 pub use part::{RoadHand, RoadPart};
 
 /// Its name.
@@ -66,20 +66,6 @@ struct Drag {
     moved: bool,
     /// The scene was asked to have a network.
     asked: bool,
-}
-
-/// A network and the lines of its roads.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
-    pub net: Arc<RoadNetwork>,
-    pub lines: Arc<BTreeMap<RoadId, Vec<DVec2>>>,
-}
-
-impl Seen {
-    fn of(net: Arc<RoadNetwork>) -> Self {
-        let lines = Arc::new(net.lines());
-        Self { net, lines }
-    }
 }
 
 /// What a network depends on, by the memory that it lies in.

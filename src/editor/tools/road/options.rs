@@ -5,8 +5,8 @@ use glam::DVec2;
 use scene::roads::{LaneKind, NodeKind, RoadChange, RoadCrossing, RoadLane, RoadStop, curve};
 use scene::{Road, RoadId, RoadNetwork, RoadNode};
 
-use super::part::{RoadHand, RoadPart};
-use super::{Seen, apply, recognised};
+use super::part::{RoadHand, RoadPart, Seen};
+use super::{apply, recognised};
 use crate::tools::Act;
 use crate::tools::setting::{Choice, Control, Setting, Value};
 

@@ -1,11 +1,12 @@
 //! Parts of roads that can be chosen, and which of them lies under the pointer.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use scene::roads::{NodeId, curve};
-use scene::{Road, RoadId};
-
-use super::Seen;
+use scene::{Road, RoadId, RoadNetwork};
 
 /// What is chosen of the roads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +38,20 @@ pub struct RoadHand {
     pub at_m: DVec2,
     /// The lane that was clicked: true right of the line, and its place from the line outward.
     pub lane: Option<(bool, usize)>,
+}
+
+/// A network and the lines of its roads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub net: Arc<RoadNetwork>,
+    pub lines: Arc<BTreeMap<RoadId, Vec<DVec2>>>,
+}
+
+impl Seen {
+    pub fn of(net: Arc<RoadNetwork>) -> Self {
+        let lines = Arc::new(net.lines());
+        Self { net, lines }
+    }
 }
 
 /// What lies at a point: points of the chosen road before nodes, nodes before roads.
