@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use scene::Extent;
 use scene::background::crossing_edges;
+use scene::roads::curve::hull;
 
 use super::Shape;
 
@@ -101,29 +102,6 @@ fn simplified(outline: &[DVec2], tolerance_m: f64) -> Vec<DVec2> {
         }
     }
     (0..n).filter(|i| keep[*i]).map(at).collect()
-}
-
-/// Convex hull, counter-clockwise (Andrew 1979).
-fn hull(points: &[DVec2]) -> Vec<DVec2> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut out: Vec<DVec2> = Vec::new();
-        for p in points {
-            while let [.., a, b] = out[..] {
-                if (b - a).perp_dot(p - b) > 0.0 {
-                    break;
-                }
-                out.pop();
-            }
-            out.push(p);
-        }
-        out.pop();
-        out
-    };
-    let mut out = half(&mut sorted.iter().copied());
-    out.extend(half(&mut sorted.iter().rev().copied()));
-    out
 }
 
 #[cfg(test)]

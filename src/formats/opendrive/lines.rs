@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::lanes::{Ground, LaneKind, LaneSection, Travel};
 use super::sampling::Row;
 use scene::PolylineKind;
+use scene::roads::curve;
 
 /// Narrowest lane that takes part in dividers, m.
 const NARROWEST_M: f64 = 0.4;
@@ -188,7 +189,7 @@ pub(super) fn clipped(points: &[DVec2], corners_m: (DVec2, DVec2)) -> Vec<Vec<DV
         open = b == ends[1];
     }
     parts.retain(|part| part.windows(2).map(|ends| ends[0].distance(ends[1])).sum::<f64>() >= SHORTEST_M);
-    parts.iter().map(|part| thinned(part)).collect()
+    parts.iter().map(|part| curve::simplified(part, THIN_M)).collect()
 }
 
 /// Liang and Barsky 1984: the part of a segment inside the rectangle, `None` if there is none.
@@ -211,42 +212,6 @@ fn clip_segment(a: DVec2, b: DVec2, (low, high): (DVec2, DVec2)) -> Option<(DVec
         let start = if from > 0.0 { a + d * from } else { a };
         (start, if to < 1.0 { a + d * to } else { b })
     })
-}
-
-/// Ramer 1972, Douglas and Peucker 1973: the fewest of its vertices that stay within [`THIN_M`].
-fn thinned(points: &[DVec2]) -> Vec<DVec2> {
-    let mut keep = vec![false; points.len()];
-    let mut stack = vec![(0, points.len() - 1)];
-    keep[0] = true;
-    keep[points.len() - 1] = true;
-    while let Some((first, last)) = stack.pop() {
-        let (a, d) = (points[first], points[last] - points[first]);
-        let length_squared = d.length_squared();
-        let distance = |p: DVec2| {
-            let t = if length_squared > 0.0 {
-                ((p - a).dot(d) / length_squared).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            p.distance(a + d * t)
-        };
-        let farthest = (first + 1..last)
-            .map(|i| (distance(points[i]), i))
-            .max_by(|x, y| x.0.total_cmp(&y.0));
-        if let Some((off, i)) = farthest
-            && off > THIN_M
-        {
-            keep[i] = true;
-            stack.push((first, i));
-            stack.push((i, last));
-        }
-    }
-    points
-        .iter()
-        .zip(keep)
-        .filter(|(_, k)| *k)
-        .map(|(p, _)| *p)
-        .collect()
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 use scene::Extent;
+use scene::roads::curve;
 
 /// Rounds of smoothing, in which each point comes nearer to its neighbours: the steps of a slanted border go.
 const ROUNDS: usize = 5;
@@ -131,7 +132,7 @@ fn straightened(extent: Extent, corners: &[usize]) -> Option<Border> {
         _ => return None,
     }
     (0..ROUNDS).for_each(|_| smooth(&mut points, is_closed));
-    let mut points_m = simplified(&points, OFF_M);
+    let mut points_m = curve::simplified(&points, OFF_M);
     let length_m: f64 = points_m.windows(2).map(|w| w[0].distance(w[1])).sum();
     if is_closed {
         points_m.pop();
@@ -150,42 +151,6 @@ fn smooth(points: &mut [DVec2], is_closed: bool) {
         points[0] = (before[last - 1] + 2.0 * before[0] + before[1]) / 4.0;
         points[last] = points[0];
     }
-}
-
-/// The points without which a line would leave the others by more than so much (Douglas and Peucker 1973).
-fn simplified(points: &[DVec2], off: f64) -> Vec<DVec2> {
-    let mut kept = vec![false; points.len()];
-    let Some(last) = points.len().checked_sub(1) else {
-        return Vec::new();
-    };
-    (kept[0], kept[last]) = (true, true);
-    let mut open = vec![(0, last)];
-    while let Some((from, to)) = open.pop() {
-        let (a, b) = (points[from], points[to]);
-        let along = (b - a).try_normalize();
-        // A closed line is parted where it is farthest from its beginning.
-        let distance = |p: DVec2| match along {
-            Some(along) => {
-                let ahead = (p - a).dot(along).clamp(0.0, a.distance(b));
-                p.distance(a + along * ahead)
-            }
-            None => p.distance(a),
-        };
-        let between = (from + 1..to).map(|i| (distance(points[i]), i));
-        if let Some((_, at)) = between
-            .max_by(|x, y| x.0.total_cmp(&y.0))
-            .filter(|(d, _)| *d > off)
-        {
-            kept[at] = true;
-            open.extend([(from, at), (at, to)]);
-        }
-    }
-    points
-        .iter()
-        .zip(kept)
-        .filter(|(_, kept)| *kept)
-        .map(|(p, _)| *p)
-        .collect()
 }
 
 #[cfg(test)]

@@ -147,8 +147,9 @@ fn junction(node: &RoadNode, arms: &[Seen<'_>], corner_m: f64, out: &mut Corners
         .iter()
         .flat_map(|a| [true, false].map(|left| a.kerb(left).first().copied()))
         .flatten()
+        .chain([node.at_m])
         .collect();
-    out.paved.push(hull(middle, node.at_m));
+    out.paved.push(curve::hull(&middle));
 }
 
 /// Markings of an arm begin beyond a point beside it, on its left or right as one looks outward.
@@ -163,28 +164,4 @@ pub(super) fn set_back(out: &mut Corners, seen: &Seen<'_>, left: bool, beside_m:
         .entry((arm.road, arm.end, seen.side(left)))
         .or_default();
     *side = side.max(reach);
-}
-
-/// The outline around points, counter-clockwise.
-fn hull(mut points: Vec<DVec2>, about: DVec2) -> Vec<DVec2> {
-    points.push(about);
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let turn = |chain: &[DVec2], p: DVec2| {
-        let [.., a, b] = chain else { return 1.0 };
-        (*b - *a).perp_dot(p - *b)
-    };
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut chain: Vec<DVec2> = Vec::new();
-        for p in points {
-            while turn(&chain, p) <= 0.0 {
-                chain.pop();
-            }
-            chain.push(p);
-        }
-        chain.pop();
-        chain
-    };
-    let mut out = half(&mut points.iter().copied());
-    out.extend(half(&mut points.iter().rev().copied()));
-    out
 }

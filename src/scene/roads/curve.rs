@@ -179,6 +179,61 @@ pub fn crossings<'a>(a_m: &'a [DVec2], b_m: &'a [DVec2]) -> impl Iterator<Item =
     })
 }
 
+/// The fewest of a line's points that leave none farther off than a tolerance, m; its ends stay (Ramer 1972, Douglas and
+/// Peucker 1973).
+pub fn simplified(points_m: &[DVec2], tolerance_m: f64) -> Vec<DVec2> {
+    let mut keep = vec![false; points_m.len()];
+    let Some(last) = points_m.len().checked_sub(1) else {
+        return Vec::new();
+    };
+    (keep[0], keep[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let (a, d) = (points_m[from], points_m[to] - points_m[from]);
+        let length_squared = d.length_squared();
+        // A closed line is parted where it is farthest from its beginning.
+        let off = |i: usize| {
+            let t = match length_squared > 0.0 {
+                true => ((points_m[i] - a).dot(d) / length_squared).clamp(0.0, 1.0),
+                false => 0.0,
+            };
+            points_m[i].distance(a + d * t)
+        };
+        let farthest = (from + 1..to)
+            .map(|i| (off(i), i))
+            .max_by(|x, y| x.0.total_cmp(&y.0));
+        if let Some((_, i)) = farthest.filter(|(off, _)| *off > tolerance_m) {
+            keep[i] = true;
+            open.extend([(from, i), (i, to)]);
+        }
+    }
+    let kept = points_m.iter().zip(keep).filter(|(_, k)| *k);
+    kept.map(|(p, _)| *p).collect()
+}
+
+/// The convex hull of points, counter-clockwise (Andrew 1979).
+pub fn hull(points_m: &[DVec2]) -> Vec<DVec2> {
+    let mut sorted = points_m.to_vec();
+    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let half = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut out: Vec<DVec2> = Vec::new();
+        for p in points {
+            while let [.., a, b] = out[..] {
+                if (b - a).perp_dot(p - b) > 0.0 {
+                    break;
+                }
+                out.pop();
+            }
+            out.push(p);
+        }
+        out.pop();
+        out
+    };
+    let mut out = half(&mut sorted.iter().copied());
+    out.extend(half(&mut sorted.iter().rev().copied()));
+    out
+}
+
 /// A rounded corner from one point to another about a third (quadratic Bézier), in steps of half a metre or so.
 pub fn corner(from: DVec2, about: DVec2, to: DVec2) -> Vec<DVec2> {
     let steps = ((from.distance(about) + about.distance(to)) / 0.5)
@@ -218,6 +273,23 @@ mod tests {
             assert!(p.y.abs() < 0.3, "{p}");
         }
         assert_eq!(through(None, &[DVec2::NAN, DVec2::ONE], None).len(), 1);
+    }
+
+    #[test]
+    fn fewer_points_and_the_hull_around_them() {
+        let line: Vec<DVec2> = (0..=20)
+            .map(|x| DVec2::new(f64::from(x), f64::from(x % 2) * 0.1))
+            .collect();
+        assert_eq!(simplified(&line, 0.2), [line[0], line[20]]);
+        assert_eq!(simplified(&line, 0.01).len(), 21);
+        assert_eq!(
+            simplified(&[DVec2::ZERO, DVec2::X * 5.0, DVec2::ZERO], 1.0).len(),
+            3
+        );
+        assert!(simplified(&[], 1.0).is_empty());
+        let square = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        let within = [square.to_vec(), vec![DVec2::splat(0.5)]].concat();
+        assert_eq!(hull(&within), square);
     }
 
     #[test]

@@ -202,7 +202,8 @@ fn lanes_of(sections: &[Section], along: bool) -> Vec<f64> {
             .collect::<Vec<f64>>()
     };
     let counts: Vec<f64> = sections.iter().map(|s| of(s).len() as f64).collect();
-    let count = median(counts) as usize;
+    // One that there is, not a mean of two.
+    let count = numeric::quantile::quantile(&counts, 0.5) as usize;
     let same: Vec<Vec<f64>> = sections.iter().map(of).filter(|l| l.len() == count).collect();
     (0..count.min(scene::Road::MAX_LANES - 3))
         .map(|i| median(same.iter().map(|l| l[i]).collect()))
@@ -215,7 +216,9 @@ fn spacing(lanes: &[f64]) -> Option<f64> {
 }
 
 /// The middle value; 0 of none.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
+fn median(values: Vec<f64>) -> f64 {
+    match values.is_empty() {
+        true => 0.0,
+        false => numeric::quantile::median(&values),
+    }
 }

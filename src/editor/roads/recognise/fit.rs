@@ -150,7 +150,7 @@ fn draft(graph: &Graph, rings: &[Ring], chain: &Chain, mask: &Mask, layout: &Bev
             middle.reverse();
         }
     }
-    let simple = simplified(&middle);
+    let simple = curve::simplified(&middle, TOLERANCE_M);
     let whole = curve::through(None, &simple, None);
     let is_short = curve::length_m(&whole) < SHORTEST_M && [0, 1].iter().any(|e| is_free(*e));
     let across = across::read(layout, &whole).filter(|_| !is_short)?;
@@ -205,36 +205,13 @@ fn smoothed(points: &[DVec2]) -> Vec<DVec2> {
     curve::distinct(&(0..n).map(mean).collect::<Vec<_>>())
 }
 
-/// Fewer points, none of which is missed by more than the tolerance (Douglas and Peucker 1973).
-fn simplified(points: &[DVec2]) -> Vec<DVec2> {
-    let mut keep = vec![false; points.len()];
-    let last = points.len() - 1;
-    (keep[0], keep[last]) = (true, true);
-    let mut open = vec![(0, last)];
-    while let Some((a, b)) = open.pop() {
-        let chord = [points[a], points[b]];
-        let off = |i: usize| curve::project(&chord, points[i]).map_or(0.0, |p| p.1.abs());
-        let farthest = (a + 1..b).max_by(|i, j| off(*i).total_cmp(&off(*j)));
-        if let Some(i) = farthest.filter(|i| off(*i) > TOLERANCE_M) {
-            keep[i] = true;
-            open.extend([(a, i), (i, b)]);
-        }
-    }
-    points
-        .iter()
-        .zip(keep)
-        .filter(|(_, k)| *k)
-        .map(|(p, _)| *p)
-        .collect()
-}
-
 /// Points between two ends without those that lie on the way anyway.
 fn spare(ends: [DVec2; 2], points: &[DVec2]) -> Vec<DVec2> {
     let all: Vec<DVec2> = std::iter::once(ends[0])
         .chain(points.iter().copied())
         .chain([ends[1]])
         .collect();
-    let simple = simplified(&curve::distinct(&all));
+    let simple = curve::simplified(&curve::distinct(&all), TOLERANCE_M);
     simple
         .get(1..simple.len().saturating_sub(1))
         .unwrap_or_default()

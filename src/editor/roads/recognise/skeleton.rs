@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec2;
 
 use scene::Extent;
+use scene::roads::curve;
 
 use super::mask::Mask;
 
@@ -39,10 +40,7 @@ pub(super) struct Chain {
 impl Chain {
     /// Its length, m.
     pub fn length_m(&self) -> f64 {
-        self.points_m
-            .array_windows::<2>()
-            .map(|[a, b]| a.distance(*b))
-            .sum()
+        curve::length_m(&self.points_m)
     }
 }
 
