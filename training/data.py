@@ -44,6 +44,18 @@ class Shard:
         self.frames = len(self.arrays["dense"])
 
 
+def listen(out, ready, parse):
+    """Puts what a command writes into a queue: shards, each after its length (8 little-endian bytes), made into something by `parse`; None at the end."""
+    try:
+        while len(head := out.read(8)) == 8:
+            data = out.read(length := int.from_bytes(head, "little"))
+            if len(data) < length:
+                break
+            ready.put(parse(data))
+    finally:
+        ready.put(None)
+
+
 class StreamedShard:
     """The frames of a shard that lies in memory."""
 
@@ -104,21 +116,11 @@ class Streamed(Frames):
         self.keep, self.index, self.oldest = keep, [], 0
         self.ready = queue.Queue(self.AHEAD)
         process = subprocess.Popen(shlex.split(command), stdout=subprocess.PIPE)
-        threading.Thread(target=self._listen, args=(process.stdout,), daemon=True).start()
+        threading.Thread(target=listen, args=(process.stdout, self.ready, StreamedShard), daemon=True).start()
         first = self.ready.get()
         if first is None:
             raise SystemExit(f"{command}: ended with code {process.wait()} before its first shard")
         self._take(first)
-
-    def _listen(self, out):
-        try:
-            while len(head := out.read(8)) == 8:
-                data = out.read(length := int.from_bytes(head, "little"))
-                if len(data) < length:
-                    break
-                self.ready.put(StreamedShard(data))
-        finally:
-            self.ready.put(None)
 
     def _take(self, shard):
         """Adds the frames of a shard; once there are enough of them, in place of the oldest."""

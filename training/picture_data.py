@@ -14,6 +14,7 @@ import threading
 import numpy as np
 import torch
 
+from data import listen
 from models.picture_vae import CELL
 
 DTYPES = {"U8": np.uint8, "U16": np.uint16, "F32": np.float32}
@@ -43,24 +44,14 @@ def shard_arrays(data):
 
 
 class Streams:
-    """What some commands write to their outputs: shards, each after its length (8 little-endian bytes)."""
+    """The shards that some commands write to their outputs."""
 
     def __init__(self, commands, ahead=64):
         self.ready = queue.Queue(ahead)
         self.processes = [subprocess.Popen(shlex.split(c), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for c in commands]
         self.running = len(self.processes)
         for process in self.processes:
-            threading.Thread(target=self._listen, args=(process.stdout,), daemon=True).start()
-
-    def _listen(self, out):
-        try:
-            while len(head := out.read(8)) == 8:
-                data = out.read(length := int.from_bytes(head, "little"))
-                if len(data) < length:
-                    break
-                self.ready.put(shard_arrays(data))
-        finally:
-            self.ready.put(None)
+            threading.Thread(target=listen, args=(process.stdout, self.ready, shard_arrays), daemon=True).start()
 
     def take(self, wait_s=0.0):
         """A shard, or None if there is none (within some time)."""
