@@ -201,7 +201,7 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
     }
     if let Some(b) = hand.selected.and_then(|id| frame.boxes.get(&id)) {
         draw_box(ui, map, b, BoxStyle::Selected);
-        if hand.tool == select::ID {
+        if hand.tool == select::ID && !scene.arranged.locked.boxes.contains(&b.id) {
             draw_handles(ui, map, b);
         }
     }

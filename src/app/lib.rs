@@ -24,6 +24,7 @@ mod pipeline;
 pub mod playback;
 mod pointer;
 mod screen_map;
+pub mod seen;
 pub mod sensing;
 pub mod shell;
 pub mod state;

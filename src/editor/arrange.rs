@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use scene::{BoxId, Frame, SceneBox};
+use scene::{Arrangement, BoxId, Frame, Motion, Moving, Scene, SceneBox};
 
 use super::Edit;
 use super::lanes::{along, nearest_lane};
@@ -22,6 +22,85 @@ pub struct Added {
     pub edits: Vec<Edit>,
     /// Names of the boxes, in the same order.
     pub ids: Vec<BoxId>,
+    /// Names of those that they are copies of, in the same order.
+    pub of: Vec<BoxId>,
+}
+
+impl Added {
+    /// Lets the copies move and be grouped as those that they are copies of.
+    pub fn with(mut self, ties: &Ties) -> Self {
+        for (id, of) in self.ids.iter().zip(&self.of) {
+            let Some((motion, there_s, from)) = ties.motions.get(of) else {
+                continue;
+            };
+            let to = self.edits.iter().find_map(|edit| placed(edit, *id));
+            if let Some((at_m, yaw_rad)) = to {
+                let to = Moving { at_m, yaw_rad, ..*from };
+                self.edits.push(Edit::SetMotion {
+                    id: Some(*id),
+                    motion: Some(motion.carried(from, &to)),
+                    from_s: there_s[0],
+                    to_s: there_s[1],
+                });
+            }
+        }
+        for group in &ties.groups {
+            let copies = self.ids.iter().zip(&self.of).filter(|(_, of)| group.contains(of));
+            let boxes: Vec<BoxId> = copies.map(|(id, _)| *id).collect();
+            if boxes.len() > 1 {
+                let how = Arrangement::Group {
+                    name: Default::default(),
+                };
+                self.edits.push(Edit::Arrange {
+                    boxes,
+                    things: Vec::new(),
+                    how,
+                });
+            }
+        }
+        self
+    }
+}
+
+/// Where an edit puts a new box.
+fn placed(edit: &Edit, new: BoxId) -> Option<(DVec2, f64)> {
+    match edit {
+        Edit::AddBox {
+            id: Some(id),
+            center_m,
+            yaw_deg,
+            ..
+        } if *id == new => Some((center_m.truncate(), yaw_deg.to_radians())),
+        _ => None,
+    }
+}
+
+/// What ties boxes to time and to each other: their motions and groups.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ties {
+    /// How a box moves, when it is there, and where it is at the moment that is shown.
+    motions: BTreeMap<BoxId, (Motion, [Option<f64>; 2], Moving)>,
+    /// Boxes in a group with each other.
+    groups: Vec<Vec<BoxId>>,
+}
+
+impl Ties {
+    /// Of those boxes.
+    pub fn of(scene: &Scene, ids: &[BoxId]) -> Self {
+        let motion = |id: &BoxId| {
+            let track = scene.clip().tracks.get(id).filter(|t| !t.stands())?;
+            let now = scene.clip().moving(*id, scene.time_s())?;
+            Some((*id, (track.motion.clone(), track.there_s, now)))
+        };
+        let groups = scene.arranged.groups.iter().map(|g| {
+            let chosen = ids.iter().filter(|id| g.members.boxes.contains(id));
+            chosen.copied().collect()
+        });
+        Self {
+            motions: ids.iter().filter_map(motion).collect(),
+            groups: groups.collect(),
+        }
+    }
 }
 
 /// Boxes taken along, to be put down elsewhere.
@@ -31,6 +110,8 @@ pub struct Clipboard {
     pub boxes: Vec<SceneBox>,
     /// Voxels of those that have their own, as [`Edit::SetShape`] takes them.
     pub shapes: Shapes,
+    /// Their motions and groups.
+    pub ties: Ties,
 }
 
 /// Voxels of boxes that have their own.
@@ -38,10 +119,11 @@ pub type Shapes = BTreeMap<BoxId, Vec<[i32; 3]>>;
 
 impl Clipboard {
     /// The boxes of those names that are there.
-    pub fn of(frame: &Frame, ids: &[BoxId]) -> Self {
+    pub fn of(scene: &Scene, ids: &[BoxId]) -> Self {
         Self {
-            boxes: boxes_of(frame, ids),
-            shapes: shapes_of(frame, ids),
+            boxes: boxes_of(scene.frame(), ids),
+            shapes: shapes_of(scene.frame(), ids),
+            ties: Ties::of(scene, ids),
         }
     }
 }
@@ -190,7 +272,7 @@ pub fn paste(frame: &Frame, clipboard: &Clipboard, at_m: Option<DVec2>) -> Added
         center_m: b.center_m + shift_m,
         ..*b
     });
-    add(frame, copies.collect(), &clipboard.shapes)
+    add(frame, copies.collect(), &clipboard.shapes).with(&clipboard.ties)
 }
 
 /// Rows of copies of each box; at most [`MAX_COPIES`] each. A copy along a lane keeps its distance to the
@@ -344,6 +426,7 @@ pub fn add(frame: &Frame, boxes: Vec<SceneBox>, shapes: &Shapes) -> Added {
             added.edits.push(Edit::SetShape { id, cells });
         }
         added.ids.push(id);
+        added.of.push(b.id);
     }
     added
 }

@@ -287,6 +287,7 @@ impl Document {
     }
 
     fn edited(&self, edits: &[Edit]) -> Result<Scene, EditError> {
+        super::arranged::locked(self.settled_scene(), edits)?;
         let mut scene = Scene::clone(self.settled_scene());
         super::apply::apply_all(edits, &mut scene)?;
         Ok(scene)

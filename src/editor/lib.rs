@@ -2,6 +2,7 @@
 
 pub mod apply;
 pub mod arrange;
+pub mod arranged;
 pub mod checks;
 pub mod choose;
 pub mod document;

@@ -10,7 +10,7 @@ use crate::grid::Extent;
 use crate::roads::RoadChange;
 use crate::shape::Shape;
 use crate::{
-    BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox, Scope, SensorRig,
+    Arrangement, BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox, Scope, SensorRig,
     Template, ThingId, VoxelGrid,
 };
 
@@ -69,6 +69,17 @@ pub enum Edit {
         id: BoxId,
         /// Its name and paint from now on.
         label: BoxLabel,
+    },
+    /// Groups, hides or locks boxes and things, or the opposite. No voxel changes, and nothing is generated.
+    Arrange {
+        /// The boxes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        boxes: Vec<BoxId>,
+        /// The things.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        things: Vec<ThingId>,
+        /// What is done to them.
+        how: Arrangement,
     },
     /// Turns a box into another class; its size and paint stay, its name goes.
     SetBoxClass {
@@ -319,6 +330,18 @@ pub enum EditError {
     DuplicateBox {
         /// The id asked for.
         id: BoxId,
+    },
+    /// A locked box would change.
+    #[error("box {} is locked", .id.0)]
+    LockedBox {
+        /// The box.
+        id: BoxId,
+    },
+    /// A locked thing would change.
+    #[error("thing {} is locked", .id.0)]
+    LockedThing {
+        /// The thing.
+        id: ThingId,
     },
     /// No thing of that id.
     #[error("thing {} does not exist in this scene", .id.0)]

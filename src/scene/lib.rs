@@ -1,6 +1,7 @@
 //! What a scene is, as plain data. This room knows no window, graphics card, network, thread or file.
 
 pub mod appearance;
+pub mod arranged;
 pub mod background;
 pub mod box_label;
 pub mod boxes;
@@ -48,6 +49,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+pub use arranged::{Arranged, Arrangement, Group, Members};
 pub use background::{Background, Form, Thing, ThingId};
 pub use box_label::{BoxLabel, BoxName, Paint};
 pub use boxes::{BoxId, SceneBox};
@@ -109,6 +111,8 @@ pub struct Scene {
     pub background: Arc<Background>,
     /// The road network behind the layout, in the world frame; empty as long as nobody reshaped a road.
     pub roads: Arc<RoadNetwork>,
+    /// Groups, what is hidden, what is locked.
+    pub arranged: Arc<Arranged>,
     /// Seed of every random draw made for this scene.
     pub seed: u64,
     /// What its file keeps beside it: no part of any state, so that neither revision says anything of it.
@@ -136,6 +140,7 @@ impl Scene {
             rig,
             background: Arc::default(),
             roads: Arc::default(),
+            arranged: Arc::default(),
             view: canvas.clone(),
             canvas,
             clip: Arc::default(),

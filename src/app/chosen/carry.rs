@@ -6,9 +6,9 @@ use glam::DVec2;
 use crate::panes::id::PaneId;
 use crate::shell::app::SceneloomApp;
 use crate::tools::ToolCommand;
-use editor::arrange::{self, Clipboard};
+use editor::arrange::{self, Clipboard, Ties};
 use editor::{Edit, kerb};
-use scene::{BoxId, Form, Frame, Scene, ThingId};
+use scene::{BoxId, Form, Scene, ThingId};
 
 use crate::tools::things::words;
 
@@ -73,11 +73,11 @@ impl SceneloomApp {
                 )
             }
             ToolCommand::Duplicate => {
-                self.duplicate(frame, &boxes, &forms);
+                self.duplicate(&scene, &boxes, &forms);
                 return true;
             }
             ToolCommand::Copy | ToolCommand::Cut => {
-                self.copy_all(frame, &boxes, &forms, ctx);
+                self.copy_all(&scene, &boxes, &forms, ctx);
                 if *command == ToolCommand::Copy {
                     return true;
                 }
@@ -97,16 +97,16 @@ impl SceneloomApp {
     }
 
     /// Copies beside the originals.
-    fn duplicate(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form]) {
+    fn duplicate(&mut self, scene: &Scene, boxes: &[BoxId], forms: &[Form]) {
         let by_m = beside_m(forms);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
-        let added = arrange::duplicate(frame, boxes);
+        let added = arrange::duplicate(scene.frame(), boxes).with(&Ties::of(scene, boxes));
         self.add_things("Duplicate", copies, added.edits);
         self.state.choose(&added.ids, crate::tools::Choose::Add);
     }
 
-    fn copy_all(&mut self, frame: &Frame, boxes: &[BoxId], forms: &[Form], ctx: &egui::Context) {
-        let clipboard = Clipboard::of(frame, boxes);
+    fn copy_all(&mut self, scene: &Scene, boxes: &[BoxId], forms: &[Form], ctx: &egui::Context) {
+        let clipboard = Clipboard::of(scene, boxes);
         let mut edits: Vec<Edit> = clipboard.boxes.iter().map(arrange::adding).collect();
         edits.push(Edit::AddThings {
             forms: forms.to_vec(),

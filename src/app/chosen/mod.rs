@@ -1,5 +1,6 @@
 //! Carries out what is asked of the tools, and of what is chosen.
 
+pub(crate) mod arranging;
 mod carry;
 mod things;
 
@@ -12,9 +13,9 @@ use crate::shell::app::SceneloomApp;
 use crate::shell::toasts::Level;
 use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
-use editor::arrange::{self, Added, Clipboard};
+use editor::arrange::{self, Added, Clipboard, Ties};
 use editor::tools::{Act, road, voxel};
-use scene::{Extent, Frame};
+use scene::Extent;
 
 impl SceneloomApp {
     /// Deletes what is chosen of the roads; false if nothing is, or their tool is not in hand.
@@ -34,6 +35,7 @@ impl SceneloomApp {
     pub(crate) fn tool_command(&mut self, command: ToolCommand, ctx: &Context) {
         let ids = self.state.chosen();
         let frame = self.document.settled_scene().frame().clone();
+        let ties = Ties::of(self.document.settled_scene(), &ids);
         if command == ToolCommand::Delete && self.delete_road() {
             return;
         }
@@ -43,9 +45,15 @@ impl SceneloomApp {
         }
         match command {
             ToolCommand::Thing(command) => self.thing_command(command),
+            ToolCommand::Arrange(how) => self.arrange(how),
+            ToolCommand::HideOthers => self.hide_others(),
+            ToolCommand::ShowAll => self.show_all(),
+            ToolCommand::UnlockAll => self.unlock_all(),
             ToolCommand::Choose(ids, how) => self.state.choose(&ids, how),
             ToolCommand::ChooseAll => {
-                let all: Vec<_> = frame.boxes.keys().copied().collect();
+                let hidden = &self.document.settled_scene().arranged.hidden.boxes;
+                let all = frame.boxes.keys().copied().filter(|id| !hidden.contains(id));
+                let all: Vec<_> = all.collect();
                 self.state.choose(&all, Choose::Only);
             }
             ToolCommand::ChooseNone => {
@@ -68,11 +76,11 @@ impl SceneloomApp {
             }
             ToolCommand::Duplicate => {
                 let label = of(&ids, "Duplicate box", "Duplicate boxes");
-                self.add_boxes(label, arrange::duplicate(&frame, &ids));
+                self.add_boxes(label, arrange::duplicate(&frame, &ids).with(&ties));
             }
-            ToolCommand::Copy => self.copy(&frame, ctx),
+            ToolCommand::Copy => self.copy(ctx),
             ToolCommand::Cut => {
-                self.copy(&frame, ctx);
+                self.copy(ctx);
                 let label = of(&ids, "Cut box", "Cut boxes");
                 self.apply_some(label, arrange::remove(&frame, &ids));
             }
@@ -101,7 +109,7 @@ impl SceneloomApp {
                 true => self.note("Choose the boxes to copy first"),
                 false => self.state.tools.row_open = true,
             },
-            ToolCommand::Row(row) => self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row)),
+            ToolCommand::Row(row) => self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row).with(&ties)),
             ToolCommand::Mirror(copies) => {
                 let keep = self.state.tools.mirror_keeps_direction;
                 if copies {
@@ -158,8 +166,8 @@ impl SceneloomApp {
 
     /// Keeps the chosen boxes, and gives the window system the edits that add them: without a text on its clipboard it
     /// would not tell of the chord that pastes.
-    fn copy(&mut self, frame: &Frame, ctx: &egui::Context) {
-        let clipboard = Clipboard::of(frame, &self.state.chosen());
+    fn copy(&mut self, ctx: &egui::Context) {
+        let clipboard = Clipboard::of(self.document.settled_scene(), &self.state.chosen());
         if !clipboard.boxes.is_empty() {
             let edits: Vec<Edit> = clipboard.boxes.iter().map(arrange::adding).collect();
             ctx.copy_text(serde_json::to_string(&edits).unwrap_or_default());
@@ -174,6 +182,7 @@ impl SceneloomApp {
             Act::Preview(edits) => self.execute(Command::Preview(edits), ctx),
             // What cannot be is said when the button comes up.
             Act::Try(edits) => {
+                let edits = self.unlocked(edits, false);
                 if self.document.preview_all(&edits).is_err() {
                     self.document.cancel_drag();
                 }

@@ -56,8 +56,8 @@ impl Pane for Bev {
         let (left, right) = halves(area);
         let rect = if mode == CompareMode::Side { right } else { area };
         let input = CanvasInput {
-            scene,
-            settled: cx.document.settled_scene(),
+            scene: &cx.seen.scene,
+            settled: &cx.seen.settled,
             lidar: cx.sensing.lidar().map(|l| &**l),
             unsettled: cx.unsettled.clone(),
             generating: cx.generating,
@@ -78,7 +78,7 @@ impl Pane for Bev {
                 box_menu::of_view(ui, &response, (PaneId::BEV, scene, state), commands, |at| {
                     let at_m = map.to_ego(at);
                     Under {
-                        id: pick::box_at(scene.frame(), at_m),
+                        id: pick::box_at(input.scene.frame(), at_m),
                         at_m: Some(at_m),
                     }
                 });

@@ -3,14 +3,16 @@
 use egui::{Layout, PointerButton, Popup, PopupKind, Response, SetOpenCommand, Ui};
 use glam::DVec2;
 
+use language::{t, tf};
+
 use super::id::PaneId;
 use super::motion_menu::motions;
 use crate::command::{Command, FileCommand, ViewCommand};
-use crate::state::UiState;
+use crate::state::{UiState, called};
 use crate::tools::{Choose, ToolCommand};
 use editor::Edit;
 use editor::tools::{Act, lane_heading};
-use scene::{BoxId, Class, Scene, SceneBox};
+use scene::{Arrangement, BoxId, Class, Scene, SceneBox};
 use widgets::theme;
 
 /// What was under the pointer when the right button was clicked.
@@ -99,7 +101,7 @@ fn entries(ui: &mut Ui, scene: &Scene, state: &UiState, under: Under, commands: 
 
 fn entry(ui: &mut Ui, name: &str, keys: &str, commands: &mut Vec<Command>, command: Command) {
     let keys = egui::RichText::new(keys).color(theme::text_weak());
-    if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+    if ui.add(egui::Button::new(t(name)).shortcut_text(keys)).clicked() {
         commands.push(command);
         ui.close();
     }
@@ -108,8 +110,8 @@ fn entry(ui: &mut Ui, name: &str, keys: &str, commands: &mut Vec<Command>, comma
 fn of_box(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &mut Vec<Command>) {
     let several = state.chosen().len();
     let title = match several {
-        0 | 1 => format!("{} #{}", theme::sentence(&b.called()), b.id.0),
-        n => format!("{n} boxes"),
+        0 | 1 => format!("{} #{}", theme::sentence(&called(b)), b.id.0),
+        n => tf!("{n} boxes", n = n),
     };
     ui.label(egui::RichText::new(title).color(theme::text_weak()));
     let tools = Command::Tools;
@@ -135,18 +137,20 @@ fn of_box(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &
         tools(ToolCommand::DropToGround),
     );
     entry(ui, "Row of copies…", "", commands, tools(ToolCommand::AskRow));
+    ui.separator();
+    arranging(ui, scene, state, b, commands);
     if several > 1 {
         return;
     }
     ui.separator();
-    ui.menu_button("Let it move", |ui| {
+    ui.menu_button(t("Let it move"), |ui| {
         ui.set_min_width(220.0);
         motions(ui, scene, (Some(b.id), Some(b.class)), commands);
     });
-    ui.menu_button("Make it another class", |ui| {
+    ui.menu_button(t("Make it another class"), |ui| {
         for class in Class::OBJECTS.into_iter().filter(|class| *class != b.class) {
             let edits = vec![Edit::SetBoxClass { id: b.id, class }];
-            let name = theme::sentence(&class.label());
+            let name = theme::sentence(t(&class.label()));
             entry(ui, &name, "", commands, Command::Apply("Change class", edits));
         }
     });
@@ -159,16 +163,34 @@ fn of_box(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &
     );
 }
 
+/// Groups, hidden and locked: of what is chosen.
+fn arranging(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &mut Vec<Command>) {
+    let arrange = |how| Command::Tools(ToolCommand::Arrange(how));
+    let chosen = state.chosen().len() + state.tools.things.chosen.len();
+    if chosen > 1 {
+        let name = Default::default();
+        entry(ui, "Group", "Ctrl+G", commands, arrange(Arrangement::Group { name }));
+    }
+    if scene.arranged.group_of_box(b.id).is_some() {
+        entry(ui, "Ungroup", "Ctrl+Shift+G", commands, arrange(Arrangement::Ungroup));
+    }
+    entry(ui, "Hide", "Ctrl+H", commands, arrange(Arrangement::Hide));
+    match scene.arranged.locked.boxes.contains(&b.id) {
+        true => entry(ui, "Unlock", "Ctrl+L", commands, arrange(Arrangement::Unlock)),
+        false => entry(ui, "Lock", "Ctrl+L", commands, arrange(Arrangement::Lock)),
+    }
+}
+
 fn of_place(ui: &mut Ui, scene: &Scene, state: &UiState, at_m: Option<DVec2>, commands: &mut Vec<Command>) {
     let on_map = at_m.filter(|p| scene.frame().extent().column_at(p.x, p.y).is_some());
     if let Some(at_m) = on_map {
-        ui.menu_button("Add here", |ui| {
+        ui.menu_button(t("Add here"), |ui| {
             for class in Class::OBJECTS {
                 let yaw_rad = lane_heading(scene.frame(), at_m).unwrap_or(0.0);
                 let Some(b) = state.new_box(scene.frame(), class, at_m, yaw_rad) else {
                     continue;
                 };
-                let name = theme::sentence(&class.label());
+                let name = theme::sentence(t(&class.label()));
                 let act = Act::AddBoxes("Add box".into(), vec![b.into()], vec![b.id]);
                 entry(ui, &name, "", commands, Command::Tools(ToolCommand::Act(act)));
             }

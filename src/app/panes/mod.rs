@@ -16,6 +16,7 @@ pub mod checks;
 pub mod compare;
 pub mod comparing;
 pub mod conditions;
+mod group_list;
 pub mod history;
 pub mod id;
 mod label;

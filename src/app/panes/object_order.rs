@@ -2,6 +2,9 @@
 
 use egui::Ui;
 
+use language::t;
+
+use crate::state::called;
 use scene::{Class, SceneBox};
 use widgets::theme;
 
@@ -43,23 +46,23 @@ pub(super) fn listing_ui(ui: &mut Ui) -> Listing {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let field = egui::TextEdit::singleline(&mut listing.words)
-            .hint_text("Filter: car, red, 12")
+            .hint_text(t("Filter: car, red, 12"))
             .desired_width((ui.available_width() - 112.0).max(60.0));
-        ui.add(field).accessible_name("Filter the objects");
+        ui.add(field).accessible_name(t("Filter the objects"));
         let name = ORDERS
             .iter()
             .find(|(order, _)| *order == listing.order)
-            .map_or("", |(_, name)| name);
+            .map_or("", |(_, name)| t(name));
         egui::ComboBox::from_id_salt("order of objects")
             .width(ui.available_width())
             .selected_text(name)
             .show_ui(ui, |ui| {
                 for (order, name) in ORDERS {
-                    ui.selectable_value(&mut listing.order, order, name);
+                    ui.selectable_value(&mut listing.order, order, t(name));
                 }
             })
             .response
-            .accessible_name("Order of the objects");
+            .accessible_name(t("Order of the objects"));
     });
     ui.add_space(theme::GAP / 2.0);
     ui.data_mut(|d| d.insert_temp(kept(), listing.clone()));
@@ -82,7 +85,8 @@ impl Listing {
         let words: Vec<&str> = words.split_whitespace().collect();
         let holds = |b: &&SceneBox| {
             let paint = b.label.paint.map_or("", |paint| paint.name());
-            let text = format!("{} {} {paint} ", b.called(), b.class.label()).to_lowercase();
+            let own = format!("{} {}", called(b), t(&b.class.label()));
+            let text = format!("{} {} {paint} {own} ", b.called(), b.class.label()).to_lowercase();
             let number = b.id.0.to_string();
             words
                 .iter()

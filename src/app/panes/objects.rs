@@ -3,19 +3,22 @@
 use egui::{DragValue, Ui};
 use glam::DVec3;
 
+use language::{t, tf};
+
 use super::box_menu;
 use super::id::PaneId;
+use super::group_list::{self, Row};
 use super::object_order::listing_ui;
 use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
 use crate::command::{Command, ViewCommand};
 use crate::fields::{caption, field, fields, number, numbers};
 use crate::panes::label::label_ui;
-use crate::state::UiState;
+use crate::state::{UiState, called};
 use crate::tools::{Choose, Hand, ToolCommand};
 use editor::transform::Orientation;
 use editor::{Document, Edit, arrange};
-use scene::{BoxId, Class, Frame, Scene, SceneBox, Thing};
+use scene::{BoxId, Class, Frame, Members, Scene, SceneBox, Thing};
 use widgets::icons::Icon;
 use widgets::icons::{self, section};
 use widgets::theme;
@@ -65,7 +68,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         .auto_shrink(false)
         .show(ui, |ui| {
             inferred(ui, frame, &mut state.correcting, commands);
-            section(ui, "Inspector");
+            section(ui, t("Inspector"));
             let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
             match state.selected.and_then(|id| frame.boxes.get(&id)) {
                 Some(_) if state.chosen().len() > 1 => several(ui, frame, &state.tools, commands),
@@ -74,7 +77,7 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
                     own_shape(ui, scene, b.id, commands);
                 }
                 None if things.is_empty() => {
-                    ui.label(egui::RichText::new("Nothing selected").color(theme::text_weak()));
+                    ui.label(egui::RichText::new(t("Nothing selected")).color(theme::text_weak()));
                 }
                 None => {}
             }
@@ -82,13 +85,13 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
         });
     let rows = thing_list::rows(&scene.background, &state.tools);
     let boxes = match frame.boxes.len() {
-        1 => "1 box".to_owned(),
-        n => format!("{n} boxes"),
+        1 => t("1 box").to_owned(),
+        n => tf!("{n} boxes", n = n),
     };
     let title = match scene.background.len() {
         0 => boxes,
-        1 => format!("{boxes}, 1 thing"),
-        n => format!("{boxes}, {n} things"),
+        1 => tf!("{boxes}, 1 thing", boxes = boxes),
+        n => tf!("{boxes}, {n} things", boxes = boxes, n = n),
     };
     divide(ui, &title, below, most);
     let listing = listing_ui(ui);
@@ -98,22 +101,25 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
     // Things beside the road have no place among what was looked for.
     let rows = if listing.filters() { Vec::new() } else { rows };
     if boxes.is_empty() && listing.filters() {
-        ui.weak("No object of that name, class, paint or number.");
+        ui.weak(t("No object of that name, class, paint or number."));
     }
     let list = egui::ScrollArea::vertical()
         .id_salt("boxes")
         .max_height(list_height)
         .auto_shrink([false, false]);
     ui.spacing_mut().item_spacing.y = 1.0;
+    let boxes = group_list::rows(ui, &scene.arranged, &boxes);
     let list = reveal(ui, list, &boxes, state.selected, list_height);
     list.show_rows(ui, theme::ROW, boxes.len() + rows.len(), |ui, range| {
         for i in range {
             match boxes.get(i) {
-                Some(b) => {
-                    let guess = frame.inferred.boxes.contains(&b.id);
-                    ui.push_id(b.id.0, |ui| box_row(ui, b, guess, (scene, state), commands));
+                Some(Row::Group(at, group)) => {
+                    group_list::group_ui(ui, (*at, group), scene, state, commands);
                 }
-                None => thing_list::row_ui(ui, &rows[i - boxes.len()], frame, &mut state.tools, commands),
+                Some(Row::Box(b, inside)) => {
+                    ui.push_id(b.id.0, |ui| box_row(ui, b, *inside, (scene, state), commands));
+                }
+                None => thing_list::row_ui(ui, &rows[i - boxes.len()], scene, &mut state.tools, commands),
             }
         }
     });
@@ -138,7 +144,7 @@ fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
     section(ui, title);
     let line = egui::Rect::from_x_y_ranges(ui.max_rect().x_range(), top..=ui.cursor().top());
     let response = ui.interact(line, ui.scope_id().with("divide"), egui::Sense::click_and_drag());
-    let name = "Height of the list of boxes";
+    let name = t("Height of the list of boxes");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Splitter, true, name));
     let color = match response.dragged() || response.hovered() {
         true => theme::accent(),
@@ -167,7 +173,7 @@ fn divide(ui: &mut Ui, title: &str, height: f32, most: f32) {
 fn reveal(
     ui: &Ui,
     list: egui::ScrollArea,
-    boxes: &[&SceneBox],
+    rows: &[Row<'_>],
     selected: Option<BoxId>,
     height: f32,
 ) -> egui::ScrollArea {
@@ -177,7 +183,8 @@ fn reveal(
         return list;
     }
     ui.data_mut(|d| d.insert_temp(memory, selected));
-    match boxes.iter().position(|b| Some(b.id) == selected) {
+    let is_it = |row: &Row<'_>| matches!(row, Row::Box(b, _) if Some(b.id) == selected);
+    match rows.iter().position(is_it) {
         Some(row) => {
             let at = row as f32 * (theme::ROW + 1.0) - height / 2.0;
             list.vertical_scroll_offset(at.max(0.0))
@@ -191,32 +198,32 @@ fn inferred(ui: &mut Ui, frame: &Frame, correcting: &mut bool, commands: &mut Ve
     if !frame.inferred.any() {
         return;
     }
-    section(ui, "Inferred from labels");
+    section(ui, t("Inferred from labels"));
     let boxes = match frame.inferred.boxes.len() {
         0 => "",
-        1 => "1 box",
-        n => &format!("{n} boxes"),
+        1 => t("1 box"),
+        n => &tf!("{n} boxes", n = n),
     };
     if frame.inferred.background {
-        let what = "What stands beside the road is a guess.";
+        let what = t("What stands beside the road is a guess.");
         ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
     }
     let what = match (frame.inferred.layout, boxes) {
         (false, "") => String::new(),
-        (true, "") => "The map layers are guesses.".to_owned(),
-        (true, boxes) => format!("The map layers and {boxes} are guesses."),
-        (false, boxes) => format!("{boxes}: guesses."),
+        (true, "") => t("The map layers are guesses.").to_owned(),
+        (true, boxes) => tf!("The map layers and {boxes} are guesses.", boxes = boxes),
+        (false, boxes) => tf!("{boxes}: guesses.", boxes = boxes),
     };
     if !what.is_empty() {
         ui.label(egui::RichText::new(what).small().color(theme::text_weak()));
     }
     ui.horizontal(|ui| {
-        ui.checkbox(correcting, "Correct them").on_hover_text(
+        ui.checkbox(correcting, t("Correct them")).on_hover_text(t(
             "While ticked, edits of boxes and map layers change no voxel and generate nothing.",
-        );
+        ));
         let confirm = ui
-            .button("Confirm all")
-            .on_hover_text("They are right as they are.");
+            .button(t("Confirm all"))
+            .on_hover_text(t("They are right as they are."));
         if confirm.clicked() {
             commands.push(Command::ConfirmInferred);
         }
@@ -227,21 +234,41 @@ fn inferred(ui: &mut Ui, frame: &Frame, correcting: &mut bool, commands: &mut Ve
 fn box_row(
     ui: &mut Ui,
     b: &SceneBox,
-    guess: bool,
+    inside: bool,
     (scene, state): (&Scene, &mut UiState),
     commands: &mut Vec<Command>,
 ) {
+    let guess = scene.frame().inferred.boxes.contains(&b.id);
     let chosen = state.is_chosen(b.id);
     let ego_m = scene.frame().world_from_ego.translation_m.truncate();
-    let name = theme::sentence(&b.called());
-    let mark = if guess { "guess   " } else { "" };
+    let name = theme::sentence(&called(b));
+    let mark = if guess { t("guess") } else { "" };
+    let gap = if guess { "   " } else { "" };
     let right = format!(
-        "{mark}#{}   {:.0} m",
+        "{mark}{gap}#{}   {:.0} m",
         b.id.0,
         b.center_m.truncate().distance(ego_m)
     );
-    let label = format!("Box {} {}", b.id.0, b.called());
-    let row = icons::row(ui, theme::class_color(b.class), &name, &right, chosen, &label);
+    let label = tf!("Box {id} {name}", id = b.id.0, name = called(b));
+    let color = match scene.arranged.hidden.boxes.contains(&b.id) {
+        true => theme::class_color(b.class).gamma_multiply(0.35),
+        false => theme::class_color(b.class),
+    };
+    let row = ui
+        .horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.add_space(if inside { theme::ROW * 0.8 } else { 0.0 });
+            let room = (ui.available_width() - group_list::SWITCHES).max(40.0);
+            let row = ui
+                .allocate_ui(egui::vec2(room, theme::ROW), |ui| {
+                    icons::row(ui, color, &name, &right, chosen, &label)
+                })
+                .inner;
+            let it = Members::of([b.id], []);
+            group_list::switches(ui, &it, &scene.arranged, &label, commands);
+            row
+        })
+        .inner;
     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
     if row.clicked() && adds {
         commands.push(Command::Tools(ToolCommand::Choose(vec![b.id], Choose::Toggle)));
@@ -261,10 +288,10 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
         icons::swatch(ui, rect.center(), 14.0, theme::class_color(class));
         let combo = egui::ComboBox::from_id_salt("class")
             .width((ui.available_width() - 100.0).clamp(48.0, 118.0))
-            .selected_text(theme::sentence(&class.label()));
+            .selected_text(theme::sentence(t(&class.label())));
         combo.show_ui(ui, |ui| {
             for other in Class::OBJECTS {
-                ui.selectable_value(&mut class, other, theme::sentence(&other.label()));
+                ui.selectable_value(&mut class, other, theme::sentence(t(&other.label())));
             }
         });
         if class != b.class {
@@ -275,13 +302,13 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            if icons::button(ui, Icon::Trash, "Delete box", "Del", false, true).clicked() {
+            if icons::button(ui, Icon::Trash, t("Delete box"), "Del", false, true).clicked() {
                 commands.push(Command::Tools(ToolCommand::Delete));
             }
-            if icons::button(ui, Icon::Copy, "Duplicate box", "Ctrl+D", false, true).clicked() {
+            if icons::button(ui, Icon::Copy, t("Duplicate box"), "Ctrl+D", false, true).clicked() {
                 commands.push(Command::Tools(ToolCommand::Duplicate));
             }
-            if icons::button(ui, Icon::Focus, "Frame box", "F", false, true).clicked() {
+            if icons::button(ui, Icon::Focus, t("Frame box"), "F", false, true).clicked() {
                 commands.push(Command::View(ViewCommand::FrameSelection));
             }
         });
@@ -293,20 +320,20 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
     let limit = SceneBox::LIMIT_M;
     // In the box's own axes there is no place but where it is: the fields shift it.
     let position = match local {
-        false => numbers(ui, "Position", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05),
+        false => numbers(ui, t("Position"), ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05),
         true => {
             let start = shift_start(ui, b);
             let mut shift = start.to_local(b.center_m);
-            let names = ["Ahead", "Left", "Up"];
-            let fields = numbers(ui, "Shift", names, &mut shift, -limit..=limit, 0.05);
+            let names = [t("Ahead"), t("Left"), t("Up")];
+            let fields = numbers(ui, t("Shift"), names, &mut shift, -limit..=limit, 0.05);
             center = start.to_ego(shift);
             fields
         }
     };
     let dimensions = numbers(
         ui,
-        "Size",
-        ["Length", "Width", "Height"],
+        t("Size"),
+        [t("Length"), t("Width"), t("Height")],
         &mut size,
         0.1..=60.0,
         0.05,
@@ -314,12 +341,12 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
     let mut yaw_deg = heading_deg(b.yaw_rad);
     let turned = ui
         .horizontal(|ui| {
-            caption(ui, "Heading");
+            caption(ui, t("Heading"));
             let drag = DragValue::new(&mut yaw_deg)
                 .speed(0.5)
                 .fixed_decimals(1)
                 .suffix("°");
-            let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name("Heading");
+            let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name(t("Heading"));
             speed(ui, b);
             drag
         })
@@ -343,13 +370,13 @@ fn own_shape(ui: &mut Ui, scene: &Scene, id: BoxId, commands: &mut Vec<Command>)
         return;
     }
     ui.horizontal(|ui| {
-        caption(ui, "Shape");
-        ui.label("From a model").on_hover_text(
+        caption(ui, t("Shape"));
+        ui.label(t("From a model")).on_hover_text(t(
             "It keeps this shape wherever it is moved. Another size or class gives it a generated one.",
-        );
+        ));
         let button = ui
-            .button("Take away")
-            .on_hover_text("The shape is generated again");
+            .button(t("Take away"))
+            .on_hover_text(t("The shape is generated again"));
         if button.clicked() {
             let cells = Vec::new();
             commands.push(Command::Apply(
@@ -370,11 +397,11 @@ fn heading_deg(yaw_rad: f64) -> f64 {
 fn speed(ui: &mut Ui, b: &SceneBox) {
     let kmh = b.velocity_mps.length() * 3.6;
     let text = if kmh < 0.5 {
-        "standing".to_owned()
+        t("standing").to_owned()
     } else {
         format!("{kmh:.0} km/h")
     };
-    ui.label(text).on_hover_text("Speed over ground");
+    ui.label(text).on_hover_text(t("Speed over ground"));
     ui.label(egui::RichText::new(format!("#{}", b.id.0)).color(theme::text_weak()));
 }
 
@@ -399,26 +426,27 @@ fn several(ui: &mut Ui, frame: &Frame, hand: &Hand, commands: &mut Vec<Command>)
         return;
     };
     ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(format!("{} boxes chosen", boxes.len())).color(theme::text_strong()));
+        ui.label(egui::RichText::new(tf!("{n} boxes chosen", n = boxes.len())).color(theme::text_strong()));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            if icons::button(ui, Icon::Trash, "Delete boxes", "Del", false, true).clicked() {
+            if icons::button(ui, Icon::Trash, t("Delete boxes"), "Del", false, true).clicked() {
                 commands.push(Command::Tools(ToolCommand::Delete));
             }
-            if icons::button(ui, Icon::Copy, "Duplicate boxes", "Ctrl+D", false, true).clicked() {
+            if icons::button(ui, Icon::Copy, t("Duplicate boxes"), "Ctrl+D", false, true).clicked() {
                 commands.push(Command::Tools(ToolCommand::Duplicate));
             }
         });
     });
     let one_class = boxes.iter().all(|b| b.class == first.class);
     let mut class = one_class.then_some(first.class);
-    let name = class.map_or("Several classes".to_owned(), |c| theme::sentence(&c.label()));
+    let several = || t("Several classes").to_owned();
+    let name = class.map_or_else(several, |c| theme::sentence(t(&c.label())));
     let combo = egui::ComboBox::from_id_salt("class of several")
         .width(150.0)
         .selected_text(name);
     combo.show_ui(ui, |ui| {
         for other in Class::OBJECTS {
-            ui.selectable_value(&mut class, Some(other), theme::sentence(&other.label()));
+            ui.selectable_value(&mut class, Some(other), theme::sentence(t(&other.label())));
         }
     });
     if let Some(class) = class.filter(|_| !one_class || class != Some(first.class)) {
@@ -428,10 +456,10 @@ fn several(ui: &mut Ui, frame: &Frame, hand: &Hand, commands: &mut Vec<Command>)
     label_ui(ui, &boxes, commands);
     let limit = SceneBox::LIMIT_M;
     let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, heading_deg(first.yaw_rad));
-    let position = numbers(ui, "Middle", ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
-    let names = ["Length", "Width", "Height"];
-    let dimensions = numbers(ui, "Size", names, &mut size, 0.1..=60.0, 0.05);
-    let turned = number(ui, "Heading", "Heading", &mut yaw_deg, -360.0..=360.0, "°", 1);
+    let position = numbers(ui, t("Middle"), ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
+    let names = [t("Length"), t("Width"), t("Height")];
+    let dimensions = numbers(ui, t("Size"), names, &mut size, 0.1..=60.0, 0.05);
+    let turned = number(ui, t("Heading"), t("Heading"), &mut yaw_deg, -360.0..=360.0, "°", 1);
     let of_each = |edit: &dyn Fn(&SceneBox) -> [Option<DVec3>; 2], yaw_deg: Option<f64>| {
         let one = |b: &SceneBox| {
             let [center_m, size_m] = edit(b);

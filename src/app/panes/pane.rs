@@ -14,6 +14,7 @@ use super::id::PaneId;
 use super::prompt::field::PromptField;
 use crate::canvas::Canvas;
 use crate::command::Command;
+use crate::seen::SeenScene;
 use crate::sensing::Sensing;
 use crate::shell::checking::Checking;
 use crate::shell::live::Bounds;
@@ -62,6 +63,8 @@ pub struct PaneInfo {
 pub struct PaneContext<'a> {
     /// The scene on screen: the document's, a preview of its generation, or the one before.
     pub scene: &'a Arc<Scene>,
+    /// What the large views show of it: without what is hidden.
+    pub seen: SeenScene,
     /// What is edited.
     pub document: &'a Document,
     /// Tools, layers, options.

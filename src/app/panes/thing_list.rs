@@ -4,11 +4,14 @@ use std::collections::BTreeMap;
 
 use egui::Ui;
 
+use language::{t, tf};
+
+use super::group_list::{SWITCHES, switches};
 use crate::command::{Command, ViewCommand};
 use crate::tools::things::{ThingCommand, words};
 use crate::tools::{Choose, Hand, ToolCommand};
 use editor::tools::Act;
-use scene::{Background, Frame, Thing, ThingId};
+use scene::{Background, Members, Scene, Thing, ThingId};
 use widgets::icons;
 use widgets::theme;
 
@@ -37,7 +40,7 @@ pub fn rows<'a>(background: &'a Background, hand: &Hand) -> Vec<ThingRow<'a>> {
 }
 
 /// Draws a row.
-pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, frame: &Frame, hand: &mut Hand, commands: &mut Vec<Command>) {
+pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, scene: &Scene, hand: &mut Hand, commands: &mut Vec<Command>) {
     let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
     let how = match (row, adds) {
         (_, false) => Choose::Only,
@@ -52,41 +55,66 @@ pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, frame: &Frame, hand: &mut Hand, c
             let response = ui
                 .horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 0.0;
-                    if fold(ui, unfolded, name).clicked() {
+                    if fold(ui, unfolded, t(&words::plural(name))).clicked() {
                         let kinds = &mut hand.things.unfolded;
                         if !kinds.remove(name) {
                             kinds.insert(name);
                         }
                     }
-                    let title = theme::sentence(&words::plural(name));
+                    let title = theme::sentence(t(&words::plural(name)));
                     let count = things.len().to_string();
-                    let label = format!("All {}", words::plural(name));
+                    let label = tf!("All {things}", things = t(&words::plural(name)));
                     let color = theme::class_color(things[0].form.class());
-                    icons::row(ui, color, &title, &count, all, &label)
+                    let room = (ui.available_width() - SWITCHES).max(40.0);
+                    let row = ui
+                        .allocate_ui(egui::vec2(room, theme::ROW), |ui| {
+                            icons::row(ui, color, &title, &count, all, &label)
+                        })
+                        .inner;
+                    let them = Members::of([], things.iter().map(|t| t.id));
+                    switches(ui, &them, &scene.arranged, &label, commands);
+                    row
                 })
                 .inner
-                .on_hover_text("Click chooses all of them");
+                .on_hover_text(t("Click chooses all of them"));
             let ids = things.iter().map(|t| t.id).collect();
             (response.clicked(), response.double_clicked(), ids)
         }
         ThingRow::Thing(thing) => {
-            let at_m = thing.form.middle_m() - frame.world_from_ego.translation_m.truncate();
+            let at_m = thing.form.middle_m() - scene.frame().world_from_ego.translation_m.truncate();
             let chosen = hand.things.chosen.contains(&thing.id);
-            let name = format!("{} #{}", theme::sentence(thing.form.name()), thing.id.0);
-            let right = format!("{:.1} m high   {:.0} m", thing.form.height_m(), at_m.length());
-            let label = format!("Thing {} {}", thing.id.0, thing.form.name());
+            let name = format!("{} #{}", theme::sentence(t(thing.form.name())), thing.id.0);
+            let right = tf!(
+                "{height} m high   {away} m",
+                height = format!("{:.1}", thing.form.height_m()),
+                away = format!("{:.0}", at_m.length())
+            );
+            let label = tf!(
+                "Thing {id} {name}",
+                id = thing.id.0,
+                name = t(thing.form.name())
+            );
             let response = ui
                 .horizontal(|ui| {
                     ui.add_space(theme::ROW);
                     let color = theme::class_color(thing.form.class());
-                    icons::row(ui, color, &name, &right, chosen, &label)
+                    let room = (ui.available_width() - SWITCHES).max(40.0);
+                    ui.spacing_mut().item_spacing.x = 0.0;
+                    let row = ui
+                        .allocate_ui(egui::vec2(room, theme::ROW), |ui| {
+                            icons::row(ui, color, &name, &right, chosen, &label)
+                        })
+                        .inner;
+                    let it = Members::of([], [thing.id]);
+                    switches(ui, &it, &scene.arranged, &label, commands);
+                    row
                 })
                 .inner;
             (response.clicked(), response.double_clicked(), vec![thing.id])
         }
     };
     if clicked && !hand.things.is_open() {
-        let why = "Background things are locked or hidden: see the list of layers".to_owned();
+        let why = t("Background things are locked or hidden: see the list of layers").to_owned();
         commands.push(Command::Tools(ToolCommand::Act(Act::Note(why))));
     } else if clicked {
         let choose = ThingCommand::Choose(ids, how);
@@ -98,10 +126,10 @@ pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, frame: &Frame, hand: &mut Hand, c
 }
 
 /// A triangle that points right, or down where a kind is unfolded.
-fn fold(ui: &mut Ui, unfolded: bool, name: &str) -> egui::Response {
+pub(super) fn fold(ui: &mut Ui, unfolded: bool, name: &str) -> egui::Response {
     let size = egui::vec2(theme::ROW * 0.8, theme::ROW);
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
-    let label = format!("List {}", words::plural(name));
+    let label = tf!("List {things}", things = name);
     response.widget_info(|| {
         egui::WidgetInfo::selected(egui::accesskit::Role::CheckBox, true, unfolded, label.as_str())
     });

@@ -227,7 +227,7 @@ fn opacity_rows(ui: &mut Ui, tools: &mut ToolState, over_voxels: bool) {
     }
 }
 
-fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
+pub(super) fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(16.0, theme::ROW), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, locked, name));
     let color = match (locked, response.hovered()) {
@@ -279,7 +279,7 @@ fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
     });
 }
 
-fn eye(ui: &mut Ui, shown: bool, name: &str) -> egui::Response {
+pub(super) fn eye(ui: &mut Ui, shown: bool, name: &str) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(theme::ROW, theme::ROW), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, shown, name));
     let color = match (response.hovered(), shown) {

@@ -73,8 +73,8 @@ impl Pane for View3dPane {
         let entries = difference.map(|d| d.legend());
         let marked = difference.map(|d| d.marked());
         let input = View3dInput {
-            scene,
-            settled: cx.document.settled_scene(),
+            scene: &cx.seen.scene,
+            settled: &cx.seen.settled,
             lidar: cx.sensing.lidar(),
             dragging: cx.document.is_dragging(),
             marked: marked.as_ref().map_or(&[], |m| &m[..]),
@@ -92,7 +92,7 @@ impl Pane for View3dPane {
             box_menu::hold(ui, PaneId::VIEW3D);
             let response = view.show(ui, &input, state, commands);
             box_menu::of_view(ui, &response, (PaneId::VIEW3D, scene, state), commands, |at| {
-                under(view, scene, at)
+                under(view, input.scene, at)
             });
         });
         if let Some(entries) = entries {

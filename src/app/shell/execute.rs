@@ -25,6 +25,7 @@ impl SceneloomApp {
             Command::Apply(label, edits) => self.apply(label, &edits),
             Command::ApplyWords(words, edits) => self.apply_words(&words, &edits),
             Command::Preview(edits) => {
+                let edits = self.unlocked(edits, false);
                 let edits = self.meant(edits);
                 if let Err(error) = self.document.preview_all(&edits) {
                     self.fail(error.to_string());
@@ -98,8 +99,12 @@ impl SceneloomApp {
         if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
             return self.fail("Background things are locked".to_owned());
         }
-        let label = self.meant_label(label.into(), edits);
-        let edits = self.meant(with_scenery(self.document.scene(), edits.to_vec()));
+        let open = self.unlocked(edits.to_vec(), true);
+        if open.is_empty() && !edits.is_empty() {
+            return;
+        }
+        let label = self.meant_label(label.into(), &open);
+        let edits = self.meant(with_scenery(self.document.scene(), open));
         if let Err(error) = self.document.apply_all(label, &edits) {
             self.fail(error.to_string());
         }

@@ -9,6 +9,7 @@ use crate::panes::camera_strip::CameraStrip;
 use crate::panes::compare::Compare;
 use crate::panes::pane::Pane;
 use crate::panes::prompt::field::PromptField;
+use crate::seen::SeenScenes;
 use crate::view3d::View3d;
 use scene::{Extent, SceneBox};
 
@@ -23,6 +24,7 @@ pub struct Views {
     pub(crate) panes: Vec<Box<dyn Pane>>,
     pub(crate) dock: Dock,
     pub(crate) compare: Compare,
+    pub(crate) seen: SeenScenes,
     pub(crate) render_state: Option<egui_wgpu::RenderState>,
     /// What the bars leave to the panes, in the last frame.
     pub(crate) center: Rect,
@@ -39,6 +41,7 @@ impl Views {
             panes: panes::all(),
             dock,
             compare: Compare::default(),
+            seen: SeenScenes::default(),
             render_state,
             center: Rect::NOTHING,
         }

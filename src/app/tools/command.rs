@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use editor::arrange::Row;
 use editor::tools::{Act, Choose};
-use scene::BoxId;
+use scene::{Arrangement, BoxId};
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,14 @@ pub enum ToolCommand {
     Paste,
     /// Puts it down at a place of the ground, world frame, m.
     PasteAt(DVec2),
+    /// Groups, hides or locks what is chosen, or the opposite.
+    Arrange(Arrangement),
+    /// Hides all boxes that are not chosen.
+    HideOthers,
+    /// Shows everything that is hidden.
+    ShowAll,
+    /// Unlocks everything.
+    UnlockAll,
     /// Shifts the chosen boxes in the ego frame, m.
     Nudge(DVec3),
     /// Turns the chosen boxes counter-clockwise, degrees.

@@ -78,6 +78,7 @@ impl Apply for Edit {
             Self::SetMotion { .. } | Self::SetLength { .. } | Self::SetShape { .. } => {
                 motion::apply(self, scene)?
             }
+            Self::Arrange { .. } => crate::arranged::apply(self, scene)?,
             Self::ChangeRoads { change } => crate::roads::apply(scene, change)?,
             Self::ExtendMap { .. } => extend::apply(self, scene)?,
             Self::LetMove { .. } => all_or_nothing(scene, &let_move::let_move(scene, self)?)?,
@@ -87,6 +88,7 @@ impl Apply for Edit {
             }
             edit => at::apply_scoped(edit, scene, Scope::default())?,
         }
+        crate::arranged::keep(scene);
         Ok(())
     }
 }
@@ -121,6 +123,7 @@ pub fn apply_all(edits: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
             things::replace_background(scene, background);
         }
     }
+    crate::arranged::keep(scene);
     Ok(())
 }
 

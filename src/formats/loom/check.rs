@@ -25,6 +25,9 @@ pub(super) fn check(scene: &Scene) -> Result<(), ProjectError> {
     if let Some(problem) = scene.roads.problem() {
         return unsound(format!("roads: {problem}"));
     }
+    if let Some(problem) = scene.arranged.problem() {
+        return unsound(format!("arranged: {problem}"));
+    }
     if let Some(problem) = frame_problem(scene.canvas()) {
         return unsound(format!("canvas: {problem}"));
     }

@@ -1,4 +1,4 @@
-//! `scene.json`: all of a scene but its grids, as versions 5 to 7 keep it. A change here is a new version, see `migrate`.
+//! `scene.json`: all of a scene but its grids, as versions 5 to 8 keep it. A change here is a new version, see `migrate`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use scene::{
-    BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, RoadNetwork, Scene, SceneBox, SensorRig,
+    Arranged, BoxId, Clip, Conditions, Extent, Frame, Motion, Polyline, Pose, RoadNetwork, Scene, SceneBox, SensorRig,
     Thing, Track, Waiver,
 };
 
@@ -27,6 +27,8 @@ pub(super) struct SceneHeader {
     pub(super) background: Vec<Thing>,
     #[serde(default, skip_serializing_if = "has_no_roads")]
     pub(super) roads: Arc<RoadNetwork>,
+    #[serde(default, skip_serializing_if = "is_plain")]
+    pub(super) arranged: Arc<Arranged>,
     pub(super) canvas: FrameHeader,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) clip: Option<ClipHeader>,
@@ -167,6 +169,10 @@ pub(super) struct SourceHeader {
     pub(super) occupancy: bool,
 }
 
+fn is_plain(arranged: &Arc<Arranged>) -> bool {
+    arranged.is_empty()
+}
+
 fn has_no_roads(roads: &Arc<RoadNetwork>) -> bool {
     roads.is_empty()
 }
@@ -196,6 +202,7 @@ impl SceneHeader {
             rig: scene.rig.clone(),
             background: scene.background.iter().cloned().collect(),
             roads: scene.roads.clone(),
+            arranged: scene.arranged.clone(),
             canvas: frame_header(scene.canvas()),
             clip: ClipHeader::of(scene.clip()),
         }

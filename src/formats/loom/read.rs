@@ -51,6 +51,7 @@ pub(super) fn read<R: Read + Seek>(reader: R, migrations: &[Migration]) -> Resul
     scene.words = Arc::new(header.words);
     scene.background = Arc::new(background);
     scene.roads = header.roads;
+    scene.arranged = header.arranged;
     scene.kept = Arc::new(kept);
     scene.change_clip(|empty| *empty = clip);
     check(&scene)?;

@@ -2,12 +2,18 @@
 
 use glam::DVec2;
 
+use scene::Arrangement;
+
 use super::Group::{Selection, Tools};
 use super::{ActionDef, action};
 use crate::command::Command;
 use crate::map_edges::extend;
 use crate::tools::ToolCommand;
 use crate::tools::things::ThingCommand;
+
+const fn arrange(how: Arrangement) -> Command {
+    Command::Tools(ToolCommand::Arrange(how))
+}
 
 const fn raise(steps: i32) -> Command {
     Command::Tools(ToolCommand::Thing(ThingCommand::Raise(steps)))
@@ -109,6 +115,29 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     }),
     action(Selection, "paste", "Paste at the pointer", "Ctrl+V", || {
         Command::Tools(ToolCommand::Paste)
+    }),
+    action(Selection, "group", "Group", "Ctrl+G", || {
+        arrange(Arrangement::Group {
+            name: Default::default(),
+        })
+    }),
+    action(Selection, "ungroup", "Ungroup", "Ctrl+Shift+G", || {
+        arrange(Arrangement::Ungroup)
+    }),
+    action(Selection, "hide", "Hide what is chosen", "Ctrl+H", || {
+        arrange(Arrangement::Hide)
+    }),
+    action(Selection, "hide_others", "Hide all other boxes", "Ctrl+Alt+H", || {
+        Command::Tools(ToolCommand::HideOthers)
+    }),
+    action(Selection, "show_all", "Show all that is hidden", "Ctrl+Shift+H", || {
+        Command::Tools(ToolCommand::ShowAll)
+    }),
+    action(Selection, "lock", "Lock what is chosen", "Ctrl+L", || {
+        arrange(Arrangement::Lock)
+    }),
+    action(Selection, "unlock_all", "Unlock everything", "Ctrl+Shift+L", || {
+        Command::Tools(ToolCommand::UnlockAll)
     }),
     action(Selection, "row", "Row of copies", "Ctrl+Shift+D", || {
         Command::Tools(ToolCommand::AskRow)

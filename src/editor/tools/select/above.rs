@@ -81,7 +81,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     let reach_m = HANDLE_REACH / cx.view.scale();
     let (shift, chosen) = (pointer.held.shift, cx.hand.chosen());
     // The arrows light up under the pointer whatever chooses, so they can be pulled too.
-    let gizmo = Gizmo::new(frame, cx.hand, cx.view);
+    let gizmo = Gizmo::new(cx.settled, cx.hand, cx.view);
     let over_knob = is_over_knob(frame, cx.hand, at_m, reach_m);
     if let Some(Part::Axis(axis)) = gizmo.filter(|_| !over_knob).and_then(|g| g.at(pointer.at)) {
         let mut transform = transform(frame, cx.hand, &chosen, cx.hand.gizmo);
@@ -130,10 +130,8 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
                     add: true,
                 });
             }
+            boxes::take(cx.settled, cx.hand, id);
             let ids = boxes::with(cx.hand, id);
-            if !cx.hand.is_chosen(id) {
-                cx.hand.choose(&[id], Choose::Only);
-            }
             return Some(held(transform(frame, cx.hand, &ids, TransformKind::Move), at_m));
         }
         // A thing is chosen by a click and moved once it is: a drag over a forest still marks.
@@ -388,7 +386,7 @@ pub(super) fn cursor(sight: &Sight<'_>) -> Cursor {
 pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
     let mut out = Vec::new();
     if let None | Some(Drag::Corner { .. }) = drag
-        && let Some(gizmo) = Gizmo::new(sight.scene.frame(), sight.hand, sight.view)
+        && let Some(gizmo) = Gizmo::new(sight.scene, sight.hand, sight.view)
     {
         let reach_m = HANDLE_REACH / sight.view.scale();
         let over_knob = sight

@@ -2,9 +2,9 @@
 
 use crate::Edit;
 use crate::arrange::{Pivot, boxes_of};
-use crate::tools::{Hand, Key, Modifiers};
+use crate::tools::{Choose, Hand, Key, Modifiers};
 use crate::transform::{Axis, Pull, Transform, TransformKind};
-use scene::{BoxId, Frame, SceneBox};
+use scene::{BoxId, Frame, Members, Scene, SceneBox, ThingId};
 
 use super::things::along_with;
 
@@ -74,6 +74,34 @@ pub(super) fn steer(transform: &mut Transform, key: Key, repeat: bool, held: Mod
         Key::Escape => return Steered::Not,
     }
     Steered::Changed
+}
+
+/// Chooses a box that is not chosen, and the group that it is in.
+pub(super) fn take(scene: &Scene, hand: &mut Hand, id: BoxId) {
+    if hand.is_chosen(id) {
+        return;
+    }
+    hand.choose(&[id], Choose::Only);
+    choose_groups(scene, hand);
+}
+
+/// Chooses the whole groups of what is chosen, too; the box chosen last stays the first.
+pub(super) fn choose_groups(scene: &Scene, hand: &mut Hand) {
+    let chosen = members(hand);
+    let whole = scene.arranged.with_groups(&chosen);
+    if whole == chosen {
+        return;
+    }
+    let last = hand.selected;
+    let boxes: Vec<BoxId> = whole.boxes.into_iter().filter(|id| Some(*id) != last).chain(last).collect();
+    hand.choose(&boxes, Choose::Only);
+    let things: Vec<ThingId> = whole.things.into_iter().collect();
+    hand.choose_things(&things, Choose::Add);
+}
+
+/// What is chosen.
+pub(super) fn members(hand: &Hand) -> Members {
+    Members::of(hand.chosen(), hand.things.chosen.iter().copied())
 }
 
 /// The boxes that a press on one of them moves: all that are chosen with it first, or it alone.

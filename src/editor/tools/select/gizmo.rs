@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::arrange::{boxes_of, middle_m};
 use crate::transform::{Axis, Orientation, Transform, TransformKind};
-use scene::Frame;
+use scene::Scene;
 
 use super::ID;
 use super::boxes::transform;
@@ -36,13 +36,14 @@ pub struct Gizmo<'a> {
 }
 
 impl<'a> Gizmo<'a> {
-    /// `None` if no box is chosen, the middle is not in view, or the knob of the box turns it there.
-    pub fn new(frame: &Frame, hand: &Hand, view: &'a dyn View) -> Option<Self> {
+    /// `None` if no box is chosen that may be changed, the middle is not in view, or the knob of the box turns it there.
+    pub fn new(scene: &Scene, hand: &Hand, view: &'a dyn View) -> Option<Self> {
         let from_above = view.kind() == ViewKind::Bev;
         if hand.tool != ID || from_above && hand.gizmo == TransformKind::Turn {
             return None;
         }
-        let chosen = hand.chosen();
+        let (frame, mut chosen) = (scene.frame(), hand.chosen());
+        chosen.retain(|id| !scene.arranged.locked.boxes.contains(id));
         let middle_m = middle_m(&boxes_of(frame, &chosen))?;
         let beside = view.project(middle_m + view.right() * 0.5)?;
         let per_m = view.project(middle_m)?.distance(beside) * 2.0;

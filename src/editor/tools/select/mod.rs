@@ -9,7 +9,7 @@ mod things;
 
 use crate::arrange::Pivot;
 use crate::transform::{Orientation, TransformKind};
-use scene::Frame;
+use scene::{Frame, Members};
 
 use super::setting::{self, Control, Setting, Value};
 use super::{
@@ -89,12 +89,15 @@ enum Drag {
 #[derive(Clone, Debug, Default)]
 pub struct Select {
     drag: Option<Drag>,
+    /// What was chosen when the button went down.
+    before: Members,
 }
 
 impl Tool for Select {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match event {
             Event::Press(pointer) => {
+                self.before = boxes::members(cx.hand);
                 self.drag = match cx.from_above() {
                     true => above::press(cx, pointer).map(Drag::Above),
                     false => space::press(cx, pointer).map(Drag::Space),
@@ -109,11 +112,19 @@ impl Tool for Select {
                 Some(Drag::Space(drag)) => space::drag(drag, cx, pointer),
                 None => Response::none(),
             },
-            Event::Release(pointer) => match self.drag.take() {
-                Some(Drag::Above(drag)) => above::release(drag, cx),
-                Some(Drag::Space(drag)) => space::release(drag, cx, pointer.at),
-                None => Response::none(),
-            },
+            Event::Release(pointer) => {
+                let response = match self.drag.take() {
+                    Some(Drag::Above(drag)) => above::release(drag, cx),
+                    Some(Drag::Space(drag)) => space::release(drag, cx, pointer.at),
+                    None => Response::none(),
+                };
+                // Who takes one out of a group that was chosen wants that one.
+                let now = boxes::members(cx.hand);
+                if !now.is_within(&self.before) {
+                    boxes::choose_groups(cx.settled, cx.hand);
+                }
+                response
+            }
             Event::Key(key, repeat, held) => {
                 let response = match &mut self.drag {
                     Some(Drag::Above(drag)) => above::key(drag, cx, *key, *repeat, *held),

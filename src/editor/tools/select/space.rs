@@ -93,12 +93,46 @@ fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
 }
 
 /// What a press takes hold of.
-pub(super) fn press(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
+pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     if let Some(drag) = press_things(cx, pointer) {
         return Some(drag);
     }
-    let (frame, at) = (cx.frame(), pointer.at);
-    let gizmo = Gizmo::new(frame, cx.hand, cx.view);
+    let at = pointer.at;
+    if let Some(drag) = press_gizmo(cx, at) {
+        return Some(drag);
+    }
+    let ray = cx.view.ray(at)?;
+    match pick::pick(cx.frame(), &ray) {
+        Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.lasso => {
+            if cx.settled.arranged.group_of_box(id).is_some() {
+                boxes::take(cx.settled, cx.hand, id);
+            }
+            Some(Drag::Boxes {
+                transform: transform(
+                    cx.frame(),
+                    cx.hand,
+                    &boxes::with(cx.hand, id),
+                    TransformKind::Move,
+                ),
+                grabbed_m: point_of(&hit, &ray),
+                from: at,
+                to: at,
+                moved: false,
+                hit: Some(id),
+            })
+        }
+        _ => Some(Drag::Area {
+            points: vec![at],
+            lasso: cx.hand.lasso,
+            add: pointer.held.shift,
+        }),
+    }
+}
+
+/// What a press takes hold of on the gizmo.
+fn press_gizmo(cx: &Context<'_>, at: DVec2) -> Option<Drag> {
+    let frame = cx.frame();
+    let gizmo = Gizmo::new(cx.settled, cx.hand, cx.view);
     if let Some(part) = gizmo.and_then(|g| g.at(at)) {
         let mut transform = transform(frame, cx.hand, &cx.hand.chosen(), cx.hand.gizmo);
         if transform.kind == TransformKind::Scale {
@@ -117,22 +151,7 @@ pub(super) fn press(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
             hit: None,
         });
     }
-    let ray = cx.view.ray(at)?;
-    match pick::pick(frame, &ray) {
-        Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.lasso => Some(Drag::Boxes {
-            transform: transform(frame, cx.hand, &boxes::with(cx.hand, id), TransformKind::Move),
-            grabbed_m: point_of(&hit, &ray),
-            from: at,
-            to: at,
-            moved: false,
-            hit: Some(id),
-        }),
-        _ => Some(Drag::Area {
-            points: vec![at],
-            lasso: cx.hand.lasso,
-            add: pointer.held.shift,
-        }),
-    }
+    None
 }
 
 /// What a move of the pointer changes.
@@ -355,7 +374,7 @@ fn held_part(axis: Option<Axis>, kind: TransformKind) -> Option<Part> {
 /// What is drawn over the view.
 pub(super) fn overlay(drag: Option<&Drag>, sight: &Sight<'_>) -> Vec<Mark> {
     let mut out = Vec::new();
-    let gizmo = Gizmo::new(sight.scene.frame(), sight.hand, sight.view);
+    let gizmo = Gizmo::new(sight.scene, sight.hand, sight.view);
     let pointer = sight.pointer.map(|p| p.at);
     let limit_m = farthest_m(sight.settled.frame().extent());
     match drag {
