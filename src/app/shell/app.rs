@@ -33,6 +33,7 @@ use crate::view3d::View3d;
 use crate::windows::open::OpenWindows;
 use crate::windows::palette::Palette;
 use crate::windows::shortcuts::Shortcuts;
+use language::tf;
 use widgets::theme;
 
 /// Makes the pipeline, on the worker's thread.
@@ -141,7 +142,8 @@ impl SceneloomApp {
         }
         let mut toasts = Toasts::default();
         if let Some(text) = complaint {
-            toasts.push(Level::Error, format!("Standard settings are used: {text}"), 0.0);
+            let text = tf!("Standard settings are used: {error}", error = text);
+            toasts.push(Level::Error, text, 0.0);
         }
         let state = UiState {
             windows: OpenWindows {
@@ -259,7 +261,10 @@ impl SceneloomApp {
     pub fn update(&mut self, ctx: &egui::Context) {
         self.threads.sensing.drain();
         if let Some(problem) = self.threads.sensing.take_problem() {
-            self.fail(format!("The sensors show an older scene: {problem}"));
+            self.fail(tf!(
+                "The sensors show an older scene: {problem}",
+                problem = problem
+            ));
         }
         self.generation.tuning.update();
         if self.document.history_limit() != self.preferences.settings.history_bytes() {

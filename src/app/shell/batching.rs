@@ -13,6 +13,7 @@ use crate::batch::queue::State;
 use crate::windows::batch_plan::BASE;
 use crate::windows::batches::{Asked, BatchesInput, BatchesWindow};
 use formats::loom;
+use language::tf;
 
 /// The queue and its window.
 #[derive(Default)]
@@ -63,17 +64,25 @@ impl SceneloomApp {
             let (level, text) = match &item.state {
                 State::Done(report) if report.failed.is_empty() => (
                     Level::Info,
-                    format!("Batch {name}: {} variants are ready", report.variants),
+                    tf!(
+                        "Batch {name}: {n} variants are ready",
+                        name = name,
+                        n = report.variants
+                    ),
                 ),
                 State::Done(report) => (
                     Level::Error,
-                    format!(
-                        "Batch {name}: {} of {} variants failed",
-                        report.failed.len(),
-                        report.variants
+                    tf!(
+                        "Batch {name}: {n} of {all} variants failed",
+                        name = name,
+                        n = report.failed.len(),
+                        all = report.variants,
                     ),
                 ),
-                State::Failed(why) => (Level::Error, format!("Batch {name}: {why}")),
+                State::Failed(why) => (
+                    Level::Error,
+                    tf!("Batch {name}: {error}", name = name, error = why),
+                ),
                 _ => continue,
             };
             let now_s = self.now_s();
@@ -126,7 +135,7 @@ impl SceneloomApp {
             }
         };
         if let Err(error) = marked {
-            self.fail(format!("Not marked: {}", one_line(&error)));
+            self.fail(tf!("Not marked: {error}", error = one_line(&error)));
         }
         match open {
             true => self.files.batching.window = Some(window),
@@ -165,7 +174,7 @@ impl SceneloomApp {
         };
         match item.batch() {
             Ok(batch) => {
-                let what = format!("Opening variant {variant} of {}", item.name);
+                let what = tf!("Opening variant {n} of {name}", n = variant, name = item.name);
                 self.load(what, None, false, ctx, move || batch.scene(variant));
             }
             Err(error) => self.fail(one_line(&error)),

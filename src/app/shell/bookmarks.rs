@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::app::SceneloomApp;
 use super::toasts::Level;
 use crate::canvas::Canvas;
+use language::tf;
 use viewport::ViewCamera;
 
 /// Numbers of bookmarks.
@@ -64,7 +65,7 @@ impl SceneloomApp {
         if SLOTS.contains(&slot) {
             let bookmark = Bookmark::of(&self.views.view3d.camera, &self.views.canvas);
             self.preferences.settings.bookmarks.insert(slot, bookmark);
-            self.tell(format!("View {slot} is kept: F{slot} comes back to it"));
+            self.tell(tf!("View {n} is kept: F{n} comes back to it", n = slot));
         }
     }
 
@@ -75,7 +76,7 @@ impl SceneloomApp {
                 self.views.view3d.camera = bookmark.camera();
                 self.views.canvas.go_to(bookmark.bev_center_m, bookmark.bev_scale);
             }
-            None => self.tell(format!("No view is kept as {slot}: Ctrl+F{slot} keeps this one")),
+            None => self.tell(tf!("No view is kept as {n}: Ctrl+F{n} keeps this one", n = slot)),
         }
     }
 

@@ -7,6 +7,7 @@ use super::toasts::Level;
 use crate::prompting::Ask;
 use crate::tools::Choose;
 use editor::Edit;
+use language::t;
 use scene::{BoxId, Frame};
 use sensors::cameras::pictures;
 
@@ -34,7 +35,7 @@ impl SceneloomApp {
         if other_light && self.state.cameras.view != pictures::VIEW.id {
             self.state.cameras.view = pictures::VIEW.id;
             let now_s = self.now_s();
-            let text = "Time and weather changed: the cameras show pictures now".to_owned();
+            let text = t("Time and weather changed: the cameras show pictures now").to_owned();
             self.toasts.push(Level::Info, text, now_s);
         }
     }
@@ -49,7 +50,7 @@ impl SceneloomApp {
             made.scene.name = crate::text::title(&ask.prompt).into();
             Ok(made.scene)
         };
-        self.load(SCENE_FROM_WORDS.into(), None, false, ctx, make);
+        self.load(t(SCENE_FROM_WORDS).into(), None, false, ctx, make);
         if let Some(opening) = &mut self.files.opening {
             opening.step = Some(SCENE_FROM_WORDS);
         }

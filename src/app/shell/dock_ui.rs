@@ -15,6 +15,7 @@ use crate::panes;
 use crate::panes::compare::tag;
 use crate::panes::id::PaneId;
 use crate::panes::pane::{Pane, PaneContext};
+use language::{t, tf};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
@@ -110,7 +111,10 @@ impl Drawer<'_> {
     /// Title of a pane; cameras carry the names that the rig gives them.
     fn title(&self, id: PaneId) -> String {
         let pane = self.panes.iter().find(|p| p.id() == id);
-        pane.map_or_else(|| id.name().to_owned(), |p| p.title_in(self.cx.scene))
+        pane.map_or_else(
+            || id.name().to_owned(),
+            |p| t(&p.title_in(self.cx.scene)).to_owned(),
+        )
     }
 
     fn controls(&mut self, ui: &mut Ui, id: PaneId) {
@@ -127,7 +131,7 @@ impl Drawer<'_> {
         let area = ui.available_rect_before_wrap();
         pane.ui(ui, &mut self.cx, self.commands);
         if self.cx.state.compare.holding_before && pane.shows_before() {
-            tag(ui, area.left_top() + vec2(8.0, 8.0), "before", false);
+            tag(ui, area.left_top() + vec2(8.0, 8.0), t("before"), false);
         }
         if ui.rect_contains_pointer(area) {
             self.cx.state.pointed.pane = Some(id);
@@ -178,22 +182,26 @@ impl Drawer<'_> {
                 }
             };
             let large = if self.maximized {
-                "Show all panes"
+                t("Show all panes")
             } else {
-                "Maximize"
+                t("Maximize")
             };
             act(ui, large, DockAction::Maximize(tile));
-            act(ui, "Split to the right", DockAction::Split(tile, Split::Right));
-            act(ui, "Split downward", DockAction::Split(tile, Split::Down));
-            act(ui, "Close", DockAction::Close(tile));
+            act(ui, t("Split to the right"), DockAction::Split(tile, Split::Right));
+            act(ui, t("Split downward"), DockAction::Split(tile, Split::Down));
+            act(ui, t("Close"), DockAction::Close(tile));
             ui.separator();
-            ui.label(egui::RichText::new("Show here").small().color(theme::text_weak()));
+            ui.label(
+                egui::RichText::new(t("Show here"))
+                    .small()
+                    .color(theme::text_weak()),
+            );
             for (choice, title) in others {
                 act(ui, &title, DockAction::Put(tile, choice));
             }
         });
         if name.is_empty() {
-            let label = format!("Menu of {}", self.title(pane));
+            let label = tf!("Menu of {pane}", pane = self.title(pane));
             opened.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, &label));
         }
         // The fonts have no small triangle.
@@ -201,7 +209,7 @@ impl Drawer<'_> {
         let points = vec![tip, tip + vec2(-4.0, -5.0), tip + vec2(4.0, -5.0)];
         let shape = egui::Shape::convex_polygon(points, theme::text_weak(), egui::Stroke::NONE);
         ui.painter().add(shape);
-        if self.maximized && icons::button(ui, Icon::Close, "Show all panes", "", false, true).clicked() {
+        if self.maximized && icons::button(ui, Icon::Close, t("Show all panes"), "", false, true).clicked() {
             self.actions.push(DockAction::Maximize(tile));
         }
     }

@@ -5,6 +5,7 @@ use egui::Context;
 use editor::Edit;
 use editor::document::Label;
 use editor::tools::{add_box, select};
+use language::{t, tf};
 use scene::SceneBox;
 
 use super::app::SceneloomApp;
@@ -94,10 +95,10 @@ impl SceneloomApp {
             .state
             .locked_layer(&self.document.scene().frame().layout, edits)
         {
-            return self.fail(format!("Layer {:?} is locked", layer.label()));
+            return self.fail(tf!("Layer \"{name}\" is locked", name = t(&layer.label())));
         }
         if self.state.tools.things.locked && edits.iter().any(Edit::is_of_things) {
-            return self.fail("Background things are locked".to_owned());
+            return self.fail(t("Background things are locked").to_owned());
         }
         let open = self.unlocked(edits.to_vec(), true);
         if open.is_empty() && !edits.is_empty() {

@@ -13,6 +13,7 @@ use crate::export::{ExportOptions, ExportProgress, Format, export_all};
 use crate::windows::export::{Asked, ExportDialog, ExportInput, export_window};
 use editor::checks::{Severity, waive};
 use formats::video::VideoKind;
+use language::{t, tf};
 
 /// Width and height of a clip, pixels.
 const CLIP_SIZE: [u32; 2] = [1280, 720];
@@ -107,7 +108,7 @@ impl SceneloomApp {
     pub(super) fn save_clip(&mut self, path: PathBuf, ctx: &egui::Context) {
         let kind = match VideoKind::of_path(&path) {
             Ok(kind) => kind,
-            Err(error) => return self.fail(format!("Not saved: {error}")),
+            Err(error) => return self.fail(tf!("Not saved: {error}", error = error)),
         };
         let scene = Arc::clone(self.document.settled_scene());
         let playback = &self.state.playback;
@@ -146,7 +147,7 @@ impl SceneloomApp {
         write: impl FnOnce(&ExportProgress) -> Written + Send + 'static,
     ) {
         if self.files.exporting.running.is_some() {
-            return self.fail("An export is on its way; one at a time".to_owned());
+            return self.fail(t("An export is on its way; one at a time").to_owned());
         }
         let (send, written) = bounded(1);
         let wake = ctx.clone();
@@ -168,8 +169,8 @@ impl SceneloomApp {
             }
             Err(error) => {
                 let now_s = self.now_s();
-                self.toasts
-                    .push(Level::Error, format!("Not exported: {error}"), now_s);
+                let text = tf!("Not exported: {error}", error = error);
+                self.toasts.push(Level::Error, text, now_s);
             }
         }
     }
@@ -195,17 +196,22 @@ impl SceneloomApp {
                     .map_or(String::new(), |(path, _)| path.display().to_string());
                 let what = match files.len() {
                     1 => first,
-                    n => format!("{n} files, {first} and others"),
+                    n => tf!("{n} files, {first} and others", n = n, first = first),
                 };
-                let text = format!("Exported {name}: {what} ({:.1} MB)", bytes as f64 / 1e6);
+                let text = tf!(
+                    "Exported {name}: {files} ({size} MB)",
+                    name = t(name),
+                    files = what,
+                    size = format!("{:.1}", bytes as f64 / 1e6),
+                );
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(_) if cancelled => {
-                let text = "Export cancelled: nothing was written".to_owned();
+                let text = t("Export cancelled: nothing was written").to_owned();
                 self.toasts.push(Level::Info, text, now_s);
             }
             Err(error) => {
-                let text = format!("Not exported: {}", one_line(&error));
+                let text = tf!("Not exported: {error}", error = one_line(&error));
                 self.toasts.push(Level::Error, text, now_s);
             }
         }

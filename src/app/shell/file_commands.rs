@@ -14,6 +14,7 @@ use super::versions::Opened;
 use crate::command::FileCommand;
 use crate::open;
 use editor::Edit;
+use language::{t, tf};
 use scene::{Kept, Scene};
 use sensors::cameras::{self, ViewId};
 
@@ -58,7 +59,7 @@ impl SceneloomApp {
                 if commands.is_empty() {
                     // What was not understood is said there.
                     self.views.dock.open(crate::panes::id::PaneId::PROMPT);
-                    self.note("No scene was read from these words");
+                    self.note(t("No scene was read from these words"));
                 }
                 for command in commands {
                     self.execute(command, ctx);
@@ -104,7 +105,7 @@ impl SceneloomApp {
             Next::Variant(id, variant) => self.open_variant(id, variant, ctx),
             Next::New => {
                 let make = self.files.disk.new_scene.clone();
-                self.load("New scene".into(), None, false, ctx, move || make());
+                self.load(t("New scene").into(), None, false, ctx, move || make());
             }
             Next::NewFrom(name) => {
                 let seed = std::time::SystemTime::now()
@@ -114,14 +115,14 @@ impl SceneloomApp {
                     open::from_template(name, seed)
                         .ok_or_else(|| anyhow::anyhow!("there is no template {name:?}"))
                 };
-                self.load("New scene".into(), None, false, ctx, make);
+                self.load(t("New scene").into(), None, false, ctx, make);
             }
             Next::Open(path) if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xodr")) => {
                 self.pick_place(path, ctx);
             }
             Next::Open(path) => {
                 let (open, file) = (self.files.disk.open.clone(), path.clone());
-                let what = format!("Opening {}", path.display());
+                let what = tf!("Opening {file}", file = path.display());
                 let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
                 let is_import = own_file.is_none();
                 self.load(what, own_file, is_import, ctx, move || open(&file));
@@ -155,6 +156,7 @@ impl SceneloomApp {
                     path,
                     what,
                     is_import,
+                    recovers: false,
                     step: None,
                     scene,
                 })
@@ -187,7 +189,7 @@ impl SceneloomApp {
                 let rig = Box::new(rig);
                 self.apply("Import sensors", &[Edit::SetRig { rig }]);
             }
-            Err(error) => self.fail(format!("Not imported: {}", one_line(&error))),
+            Err(error) => self.fail(tf!("Not imported: {error}", error = one_line(&error))),
         }
     }
 
@@ -195,10 +197,11 @@ impl SceneloomApp {
         let saved = open::save_rig(&self.document.scene().rig, path);
         let now_s = self.now_s();
         match saved {
-            Ok(()) => self
-                .toasts
-                .push(Level::Info, format!("Saved {}", path.display()), now_s),
-            Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
+            Ok(()) => {
+                let text = tf!("Saved {file}", file = path.display());
+                self.toasts.push(Level::Info, text, now_s);
+            }
+            Err(error) => self.fail(tf!("Not saved: {error}", error = one_line(&error))),
         }
     }
 
@@ -211,15 +214,15 @@ impl SceneloomApp {
                 self.document.mark_saved();
                 self.generation.versions.changed = false;
                 let now_s = self.now_s();
-                self.toasts
-                    .push(Level::Info, format!("Saved {}", path.display()), now_s);
+                let text = tf!("Saved {file}", file = path.display());
+                self.toasts.push(Level::Info, text, now_s);
                 self.preferences.settings.remember(&path);
                 self.files.path = Some(path);
                 if let Some(next) = next {
                     self.go_on(next, ctx);
                 }
             }
-            Err(error) => self.fail(format!("Not saved: {}", one_line(&error))),
+            Err(error) => self.fail(tf!("Not saved: {error}", error = one_line(&error))),
         }
     }
 
@@ -244,7 +247,7 @@ impl SceneloomApp {
         let pictures = self.threads.sensing.pictures_of(source);
         let found = pictures.and_then(|all| all.iter().find(|v| v.camera == camera));
         let Some(found) = found else {
-            return self.fail("No picture saved: the camera is not rendered yet".into());
+            return self.fail(t("No picture saved: the camera is not rendered yet").into());
         };
         let ([width, height], rgba) = found.picture.rgba(view, self.state.cameras.plane_m);
         let name = self
@@ -269,10 +272,15 @@ impl SceneloomApp {
         let path = free_name(&path.with_file_name(format!("{stem}_{tidy}_{}.png", view.name())));
         match image::save_buffer(&path, &rgba, width as u32, height as u32, image::ColorType::Rgba8) {
             Ok(()) => {
-                let text = format!("Saved {} ({width} × {height})", path.display());
+                let text = tf!(
+                    "Saved {file} ({width} × {height})",
+                    file = path.display(),
+                    width = width,
+                    height = height,
+                );
                 self.toasts.push(Level::Info, text, self.now_s());
             }
-            Err(error) => self.fail(format!("No picture saved: {error}")),
+            Err(error) => self.fail(tf!("No picture saved: {error}", error = error)),
         }
     }
 
@@ -286,10 +294,15 @@ impl SceneloomApp {
         match saved {
             Ok([width, height]) => {
                 let now_s = self.now_s();
-                let text = format!("Saved {} ({width} × {height})", path.display());
+                let text = tf!(
+                    "Saved {file} ({width} × {height})",
+                    file = path.display(),
+                    width = width,
+                    height = height,
+                );
                 self.toasts.push(Level::Info, text, now_s);
             }
-            Err(error) => self.fail(format!("No screenshot: {}", one_line(&error))),
+            Err(error) => self.fail(tf!("No screenshot: {error}", error = one_line(&error))),
         }
     }
 }

@@ -7,6 +7,7 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo};
 
+use language::{t, tf};
 use widgets::theme;
 
 /// What a file is asked for.
@@ -127,18 +128,21 @@ impl FileDialogs {
             self.open_field(purpose, suggestion);
             return;
         }
-        let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
+        let mut dialog = rfd::AsyncFileDialog::new().set_title(t(purpose.title()));
         dialog = match purpose {
             Purpose::Open => dialog
-                .add_filter("Scenes and what becomes one", &formats::import::extensions())
-                .add_filter("All files", &["*"]),
-            Purpose::SaveAs => dialog.add_filter("Sceneloom scene", &["loom"]),
-            Purpose::Screenshot => dialog.add_filter("PNG picture", &["png"]),
-            Purpose::Clip => dialog.add_filter("Moving pictures", &["mp4", "gif", "png"]),
+                .add_filter(t("Scenes and what becomes one"), &formats::import::extensions())
+                .add_filter(t("All files"), &["*"]),
+            Purpose::SaveAs => dialog.add_filter(t("Sceneloom scene"), &["loom"]),
+            Purpose::Screenshot => dialog.add_filter(t("PNG picture"), &["png"]),
+            Purpose::Clip => dialog.add_filter(t("Moving pictures"), &["mp4", "gif", "png"]),
             Purpose::Model | Purpose::ModelShape => dialog
-                .add_filter("Models and scenes of one object", &["glb", "gltf", "vox", "loom"])
-                .add_filter("All files", &["*"]),
-            Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter("Sensor rig", &["json"]),
+                .add_filter(
+                    t("Models and scenes of one object"),
+                    &["glb", "gltf", "vox", "loom"],
+                )
+                .add_filter(t("All files"), &["*"]),
+            Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter(t("Sensor rig"), &["json"]),
             Purpose::ExportFile | Purpose::ExportFolder => dialog,
         };
         if let Some(folder) = suggestion.parent().filter(|p| p.is_dir()) {
@@ -235,7 +239,7 @@ enum Choice {
 
 fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
     ui.set_width(520.0);
-    ui.heading(field.purpose.title());
+    ui.heading(t(field.purpose.title()));
     ui.add_space(theme::GAP);
     let edit = egui::TextEdit::singleline(&mut field.text)
         .desired_width(f32::INFINITY)
@@ -245,7 +249,7 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
             Purpose::ImportRig | Purpose::ExportRig => "/path/to/sensors.json",
             _ => "/path/to/scene.loom",
         });
-    let response = ui.add(edit).accessible_name("File path");
+    let response = ui.add(edit).accessible_name(t("File path"));
     if field.focus > 0 {
         field.focus -= 1;
         response.request_focus();
@@ -261,17 +265,17 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
     let mut choice = if enter { Choice::Done } else { Choice::Nothing };
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let name = if field.confirmed {
-            "Replace file"
+            t("Replace file")
         } else {
-            field.purpose.button()
+            t(field.purpose.button())
         };
         let primary = egui::Button::new(name).fill(theme::accent_fill());
         let enabled = !field.text.trim().is_empty();
         if ui.add_enabled(enabled, primary).clicked() {
             choice = Choice::Done;
         }
-        let cancel = ui.button("Cancel");
-        cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel file"));
+        let cancel = ui.button(t("Cancel"));
+        cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Cancel file")));
         if cancel.clicked() {
             choice = Choice::Cancel;
         }
@@ -281,14 +285,14 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
 
 fn problem(path: &Path, field: &mut Field) -> Option<String> {
     if !field.purpose.is_save() {
-        return (!path.is_file()).then(|| format!("There is no file {}", path.display()));
+        return (!path.is_file()).then(|| tf!("There is no file {path}", path = path.display()));
     }
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|p| !p.is_dir()) {
-        return Some(format!("There is no folder {}", folder.display()));
+        return Some(tf!("There is no folder {folder}", folder = folder.display()));
     }
     if path.exists() && !std::mem::replace(&mut field.confirmed, true) {
-        return Some("The file exists. Press again to replace it.".into());
+        return Some(t("The file exists. Press again to replace it.").into());
     }
     None
 }

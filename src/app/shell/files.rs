@@ -49,6 +49,8 @@ pub(crate) struct Opening {
     pub what: String,
     /// From a file that is no scene: its occupancy is a draft.
     pub is_import: bool,
+    /// It is a copy of unsaved work that a session which died left behind.
+    pub recovers: bool,
     /// It becomes an undo step of this name, not a document of its own.
     pub step: Option<&'static str>,
     pub scene: Receiver<anyhow::Result<Opened>>,

@@ -7,6 +7,7 @@ use super::live::Running;
 use super::toasts::Level;
 use crate::command::GenerationCommand;
 use job::pipeline::windows_over;
+use language::t;
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -25,8 +26,8 @@ impl SceneloomApp {
                     let map = self.document.settled_scene().frame().extent();
                     let several = windows_over(map).len() > 1;
                     let text = match several && self.generation.runs_whole() {
-                        true => "Generation cancelled. Generate goes on where it stopped",
-                        false => "Generation cancelled",
+                        true => t("Generation cancelled. Generate goes on where it stopped"),
+                        false => t("Generation cancelled"),
                     };
                     self.toasts.push(Level::Info, text, now_s);
                 }
@@ -76,8 +77,8 @@ impl SceneloomApp {
         let now_s = self.now_s();
         let inpaints = !full && !self.state.tools.region.is_empty();
         if !full && !inpaints && self.generation.live.touched_by(&scene, now_s).is_empty {
-            self.toasts
-                .push(Level::Info, "Nothing was edited since the last generation", now_s);
+            let text = t("Nothing was edited since the last generation");
+            self.toasts.push(Level::Info, text, now_s);
             return;
         }
         let mut params = self.generation.live.params_for(&scene, full);

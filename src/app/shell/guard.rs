@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use language::tf;
 use scene::Scene;
 
 /// Largest share of the columns that is generated without being asked for.
@@ -26,9 +27,15 @@ impl Pause {
     /// One line for a person.
     pub fn text(&self) -> String {
         match self {
-            Self::Large(share) => format!("Live waits: {:.0} % of the map was edited", share * 100.0),
-            Self::Slow(seconds) => format!("Live waits: it would take about {seconds:.0} s"),
-            Self::Unsound(problem) => format!("Live waits: {problem}"),
+            Self::Large(share) => tf!(
+                "Live waits: {percent} % of the map was edited",
+                percent = format!("{:.0}", share * 100.0),
+            ),
+            Self::Slow(seconds) => tf!(
+                "Live waits: it would take about {seconds} s",
+                seconds = format!("{seconds:.0}"),
+            ),
+            Self::Unsound(problem) => tf!("Live waits: {problem}", problem = problem),
         }
     }
 }

@@ -10,6 +10,7 @@ use crossbeam_channel::Receiver;
 use super::app::{SceneloomApp, one_line};
 use editor::Document;
 use job::guard::guarded;
+use language::tf;
 
 /// Work on the document, to be done by the thread of the window.
 pub type Task = Box<dyn FnOnce(&mut Document) + Send>;
@@ -109,7 +110,7 @@ impl SceneloomApp {
         };
         if self.guests.follow(wanted, wake) {
             let why = self.guests.problem().unwrap_or_default().to_owned();
-            self.fail(format!("Assistants cannot come in: {why}"));
+            self.fail(tf!("Assistants cannot come in: {error}", error = why));
         }
         let Some(open) = &self.guests.open else { return };
         let tasks: Vec<Task> = open.tasks.try_iter().take(MOST_TASKS).collect();

@@ -1,6 +1,7 @@
 //! What the pointer does with the tool in hand, for the status bar.
 
 use editor::tools::{ViewKind, hint_of};
+use language::t;
 
 use crate::panes::id::PaneId;
 use crate::state::UiState;
@@ -8,7 +9,7 @@ use crate::state::UiState;
 /// One line: buttons and held keys, as they count in the view under the pointer.
 pub fn hint(state: &UiState) -> String {
     if state.compare.holding_before {
-        return "The state before; nothing can be changed while the key is held".into();
+        return t("The state before; nothing can be changed while the key is held").into();
     }
     let view = match state.pointed.pane {
         Some(PaneId::VIEW3D) => Some(ViewKind::Space),
@@ -21,6 +22,7 @@ pub fn hint(state: &UiState) -> String {
         Some(ViewKind::Bev) => &["Middle pans", "Wheel zooms"],
         None => &[],
     }));
+    let parts: Vec<&str> = parts.iter().map(|part| t(part)).collect();
     parts.join("  ·  ")
 }
 

@@ -9,6 +9,7 @@ use crate::panes;
 use crate::panes::id::PaneId;
 use crate::tools::things::ThingCommand;
 use crate::tools::{Hand, ToolCommand};
+use language::{t, tf};
 use viewport::ViewPreset;
 use widgets::theme;
 
@@ -22,24 +23,24 @@ pub(super) fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands
             commands.push(command);
         }
     };
-    ui.menu_button("File", |ui| file_menu(ui, input, on));
-    ui.menu_button("Edit", |ui| edit_menu(ui, input, hand, on));
-    ui.menu_button("View", |ui| view_menu(ui, input, hand, on));
-    ui.menu_button("Generate", |ui| generate_menu(ui, input, on));
-    ui.menu_button("Help", |ui| help_menu(ui, on));
+    ui.menu_button(t("File"), |ui| file_menu(ui, input, on));
+    ui.menu_button(t("Edit"), |ui| edit_menu(ui, input, hand, on));
+    ui.menu_button(t("View"), |ui| view_menu(ui, input, hand, on));
+    ui.menu_button(t("Generate"), |ui| generate_menu(ui, input, on));
+    ui.menu_button(t("Help"), |ui| help_menu(ui, on));
 }
 
 fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     on(
-        item(ui, "New scene", "Ctrl+N", true),
+        item(ui, t("New scene"), "Ctrl+N", true),
         Command::File(FileCommand::New),
     );
     on(
-        item(ui, "Open…", "Ctrl+O", true),
+        item(ui, t("Open…"), "Ctrl+O", true),
         Command::File(FileCommand::Open),
     );
     ui.add_enabled_ui(!input.recent.is_empty(), |ui| {
-        ui.menu_button("Open recent", |ui| {
+        ui.menu_button(t("Open recent"), |ui| {
             for path in input.recent {
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
                 let clicked = ui
@@ -51,108 +52,111 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
         });
     });
     ui.separator();
-    on(item(ui, "Save", "Ctrl+S", true), Command::File(FileCommand::Save));
     on(
-        item(ui, "Save as…", "Ctrl+Shift+S", true),
+        item(ui, t("Save"), "Ctrl+S", true),
+        Command::File(FileCommand::Save),
+    );
+    on(
+        item(ui, t("Save as…"), "Ctrl+Shift+S", true),
         Command::File(FileCommand::SaveAs),
     );
     ui.separator();
     on(
-        item(ui, "Place a model…", "", true),
+        item(ui, t("Place a model…"), "", true),
         Command::File(FileCommand::PlaceModel),
     );
     ui.separator();
     on(
-        item(ui, "Export…", "Ctrl+E", true),
+        item(ui, t("Export…"), "Ctrl+E", true),
         Command::Toggle(Window::Export),
     );
     on(
-        item(ui, "Batches…", "Ctrl+B", true),
+        item(ui, t("Batches…"), "Ctrl+B", true),
         Command::Toggle(Window::Batches),
     );
     on(
-        item(ui, "Quick screenshot", "F12", true),
+        item(ui, t("Quick screenshot"), "F12", true),
         Command::File(FileCommand::QuickShot),
     );
     on(
-        item(ui, "Export screenshot…", "", true),
+        item(ui, t("Export screenshot…"), "", true),
         Command::File(FileCommand::ExportScreenshot),
     );
     on(
-        item(ui, "Save clip…", "", true),
+        item(ui, t("Save clip…"), "", true),
         Command::File(FileCommand::SaveClip),
     );
     ui.separator();
-    on(item(ui, "Quit", "Ctrl+Q", true), Command::File(FileCommand::Quit));
+    on(
+        item(ui, t("Quit"), "Ctrl+Q", true),
+        Command::File(FileCommand::Quit),
+    );
 }
 
 fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>) {
-    on(item(ui, "Undo", "Ctrl+Z", input.undo.is_some()), Command::Undo);
+    on(item(ui, t("Undo"), "Ctrl+Z", input.undo.is_some()), Command::Undo);
     on(
-        item(ui, "Redo", "Ctrl+Shift+Z", input.redo.is_some()),
+        item(ui, t("Redo"), "Ctrl+Shift+Z", input.redo.is_some()),
         Command::Redo,
     );
     ui.separator();
     let some = hand.any_chosen();
-    let what = match (hand.selected.is_some(), hand.things.chosen.len()) {
-        (true, 0) | (false, 0) => "box",
-        (false, 1) => "thing",
-        (false, _) => "things",
-        (true, _) => "selection",
+    let (duplicate, delete) = match (hand.selected.is_some(), hand.things.chosen.len()) {
+        (true, 0) | (false, 0) => (t("Duplicate box"), t("Delete box")),
+        (false, 1) => (t("Duplicate thing"), t("Delete thing")),
+        (false, _) => (t("Duplicate things"), t("Delete things")),
+        (true, _) => (t("Duplicate selection"), t("Delete selection")),
     };
     on(
-        item(ui, &format!("Duplicate {what}"), "Ctrl+D", some),
+        item(ui, duplicate, "Ctrl+D", some),
         Command::Tools(ToolCommand::Duplicate),
     );
+    on(item(ui, delete, "Del", some), Command::Tools(ToolCommand::Delete));
     on(
-        item(ui, &format!("Delete {what}"), "Del", some),
-        Command::Tools(ToolCommand::Delete),
-    );
-    on(
-        item(ui, "Shape from a model…", "", hand.selected.is_some()),
+        item(ui, t("Shape from a model…"), "", hand.selected.is_some()),
         Command::File(FileCommand::ShapeOfChosen),
     );
     let thing = |command| Command::Tools(ToolCommand::Thing(command));
     let things = !hand.things.chosen.is_empty();
     on(
-        item(ui, "Raise things", "]", things),
+        item(ui, t("Raise things"), "]", things),
         thing(ThingCommand::Raise(1)),
     );
     on(
-        item(ui, "Lower things", "[", things),
+        item(ui, t("Lower things"), "[", things),
         thing(ThingCommand::Raise(-1)),
     );
     on(
-        item(ui, "Things to the kerb", "D", things),
+        item(ui, t("Things to the kerb"), "D", things),
         Command::Tools(ToolCommand::ToLane),
     );
-    ui.menu_button("Add beside the road", |ui| {
+    ui.menu_button(t("Add beside the road"), |ui| {
         for tool in beside() {
             on(
-                item(ui, tool.title, short(tool.key), true),
+                item(ui, t(tool.title), short(tool.key), true),
                 Command::Tool(tool.id),
             );
         }
     });
     ui.separator();
     on(
-        item(ui, "Unlock painted voxels", "", input.has_paint),
+        item(ui, t("Unlock painted voxels"), "", input.has_paint),
         Command::ClearPaint,
     );
 }
 
 fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>) {
     on(
-        item(ui, "Frame all", "Home", true),
+        item(ui, t("Frame all"), "Home", true),
         Command::View(ViewCommand::FrameAll),
     );
     on(
-        item(ui, "Frame selection", "F", hand.any_chosen()),
+        item(ui, t("Frame selection"), "F", hand.any_chosen()),
         Command::View(ViewCommand::FrameSelection),
     );
     ui.separator();
     for preset in ViewPreset::ALL {
-        let name = format!("3D: {}", theme::sentence(preset.name()));
+        let name = tf!("3D: {view}", view = theme::sentence(t(preset.name())));
         let key = match preset {
             ViewPreset::Perspective => "5",
             ViewPreset::Top => "7",
@@ -167,28 +171,32 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
     }
     ui.separator();
     on(
-        item(ui, "Compare: off, wipe, side, difference", "Shift+\\", true),
+        item(ui, t("Compare: off, wipe, side, difference"), "Shift+\\", true),
         Command::View(ViewCommand::CycleCompare),
     );
     ui.separator();
-    ui.menu_button("Panes", |ui| {
+    ui.menu_button(t("Panes"), |ui| {
         ui.set_min_width(190.0);
         for pane in panes::infos() {
             if pane.id.camera().is_some_and(|i| i >= input.cameras) {
                 continue;
             }
             let mut shown = input.shown.contains(&pane.id);
-            let tick = ui.checkbox(&mut shown, &pane.title);
+            let title = match pane.id.camera() {
+                Some(i) => tf!("Camera {n}", n = i + 1),
+                None => t(&pane.title).to_owned(),
+            };
+            let tick = ui.checkbox(&mut shown, title);
             let right = ui.max_rect().right();
             let square = Rect::from_center_size(pos2(right - 10.0, tick.rect.center().y), Vec2::splat(16.0));
             pane.icon.paint(ui, square, theme::text_weak());
             on(tick.changed(), Command::View(ViewCommand::TogglePane(pane.id)));
         }
     });
-    ui.menu_button("Kept views", |ui| {
+    ui.menu_button(t("Kept views"), |ui| {
         for slot in SLOTS {
             let kept = input.bookmarks.contains(&slot);
-            let (name, keys) = (format!("Go to view {slot}"), format!("F{slot}"));
+            let (name, keys) = (tf!("Go to view {n}", n = slot), format!("F{slot}"));
             on(
                 item(ui, &name, &keys, kept),
                 Command::View(ViewCommand::GoToBookmark(slot)),
@@ -196,7 +204,7 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         }
         ui.separator();
         for slot in SLOTS {
-            let (name, keys) = (format!("Keep as view {slot}"), format!("Ctrl+F{slot}"));
+            let (name, keys) = (tf!("Keep as view {n}", n = slot), format!("Ctrl+F{slot}"));
             on(
                 item(ui, &name, &keys, true),
                 Command::View(ViewCommand::KeepBookmark(slot)),
@@ -204,47 +212,50 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         }
     });
     on(
-        item(ui, "Swap views", "Ctrl+Tab", true),
+        item(ui, t("Swap views"), "Ctrl+Tab", true),
         Command::View(ViewCommand::SwapPanes),
     );
     on(
-        item(ui, "Grid", "G", true),
+        item(ui, t("Grid"), "G", true),
         Command::View(ViewCommand::ToggleGrid),
     );
-    on(item(ui, "Sensors…", "", true), Command::Toggle(Window::Sensors));
     on(
-        item(ui, "Checks", "", true),
+        item(ui, t("Sensors…"), "", true),
+        Command::Toggle(Window::Sensors),
+    );
+    on(
+        item(ui, t("Checks"), "", true),
         Command::View(ViewCommand::TogglePane(PaneId::CHECKS)),
     );
-    on(item(ui, "Log", "", true), Command::Toggle(Window::Log));
+    on(item(ui, t("Log"), "", true), Command::Toggle(Window::Log));
     on(
-        item(ui, "Performance", "F10", true),
+        item(ui, t("Performance"), "F10", true),
         Command::Toggle(Window::Performance),
     );
 }
 
 fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     on(
-        item(ui, "Generate everything", "Ctrl+Enter", true),
+        item(ui, t("Generate everything"), "Ctrl+Enter", true),
         Command::Generation(GenerationCommand::Generate { full: true }),
     );
     on(
-        item(ui, "Generate edited region", "", true),
+        item(ui, t("Generate edited region"), "", true),
         Command::Generation(GenerationCommand::Generate { full: false }),
     );
     on(
-        item(ui, "Regenerate scenery", "", true),
+        item(ui, t("Regenerate scenery"), "", true),
         Command::Generation(GenerationCommand::DrawScenery),
     );
     on(
-        item(ui, "Cancel", "Ctrl+Backspace", input.busy),
+        item(ui, t("Cancel"), "Ctrl+Backspace", input.busy),
         Command::Generation(GenerationCommand::Cancel {
             running: true,
             waiting: false,
         }),
     );
     on(
-        item(ui, "Drop the edit that waits", "", input.waiting),
+        item(ui, t("Drop the edit that waits"), "", input.waiting),
         Command::Generation(GenerationCommand::Cancel {
             running: false,
             waiting: true,
@@ -253,7 +264,7 @@ fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     on(
         item(
             ui,
-            "Cancel all",
+            t("Cancel all"),
             "Ctrl+Shift+Backspace",
             input.busy || input.waiting,
         ),
@@ -264,9 +275,9 @@ fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
     );
     ui.separator();
     let live = if input.live {
-        "Switch live off"
+        t("Switch live off")
     } else {
-        "Switch live on"
+        t("Switch live on")
     };
     on(
         item(ui, live, "Ctrl+Space", true),
@@ -276,15 +287,18 @@ fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
 
 fn help_menu(ui: &mut Ui, on: &mut On<'_>) {
     on(
-        item(ui, "Find a command…", "Ctrl+K", true),
+        item(ui, t("Find a command…"), "Ctrl+K", true),
         Command::Toggle(Window::Palette),
     );
-    on(item(ui, "Keys", "?", true), Command::Toggle(Window::Keys));
-    on(item(ui, "Start screen", "", true), Command::Toggle(Window::Start));
-    on(item(ui, "Tour in three steps", "", true), Command::BeginTour);
+    on(item(ui, t("Keys"), "?", true), Command::Toggle(Window::Keys));
+    on(
+        item(ui, t("Start screen"), "", true),
+        Command::Toggle(Window::Start),
+    );
+    on(item(ui, t("Tour in three steps"), "", true), Command::BeginTour);
     ui.separator();
     on(
-        item(ui, "Settings…", "Ctrl+,", true),
+        item(ui, t("Settings…"), "Ctrl+,", true),
         Command::Toggle(Window::Settings),
     );
 }

@@ -7,6 +7,7 @@ use egui::Context;
 
 use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
+use language::{t, tf};
 use scene::{BoxId, Model};
 
 /// A model that is being read.
@@ -20,7 +21,7 @@ impl SceneloomApp {
     /// Asks for the file of a model.
     pub(crate) fn ask_model(&mut self, to_chosen: bool, ctx: &Context) {
         if to_chosen && self.state.selected.is_none() {
-            return self.note("Choose a box first");
+            return self.note(t("Choose a box first"));
         }
         let purpose = if to_chosen {
             Purpose::ModelShape
@@ -45,7 +46,7 @@ impl SceneloomApp {
         let target = self.state.selected.filter(|_| to_chosen);
         match thread {
             Ok(_) => self.files.model = Some(Reading { target, model }),
-            Err(error) => self.fail(format!("Not placed: {error}")),
+            Err(error) => self.fail(tf!("Not placed: {error}", error = error)),
         }
     }
 
@@ -60,29 +61,27 @@ impl SceneloomApp {
                 return;
             }
             Err(TryRecvError::Disconnected) => {
-                return self.fail("Not placed: reading it ended unexpectedly".to_owned());
+                return self.fail(t("Not placed: reading it ended unexpectedly").to_owned());
             }
-            Ok(Err(error)) => return self.fail(format!("Not placed: {}", one_line(&error))),
+            Ok(Err(error)) => return self.fail(tf!("Not placed: {error}", error = one_line(&error))),
             Ok(Ok(model)) => model,
         };
         let scene = self.document.settled_scene().clone();
         if let Some(id) = reading.target {
             match scene.frame().boxes.get(&id) {
                 Some(b) => self.apply("Give the box a model's shape", &model.given_to(b)),
-                None => self.fail("Not placed: the box is gone".to_owned()),
+                None => self.fail(t("Not placed: the box is gone").to_owned()),
             }
             return;
         }
         let (at_m, _) = self.views.canvas.place();
         match editor::models::place(&scene, &model, at_m, None) {
             Ok(placed) => {
-                self.apply(
-                    format!("Place a model: {}", model.label.called(&model.class.label())),
-                    &placed.edits,
-                );
+                let name = model.label.called(t(&model.class.label()));
+                self.apply(tf!("Place a model: {name}", name = name), &placed.edits);
                 self.state.choose(&[placed.id], crate::tools::Choose::Only);
             }
-            Err(problem) => self.fail(format!("Not placed: {problem}")),
+            Err(problem) => self.fail(tf!("Not placed: {error}", error = problem)),
         }
     }
 }

@@ -10,6 +10,7 @@ use super::files::Picking;
 use crate::windows::place_picker::{PlacePicker, place_picker};
 use authoring::open;
 use formats::import::scene_name;
+use language::{t, tf};
 
 impl SceneloomApp {
     /// Reads roads on a thread of its own, to ask for a place on them.
@@ -27,7 +28,7 @@ impl SceneloomApp {
         });
         match thread {
             Ok(_) => self.files.picking = Some(Picking::Reading(read)),
-            Err(error) => self.fail(format!("Not opened: {error}")),
+            Err(error) => self.fail(tf!("Not opened: {error}", error = error)),
         }
     }
 
@@ -38,15 +39,15 @@ impl SceneloomApp {
             Some(Picking::Reading(read)) => match read.try_recv() {
                 Err(TryRecvError::Empty) => self.files.picking = Some(Picking::Reading(read)),
                 Err(TryRecvError::Disconnected) => {
-                    self.fail("Not opened: reading it ended unexpectedly".to_owned())
+                    self.fail(t("Not opened: reading it ended unexpectedly").to_owned())
                 }
-                Ok(Err(error)) => self.fail(format!("Not opened: {}", one_line(&error))),
+                Ok(Err(error)) => self.fail(tf!("Not opened: {error}", error = one_line(&error))),
                 Ok(Ok(picker)) => self.files.picking = Some(Picking::Choosing(Box::new(picker))),
             },
             Some(Picking::Choosing(mut picker)) => {
                 let mut open = true;
                 if place_picker(ui, &mut picker, &mut open) {
-                    let what = format!("Making a scene on {}", picker.name);
+                    let what = tf!("Making a scene on {name}", name = picker.name);
                     let make = move || {
                         let (placement, name) = (picker.placement(), picker.name.clone());
                         Ok(open::on_roads(picker.into_network(), &name, &placement).scene)

@@ -7,6 +7,7 @@ use super::dock::Dock;
 use super::keymap::Keymap;
 use super::settings::Settings;
 use crate::panes;
+use language::tf;
 
 /// How often changed settings are written, s.
 const EVERY_S: f64 = 2.0;
@@ -72,7 +73,7 @@ impl Preferences {
         if (forced || self.kept != self.settings)
             && let Err(error) = self.settings.save(path)
         {
-            complaint = Some(format!("Settings are not kept: {}", one_line(&error)));
+            complaint = Some(tf!("Settings are not kept: {error}", error = one_line(&error)));
             self.file = None; // said once
         }
         self.kept = self.settings.clone();

@@ -6,10 +6,8 @@ use super::app::SceneloomApp;
 use super::recovery::Recovery;
 use super::toasts::Level;
 use crate::windows::recovery::{Answer, recovery_ui};
+use language::tf;
 use scene::Scene;
-
-/// What a scene that is being recovered is called while it is read.
-const READING: &str = "Recovering";
 
 impl SceneloomApp {
     /// Begins to keep copies of unsaved work; without a folder to write to it says so and goes on.
@@ -19,7 +17,7 @@ impl SceneloomApp {
             Ok(recovery) => self.files.recovery = Some(recovery),
             Err(error) => {
                 let now_s = self.now_s();
-                let text = format!("No recovery copies of unsaved work: {error}");
+                let text = tf!("No recovery copies of unsaved work: {error}", error = error);
                 self.toasts.push(Level::Error, text, now_s);
             }
         }
@@ -41,7 +39,7 @@ impl SceneloomApp {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }
         if let Some(problem) = problem {
-            let text = format!("No recovery copy can be written: {problem}");
+            let text = tf!("No recovery copy can be written: {problem}", problem = problem);
             self.toasts.push(Level::Error, text, now_s);
         }
     }
@@ -71,22 +69,25 @@ impl SceneloomApp {
             Answer::Recover => {
                 let offer = recovery.offers.remove(0);
                 let (file, original) = (offer.file(), offer.original.clone());
-                let what = format!("{READING} {}", offer.name);
+                let what = tf!("Recovering {name}", name = offer.name);
                 recovery.opening = Some(offer);
                 self.state.windows.start = false;
                 let open = self.files.disk.open.clone();
                 self.load(what, original, false, ui.ctx(), move || open(&file));
+                if let Some(opening) = &mut self.files.opening {
+                    opening.recovers = true;
+                }
             }
         }
     }
 
     /// After a scene was read, or could not be: one that was recovered is unsaved, and its copy is kept until there is
     /// another.
-    pub(crate) fn note_opened(&mut self, what: &str, is_open: bool) {
+    pub(crate) fn note_opened(&mut self, recovers: bool, is_open: bool) {
         let Some(recovery) = &mut self.files.recovery else {
             return;
         };
-        if let Some(recovered) = recovery.opening.take_if(|_| what.starts_with(READING))
+        if let Some(recovered) = recovery.opening.take_if(|_| recovers)
             && is_open
         {
             self.document.mark_unsaved();

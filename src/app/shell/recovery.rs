@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use editor::Document;
 use formats::{atomic, input, loom};
 use job::guard::{Handed, guarded};
+use language::{t, tf};
 use scene::{Scene, SceneRev};
 
 /// Time between two copies, s.
@@ -324,7 +325,7 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
     let about: Option<About> = input::read(&folder.join(ABOUT), input::LARGEST_TEXT)
         .ok()
         .and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    let (original, name) = about.map_or((None, "a scene".into()), |a| (a.original, a.name));
+    let (original, name) = about.map_or((None, t("a scene").into()), |a| (a.original, a.name));
     Some(Stale {
         folder,
         lock: Some(lock),
@@ -336,12 +337,12 @@ fn dead_session(folder: PathBuf) -> Option<Stale> {
 
 /// `12 minutes ago`
 pub fn ago(since: Duration) -> String {
-    let of = |n: u64, what: &str| format!("{n} {what}{} ago", if n == 1 { "" } else { "s" });
     match since.as_secs() {
-        s @ 0..=89 => of(s, "second"),
-        s @ 90..=5399 => of((s + 30) / 60, "minute"),
-        s @ 5400..=129_599 => of((s + 1800) / 3600, "hour"),
-        s => of((s + 43_200) / 86_400, "day"),
+        1 => t("1 second ago").into(),
+        s @ 0..=89 => tf!("{n} seconds ago", n = s),
+        s @ 90..=5399 => tf!("{n} minutes ago", n = (s + 30) / 60),
+        s @ 5400..=129_599 => tf!("{n} hours ago", n = (s + 1800) / 3600),
+        s => tf!("{n} days ago", n = (s + 43_200) / 86_400),
     }
 }
 

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::app::SceneloomApp;
 use crate::command::Command;
+use language::tf;
 use scene::{BoxId, BoxLabel, Class, SceneBox};
 
 impl SceneloomApp {
@@ -19,7 +20,7 @@ impl SceneloomApp {
             ctx.request_repaint_after(std::time::Duration::from_secs_f64(seconds));
         }
         if let Some(problem) = self.threads.checking.take_problem() {
-            self.fail(format!("The scene was not checked: {problem}"));
+            self.fail(tf!("The scene was not checked: {problem}", problem = problem));
         }
     }
 

@@ -11,6 +11,7 @@ use super::toasts::Level;
 use crate::scenery::{Drawer, SceneryWish};
 use editor::Edit;
 use job::GenError;
+use language::{t, tf};
 use scene::Scene;
 
 /// How soon the window looks again whether it is done.
@@ -43,7 +44,8 @@ impl SceneloomApp {
         match thread {
             Ok(_) => {
                 let now_s = self.now_s();
-                self.toasts.push(Level::Info, "The network draws scenery", now_s);
+                self.toasts
+                    .push(Level::Info, t("The network draws scenery"), now_s);
                 self.generation.drawing = Some(Drawing {
                     wish,
                     before,
@@ -51,7 +53,7 @@ impl SceneloomApp {
                     edits,
                 });
             }
-            Err(error) => self.fail(format!("No scenery was drawn: {error}")),
+            Err(error) => self.fail(tf!("No scenery was drawn: {error}", error = error)),
         }
     }
 
@@ -73,7 +75,7 @@ impl SceneloomApp {
         };
         if self.document.is_dragging() || self.document.settled_scene().content() != before.content() {
             let now_s = self.now_s();
-            let text = "The scene changed meanwhile: no scenery was drawn";
+            let text = t("The scene changed meanwhile: no scenery was drawn");
             return self.toasts.push(Level::Info, text, now_s);
         }
         self.take_scenery(wish, &before, edits, staged);
@@ -88,12 +90,12 @@ impl SceneloomApp {
     ) {
         let edits = match edits {
             Ok(edits) => edits,
-            Err(error) => return self.fail(format!("No scenery was drawn: {error}")),
+            Err(error) => return self.fail(tf!("No scenery was drawn: {error}", error = error)),
         };
         self.apply("Draw scenery", &edits);
         let after = self.document.settled_scene().clone();
         if after.content() != before.content() {
-            let note = format!("Seed {}", wish.seed);
+            let note = tf!("Seed {n}", n = wish.seed);
             self.generation
                 .versions
                 .push("Draw scenery".to_owned(), note, after);

@@ -16,7 +16,8 @@ use editor::Edit;
 use editor::checks::{Finding, Severity};
 use editor::part::{Part, changed_by_class};
 use job::inpaint::InpaintMask;
-use job::{GenParams, RegionMode};
+use job::{GenError, GenParams, RegionMode};
+use language::{t, tf};
 use scene::background::in_extent;
 use scene::raster::box_cells;
 use scene::{Background, Class, Extent, Scene, SceneRev, Thing};
@@ -226,8 +227,8 @@ impl SceneloomApp {
     /// The network that draws scenery; none if it cannot be loaded, of which the user is told.
     fn scenery_edits(&mut self, wish: &SceneryWish, scene: &Scene) -> Option<Vec<Edit>> {
         let now_s = self.now_s();
-        let failed = |e| {
-            let text = format!("No scenery was drawn: {e}");
+        let failed = |e: GenError| {
+            let text = tf!("No scenery was drawn: {error}", error = e);
             self.toasts.push(Level::Error, text, now_s);
         };
         wish.edits(scene).map_err(failed).ok()
@@ -262,7 +263,7 @@ impl SceneloomApp {
         let mixed = part.taken(old, &after.frame().occupancy);
         if old.count_different(&mixed) == 0 {
             let now_s = self.now_s();
-            let text = "Nothing of the new result lies there";
+            let text = t("Nothing of the new result lies there");
             return self.toasts.push(Level::Info, text, now_s);
         }
         let things = part_of_things(&staged.before, &after, &part);
@@ -309,12 +310,13 @@ impl SceneloomApp {
         let mut faults = findings.iter().filter(later);
         if let Some(first) = faults.next() {
             let more = faults.count();
-            let others = if more > 0 {
-                format!(", and {more} more")
+            let first = theme::sentence(t(&first.text));
+            let text = if more > 0 {
+                tf!("{finding}, and {n} more", finding = first, n = more)
             } else {
-                String::new()
+                first
             };
-            ui.label(RichText::new(format!("{}{others}", theme::sentence(&first.text))).color(theme::bad()));
+            ui.label(RichText::new(text).color(theme::bad()));
         }
     }
 }
@@ -324,13 +326,17 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
     let seed = staged
         .again
         .as_ref()
-        .map_or_else(String::new, |a| format!("  ·  seed {}", a.seed()));
+        .map_or_else(String::new, |a| format!("  ·  {}", tf!("seed {n}", n = a.seed())));
     let of_things = matches!(staged.again, Some(Again::Scenery(_)));
-    let text = match staged.longer {
-        Some((longer_s, 0)) => format!("Forecast: {longer_s:.1} s more, we drive on"),
-        Some((longer_s, 1)) => format!("Forecast: {longer_s:.1} s more, 1 object goes on"),
-        Some((longer_s, objects)) => format!("Forecast: {longer_s:.1} s more, {objects} objects go on"),
-        None => format!("New result: {} voxels differ{seed}", thousands(n)),
+    let text = match staged.longer.map(|(s, objects)| (format!("{s:.1}"), objects)) {
+        Some((longer, 0)) => tf!("Forecast: {seconds} s more, we drive on", seconds = longer),
+        Some((longer, 1)) => tf!("Forecast: {seconds} s more, 1 object goes on", seconds = longer),
+        Some((longer, objects)) => tf!(
+            "Forecast: {seconds} s more, {n} objects go on",
+            seconds = longer,
+            n = objects,
+        ),
+        None => format!("{}{seed}", tf!("New result: {n} voxels differ", n = thousands(n))),
     };
     ui.label(RichText::new(text).color(theme::text_strong()));
     let mut decide = |clicked: bool, verdict| {
@@ -340,30 +346,32 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
     };
     let mut mark = false;
     ui.horizontal(|ui| {
-        let accept = egui::Button::new("Accept").fill(theme::accent_fill());
+        let accept = egui::Button::new(t("Accept")).fill(theme::accent_fill());
         let accept = ui
             .add(accept)
-            .on_hover_text("Keep it. Any further edit does so too");
+            .on_hover_text(t("Keep it. Any further edit does so too"));
         decide(accept.clicked(), Verdict::Accept);
-        let decline = ui.button("Decline").on_hover_text("Back to what was there");
+        let decline = ui.button(t("Decline")).on_hover_text(t("Back to what was there"));
         decide(decline.clicked(), Verdict::Decline);
         if staged.again.is_some() {
-            let next = ui.button("Next seed").on_hover_text("Another one in its place");
+            let next = ui
+                .button(t("Next seed"))
+                .on_hover_text(t("Another one in its place"));
             decide(next.clicked(), Verdict::NextSeed);
         }
         if staged.longer.is_some() {
             return;
         }
-        ui.menu_button("Accept a part", |ui| {
+        ui.menu_button(t("Accept a part"), |ui| {
             let mut entry = |ui: &mut Ui, enabled, text: &str, taken| {
                 let clicked = ui.add_enabled(enabled, egui::Button::new(text)).clicked();
                 decide(clicked, Verdict::Take(taken));
             };
             let marked = !tools.region.is_empty();
-            entry(ui, marked, "In the marked region", Taken::Region);
+            entry(ui, marked, t("In the marked region"), Taken::Region);
             mark = ui
-                .button("Mark a region…")
-                .on_hover_text("Rectangle, lasso or brush in the bird's-eye view")
+                .button(t("Mark a region…"))
+                .on_hover_text(t("Rectangle, lasso or brush in the bird's-eye view"))
                 .clicked();
             if of_things {
                 return;
@@ -371,17 +379,21 @@ fn bar(ui: &mut Ui, staged: &Staged, tools: &ToolState, commands: &mut Vec<Comma
             entry(
                 ui,
                 tools.any_chosen(),
-                "Where chosen boxes and things stand",
+                t("Where chosen boxes and things stand"),
                 Taken::Chosen,
             );
             ui.separator();
             for (class, n) in staged.changed.iter().take(MOST_CLASSES) {
-                let text = format!("Only {}, {} voxels", class.label().to_lowercase(), thousands(*n));
+                let text = tf!(
+                    "Only {class}, {n} voxels",
+                    class = t(&class.label().to_lowercase()),
+                    n = thousands(*n),
+                );
                 entry(ui, true, &text, Taken::Class(*class));
             }
         })
         .response
-        .on_hover_text("The rest stays as it was");
+        .on_hover_text(t("The rest stays as it was"));
     });
     if mark {
         commands.push(Command::Tool(editor::tools::region::ID));

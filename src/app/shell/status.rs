@@ -12,6 +12,7 @@ use crate::shell::guard::Pause;
 use crate::shell::live::{Purpose, Running};
 use editor::checks::Counts;
 use job::{GenReport, Stage};
+use language::{t, tf};
 use widgets::theme;
 
 /// How often the time that a job runs is shown again.
@@ -46,16 +47,22 @@ impl Receipt {
 
     /// One line.
     pub fn text(&self) -> String {
-        let what = if self.full { "Generated" } else { "Edit settled" };
-        let calls = if self.network_calls == 1 { "call" } else { "calls" };
-        let mut text = format!(
-            "{what} in {:.1} s  ·  {} network {calls}",
-            self.settled_s, self.network_calls
-        );
+        let seconds = format!("{:.1}", self.settled_s);
+        let mut parts = vec![
+            match self.full {
+                true => tf!("Generated in {seconds} s", seconds = seconds),
+                false => tf!("Edit settled in {seconds} s", seconds = seconds),
+            },
+            match self.network_calls {
+                1 => t("1 network call").to_owned(),
+                n => tf!("{n} network calls", n = n),
+            },
+        ];
         if !self.full {
-            text += &format!("  ·  untouched voxels changed: {}", self.untouched_voxels_changed);
+            let changed = self.untouched_voxels_changed;
+            parts.push(tf!("untouched voxels changed: {n}", n = changed));
         }
-        text
+        parts.join("  ·  ")
     }
 }
 
@@ -108,13 +115,13 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, comman
             exporting(ui, what, progress);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let log = egui::RichText::new("Log").color(if input.unread > 0 {
+            let log = egui::RichText::new(t("Log")).color(if input.unread > 0 {
                 theme::warn()
             } else {
                 theme::text_weak()
             });
             let button = egui::Button::new(log).frame(false).selected(false);
-            if ui.add(button).on_hover_text("What happened so far").clicked() {
+            if ui.add(button).on_hover_text(t("What happened so far")).clicked() {
                 commands.push(Command::Toggle(Window::Log));
             }
             if let Some(counts) = input.findings {
@@ -137,16 +144,19 @@ pub fn status_ui(ui: &mut Ui, input: &StatusInput<'_>, pointed: &Pointed, comman
 /// How many mistakes the checks found; a click lists them.
 fn found(ui: &mut Ui, counts: Counts, commands: &mut Vec<Command>) {
     let (text, color) = match (counts.errors, counts.errors + counts.warnings) {
-        (_, 0) => ("Checks".to_owned(), theme::text_weak()),
+        (_, 0) => (t("Checks").to_owned(), theme::text_weak()),
         (errors, 1) => (
-            "1 finding".to_owned(),
+            t("1 finding").to_owned(),
             if errors > 0 { theme::bad() } else { theme::warn() },
         ),
-        (0, n) => (format!("{n} findings"), theme::warn()),
-        (_, n) => (format!("{n} findings"), theme::bad()),
+        (0, n) => (tf!("{n} findings", n = n), theme::warn()),
+        (_, n) => (tf!("{n} findings", n = n), theme::bad()),
     };
     let button = egui::Button::new(egui::RichText::new(text).color(color)).frame(false);
-    let hint = format!("Checks: {}", crate::panes::checks::in_words(counts));
+    let hint = tf!(
+        "Checks: {findings}",
+        findings = crate::panes::checks::in_words(counts)
+    );
     let response = ui.add(button).on_hover_text(&hint);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &hint));
     if response.clicked() {
@@ -167,7 +177,7 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
     if let (true, Some(pause)) = (input.unsettled, input.paused) {
         dot(ui, theme::warn());
         say(ui, &pause.text(), theme::text());
-        let generate = ui.add(egui::Button::new("Generate it").small());
+        let generate = ui.add(egui::Button::new(t("Generate it")).small());
         if generate.on_hover_text("Ctrl+Shift+Enter").clicked() {
             commands.push(Command::Generation(GenerationCommand::Generate { full: false }));
         }
@@ -176,15 +186,15 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
     if input.unsettled && input.waiting {
         dot(ui, theme::warn());
         let why = if input.dragging {
-            "Edited, generated when the drag ends"
+            t("Edited, generated when the drag ends")
         } else {
-            "Edited, generated in a moment"
+            t("Edited, generated in a moment")
         };
         say(ui, why, theme::text());
-        let drop = ui.add(egui::Button::new("Drop").small());
-        drop.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Drop the edit that waits"));
+        let drop = ui.add(egui::Button::new(t("Drop")).small());
+        drop.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Drop the edit that waits")));
         if drop
-            .on_hover_text("This state is not generated; the next edit is")
+            .on_hover_text(t("This state is not generated; the next edit is"))
             .clicked()
         {
             commands.push(Command::Generation(GenerationCommand::Cancel {
@@ -197,11 +207,11 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
     match input.receipt {
         _ if input.unsettled && !input.live => {
             dot(ui, theme::warn());
-            say(ui, "Edited, not generated: live is off", theme::text());
+            say(ui, t("Edited, not generated: live is off"), theme::text());
         }
         _ if input.unsettled => {
             dot(ui, theme::warn());
-            say(ui, "Edited, not generated", theme::text());
+            say(ui, t("Edited, not generated"), theme::text());
         }
         Some(receipt) => {
             let sound = receipt.full || receipt.untouched_voxels_changed == 0;
@@ -210,7 +220,7 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
         }
         None => {
             dot(ui, theme::good());
-            say(ui, "Ready", theme::text());
+            say(ui, t("Ready"), theme::text());
         }
     }
 }
@@ -218,16 +228,22 @@ fn idle(ui: &mut Ui, input: &StatusInput<'_>, commands: &mut Vec<Command>) {
 fn exporting(ui: &mut Ui, what: &str, progress: &ExportProgress) {
     ui.separator();
     ui.add(egui::Spinner::new().size(13.0).color(theme::accent()));
-    let count = progress
-        .pictures()
-        .map_or(String::new(), |(done, of)| format!(", {done} of {of}"));
+    let text = match progress.pictures() {
+        Some((done, of)) => tf!(
+            "Writing {name}, {done} of {all}",
+            name = t(what),
+            done = done,
+            all = of,
+        ),
+        None => tf!("Writing {name}", name = t(what)),
+    };
     if progress.is_cancelled() {
-        return say(ui, "Cancelling", theme::text());
+        return say(ui, t("Cancelling"), theme::text());
     }
-    say(ui, &format!("Writing {what}{count}"), theme::text());
-    let cancel = ui.add(egui::Button::new("Cancel").small());
-    cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel writing"));
-    if cancel.on_hover_text("Nothing is written").clicked() {
+    say(ui, &text, theme::text());
+    let cancel = ui.add(egui::Button::new(t("Cancel")).small());
+    cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Cancel writing")));
+    if cancel.on_hover_text(t("Nothing is written")).clicked() {
         progress.cancel();
     }
     ui.ctx().request_repaint_after(REPAINT);
@@ -237,8 +253,8 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
     let seconds = (input.now_s - running.submitted_s).max(0.0);
     let (stage, step, steps) = running
         .progress
-        .map_or(("Waiting", 0, 0), |(stage, step, steps)| {
-            (stage_text(stage), step, steps)
+        .map_or((t("Waiting"), 0, 0), |(stage, step, steps)| {
+            (t(stage_text(stage)), step, steps)
         });
     let (rect, response) = ui.allocate_exact_size(vec2(120.0, 6.0), Sense::hover());
     let done = if steps > 0 {
@@ -247,7 +263,7 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
         0.0
     };
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, "Generation progress");
+        let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, t("Generation progress"));
         info.value = Some(f64::from(done));
         info
     });
@@ -261,12 +277,12 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
     };
     let [x, y] = running.extent_m;
     let (what, extent) = match running.purpose {
-        Purpose::WarmUp => ("Getting ready to edit  ·  ", String::new()),
-        _ => ("", format!("  ·  {x:.0} × {y:.0} m")),
+        Purpose::WarmUp => (format!("{}  ·  ", t("Getting ready to edit")), String::new()),
+        _ => (String::new(), format!("  ·  {x:.0} × {y:.0} m")),
     };
     if running.cancelled {
         // A stage looks for it between its steps.
-        say(ui, "Cancelling", theme::text());
+        say(ui, t("Cancelling"), theme::text());
         ui.ctx().request_repaint_after(REPAINT);
         return;
     }
@@ -276,22 +292,22 @@ fn progress(ui: &mut Ui, running: &Running, input: &StatusInput<'_>, commands: &
         theme::text(),
     );
     if input.shows_what_comes {
-        let stop = ui.add(egui::Button::new("Keep this").small());
-        if stop.on_hover_text("Ends here, with what is shown").clicked() {
+        let stop = ui.add(egui::Button::new(t("Keep this")).small());
+        if stop.on_hover_text(t("Ends here, with what is shown")).clicked() {
             commands.push(Command::Generation(GenerationCommand::StopHere));
         }
     }
-    let cancel = ui.add(egui::Button::new("Cancel").small());
-    cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Cancel generation"));
+    let cancel = ui.add(egui::Button::new(t("Cancel")).small());
+    cancel.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Cancel generation")));
     if cancel.on_hover_text("Ctrl+Backspace").clicked() {
         commands.push(Command::Generation(GenerationCommand::Cancel {
             running: true,
             waiting: false,
         }));
     }
-    let all = ui.add(egui::Button::new("Cancel all").small());
+    let all = ui.add(egui::Button::new(t("Cancel all")).small());
     if all
-        .on_hover_text("What runs and what waits, Ctrl+Shift+Backspace")
+        .on_hover_text(t("What runs and what waits, Ctrl+Shift+Backspace"))
         .clicked()
     {
         commands.push(Command::Generation(GenerationCommand::Cancel {

@@ -9,6 +9,7 @@ use crate::panes::timeline::scope_name;
 use editor::Edit;
 use editor::document::Label;
 use editor::{forecast, traffic_drives};
+use language::{t, tf};
 use scene::Scope;
 
 /// A key that comes up sooner than this was tapped, s.
@@ -106,7 +107,11 @@ impl SceneloomApp {
             return;
         }
         let (from_s, to_s) = (before.clip().length_s, after.clip().length_s);
-        let note = format!("{from_s:.1} to {to_s:.1} s");
+        let note = tf!(
+            "{from} to {to} s",
+            from = format!("{from_s:.1}"),
+            to = format!("{to_s:.1}"),
+        );
         self.generation.versions.push("Forecast".to_owned(), note, after);
         self.stage_forecast(before, found.objects);
         self.show_time(from_s);
@@ -187,7 +192,12 @@ impl SceneloomApp {
             _ => false,
         };
         match scope != Scope::WholeTrack && edits.iter().any(moves) {
-            true => format!("{label}, {}", scope_name(scope).to_lowercase()).into(),
+            true => tf!(
+                "{step}, {moments}",
+                step = t(&label),
+                moments = t(&scope_name(scope).to_lowercase()),
+            )
+            .into(),
             false => label,
         }
     }

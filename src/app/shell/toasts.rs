@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, Frame, Id, Margin, Order, Rect, Stroke, Ui, vec2};
 
+use language::t;
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
@@ -109,14 +110,15 @@ impl Toasts {
         if *open {
             self.read = self.entries.len();
         }
-        let window = egui::Window::new("Log")
+        let window = egui::Window::new(t("Log"))
+            .id(Id::unique("Log"))
             .open(open)
             .default_size(vec2(560.0, 260.0))
             .default_pos(over.right_bottom() - vec2(610.0, 340.0))
             .vscroll(true);
         window.show(ui.ctx(), |ui| {
             if self.entries.is_empty() {
-                ui.weak("Nothing has happened yet.");
+                ui.weak(t("Nothing has happened yet."));
             }
             for entry in &self.entries {
                 ui.horizontal(|ui| {
@@ -155,7 +157,7 @@ fn card(ui: &mut Ui, entry: &mut Entry) {
         ui.set_max_width(420.0);
         ui.horizontal(|ui| {
             ui.add(egui::Label::new(&entry.text).wrap());
-            if icons::button(ui, Icon::Close, "Dismiss message", "", false, true).clicked() {
+            if icons::button(ui, Icon::Close, t("Dismiss message"), "", false, true).clicked() {
                 entry.dismissed = true;
             }
         });

@@ -13,6 +13,7 @@ use crate::tools::Hand;
 use crate::tools::ToolId;
 use editor::tools::beside::building;
 use editor::tools::{Group, ToolDef, all};
+use language::{t, tf};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
@@ -68,7 +69,15 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: 
             let folded = narrow && tool.group == Group::Beside;
             let chosen = hand.tool == tool.id;
             if !folded
-                && icons::button(ui, Icon::named(tool.icon), tool.title, tool.key, chosen, true).clicked()
+                && icons::button(
+                    ui,
+                    Icon::named(tool.icon),
+                    t(tool.title),
+                    t(tool.key),
+                    chosen,
+                    true,
+                )
+                .clicked()
             {
                 commands.push(Command::Tool(tool.id));
             }
@@ -78,12 +87,12 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: 
         }
         divider(ui);
         let hint = |label: Option<&str>, keys: &str| {
-            label.map_or_else(|| keys.to_owned(), |label| format!("{label}  ·  {keys}"))
+            label.map_or_else(|| keys.to_owned(), |label| format!("{}  ·  {keys}", t(label)))
         };
         let undo = icons::button(
             ui,
             Icon::Undo,
-            "Undo",
+            t("Undo"),
             &hint(input.undo, "Ctrl+Z"),
             false,
             input.undo.is_some(),
@@ -95,7 +104,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: 
         let redo = icons::button(
             ui,
             Icon::Redo,
-            "Redo",
+            t("Redo"),
             &hint(input.redo, keys),
             false,
             input.redo.is_some(),
@@ -105,7 +114,7 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: 
         }
         divider(ui);
         let mut workspace = input.workspace;
-        let names = Workspace::ALL.map(|(workspace, name)| (workspace, name, "arranges the panes"));
+        let names = Workspace::ALL.map(|(workspace, name)| (workspace, t(name), t("arranges the panes")));
         if icons::segments(ui, &mut workspace, &names) {
             commands.push(Command::View(ViewCommand::Workspace(workspace)));
         }
@@ -129,12 +138,12 @@ fn thing_tools(ui: &mut Ui, in_hand: ToolId, commands: &mut Vec<Command>) {
     } else {
         building::ID.def()
     };
-    let hint = "buildings, trees, hedges, shrubs, posts";
+    let hint = t("buildings, trees, hedges, shrubs, posts");
     let icon = Icon::named(shown.icon);
-    let button = icons::button(ui, icon, "Beside the road", hint, selected, true);
+    let button = icons::button(ui, icon, t("Beside the road"), hint, selected, true);
     egui::Popup::menu(&button).show(|ui| {
         for tool in beside() {
-            if item(ui, tool.title, short(tool.key), true) {
+            if item(ui, t(tool.title), short(tool.key), true) {
                 commands.push(Command::Tool(tool.id));
             }
         }
@@ -174,8 +183,8 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     ui.spacing_mut().item_spacing.x = theme::GAP;
     let (name, label, hint, fill, icon, command) = if input.busy {
         (
-            "Cancel",
-            "Cancel job",
+            t("Cancel"),
+            t("Cancel job"),
             "Ctrl+Backspace",
             theme::field(),
             Icon::Stop,
@@ -186,9 +195,9 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
         )
     } else if input.marked {
         (
-            "Inpaint",
-            "Generate what is marked",
-            "fresh content where the region is marked, and nowhere else",
+            t("Inpaint"),
+            t("Generate what is marked"),
+            t("fresh content where the region is marked, and nowhere else"),
             theme::accent_fill(),
             Icon::Play,
             Command::Generation(GenerationCommand::Generate { full: false }),
@@ -196,9 +205,9 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     } else {
         let command = Command::Generation(GenerationCommand::Generate { full: true });
         (
-            "Generate",
-            "Generate everything",
-            "all of it, Ctrl+Enter",
+            t("Generate"),
+            t("Generate everything"),
+            t("all of it, Ctrl+Enter"),
             theme::accent_fill(),
             Icon::Play,
             command,
@@ -213,16 +222,16 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
         egui::Color32::TRANSPARENT
     };
     let hint = if input.live {
-        "on: generates after each edit, Ctrl+Space"
+        t("on: generates after each edit, Ctrl+Space")
     } else {
-        "off, Ctrl+Space"
+        t("off, Ctrl+Space")
     };
-    let live = wide_button(ui, Icon::Live, "Live", hint, fill, "Live");
+    let live = wide_button(ui, Icon::Live, t("Live"), hint, fill, t("Live"));
     if input.live {
         let dot = live.rect.right_top() + vec2(-6.0, 6.0);
         ui.painter().circle_filled(dot, 3.0, theme::good());
     }
-    live.widget_info(|| WidgetInfo::selected(Role::Button, true, input.live, "Live"));
+    live.widget_info(|| WidgetInfo::selected(Role::Button, true, input.live, t("Live")));
     if live.clicked() {
         commands.push(Command::Generation(GenerationCommand::ToggleLive));
     }
@@ -234,27 +243,27 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
 /// The presets of the quality slider as a menu.
 fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
     let current = input.preset.and_then(|i| input.presets.get(i));
-    let name = current.map_or("own settings", |(name, _)| name);
+    let name = t(current.map_or("own settings", |(name, _)| name));
     let menu = ui.menu_button(theme::sentence(name), |ui| {
         for (i, (name, predicted)) in input.presets.iter().enumerate() {
-            let text = egui::RichText::new(format!("{}   {predicted}", theme::sentence(name)));
+            let text = egui::RichText::new(format!("{}   {predicted}", theme::sentence(t(name))));
             if ui.selectable_label(input.preset == Some(i), text).clicked() {
                 commands.push(Command::Generation(GenerationCommand::Quality(i)));
                 ui.close();
             }
         }
         ui.separator();
-        if ui.button("Speed and accuracy…").clicked() {
+        if ui.button(t("Speed and accuracy…")).clicked() {
             commands.push(Command::View(ViewCommand::Workspace(Workspace::Trade)));
             ui.close();
         }
     });
-    let label = format!("Quality: {name} menu");
+    let label = tf!("Quality: {name} menu", name = name);
     menu.response
         .widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     let cost = current.map_or(String::new(), |(_, predicted)| format!("\n{predicted}"));
     menu.response
-        .on_hover_text(format!("How exactly edits are generated{cost}"));
+        .on_hover_text(format!("{}{cost}", t("How exactly edits are generated")));
 }
 
 /// A button with an icon and a name, of one height with the others.

@@ -12,6 +12,7 @@ use job::{GenParams, GenReport, GenResult};
 use judge::machine::machine;
 use judge::presets::calibrate::{Measurement, News, Refine, Task, build};
 use judge::presets::figures::{percent, seconds};
+use language::{t, tf};
 use nets::{OccModels, tokens_of};
 use numeric::quantile::median;
 use scene::Scene;
@@ -26,15 +27,21 @@ const TYPICAL_TOKENS: f64 = 36.0;
 pub fn predicted(preset: &Preset, wall_s: f64) -> String {
     let time = seconds(wall_s);
     if preset.error.high == 0.0 {
-        return format!("{time}  ·  what the others are measured against");
+        return format!("{time}  ·  {}", t("what the others are measured against"));
     }
     let [low, high] = preset.error_of_one.map(percent);
     let middle = percent(preset.error.median);
     let invented = preset.invented.map_or(String::new(), |n| match n {
-        n if n < 0.05 => "  ·  invents nothing".into(),
-        n => format!("  ·  invents {n:.1} voxels"),
+        n if n < 0.05 => format!("  ·  {}", t("invents nothing")),
+        n => format!("  ·  {}", tf!("invents {n} voxels", n = format!("{n:.1}"))),
     });
-    format!("{time}  ·  {middle} of its voxels differ ({low} to {high}){invented}")
+    let differ = tf!(
+        "{share} of its voxels differ ({low} to {high})",
+        share = t(&middle),
+        low = t(&low),
+        high = t(&high),
+    );
+    format!("{time}  ·  {differ}{invented}")
 }
 
 /// What an edit did and cost, beside what was predicted.
@@ -162,7 +169,7 @@ impl Tuning {
         self.message = None;
         match Measurement::start(task, wake) {
             Ok(background) => self.running = Some((what, background, (0, 0))),
-            Err(error) => self.message = Some(format!("Nothing can be measured: {error}")),
+            Err(error) => self.message = Some(tf!("Nothing can be measured: {error}", error = error)),
         }
     }
 
@@ -184,13 +191,19 @@ impl Tuning {
                     self.running = None;
                     (self.presets, self.calibrated) = (presets, true);
                     let errors = if same {
-                        "results are bit for bit those whose errors are known"
+                        t("results are bit for bit those whose errors are known")
                     } else {
-                        "results differ in bits from those whose errors are known: `sceneloom trade` measures errors here"
+                        t(
+                            "results differ in bits from those whose errors are known: `sceneloom trade` measures errors here",
+                        )
                     };
                     self.message = Some(match self.keep() {
-                        Ok(()) => format!("Calibrated; {errors}"),
-                        Err(error) => format!("Calibrated until the window closes: {error}; {errors}"),
+                        Ok(()) => tf!("Calibrated; {results}", results = errors),
+                        Err(error) => tf!(
+                            "Calibrated until the window closes: {error}; {results}",
+                            error = error,
+                            results = errors,
+                        ),
                     });
                 }
                 News::Refined(error) => {
@@ -268,7 +281,7 @@ impl Tuning {
             .is_some_and(|(what, ..)| what == Measuring::Error)
         {
             self.running = None;
-            self.message = Some("The measurement stopped: another edit came".into());
+            self.message = Some(t("The measurement stopped: another edit came").into());
         }
         // The presets were measured on edits, not on regions inpainted from fresh noise.
         let preset = self.current(&params).filter(|_| params.strength == 0.0);

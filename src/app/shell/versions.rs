@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use editor::checks::Counts;
 use formats::loom;
+use language::{t, tf};
 use scene::{KeptVersion, Scene, SceneRev};
 
 /// A version as a file keeps it; none if it cannot be written.
@@ -126,25 +127,31 @@ impl Versions {
     /// 2 warnings (4 fewer)". None as long as it was not checked.
     pub fn findings_in_words(&self, i: usize) -> Option<String> {
         let now = self.list.get(i)?.findings?;
-        let count = |n: usize, what: &str| match n {
+        let errors = match now.errors {
             0 => None,
-            1 => Some(format!("1 {what}")),
-            n => Some(format!("{n} {what}s")),
+            1 => Some(t("1 error").to_owned()),
+            n => Some(tf!("{n} errors", n = n)),
         };
-        let parts: Vec<String> = [count(now.errors, "error"), count(now.warnings, "warning")]
-            .into_iter()
-            .flatten()
-            .collect();
+        let warnings = match now.warnings {
+            0 => None,
+            1 => Some(t("1 warning").to_owned()),
+            n => Some(tf!("{n} warnings", n = n)),
+        };
+        let parts: Vec<String> = [errors, warnings].into_iter().flatten().collect();
         let text = if parts.is_empty() {
-            "no findings".to_owned()
+            t("no findings").to_owned()
         } else {
             parts.join(", ")
         };
         let all = |c: Counts| c.errors + c.warnings;
         let before = self.list[..i].iter().rev().find_map(|v| v.findings);
         Some(match before.map(|b| (all(now), all(b))) {
-            Some((now, before)) if now > before => format!("{text} ({} more)", now - before),
-            Some((now, before)) if now < before => format!("{text} ({} fewer)", before - now),
+            Some((now, before)) if now > before => {
+                tf!("{findings} ({n} more)", findings = text, n = now - before)
+            }
+            Some((now, before)) if now < before => {
+                tf!("{findings} ({n} fewer)", findings = text, n = before - now)
+            }
             _ => text,
         })
     }

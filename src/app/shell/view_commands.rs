@@ -8,6 +8,7 @@ use crate::panes::compare::CompareMode;
 use crate::panes::id::PaneId;
 use crate::tools::ToolId;
 use editor::tools::{brush, region, select, voxel};
+use language::t;
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -36,7 +37,7 @@ impl SceneloomApp {
                     .is_some_and(|s| s.content() != rev);
                 let off = self.state.compare.mode == CompareMode::Off;
                 if off && !other && self.generation.versions.before(rev).is_none() {
-                    return self.note("Nothing to compare with yet: each generation makes a version");
+                    return self.note(t("Nothing to compare with yet: each generation makes a version"));
                 }
                 self.state.compare.mode = self.state.compare.mode.next();
             }

@@ -25,6 +25,7 @@ use crate::windows::start::start_ui;
 use crate::windows::tour::tour_ui;
 use crate::windows::unsaved::{self, Unsaved};
 use editor::checks::{Counts, waive};
+use language::t;
 use scene::Scene;
 use widgets::theme;
 
@@ -301,7 +302,7 @@ fn drop_hint(ui: &Ui, over: Rect) {
     painter.text(
         over.center(),
         egui::Align2::CENTER_CENTER,
-        "Drop to open",
+        t("Drop to open"),
         font,
         theme::ON_CANVAS,
     );

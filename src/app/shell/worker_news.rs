@@ -15,6 +15,7 @@ use crate::shell::toasts::Level;
 use editor::Document;
 use job::inpaint::InpaintMask;
 use job::{GenParams, GenResult, JobEvent, JobUpdate, Named};
+use language::tf;
 use scene::{Frame, Scene};
 
 impl SceneloomApp {
@@ -87,10 +88,12 @@ impl SceneloomApp {
                     if running.purpose == Purpose::WarmUp {
                         let calls = result.report.network_calls;
                         let took_s = now_s - running.submitted_s;
-                        self.toasts.log(
-                            format!("Ready to edit after {took_s:.1} s, {calls} network calls"),
-                            now_s,
+                        let text = tf!(
+                            "Ready to edit after {seconds} s, {n} network calls",
+                            seconds = format!("{took_s:.1}"),
+                            n = calls,
                         );
+                        self.toasts.log(text, now_s);
                         return;
                     }
                     // A region that the user asked for says nothing about how long an edit takes.
@@ -129,16 +132,12 @@ impl SceneloomApp {
                 self.generation.tuning.note_failure(&error.to_string());
                 let now_s = self.now_s();
                 self.frames.perf.job_ended(now_s, None, "failed");
-                let paused = if std::mem::replace(&mut self.generation.live.on, false) {
-                    " Live is off now."
+                let text = if std::mem::replace(&mut self.generation.live.on, false) {
+                    tf!("Generation failed: {error}. Live is off now.", error = error)
                 } else {
-                    ""
+                    tf!("Generation failed: {error}.", error = error)
                 };
-                self.toasts.push(
-                    Level::Error,
-                    format!("Generation failed: {error}.{paused}"),
-                    now_s,
-                );
+                self.toasts.push(Level::Error, text, now_s);
             }
             JobUpdate::Superseded => {
                 if let Some(running) = self.generation.live.ended(event.id) {
@@ -238,7 +237,7 @@ impl SceneloomApp {
             None => self.document.adopt_as_step(label, before.content(), occupancy),
         };
         if adopted.is_ok() {
-            let note = format!("After {step} of {steps} steps");
+            let note = tf!("After {step} of {steps} steps", step = step, steps = steps);
             let scene = self.document.settled_scene().clone();
             self.generation.versions.push(label.to_owned(), note, scene);
             self.generation.receipt = None;
@@ -272,10 +271,13 @@ impl SceneloomApp {
                 self.generation.forget_scene();
                 self.views.prompt.opened(&scene);
                 if opening.is_import {
-                    let text = format!("Imported {} as a draft. Ctrl+Enter generates it.", scene.name);
+                    let text = tf!(
+                        "Imported {name} as a draft. Ctrl+Enter generates it.",
+                        name = scene.name
+                    );
                     self.toasts.push(Level::Info, text, now_s);
                 } else {
-                    self.toasts.log(format!("Opened {}", scene.name), now_s);
+                    self.toasts.log(tf!("Opened {name}", name = scene.name), now_s);
                 }
                 let version = match opening.step {
                     Some(label) => {
@@ -289,7 +291,7 @@ impl SceneloomApp {
                     }
                 };
                 if damaged > 0 {
-                    let text = format!("{damaged} versions in the file cannot be read");
+                    let text = tf!("{n} versions in the file cannot be read", n = damaged);
                     self.toasts.push(Level::Error, text, now_s);
                 }
                 let opened = self.document.settled_scene().clone();
@@ -309,11 +311,11 @@ impl SceneloomApp {
                 self.state.correcting = false;
                 self.state.tools.region = InpaintMask::default();
                 self.state.named = Named::default();
-                self.note_opened(&opening.what, true);
+                self.note_opened(opening.recovers, true);
                 ctx.request_repaint();
             }
             Err(error) => {
-                self.note_opened(&opening.what, false);
+                self.note_opened(opening.recovers, false);
                 let text = format!("{}: {}", opening.what, one_line(&error));
                 self.toasts.push(Level::Error, text, now_s);
             }
