@@ -13,6 +13,7 @@ use glam::DVec2;
 use editor::pick;
 use editor::pick_things;
 use editor::tools::{Hand, region, select};
+use language::{t, tf};
 use scene::{BevLayer, Class, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerStyle};
@@ -25,7 +26,7 @@ use super::command::Command;
 use super::marks::{self, Board};
 use super::pointer::{self, Held, Step};
 pub use super::screen_map::ScreenMap;
-use super::state::UiState;
+use super::state::{UiState, called, position_text};
 use super::thing_outlines;
 use super::tools::ToolState;
 use super::track_marks;
@@ -116,7 +117,7 @@ impl Canvas {
     ) -> Response {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Bird's-eye view"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("Bird's-eye view")));
         let extent = input.scene.frame().extent();
         if extent != self.extent {
             (self.extent, self.fitted) = (extent, Some(egui::Vec2::ZERO));
@@ -452,18 +453,21 @@ fn thing_under(scene: &Scene, p_m: DVec2) -> Option<&Thing> {
 
 /// What is under a point of the view, for the status bar.
 pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
-    let mut parts = vec![super::state::position_text(p_m)];
+    let mut parts = vec![position_text(p_m)];
     let frame = scene.frame();
-    parts.push(format!("{:.1} m away", p_m.length()));
+    parts.push(tf!(
+        "{distance} m away",
+        distance = format!("{:.1}", p_m.length())
+    ));
     let Some([x, y]) = frame.extent().column_at(p_m.x, p_m.y) else {
-        parts.push("outside the map".into());
+        parts.push(t("outside the map").into());
         return parts.join("  ·  ");
     };
     let cell = frame.layout.cell(x, y);
     let names: Vec<String> = BevLayer::MAP
         .iter()
         .filter(|l| cell & l.bit() != 0)
-        .map(|l| l.label())
+        .map(|l| t(&l.label()).to_owned())
         .collect();
     if !names.is_empty() {
         parts.push(names.join(", "));
@@ -471,14 +475,18 @@ pub(super) fn readout(scene: &Scene, p_m: DVec2) -> String {
     let column = frame.occupancy.column(x, y);
     let top = column.iter().rposition(|v| *v != Class::FREE);
     parts.push(match top.and_then(|z| Class::from_id(column[z])) {
-        Some(class) => format!("on top {}", class.label()),
-        None => "nothing seen".into(),
+        Some(class) => tf!("on top {class}", class = t(&class.label())),
+        None => t("nothing seen").into(),
     });
     if let Some(id) = pick::box_at(frame, p_m) {
-        parts.push(format!("{} #{}", frame.boxes[&id].called(), id.0));
+        parts.push(format!("{} #{}", called(&frame.boxes[&id]), id.0));
     } else if let Some(thing) = thing_under(scene, p_m) {
-        let (name, height_m) = (thing.form.name(), thing.form.height_m());
-        parts.push(format!("{name} #{}, {height_m:.1} m high", thing.id.0));
+        parts.push(tf!(
+            "{name} #{id}, {height} m high",
+            name = t(thing.form.name()),
+            id = thing.id.0,
+            height = format!("{:.1}", thing.form.height_m())
+        ));
     }
     parts.join("  ·  ")
 }

@@ -8,6 +8,7 @@ use crate::command::Command;
 use crate::screen_map::ScreenMap;
 use authoring::scenery;
 use editor::{Edit, apply_all};
+use language::{t, tf};
 use scene::{Extent, Scene};
 use widgets::theme;
 
@@ -62,7 +63,8 @@ pub(crate) fn show(ui: &Ui, map: &ScreenMap, extent: Extent, commands: &mut Vec<
         };
         let rect = Rect::from_center_size(at, vec2(BUTTON_POINTS, BUTTON_POINTS));
         let response = ui.interact(rect, ui.scope_id().with(("edge", name)), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("More map {name}")));
+        let label = || tf!("More map {side}", side = t(name));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label()));
         let by_m = if ui.input(|i| i.modifiers.shift) {
             LONG_M
         } else {
@@ -87,7 +89,12 @@ pub(crate) fn show(ui: &Ui, map: &ScreenMap, extent: Extent, commands: &mut Vec<
         );
         let font = TextStyle::Button.resolve(ui.style());
         painter.text(at, Align2::CENTER_CENTER, "+", font, color);
-        let hint = format!("{STEP_M:.0} m more map {name}; with Shift {LONG_M:.0} m. Roads go on there.");
+        let hint = tf!(
+            "{step} m more map {side}; with Shift {long} m. Roads go on there.",
+            step = format!("{STEP_M:.0}"),
+            side = t(name),
+            long = format!("{LONG_M:.0}")
+        );
         if response.on_hover_text(hint).clicked() {
             commands.push(Command::Apply("Extend the map", vec![extend(outward, by_m)]));
         }

@@ -6,6 +6,8 @@ use glam::DVec2;
 
 use editor::Edit;
 use job::Named;
+use language::{t, tf};
+use scene::SceneBox;
 
 use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
@@ -72,6 +74,19 @@ impl Deref for UiState {
 impl DerefMut for UiState {
     fn deref_mut(&mut self) -> &mut Hand {
         &mut self.tools.hand
+    }
+}
+
+/// What a box is called in the language that is shown: its name and paint, or its class.
+pub fn called(b: &SceneBox) -> String {
+    let class = b.class.label();
+    let name = match b.label.name.is_empty() {
+        true => t(&class),
+        false => b.label.name.as_str(),
+    };
+    match b.label.paint {
+        Some(paint) => tf!("{paint} {name}", paint = t(paint.name()), name = name),
+        None => name.to_owned(),
     }
 }
 

@@ -6,6 +6,7 @@ use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotUi, Points, Tex
 use crate::picture::Picture;
 use judge::presets::figures::{percent, seconds};
 use judge::presets::plan::Mark;
+use language::t;
 use widgets::theme;
 
 /// Published wall times to be seen beside ours, s: all on graphics cards.
@@ -58,9 +59,9 @@ pub fn front_plot(
         .x_grid_spacer(|input| decades(input.bounds.0, input.bounds.1))
         .y_grid_spacer(|input| decades(input.bounds.0, input.bounds.1))
         .x_axis_formatter(|mark, _| seconds(10f64.powf(mark.value)))
-        .y_axis_formatter(|mark, _| percent(10f64.powf(mark.value)))
-        .x_axis_label(RichText::new("time of an edit").small())
-        .y_axis_label(RichText::new("voxels that differ from the reference").small())
+        .y_axis_formatter(|mark, _| t(&percent(10f64.powf(mark.value))).to_owned())
+        .x_axis_label(RichText::new(t("time of an edit")).small())
+        .y_axis_label(RichText::new(t("voxels that differ from the reference")).small())
         .y_axis_min_width(44.0)
         .grid_spacing(6.0..=120.0)
         .grid_color(theme::text_weak().gamma_multiply(0.35))
@@ -82,7 +83,7 @@ pub fn front_plot(
                 .fold(f64::NEG_INFINITY, f64::max);
             let at = PlotPoint::new(log(s) - 0.02, top);
             plot.text(
-                Text::new(name, at, RichText::new(name).small())
+                Text::new(name, at, RichText::new(t(name)).small())
                     .color(weak)
                     .anchor(Align2::RIGHT_TOP),
             );
@@ -116,7 +117,7 @@ pub fn front_plot(
         if let Some((s, error)) = last {
             match error {
                 Some(e) => plot.points(
-                    Points::new("last edit", vec![[log(s), log(e)]])
+                    Points::new(t("last edit"), vec![[log(s), log(e)]])
                         .color(theme::warn())
                         .radius(5.0),
                 ),
@@ -146,7 +147,7 @@ fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
     }
     let radius = if mark.preset.is_some() { 5.0 } else { 2.5 };
     plot.points(
-        Points::new(mark.name.clone(), vec![[s, e]])
+        Points::new(t(&mark.name), vec![[s, e]])
             .color(color)
             .radius(radius),
     );
@@ -155,7 +156,7 @@ fn draw_point(plot: &mut PlotUi<'_>, mark: &Mark, current: Option<&str>) {
         .as_ref()
         .filter(|preset| current == Some(preset.as_str()))
     {
-        let ring = Points::new(preset.clone(), vec![[s, e]])
+        let ring = Points::new(t(preset), vec![[s, e]])
             .filled(false)
             .color(theme::text_strong())
             .radius(8.0);
@@ -175,11 +176,12 @@ fn draw_name(
 ) {
     let (s, e) = (log(mark.wall_s[0]), log(mark.error[0]));
     let text = RichText::new(match with_numbers {
-        false => preset.to_owned(),
+        false => t(preset).to_owned(),
         true => format!(
-            "{preset}\n{}, {}",
+            "{}\n{}, {}",
+            t(preset),
             seconds(mark.wall_s[0]),
-            percent(mark.error[0])
+            t(&percent(mark.error[0]))
         ),
     });
     let text = if here { text.small().strong() } else { text.small() };

@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use editor::pick::{self, Hit, Ray};
 use editor::pick_things;
 use editor::tools::{Mark, View, ViewKind, Wants, point_of, select};
+use language::{t, tf};
 use scene::{BoxId, Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::{
     BrushCells, LidarColorMode, LidarView, ViewCamera, ViewOptions, ViewPreset, ViewScene, Viewport,
@@ -21,7 +22,7 @@ use super::command::Command;
 use super::marks::Board;
 use super::pointer::{self, Held, Step};
 use super::screen_map::{point, pos};
-use super::state::{UiState, position_text};
+use super::state::{UiState, called, position_text};
 use super::thing_outlines;
 use super::tools::ToolState;
 use super::track_marks;
@@ -149,7 +150,7 @@ impl View3d {
     ) -> Response {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "3D view"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("3D view")));
         self.rect = rect;
         self.pixels_per_point = ui.ctx().pixels_per_point();
         if self.gpu.is_none() {
@@ -347,7 +348,7 @@ impl View3d {
         let rect = self.rect;
         if self.frames < 3 {
             // The window comes up first; the pipelines take a moment.
-            hint(ui, rect, "Preparing the 3D view…", "");
+            hint(ui, rect, t("Preparing the 3D view…"), "");
             ui.ctx().request_repaint();
             return;
         }
@@ -541,24 +542,25 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
     let p = point_of(hit, ray);
     let mut parts = vec![
         format!("{}  z {:.1}", position_text(p.truncate()), p.z + 0.0),
-        format!("{:.1} m away", p.length()),
+        tf!("{distance} m away", distance = format!("{:.1}", p.length())),
     ];
     match hit {
         Hit::Box { id, .. } => {
             if let Some(b) = scene.frame().boxes.get(id) {
-                parts.push(format!("{} #{}", b.called(), id.0));
+                parts.push(format!("{} #{}", called(b), id.0));
             }
         }
         Hit::Voxel(v) => {
-            parts.push(Class::from_id(v.label).map_or_else(String::new, Class::label));
+            parts.push(Class::from_id(v.label).map_or_else(String::new, |c| t(&c.label()).to_owned()));
             let thing = pick_things::thing_of_voxel(scene.frame(), &scene.background, v.cell);
             if let Some(thing) = thing.and_then(|id| scene.background.get(id)) {
-                parts.push(format!("{} #{}", thing.form.name(), thing.id.0));
+                parts.push(format!("{} #{}", t(thing.form.name()), thing.id.0));
             }
-            parts.push(format!("voxel {}, {}, {}", v.cell[0], v.cell[1], v.cell[2]));
+            let [x, y, z] = v.cell;
+            parts.push(tf!("voxel {x}, {y}, {z}", x = x, y = y, z = z));
         }
         Hit::Ground { .. } if scene.frame().extent().voxel_at(p).is_none() => {
-            parts.push("outside the map".into());
+            parts.push(t("outside the map").into());
         }
         Hit::Ground { .. } => {}
     }
@@ -568,9 +570,9 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
 fn no_adapter(ui: &Ui, rect: Rect) {
     let hint_text =
         "Install a Vulkan driver (a software one such as lavapipe will do); editing works without.";
-    hint(ui, rect, "No GPU adapter", hint_text);
+    hint(ui, rect, t("No GPU adapter"), t(hint_text));
     ui.interact(rect, ui.scope_id().with("no adapter"), Sense::hover())
-        .widget_info(|| WidgetInfo::labeled(Role::Label, true, "No GPU adapter"));
+        .widget_info(|| WidgetInfo::labeled(Role::Label, true, t("No GPU adapter")));
 }
 
 /// A title and a line in the middle of an empty pane.

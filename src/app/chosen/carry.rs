@@ -8,6 +8,7 @@ use crate::shell::app::SceneloomApp;
 use crate::tools::ToolCommand;
 use editor::arrange::{self, Clipboard, Ties};
 use editor::{Edit, kerb};
+use language::{filled, t, tf};
 use scene::{BoxId, Form, Scene, ThingId};
 
 use crate::tools::things::words;
@@ -40,34 +41,38 @@ impl SceneloomApp {
             by_m,
             turn_deg,
         };
-        let (verb, mut edits, of_things) = match command {
+        let (label, mut edits, of_things) = match command {
             ToolCommand::Delete => {
                 let edit = Edit::RemoveThings { ids: ids.clone() };
-                ("Remove", arrange::remove(frame, &boxes), edit)
+                ("Remove {things}", arrange::remove(frame, &boxes), edit)
             }
             ToolCommand::Nudge(step_m) if step_m.z != 0.0 => {
                 let edit = Edit::RaiseThings {
                     ids: ids.clone(),
                     by_m: step_m.z,
                 };
-                ("Raise", arrange::shift(frame, &boxes, *step_m), edit)
+                ("Raise {things}", arrange::shift(frame, &boxes, *step_m), edit)
             }
             ToolCommand::Nudge(step_m) => {
                 let by_m = step_m.truncate();
-                ("Nudge", arrange::shift(frame, &boxes, *step_m), moved(by_m, 0.0))
+                (
+                    "Nudge {things}",
+                    arrange::shift(frame, &boxes, *step_m),
+                    moved(by_m, 0.0),
+                )
             }
             ToolCommand::Turn(degrees) => {
                 let pivot = self.state.tools.pivot;
                 let turned = arrange::turn(frame, &boxes, *degrees, pivot);
-                ("Turn", turned, moved(DVec2::ZERO, *degrees))
+                ("Turn {things}", turned, moved(DVec2::ZERO, *degrees))
             }
             ToolCommand::ToLane => {
                 let Some(by_m) = kerb::way_to_kerb(&frame.layout, &forms, DVec2::ZERO, KERB_REACH_M) else {
-                    self.note("No kerb is near");
+                    self.note(t("No kerb is near"));
                     return true;
                 };
                 (
-                    "Set to the kerb:",
+                    "Set to the kerb: {things}",
                     arrange::to_lane(frame, &boxes),
                     moved(by_m, 0.0),
                 )
@@ -82,17 +87,17 @@ impl SceneloomApp {
                     return true;
                 }
                 let edit = Edit::RemoveThings { ids: ids.clone() };
-                ("Cut", arrange::remove(frame, &boxes), edit)
+                ("Cut {things}", arrange::remove(frame, &boxes), edit)
             }
             _ => return false,
         };
         edits.push(of_things);
         let named: Vec<&Form> = forms.iter().collect();
-        let label = match boxes.is_empty() {
-            true => format!("{verb} {}", words::count(&named)),
-            false => format!("{verb} {} boxes and things", boxes.len() + forms.len()),
+        let things = match boxes.is_empty() {
+            true => words::count(&named),
+            false => tf!("{n} boxes and things", n = boxes.len() + forms.len()),
         };
-        self.apply(label, &edits);
+        self.apply(filled(t(label), &[("things", &things)]), &edits);
         true
     }
 
@@ -101,7 +106,7 @@ impl SceneloomApp {
         let by_m = beside_m(forms);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
         let added = arrange::duplicate(scene.frame(), boxes).with(&Ties::of(scene, boxes));
-        self.add_things("Duplicate", copies, added.edits);
+        self.add_things("Duplicate {things}", copies, added.edits);
         self.state.choose(&added.ids, crate::tools::Choose::Add);
     }
 
@@ -136,7 +141,7 @@ impl SceneloomApp {
         let box_at_m = arrange::middle_m(&boxes.boxes).map(|m| m.truncate());
         let added = arrange::paste(frame, &boxes, box_at_m);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
-        self.add_things("Paste", copies, added.edits);
+        self.add_things("Paste {things}", copies, added.edits);
         self.state.choose(&added.ids, crate::tools::Choose::Add);
     }
 }

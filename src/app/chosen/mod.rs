@@ -15,6 +15,7 @@ use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard, Ties};
 use editor::tools::{Act, road, voxel};
+use language::{t, tf};
 use scene::Extent;
 
 impl SceneloomApp {
@@ -106,7 +107,7 @@ impl SceneloomApp {
                 self.apply_some(label, arrange::turn(&frame, &ids, degrees, pivot));
             }
             ToolCommand::AskRow => match ids.is_empty() {
-                true => self.note("Choose the boxes to copy first"),
+                true => self.note(t("Choose the boxes to copy first")),
                 false => self.state.tools.row_open = true,
             },
             ToolCommand::Row(row) => self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row).with(&ties)),
@@ -157,7 +158,11 @@ impl SceneloomApp {
                 .filter(|e| lies_outside(self.document.scene().frame().extent(), e))
                 .count();
             if outside > 0 {
-                let text = format!("{outside} of {} lie outside the map", added.ids.len());
+                let text = tf!(
+                    "{n} of {all} lie outside the map",
+                    n = outside,
+                    all = added.ids.len()
+                );
                 let now_s = self.now_s();
                 self.toasts.push(Level::Info, text, now_s);
             }
@@ -197,12 +202,12 @@ impl SceneloomApp {
                 self.apply(label, &edits);
                 self.state.choose(&ids, Choose::Only);
             }
-            Act::AddThings(forms) => self.add_things("Add", forms, Vec::new()),
+            Act::AddThings(forms) => self.add_things("Add {things}", forms, Vec::new()),
             Act::Mark(area, on) => self
                 .state
                 .tools
                 .mark(self.document.scene().frame().extent(), &area, on),
-            Act::Note(text) => self.note(&text),
+            Act::Note(text) => self.note(t(&text)),
             Act::Ask(id) => {
                 let action = ACTIONS.iter().find(|a| a.id == id);
                 if let Some(action) = action {

@@ -3,6 +3,7 @@
 use crate::shell::app::SceneloomApp;
 use crate::tools::Choose;
 use editor::Edit;
+use language::{filled, t, tf};
 use scene::background::STOREY_M;
 use scene::{Background, Form, ThingId};
 
@@ -46,10 +47,11 @@ impl SceneloomApp {
         }
     }
 
-    /// Adds things (world frame), with other edits, as one undo step, and chooses them.
-    pub(crate) fn add_things(&mut self, verb: &str, forms: Vec<Form>, mut edits: Vec<Edit>) {
+    /// Adds things (world frame), with other edits, as one undo step, and chooses them. The step is called `label`: English,
+    /// with a place for `{things}`.
+    pub(crate) fn add_things(&mut self, label: &str, forms: Vec<Form>, mut edits: Vec<Edit>) {
         let named: Vec<&Form> = forms.iter().collect();
-        let label = format!("{verb} {}", words::count(&named));
+        let label = filled(t(label), &[("things", &words::count(&named))]);
         let before = self.document.settled_scene().background.clone();
         edits.push(Edit::AddThings { forms });
         self.apply(label, &edits);
@@ -83,8 +85,12 @@ impl SceneloomApp {
         let edits: Vec<Edit> = edits.collect();
         if !edits.is_empty() {
             let forms: Vec<&Form> = chosen.iter().map(|t| &t.form).collect();
-            let verb = if steps > 0 { "Raise" } else { "Lower" };
-            self.apply(format!("{verb} {}", words::count(&forms)), &edits);
+            let things = words::count(&forms);
+            let label = match steps > 0 {
+                true => tf!("Raise {things}", things = things),
+                false => tf!("Lower {things}", things = things),
+            };
+            self.apply(label, &edits);
         }
     }
 }

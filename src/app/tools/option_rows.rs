@@ -6,12 +6,13 @@ use egui::accesskit::Role;
 use crate::fields::label;
 use editor::tools::setting::{Control, Number};
 use editor::tools::{Setting, Value};
+use language::{t, tf};
 use scene::Class;
 use widgets::hint::caption;
 use widgets::icons::{self, section};
 use widgets::theme;
 
-/// Draws options; what the user set, by name.
+/// Draws options, whose texts are English, in the language that is shown; what the user set, by name.
 pub fn show(ui: &mut Ui, settings: &[Setting]) -> Vec<(&'static str, Value)> {
     let mut set = Vec::new();
     for setting in settings {
@@ -24,10 +25,10 @@ pub fn show(ui: &mut Ui, settings: &[Setting]) -> Vec<(&'static str, Value)> {
 
 fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) -> Option<Value> {
     match &setting.control {
-        Control::Title(title) => section(ui, title),
-        Control::Text(text) => caption(ui, text),
+        Control::Title(title) => section(ui, t(title)),
+        Control::Text(text) => caption(ui, t(text)),
         Control::Result(text) => {
-            ui.label(egui::RichText::new(text).color(theme::text_strong()));
+            ui.label(egui::RichText::new(t(text)).color(theme::text_strong()));
         }
         Control::Gap => ui.add_space(3.0),
         Control::Number(number) if number.wide => return wide_slider(ui, number),
@@ -37,7 +38,8 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
             choices,
             columns,
         } => {
-            let all: Vec<_> = choices.iter().enumerate().map(|(i, c)| (i, c.0, c.1)).collect();
+            let named = choices.iter().enumerate();
+            let all: Vec<_> = named.map(|(i, c)| (i, t(c.0), t(c.1))).collect();
             let mut now = *chosen;
             for part in all.chunks((*columns).max(1)) {
                 icons::segments(ui, &mut now, part);
@@ -56,8 +58,8 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
         Control::Rows { chosen, names, verb } => {
             let mut now = None;
             for (i, name) in names.iter().enumerate() {
-                let label = format!("{verb} {name}");
-                let (color, title) = (theme::text_weak(), theme::sentence(name));
+                let label = tf!("{verb} {name}", verb = t(verb), name = t(name));
+                let (color, title) = (theme::text_weak(), theme::sentence(t(name)));
                 if icons::row(ui, color, &title, "", i == *chosen, &label).clicked() {
                     now = Some(Value::Index(i));
                 }
@@ -66,7 +68,7 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
         }
         Control::Toggle { on, title, hint } => {
             let mut now = *on;
-            ui.checkbox(&mut now, *title).on_hover_text(*hint);
+            ui.checkbox(&mut now, t(title)).on_hover_text(t(hint));
             return (now != *on).then_some(Value::On(now));
         }
         Control::Class {
@@ -75,8 +77,11 @@ fn draw(ui: &mut Ui, setting: &Setting, set: &mut Vec<(&'static str, Value)>) ->
             verb,
         } => return class(ui, classes, *chosen, verb).map(Value::Class),
         Control::Button { title, hint, enabled } => {
-            let response = ui.add_enabled(*enabled, egui::Button::new(*title));
-            return response.on_hover_text(*hint).clicked().then_some(Value::Pressed);
+            let response = ui.add_enabled(*enabled, egui::Button::new(t(title)));
+            return response
+                .on_hover_text(t(hint))
+                .clicked()
+                .then_some(Value::Pressed);
         }
         Control::Line(settings) => {
             ui.horizontal(|ui| set.extend(show(ui, settings)));
@@ -97,7 +102,7 @@ fn changed(number: &Number, now: f64, response: &egui::Response) -> Option<Value
 
 fn slider(ui: &mut Ui, number: &Number) -> Option<Value> {
     let row = ui.horizontal(|ui| {
-        label(ui, number.title, 80.0);
+        label(ui, t(number.title), 80.0);
         ui.spacing_mut().slider_width = 60.0;
         let mut now = number.value;
         let [low, high] = number.range;
@@ -107,7 +112,7 @@ fn slider(ui: &mut Ui, number: &Number) -> Option<Value> {
         } else {
             slider
         };
-        let response = ui.add(slider).accessible_name(number.label);
+        let response = ui.add(slider).accessible_name(t(number.label));
         changed(number, now, &response)
     });
     row.inner
@@ -115,7 +120,7 @@ fn slider(ui: &mut Ui, number: &Number) -> Option<Value> {
 
 fn wide_slider(ui: &mut Ui, number: &Number) -> Option<Value> {
     let row = ui.horizontal(|ui| {
-        ui.label(egui::RichText::new(number.title).color(theme::text_weak()));
+        ui.label(egui::RichText::new(t(number.title)).color(theme::text_weak()));
         let mut now = number.value;
         let [low, high] = number.range;
         let slider = egui::Slider::new(&mut now, low..=high)
@@ -127,8 +132,8 @@ fn wide_slider(ui: &mut Ui, number: &Number) -> Option<Value> {
         };
         let response = ui
             .add(slider)
-            .on_hover_text(number.hint)
-            .accessible_name(number.label);
+            .on_hover_text(t(number.hint))
+            .accessible_name(t(number.label));
         changed(number, now, &response)
     });
     row.inner
@@ -136,7 +141,7 @@ fn wide_slider(ui: &mut Ui, number: &Number) -> Option<Value> {
 
 /// Choices in a list that opens, on a line of their own if they have no title.
 fn list_of(ui: &mut Ui, title: &str, name: &str, chosen: usize, choices: &[(String, &str)]) -> Option<Value> {
-    let shown = choices.get(chosen).map_or("", |c| c.0.as_str());
+    let shown = choices.get(chosen).map_or("", |c| t(&c.0));
     let mut now = chosen;
     let mut combo = |ui: &mut Ui, width: f32| {
         egui::ComboBox::from_id_salt(name)
@@ -144,21 +149,21 @@ fn list_of(ui: &mut Ui, title: &str, name: &str, chosen: usize, choices: &[(Stri
             .selected_text(shown)
             .show_ui(ui, |ui| {
                 for (i, (text, hint)) in choices.iter().enumerate() {
-                    let row = ui.selectable_value(&mut now, i, text);
+                    let row = ui.selectable_value(&mut now, i, t(text));
                     if !hint.is_empty() {
-                        row.on_hover_text(*hint);
+                        row.on_hover_text(t(hint));
                     }
                 }
             })
             .response
-            .widget_info(|| egui::WidgetInfo::labeled(Role::ComboBox, true, name));
+            .widget_info(|| egui::WidgetInfo::labeled(Role::ComboBox, true, t(name)));
     };
     if title.is_empty() {
         let width = ui.available_width() - 8.0;
         combo(ui, width);
     } else {
         ui.horizontal(|ui| {
-            label(ui, title, 52.0);
+            label(ui, t(title), 52.0);
             combo(ui, 120.0);
         });
     }
@@ -192,13 +197,14 @@ fn class(ui: &mut Ui, shown: &[Class], chosen: Class, verb: &str) -> Option<Clas
             for class in pair {
                 let label = class.label();
                 let short = match class {
-                    Class::ConstructionVehicle => "Digger, crane".to_owned(),
-                    Class::DriveableSurface => "Driveable".to_owned(),
-                    _ => theme::sentence(&label),
+                    Class::ConstructionVehicle => t("Digger, crane").to_owned(),
+                    Class::DriveableSurface => t("Driveable").to_owned(),
+                    _ => theme::sentence(t(&label)),
                 };
                 let size = egui::vec2(width, theme::ROW);
                 ui.allocate_ui(size, |ui| {
-                    let (color, name) = (theme::class_color(*class), format!("{verb} {label}"));
+                    let color = theme::class_color(*class);
+                    let name = tf!("{verb} {name}", verb = t(verb), name = t(&label));
                     if icons::row(ui, color, &short, "", chosen == *class, &name).clicked() {
                         taken = Some(*class);
                     }

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::lanes::{gap_deg, near};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
+use language::{filled, t};
 use scene::{BevLayer, Class, SceneBox};
 
 pub const NAME: &str = "against_lane";
@@ -44,10 +45,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             .unwrap_or(best);
         let angle = gap(best.heading_rad);
         let how = match (angle > AGAINST_DEG, b.velocity_mps != DVec2::ZERO) {
-            (true, true) => "drives against its lane",
-            (true, false) => "faces against its lane",
-            (false, _) => "stands across its lane",
+            (true, true) => "{thing} drives against its lane, {angle} degrees from it",
+            (true, false) => "{thing} faces against its lane, {angle} degrees from it",
+            (false, _) => "{thing} stands across its lane, {angle} degrees from it",
         };
+        let angle = format!("{angle:.0}");
         out.push(Finding {
             check: NAME,
             severity: Severity::Warning,
@@ -55,7 +57,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             box_id: Some(b.id),
             time_s: None,
             cells: Vec::new(),
-            text: format!("{} {how}, {angle:.0} degrees from it", name_of(b)),
+            text: filled(t(how), &[("thing", &name_of(b)), ("angle", &angle)]),
             fixes: vec![Fix {
                 label: "Turn to the lane's heading",
                 edits: turned(b, nearest.heading_rad),

@@ -2,6 +2,7 @@
 
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
+use language::tf;
 use scene::draft::box_columns;
 use scene::raster::box_cells;
 use scene::{Extent, SceneBox, VoxelGrid};
@@ -28,7 +29,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             box_id: Some(b.id),
             time_s: None,
             cells: Vec::new(),
-            text: format!("{} has no voxel of its class", name_of(b)),
+            text: tf!("{thing} has no voxel of its class", thing = name_of(b)),
             fixes: vec![
                 Fix {
                     label: "Fill the box with voxels",

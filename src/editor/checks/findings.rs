@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Finding, Severity};
+use language::tf;
 
 /// Findings of one check that are listed; the others are counted in one more.
 pub const MOST: usize = 200;
@@ -47,7 +48,7 @@ impl Findings {
                 box_id: None,
                 time_s: None,
                 cells: Vec::new(),
-                text: format!("and {n} more of {check}"),
+                text: tf!("and {n} more of {check}", n = n, check = check),
                 fixes: Vec::new(),
             });
         }

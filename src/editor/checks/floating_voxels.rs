@@ -2,6 +2,7 @@
 
 use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
+use language::{t, tf};
 use scene::support::{CROWN, bins_set, groups, is_known_to_float, main_class, stem};
 use scene::{Class, Extent};
 
@@ -29,15 +30,18 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     let remove = |cells: Vec<[usize; 3]>| paint("Remove floating voxels", cells, Class::Free);
     for group in groups {
         let class = main_class(&frame.occupancy, &group);
-        let above_m = lowest_m(extent, &group);
+        let (label, height) = (class.label(), format!("{:.1}", lowest_m(extent, &group)));
         let text = match group.len() {
-            1 => format!(
-                "A voxel of {} floats {above_m:.1} m above the ground",
-                class.label()
+            1 => tf!(
+                "A voxel of {class} floats {height} m above the ground",
+                class = t(&label),
+                height = height
             ),
-            n => format!(
-                "{n} voxels of {} float {above_m:.1} m above the ground",
-                class.label()
+            n => tf!(
+                "{n} voxels of {class} float {height} m above the ground",
+                n = n,
+                class = t(&label),
+                height = height
             ),
         };
         out.push(Finding {
@@ -69,7 +73,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             box_id: None,
             time_s: None,
             cells: cells.clone(),
-            text: format!("{count} smaller groups float, {} voxels", cells.len()),
+            text: tf!(
+                "{n} smaller groups float, {voxels} voxels",
+                n = count,
+                voxels = cells.len()
+            ),
             fixes: vec![remove(cells)],
         });
     }

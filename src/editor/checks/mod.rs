@@ -25,6 +25,7 @@ use glam::DVec3;
 use super::Edit;
 use findings::Findings;
 pub use findings::MOST;
+use language::{t, tf};
 use scene::draft::{ground_bin, ground_class};
 use scene::{BoxId, Class, Extent, Frame, Scene, SceneBox, support};
 
@@ -281,7 +282,7 @@ impl Context<'_> {
 
 /// `car 7`
 fn name_of(b: &SceneBox) -> String {
-    format!("{} {}", b.class.label(), b.id.0)
+    tf!("{class} {id}", class = t(&b.class.label()), id = b.id.0)
 }
 
 /// Edits that take voxels away; where the bin of the ground is emptied, the ground that the layout asks for is laid.

@@ -2,6 +2,7 @@
 
 use super::{Context, Finding, Findings, Fix, MOST, Severity, middle, removal};
 use crate::Edit;
+use language::{t, tf};
 use scene::raster::box_cells;
 use scene::{Class, infer, support};
 
@@ -52,7 +53,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             box_id: None,
             time_s: None,
             cells: group.clone(),
-            text: format!("{} voxels of {} belong to no box", group.len(), class.label()),
+            text: tf!(
+                "{n} voxels of {class} belong to no box",
+                n = group.len(),
+                class = t(&class.label())
+            ),
             fixes: match boxes_for(context, class, &group) {
                 boxes if boxes.len() > MOST_BOXES => Vec::new(),
                 edits => vec![

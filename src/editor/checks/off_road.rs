@@ -6,6 +6,7 @@ use super::geometry::{shared_area_m2, shared_height_m};
 use super::lanes::nearest;
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
+use language::tf;
 use scene::raster::box_cells;
 use scene::{BevLayer, BevLayout, Class, SceneBox};
 
@@ -36,7 +37,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                     continue;
                 }
                 (
-                    format!("{} stands off the road", name_of(b)),
+                    tf!("{thing} stands off the road", thing = name_of(b)),
                     onto_road(context, b),
                 )
             }
@@ -67,8 +68,13 @@ fn vehicle(layout: &BevLayout, b: &SceneBox) -> Option<String> {
         return None;
     }
     Some(match on {
-        0 => format!("{} stands off the road", name_of(b)),
-        _ => format!("{} stands with {on} of {cells} columns on the road", name_of(b)),
+        0 => tf!("{thing} stands off the road", thing = name_of(b)),
+        _ => tf!(
+            "{thing} stands with {on} of {cells} columns on the road",
+            thing = name_of(b),
+            on = on,
+            cells = cells
+        ),
     })
 }
 

@@ -1,6 +1,7 @@
 //! Plants, buildings and poles that stand on drivable ground. Crowns that hang over it are fine.
 
 use super::{Context, Finding, Findings, Fix, Severity, middle, removal};
+use language::{t, tf};
 use scene::support::{bins_set, groups, main_class, supported};
 use scene::{BevLayer, BevLayout, Class, Extent};
 
@@ -76,13 +77,21 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     };
     for group in groups {
         let class = main_class(grid, &group).label();
-        let text = format!("{} voxels of {class} stand on the road", group.len());
+        let text = tf!(
+            "{n} voxels of {class} stand on the road",
+            n = group.len(),
+            class = t(&class)
+        );
         report(text, middle(extent, &group), group);
     }
     if let Some(first) = rest.first() {
         let (where_m, count) = (middle(extent, first), rest.len());
         let cells: Vec<_> = rest.into_iter().flatten().collect();
-        let text = format!("{count} smaller things stand on the road, {} voxels", cells.len());
+        let text = tf!(
+            "{n} smaller things stand on the road, {voxels} voxels",
+            n = count,
+            voxels = cells.len()
+        );
         report(text, where_m, cells);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
+use language::tf;
 use scene::{Extent, SceneBox};
 
 pub const NAME: &str = "out_of_range";
@@ -11,7 +12,7 @@ const TOLERANCE_M: f64 = 0.6;
 pub fn check(context: &Context<'_>, out: &mut Findings) {
     for b in &context.boxes {
         let ground_m = context.frame.layout.relief.height_m(b.center_m.truncate());
-        let Some((severity, problem, may_drop)) = problem(context.frame.extent(), b, ground_m) else {
+        let Some((severity, text, may_drop)) = problem(context.frame.extent(), b, ground_m) else {
             continue;
         };
         let dropped = b.center_m.truncate().extend(ground_m + b.size_m.z / 2.0);
@@ -31,7 +32,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             box_id: Some(b.id),
             time_s: None,
             cells: Vec::new(),
-            text: format!("{} {problem}", name_of(b)),
+            text,
             fixes: fixes.into_iter().collect(),
         });
     }
@@ -44,27 +45,46 @@ fn problem(extent: Extent, b: &SceneBox, ground_m: f64) -> Option<(Severity, Str
     let (roof_m, fits) = (Extent::TOP_M, ground_m + b.size_m.z <= Extent::TOP_M);
     let center = b.center_m;
     if extent.column_at(center.x, center.y).is_none() {
-        let text = format!("stands outside the map, at {:.1}, {:.1} m", center.x, center.y);
+        let [x, y] = [center.x, center.y].map(|v| format!("{v:.1}"));
+        let text = tf!(
+            "{thing} stands outside the map, at {x}, {y} m",
+            thing = name_of(b),
+            x = x,
+            y = y
+        );
         return Some((Severity::Warning, text, false));
     }
     if top_m <= ground_m {
         return Some((
             Severity::Error,
-            format!("lies under the ground, its top at {top_m:.1} m"),
+            tf!(
+                "{thing} lies under the ground, its top at {top} m",
+                thing = name_of(b),
+                top = format!("{top_m:.1}")
+            ),
             fits,
         ));
     }
     if bottom_m >= roof_m {
         return Some((
             Severity::Error,
-            format!("flies above the grid, its bottom at {bottom_m:.1} m"),
+            tf!(
+                "{thing} flies above the grid, its bottom at {bottom} m",
+                thing = name_of(b),
+                bottom = format!("{bottom_m:.1}")
+            ),
             fits,
         ));
     }
     if top_m > roof_m {
         return Some((
             Severity::Warning,
-            format!("is cut off at {roof_m} m, its top is at {top_m:.1} m"),
+            tf!(
+                "{thing} is cut off at {limit} m, its top is at {top} m",
+                thing = name_of(b),
+                limit = roof_m,
+                top = format!("{top_m:.1}")
+            ),
             fits && bottom_m > ground_m,
         ));
     }
@@ -72,12 +92,21 @@ fn problem(extent: Extent, b: &SceneBox, ground_m: f64) -> Option<(Severity, Str
     if above_m < -TOLERANCE_M {
         return Some((
             Severity::Warning,
-            format!("sticks {:.1} m in the ground", -above_m),
+            tf!(
+                "{thing} sticks {depth} m in the ground",
+                thing = name_of(b),
+                depth = format!("{:.1}", -above_m)
+            ),
             fits,
         ));
     }
     (above_m > TOLERANCE_M).then(|| {
-        let text = format!("hovers {above_m:.1} m above the ground");
+        let height = format!("{above_m:.1}");
+        let text = tf!(
+            "{thing} hovers {height} m above the ground",
+            thing = name_of(b),
+            height = height
+        );
         (Severity::Warning, text, fits)
     })
 }

@@ -7,6 +7,7 @@ use super::geometry::{area_m2, shared_area_m2, shared_height_m};
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::reaching::reaching;
 use glam::DVec2;
+use language::{t, tf};
 use scene::raster::box_cells;
 use scene::{BoxId, Class, Extent, Motion, SceneBox};
 
@@ -115,7 +116,7 @@ impl OverTime {
 fn called(trace: &Trace, b: &SceneBox) -> String {
     match trace.id {
         Some(_) => name_of(b),
-        None => "the ego vehicle".to_owned(),
+        None => t("the ego vehicle").to_owned(),
     }
 }
 
@@ -147,11 +148,12 @@ pub fn too_fast(context: &Context<'_>, out: &mut Findings) {
         let Some((time_s, b)) = fastest.filter(|(_, b)| speed(b) > limits(b.class).0) else {
             continue;
         };
-        let text = format!(
-            "{} drives {:.0} km/h at {time_s:.1} s, at most {:.0} can be",
-            called(trace, b),
-            speed(b) * 3.6,
-            limits(b.class).0 * 3.6
+        let text = tf!(
+            "{thing} drives {speed} km/h at {time} s, at most {most} can be",
+            thing = called(trace, b),
+            speed = format!("{:.0}", speed(b) * 3.6),
+            time = format!("{time_s:.1}"),
+            most = format!("{:.0}", limits(b.class).0 * 3.6)
         );
         out.push(finding(TOO_FAST, Severity::Error, (trace, time_s, b), text));
     }
@@ -171,11 +173,12 @@ pub fn too_sudden(context: &Context<'_>, out: &mut Findings) {
             continue;
         };
         let (time_s, b) = w[1];
-        let text = format!(
-            "{} changes its speed by {:.0} m/s² at {time_s:.1} s, at most {:.0} can be",
-            called(trace, b),
-            change(w),
-            limits(b.class).1
+        let text = tf!(
+            "{thing} changes its speed by {change} m/s² at {time} s, at most {most} can be",
+            thing = called(trace, b),
+            change = format!("{:.0}", change(w)),
+            time = format!("{time_s:.1}"),
+            most = format!("{:.0}", limits(b.class).1)
         );
         out.push(finding(TOO_SUDDEN, Severity::Warning, (trace, time_s, b), text));
     }
@@ -193,7 +196,11 @@ pub fn backwards(context: &Context<'_>, out: &mut Findings) {
             }
             let since = *since_s.get_or_insert(time_s);
             if time_s - since > BACKWARDS_S {
-                let text = format!("{} drives backwards from {since:.1} s on", called(trace, b));
+                let text = tf!(
+                    "{thing} drives backwards from {time} s on",
+                    thing = called(trace, b),
+                    time = format!("{since:.1}")
+                );
                 out.push(finding(BACKWARDS, Severity::Warning, (trace, since, b), text));
                 break;
             }
@@ -228,8 +235,13 @@ pub fn collision(context: &Context<'_>, out: &mut Findings) {
                 }
                 let (first, most) = met.entry(other_id).or_insert_with(|| {
                     let other_name =
-                        other_id.map_or_else(|| "the ego vehicle".to_owned(), |_| name_of(other));
-                    let text = format!("{} and {other_name} meet at {time_s:.1} s", called(trace, b));
+                        other_id.map_or_else(|| t("the ego vehicle").to_owned(), |_| name_of(other));
+                    let text = tf!(
+                        "{first} and {second} meet at {time} s",
+                        first = called(trace, b),
+                        second = other_name,
+                        time = format!("{time_s:.1}")
+                    );
                     let here = (trace, *time_s, b);
                     (finding(COLLISION, Severity::Warning, here, text), share)
                 });
@@ -270,10 +282,11 @@ pub fn through_wall(context: &Context<'_>, out: &mut Findings) {
         let mut moments = over_time.moments(trace);
         let met = moments.find_map(|(t, b)| hits(b).map(|class| (t, *b, class)));
         if let Some((time_s, b, class)) = met {
-            let text = format!(
-                "{} drives through {} at {time_s:.1} s",
-                called(trace, &b),
-                class.label()
+            let text = tf!(
+                "{thing} drives through {class} at {time} s",
+                thing = called(trace, &b),
+                class = t(&class.label()),
+                time = format!("{time_s:.1}")
             );
             out.push(finding(THROUGH_WALL, Severity::Error, (trace, time_s, &b), text));
         }
@@ -287,7 +300,11 @@ pub fn leaves_map(context: &Context<'_>, out: &mut Findings) {
         let off = |b: &SceneBox| extent.column_at(b.center_m.x, b.center_m.y).is_none();
         let mut moments = over_time.moments(trace);
         if let Some((time_s, b)) = moments.find(|(_, b)| off(b)) {
-            let text = format!("{} leaves the map at {time_s:.1} s", called(trace, b));
+            let text = tf!(
+                "{thing} leaves the map at {time} s",
+                thing = called(trace, b),
+                time = format!("{time_s:.1}")
+            );
             let places = over_time.moments(trace).map(|(_, b)| b.center_m.truncate());
             out.push(Finding {
                 fixes: vec![Fix {

@@ -6,6 +6,7 @@ use super::geometry::{area_m2, shared_area_m2, shared_height_m, way_out_m};
 use super::unsound::are_duplicates;
 use super::{Context, Finding, Findings, Fix, Severity, name_of};
 use crate::Edit;
+use language::tf;
 
 pub const NAME: &str = "overlapping_boxes";
 /// Boxes may share this part of the smaller footprint, and this height, without a word: labels are not exact.
@@ -67,11 +68,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
                 box_id: Some(b.id),
                 time_s: None,
                 cells: Vec::new(),
-                text: format!(
-                    "{} and {} overlap by {:.0} % of the smaller one",
-                    name_of(a),
-                    name_of(b),
-                    100.0 * share.min(1.0)
+                text: tf!(
+                    "{first} and {second} overlap by {percent} % of the smaller one",
+                    first = name_of(a),
+                    second = name_of(b),
+                    percent = format!("{:.0}", 100.0 * share.min(1.0))
                 ),
                 // What takes a box away is never what is done without asking for it by name.
                 fixes: vec![apart, remove],

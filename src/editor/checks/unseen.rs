@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::box_without_occupancy::voxels;
 use super::{Context, Finding, Findings, Severity, name_of};
+use language::{filled, t};
 use scene::BoxId;
 
 pub const NO_CAMERA: &str = "unseen_by_cameras";
@@ -15,14 +16,14 @@ pub fn by_cameras(context: &Context<'_>, out: &mut Findings) {
         context,
         NO_CAMERA,
         counts,
-        "is in no camera picture: hidden, too small, or out of view",
+        "{thing} is in no camera picture: hidden, too small, or out of view",
         out,
     );
 }
 
 pub fn by_lidar(context: &Context<'_>, out: &mut Findings) {
     let counts = context.seen.and_then(|s| s.lidar_returns.as_ref());
-    unseen(context, NO_LIDAR, counts, "has no LiDAR return", out);
+    unseen(context, NO_LIDAR, counts, "{thing} has no LiDAR return", out);
 }
 
 fn unseen(
@@ -43,7 +44,7 @@ fn unseen(
                 box_id: Some(b.id),
                 time_s: None,
                 cells: Vec::new(),
-                text: format!("{} {problem}", name_of(b)),
+                text: filled(t(problem), &[("thing", &name_of(b))]),
                 fixes: Vec::new(),
             });
         }

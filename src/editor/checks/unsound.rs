@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::{Context, Finding, Findings, Fix, Severity, middle, name_of, removal};
 use crate::Edit;
+use language::{t, tf};
 use scene::{BoxId, Class, SceneBox};
 
 pub const NAME: &str = "unsound";
@@ -19,7 +20,7 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     for (id, b) in &frame.boxes {
         let problem = match b.problem() {
             None if *id == b.id => continue,
-            None => format!("box {} is filed under id {}", b.id.0, id.0),
+            None => tf!("box {id} is filed under id {other}", id = b.id.0, other = id.0),
             Some(problem) => problem,
         };
         let fix = ("Remove the box", Edit::RemoveBox { id: *id });
@@ -27,26 +28,34 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
     }
     for (i, a) in context.boxes.iter().enumerate() {
         for b in context.boxes[i + 1..].iter().filter(|b| are_duplicates(a, b)) {
-            let text = format!("{} is there twice, as {} too", name_of(a), b.id.0);
+            let text = tf!(
+                "{thing} is there twice, as {id} too",
+                thing = name_of(a),
+                id = b.id.0
+            );
             let fix = ("Remove the copy", Edit::RemoveBox { id: b.id });
             out.push(error(b.center_m, Some(b.id), text, vec![fix]));
         }
     }
     for (i, line) in frame.layout.polylines.iter().enumerate() {
         if let Some(p) = line.points_m.iter().find(|p| !p.is_finite()) {
-            let text = format!("polyline {i} has a vertex at {p}, expected finite numbers");
+            let text = tf!(
+                "polyline {i} has a vertex at {place}, expected finite numbers",
+                i = i,
+                place = p
+            );
             out.push(error(DVec3::ZERO, None, text, Vec::new()));
         }
     }
     if !frame.time_s.is_finite() || !frame.world_from_ego.translation_m.is_finite() {
-        let text = "time or pose of the frame is not finite".to_owned();
+        let text = t("time or pose of the frame is not finite").to_owned();
         out.push(error(DVec3::ZERO, None, text, Vec::new()));
     }
     if let Some(problem) = context.scene.rig.problem() {
         out.push(error(
             DVec3::ZERO,
             None,
-            format!("sensors: {problem}"),
+            tf!("sensors: {problem}", problem = problem),
             Vec::new(),
         ));
     }
@@ -55,10 +64,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
         outside.entry(label).or_default().push([x, y, z]);
     }
     for (label, cells) in outside {
-        let text = format!(
-            "{} voxels hold label {label}, expected 0 to {}",
-            cells.len(),
-            Class::FREE
+        let text = tf!(
+            "{n} voxels hold label {label}, expected 0 to {most}",
+            n = cells.len(),
+            label = label,
+            most = Class::FREE
         );
         let mut finding = error(middle(context.frame.extent(), &cells), None, text, Vec::new());
         finding.fixes.push(Fix {

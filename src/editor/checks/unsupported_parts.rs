@@ -4,6 +4,7 @@
 use super::floating_voxels::lowest_m;
 use super::{Context, Finding, Findings, Fix, Severity, middle};
 use crate::Edit;
+use language::{t, tf};
 use scene::Class;
 use scene::support::{CROWN, bins_set, ground, groups, is_known_to_float, neighbours, reached, stem};
 
@@ -58,11 +59,11 @@ pub fn check(context: &Context<'_>, out: &mut Findings) {
             severity: Severity::Warning,
             where_m: middle(extent, &part),
             box_id: None,
-            text: format!(
-                "{} voxels of {} rest on nothing, {:.1} m above the ground",
-                part.len(),
-                class.label(),
-                lowest_m(extent, &part)
+            text: tf!(
+                "{n} voxels of {class} rest on nothing, {height} m above the ground",
+                n = part.len(),
+                class = t(&class.label()),
+                height = format!("{:.1}", lowest_m(extent, &part))
             ),
             time_s: None,
             cells: part,

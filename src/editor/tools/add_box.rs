@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::arrange::adding;
+use language::t;
 use scene::{Class, Frame, variants};
 
 use super::setting::{Control, Setting, Value};
@@ -150,7 +151,8 @@ impl Tool for AddBox {
 
     fn options(&self, hand: &Hand) -> Vec<Setting> {
         let class = hand.box_class;
-        let named = |name: &str, [x, y, z]: [f64; 3]| (format!("{name}   {x:.2} × {y:.2} × {z:.2} m"), "");
+        let named =
+            |name: &str, [x, y, z]: [f64; 3]| (format!("{}   {x:.2} × {y:.2} × {z:.2} m", t(name)), "");
         let typical = named("Typical", class.typical_size_m().unwrap_or_default());
         let kinds = variants::of_class(class).map(|kind| named(kind.name, kind.size_m));
         vec![

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::{Edit, Shape, flood};
+use language::{t, tf};
 use scene::raster::disc_cells;
 use scene::{BevLayer, Class, Extent, Frame};
 
@@ -282,9 +283,9 @@ impl Drag {
 
 /// What says that a layer is locked.
 pub(super) fn locked(layer: BevLayer) -> Response {
-    let text = format!(
-        "Layer {:?} is locked: its lock is in the list of layers",
-        layer.label()
+    let text = tf!(
+        "Layer \"{layer}\" is locked: its lock is in the list of layers",
+        layer = t(&layer.label())
     );
     Response::act(Act::Note(text))
 }

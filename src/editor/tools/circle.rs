@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::Shape;
+use language::{filled, t};
 use scene::{BevLayer, Frame};
 
 use super::setting::{self, Setting, Value};
@@ -139,8 +140,11 @@ impl Tool for Circle {
             };
             return hint_of(&["Press at the middle", drag, "Shift erases"]);
         };
-        let what = if disc.erase { "Erases" } else { "Paints" };
-        let radius = format!("{what} a disc of {:.1} m radius", disc.radius_m);
+        let what = match disc.erase {
+            true => "Erases a disc of {radius} m radius",
+            false => "Paints a disc of {radius} m radius",
+        };
+        let radius = filled(t(what), &[("radius", &format!("{:.1}", disc.radius_m))]);
         vec![radius.into(), "Release: done".into(), "Esc cancels".into()]
     }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use language::tf;
 use scene::{Extent, Frame};
 
 use super::setting::{self, Setting, Value};
@@ -181,7 +182,7 @@ impl Tool for Marker {
             out.push(Setting::number("size", "Brush, m", hand.brush_m, range, 1));
         }
         out.extend([
-            Setting::text(format!("{:.0} m² marked", hand.region_m2)),
+            Setting::text(tf!("{area} m² marked", area = format!("{:.0}", hand.region_m2))),
             Setting::number("strength", "Strength", hand.region_strength, [0.05, 1.0], 1),
             Setting::text("1: all of it new. Less is a variation of what is there."),
             Setting::new(

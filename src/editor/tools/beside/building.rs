@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use crate::kerb;
+use language::tf;
 use scene::Form;
 use scene::background::{Building, Facade, Roof, STOREY_M, crossing_edges};
 
@@ -225,9 +226,11 @@ fn rectangle(from_m: DVec2, p: &Pointer, site: &Site<'_>, options: &ThingState) 
     let d = p.at_m - from_m;
     let sides = DVec2::new(d.dot(along), d.dot(along.perp())).abs();
     if sides.min_element() < LEAST_M {
-        return Err(format!(
-            "The building would be {:.1} × {:.1} m, expected at least {LEAST_M} m",
-            sides.x, sides.y
+        return Err(tf!(
+            "The building would be {length} × {width} m, expected at least {least} m",
+            length = format!("{:.1}", sides.x),
+            width = format!("{:.1}", sides.y),
+            least = LEAST_M
         ));
     }
     let outline = Building::rectangle((from_m + p.at_m) / 2.0, sides / 2.0, along, STOREY_M).outline_m;

@@ -11,6 +11,7 @@ use crate::tools::{
     Act, At, CLICK_SLACK, Context, Cursor, Event, Hand, Hint, Key, Mark, Response, Role, Sight, Tool, View,
     ViewKind, farthest_m, hint_of,
 };
+use language::tf;
 use scene::{Form, Frame, Scene};
 
 use super::{Outcome, Phase, Pointer, Site, ThingState};
@@ -69,7 +70,11 @@ pub(super) fn length(points_m: &[DVec2]) -> Option<String> {
     let last = pieces.last()?;
     Some(match pieces.len() {
         1 => format!("{last:.1} m"),
-        _ => format!("{last:.1} m  ·  {:.1} m in all", pieces.iter().sum::<f64>()),
+        _ => tf!(
+            "{last} m  ·  {all} m in all",
+            last = format!("{last:.1}"),
+            all = format!("{:.1}", pieces.iter().sum::<f64>())
+        ),
     })
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use language::{t, tf};
 use scene::Form;
 use scene::background::{LineKind, Tree};
 
@@ -69,7 +70,10 @@ impl Draft for LineDraft {
 
     fn finish(&mut self, options: &ThingState) -> Outcome {
         if self.points_m.len() < 2 {
-            return Outcome::Refused(format!("A {} needs two points or more", options.line.name()));
+            return Outcome::Refused(tf!(
+                "A {kind} needs two points or more",
+                kind = t(options.line.name())
+            ));
         }
         let form = Form::Line(options.line_of(self.points_m.clone()));
         match form.problem() {

@@ -1,20 +1,21 @@
 //! What things are called in undo steps and panels.
 
+use language::{t, tf};
 use scene::Form;
 
 /// One of a kind: `tree`; several: `5 trees`; of several kinds: `5 things`.
 pub fn count(forms: &[&Form]) -> String {
     match forms {
-        [] => "nothing".to_owned(),
-        [one] => one.name().to_owned(),
+        [] => t("nothing").to_owned(),
+        [one] => t(one.name()).to_owned(),
         [first, ..] if forms.iter().all(|f| f.name() == first.name()) => {
-            format!("{} {}", forms.len(), plural(first.name()))
+            tf!("{n} {things}", n = forms.len(), things = t(&plural(first.name())))
         }
-        _ => format!("{} things", forms.len()),
+        _ => tf!("{n} things", n = forms.len()),
     }
 }
 
-/// Several of a kind, without a number.
+/// Several of a kind, without a number, in English.
 pub fn plural(name: &str) -> String {
     match name {
         "shrubs" => "areas of shrubs".to_owned(),

@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
+use language::t;
 use scene::roads::{NodeKind, RoadNode, curve};
 use scene::{Road, RoadId};
 
+use super::options::summary;
 use super::part::{RoadPart, Seen};
 use crate::tools::{At, Mark, Role, Sight};
 
@@ -51,7 +53,7 @@ pub(super) fn over_map(seen: &Seen, sight: &Sight<'_>) -> Vec<Mark> {
     {
         out.extend(outline(road, &lines[&id]).map(|points| Mark::Line(at(&points), Role::Hand)));
         if let Some(pointer) = sight.pointer {
-            out.push(Mark::Tag(At::Screen(pointer.at), road.summary()));
+            out.push(Mark::Tag(At::Screen(pointer.at), summary(road)));
         }
     }
     out
@@ -87,7 +89,7 @@ fn chosen_road(road: &Road, line: &[DVec2], sight: &Sight<'_>, out: &mut Vec<Mar
         let (p, _) = curve::at(&middle, curve::length_m(&middle) / 2.0);
         out.push(Mark::Label(
             p.into(),
-            format!("{} {:.1} m", lane.kind.title(), lane.width_m),
+            format!("{} {:.1} m", t(lane.kind.title()), lane.width_m),
         ));
     }
     arrows(road, line, 1.0 / sight.view.scale(), out);

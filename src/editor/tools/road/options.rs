@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use language::{filled, t, tf};
 use scene::roads::{LaneKind, NodeKind, RoadChange, RoadCrossing, RoadLane, RoadStop, curve};
 use scene::{Road, RoadId, RoadNetwork, RoadNode};
 
@@ -44,7 +45,10 @@ pub(super) fn of(seen: &Seen, hand: &RoadHand) -> Vec<Setting> {
             let text = match count {
                 0 => "No road is here. Draw one with the street tool, or paint drivable area.".to_owned(),
                 1 => "1 road. Click it to reshape it.".to_owned(),
-                n => format!("{n} roads. Click one, or a dot where they meet, to reshape it."),
+                n => tf!(
+                    "{n} roads. Click one, or a dot where they meet, to reshape it.",
+                    n = n
+                ),
             };
             out.push(Setting::text(text));
             let draw = Setting::button("draw", "Draw a street", "point by point", true);
@@ -83,21 +87,39 @@ fn list(id: &'static str, title: &'static str, value: f64, all: &[f64], unit: &s
     Setting::new(id, control)
 }
 
+/// Its lanes and its speed limit, for a person.
+pub(super) fn summary(road: &Road) -> String {
+    let lanes = match (road.driven(true), road.driven(false)) {
+        (0, 0) => t("no lanes").to_owned(),
+        (1, 0) | (0, 1) => t("one-way, 1 lane").to_owned(),
+        (n, 0) | (0, n) => tf!("one-way, {n} lanes", n = n),
+        (ahead, back) => tf!("{ahead} + {back} lanes", ahead = ahead, back = back),
+    };
+    let limit = road.limit_kph.map(|v| format!(", {v:.0} km/h"));
+    lanes + &limit.unwrap_or_default()
+}
+
 fn of_road(seen: &Seen, road: &Road, hand: &RoadHand, out: &mut Vec<Setting>) {
     let length_m = seen.lines.get(&road.id).map_or(0.0, |l| curve::length_m(l));
-    out.push(Setting::text(format!(
-        "Road {}: {}, {length_m:.0} m",
-        road.id.0,
-        road.summary()
+    out.push(Setting::text(tf!(
+        "Road {id}: {summary}, {length} m",
+        id = road.id.0,
+        summary = summary(road),
+        length = format!("{length_m:.0}")
     )));
     let names: Vec<(String, &'static str)> = lanes(road)
         .map(|(right, i)| {
             let lane = road.side(right)[i];
-            let side = if right { "R" } else { "L" };
-            (
-                format!("{}{} {}, {:.1} m", side, i + 1, lane.kind.title(), lane.width_m),
-                "",
-            )
+            let name = match right {
+                true => "R{number} {kind}, {width} m",
+                false => "L{number} {kind}, {width} m",
+            };
+            let (number, kind, width) = (i + 1, t(lane.kind.title()), format!("{:.1}", lane.width_m));
+            let name = filled(
+                t(name),
+                &[("number", &number), ("kind", &kind), ("width", &width)],
+            );
+            (name, "")
         })
         .collect();
     let chosen = chosen_lane(road, hand).and_then(|lane| lanes(road).position(|l| l == lane));
@@ -171,7 +193,7 @@ fn of_node(net: &RoadNetwork, node: &RoadNode, out: &mut Vec<Setting>) {
     let what = match arms {
         0 | 1 => "End of a road".to_owned(),
         2 => "Joint of two roads".to_owned(),
-        n => format!("Junction of {n} roads"),
+        n => tf!("Junction of {n} roads", n = n),
     };
     out.push(Setting::text(what));
     let round = matches!(node.kind, NodeKind::Roundabout { .. });

@@ -5,6 +5,7 @@ use glam::DVec2;
 use crate::Edit;
 use crate::lanes::nearest_lane;
 use crate::tools::{Act, HANDLE_REACH, Hand, Modifiers, Response, Sight};
+use language::tf;
 use scene::clip::Path;
 use scene::{BoxId, Clip, Frame, Motion, Scene};
 
@@ -95,9 +96,11 @@ impl MotionDrag {
         match (&self.start, self.knot) {
             (Motion::Keys(keys), Knot::Key(i)) => {
                 let time_s = keys.get(i).map_or(0.0, |k| k.time_s);
-                format!("keyframe at {time_s:.1} s")
+                tf!("keyframe at {time} s", time = format!("{time_s:.1}"))
             }
-            (_, Knot::Along(along_m)) => format!("{along_m:.0} m along the path"),
+            (_, Knot::Along(along_m)) => {
+                tf!("{length} m along the path", length = format!("{along_m:.0}"))
+            }
             _ => String::new(),
         }
     }

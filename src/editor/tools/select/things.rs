@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 use crate::arrange::boxes_of;
 use crate::pick_things;
 use crate::{Edit, kerb};
+use language::tf;
 use scene::{Form, Frame, Scene, SceneBox, ThingId};
 
 use crate::tools::beside::{KERB_M, words};
@@ -109,12 +110,12 @@ impl ThingDrag {
     /// The name of the undo step that it makes.
     pub fn label(&self) -> String {
         let forms: Vec<&Form> = self.start.iter().map(|(_, f)| f).collect();
-        let what = words::count(&forms);
+        let things = words::count(&forms);
         match self.pull {
-            Pull::Place if self.boxes.is_empty() => format!("Move {what}"),
-            Pull::Place => format!("Move {} boxes and things", self.boxes.len() + forms.len()),
-            Pull::Corner(_) => format!("Reshape {what}"),
-            Pull::Height => format!("Raise {what}"),
+            Pull::Place if self.boxes.is_empty() => tf!("Move {things}", things = things),
+            Pull::Place => tf!("Move {n} boxes and things", n = self.boxes.len() + forms.len()),
+            Pull::Corner(_) => tf!("Reshape {things}", things = things),
+            Pull::Height => tf!("Raise {things}", things = things),
         }
     }
 }

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 use crate::Edit;
 use crate::pick::{self, Ray, VoxelHit};
 use crate::voxel_ops::{self, Cell};
+use language::tf;
 use scene::{Class, Extent, Frame};
 
 use super::rays::{along_axis, on_plane};
@@ -444,7 +445,7 @@ impl Tool for Voxels {
             if let [a, b] = across[..] {
                 out.push(Mark::Tag(
                     At::Screen(pointer.at),
-                    format!("{a} × {b} × {height} voxels"),
+                    tf!("{a} × {b} × {height} voxels", a = a, b = b, height = height),
                 ));
             }
         }
@@ -548,7 +549,7 @@ fn chosen(hand: &Hand) -> [Setting; 2] {
     let text = match n {
         0 => "Click voxels to choose what is connected; Shift adds.".to_owned(),
         1 => "1 voxel chosen".to_owned(),
-        n => format!("{n} voxels chosen"),
+        n => tf!("{n} voxels chosen", n = n),
     };
     let buttons = vec![
         Setting::button("remove", "Remove them", "Del", n > 0),
