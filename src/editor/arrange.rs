@@ -35,7 +35,11 @@ impl Added {
             };
             let to = self.edits.iter().find_map(|edit| placed(edit, *id));
             if let Some((at_m, yaw_rad)) = to {
-                let to = Moving { at_m, yaw_rad, ..*from };
+                let to = Moving {
+                    at_m,
+                    yaw_rad,
+                    ..*from
+                };
                 self.edits.push(Edit::SetMotion {
                     id: Some(*id),
                     motion: Some(motion.carried(from, &to)),

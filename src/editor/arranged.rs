@@ -75,7 +75,10 @@ pub fn locked(scene: &Scene, edits: &[Edit]) -> Result<(), EditError> {
         if let Some(id) = box_of(edit).filter(|id| arranged.locked.boxes.contains(id)) {
             return Err(EditError::LockedBox { id });
         }
-        if let Some(id) = things_of(edit).iter().find(|id| arranged.locked.things.contains(id)) {
+        if let Some(id) = things_of(edit)
+            .iter()
+            .find(|id| arranged.locked.things.contains(id))
+        {
             return Err(EditError::LockedThing { id: *id });
         }
     }
@@ -94,7 +97,8 @@ pub fn unlocked(scene: &Scene, edits: Vec<Edit>) -> (Vec<Edit>, Members) {
             kept.boxes.insert(id);
             continue;
         }
-        kept.things.extend(things_of(&edit).iter().filter(|id| locked.things.contains(id)));
+        kept.things
+            .extend(things_of(&edit).iter().filter(|id| locked.things.contains(id)));
         match &mut edit {
             Edit::RemoveThings { ids } | Edit::MoveThings { ids, .. } | Edit::RaiseThings { ids, .. } => {
                 ids.retain(|id| !locked.things.contains(id));
@@ -116,7 +120,10 @@ pub fn seen(scene: &Arc<Scene>) -> Arc<Scene> {
         return scene.clone();
     }
     let mut seen = Scene::clone(scene);
-    let there = hidden.boxes.iter().filter(|id| scene.frame().boxes.contains_key(id));
+    let there = hidden
+        .boxes
+        .iter()
+        .filter(|id| scene.frame().boxes.contains_key(id));
     let mut edits: Vec<Edit> = there.map(|id| Edit::RemoveBox { id: *id }).collect();
     if !hidden.things.is_empty() {
         let ids = hidden.things.iter().copied().collect();
@@ -157,8 +164,15 @@ mod tests {
             crown_radius_m: 1.5,
             kind: TreeKind::Conifer,
         });
-        let edits = [car(-10.0), car(0.0), car(10.0), Edit::AddThings { forms: vec![tree] }];
-        document.apply_all("Three cars and a tree", &edits).expect("sound");
+        let edits = [
+            car(-10.0),
+            car(0.0),
+            car(10.0),
+            Edit::AddThings { forms: vec![tree] },
+        ];
+        document
+            .apply_all("Three cars and a tree", &edits)
+            .expect("sound");
         document
     }
 
@@ -200,7 +214,10 @@ mod tests {
             turn.clone(),
             at,
             Edit::RemoveBox { id },
-            Edit::SetBoxClass { id, class: Class::Bus },
+            Edit::SetBoxClass {
+                id,
+                class: Class::Bus,
+            },
             Edit::SetMotion {
                 id: Some(id),
                 motion: None,
@@ -212,7 +229,10 @@ mod tests {
             assert!(document.preview(&edit).is_err());
         }
         let fell = Edit::RemoveThings { ids: vec![tree] };
-        assert_eq!(document.apply("x", &fell), Err(EditError::LockedThing { id: tree }));
+        assert_eq!(
+            document.apply("x", &fell),
+            Err(EditError::LockedThing { id: tree })
+        );
         assert_eq!(document.scene().content(), before.content());
         // Of several, the others change.
         let all = vec![Edit::RemoveBox { id: BoxId(1) }, Edit::RemoveBox { id }, fell];
@@ -232,7 +252,9 @@ mod tests {
             let grid = &scene.frame().occupancy;
             let [nx, ny, nz] = grid.extent().shape();
             let cells = (0..nx).flat_map(|x| (0..ny).flat_map(move |y| (0..nz).map(move |z| (x, y, z))));
-            cells.filter(|(x, y, z)| grid.get(*x, *y, *z) == Class::Car.id()).count()
+            cells
+                .filter(|(x, y, z)| grid.get(*x, *y, *z) == Class::Car.id())
+                .count()
         };
         let all = solid(document.scene());
         document

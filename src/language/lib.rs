@@ -33,7 +33,9 @@ impl Language {
         let name = texts.remove("").unwrap_or_else(|| code.to_owned());
         for (english, own) in &texts {
             if places(english) != places(own) {
-                return Err(format!("language {code}: {own:?} has other places in braces than {english:?}"));
+                return Err(format!(
+                    "language {code}: {own:?} has other places in braces than {english:?}"
+                ));
             }
         }
         Ok(Self {
@@ -196,7 +198,11 @@ mod tests {
         for (code, json) in BUILT_IN {
             let language = Language::read(code, json).expect(code);
             assert_ne!(language.name, code, "it says what it calls itself");
-            assert!(language.texts().all(|(english, own)| !english.is_empty() && !own.trim().is_empty()));
+            assert!(
+                language
+                    .texts()
+                    .all(|(english, own)| !english.is_empty() && !own.trim().is_empty())
+            );
         }
     }
 
@@ -208,7 +214,10 @@ mod tests {
         assert_eq!(filled(text, &[("n", &2), ("all", &"zehn")]), "von zehn sind es 2");
         assert_eq!(language.text("Undo"), "Rückgängig");
         assert_eq!(language.text("Redo"), "Redo");
-        assert_eq!(tf!("{n} of {all}, {{}} { } {other}", n = 1, all = "x"), "1 of x, {{}} { } {other}");
+        assert_eq!(
+            tf!("{n} of {all}, {{}} { } {other}", n = 1, all = "x"),
+            "1 of x, {{}} { } {other}"
+        );
         assert_eq!(filled("{n", &[("n", &1)]), "{n");
     }
 

@@ -175,7 +175,10 @@ impl Arranged {
         let mut seen = Members::default();
         for (i, group) in self.groups.iter().enumerate() {
             if group.members.len() < 2 {
-                return Some(format!("group {i} has {} members, expected at least 2", group.members.len()));
+                return Some(format!(
+                    "group {i} has {} members, expected at least 2",
+                    group.members.len()
+                ));
             }
             if seen.meets(&group.members) {
                 return Some(format!("group {i} has a member of another group"));

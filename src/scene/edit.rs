@@ -10,8 +10,8 @@ use crate::grid::Extent;
 use crate::roads::RoadChange;
 use crate::shape::Shape;
 use crate::{
-    Arrangement, BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox, Scope, SensorRig,
-    Template, ThingId, VoxelGrid,
+    Arrangement, BevLayer, BoxId, BoxLabel, Class, Conditions, Form, Frame, Motion, Polyline, SceneBox,
+    Scope, SensorRig, Template, ThingId, VoxelGrid,
 };
 
 /// One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:

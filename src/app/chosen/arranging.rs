@@ -40,7 +40,9 @@ impl SceneloomApp {
         let chosen = self.members();
         let arranged = self.document.settled_scene().arranged.clone();
         let how = match how {
-            Arrangement::Lock if !chosen.is_empty() && chosen.is_within(&arranged.locked) => Arrangement::Unlock,
+            Arrangement::Lock if !chosen.is_empty() && chosen.is_within(&arranged.locked) => {
+                Arrangement::Unlock
+            }
             how => how,
         };
         if chosen.is_empty() {

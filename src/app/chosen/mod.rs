@@ -110,7 +110,9 @@ impl SceneloomApp {
                 true => self.note(t("Choose the boxes to copy first")),
                 false => self.state.tools.row_open = true,
             },
-            ToolCommand::Row(row) => self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row).with(&ties)),
+            ToolCommand::Row(row) => {
+                self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row).with(&ties))
+            }
             ToolCommand::Mirror(copies) => {
                 let keep = self.state.tools.mirror_keeps_direction;
                 if copies {

@@ -169,10 +169,22 @@ fn arranging(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands
     let chosen = state.chosen().len() + state.tools.things.chosen.len();
     if chosen > 1 {
         let name = Default::default();
-        entry(ui, "Group", "Ctrl+G", commands, arrange(Arrangement::Group { name }));
+        entry(
+            ui,
+            "Group",
+            "Ctrl+G",
+            commands,
+            arrange(Arrangement::Group { name }),
+        );
     }
     if scene.arranged.group_of_box(b.id).is_some() {
-        entry(ui, "Ungroup", "Ctrl+Shift+G", commands, arrange(Arrangement::Ungroup));
+        entry(
+            ui,
+            "Ungroup",
+            "Ctrl+Shift+G",
+            commands,
+            arrange(Arrangement::Ungroup),
+        );
     }
     entry(ui, "Hide", "Ctrl+H", commands, arrange(Arrangement::Hide));
     match scene.arranged.locked.boxes.contains(&b.id) {

@@ -32,7 +32,10 @@ pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) 
     let folded: BTreeSet<usize> = ui.data(|d| d.get_temp(folded_id())).unwrap_or_default();
     let mut out = Vec::with_capacity(boxes.len() + arranged.groups.len());
     for (i, group) in arranged.groups.iter().enumerate() {
-        let inside: Vec<_> = boxes.iter().filter(|b| group.members.boxes.contains(&b.id)).collect();
+        let inside: Vec<_> = boxes
+            .iter()
+            .filter(|b| group.members.boxes.contains(&b.id))
+            .collect();
         if inside.is_empty() && !group.members.boxes.is_empty() {
             continue;
         }
@@ -47,8 +50,17 @@ pub(super) fn rows<'a>(ui: &Ui, arranged: &'a Arranged, boxes: &[&'a SceneBox]) 
 }
 
 /// Draws the eye and the lock of a row, at its right end; `name` is what it is called.
-pub(super) fn switches(ui: &mut Ui, members: &Members, arranged: &Arranged, name: &str, commands: &mut Vec<Command>) {
-    let (shown, locked) = (!members.is_within(&arranged.hidden), members.is_within(&arranged.locked));
+pub(super) fn switches(
+    ui: &mut Ui,
+    members: &Members,
+    arranged: &Arranged,
+    name: &str,
+    commands: &mut Vec<Command>,
+) {
+    let (shown, locked) = (
+        !members.is_within(&arranged.hidden),
+        members.is_within(&arranged.locked),
+    );
     let mut send = |how: Arrangement| {
         let edits = vec![arranging::arranging(members, how.clone())];
         commands.push(Command::Apply(arranging::label(&how), edits));
@@ -57,15 +69,29 @@ pub(super) fn switches(ui: &mut Ui, members: &Members, arranged: &Arranged, name
         true => t("Locked: edits leave it as it is. Click unlocks it."),
         false => t("Lock: edits leave it as it is"),
     };
-    if lock(ui, locked, &tf!("Lock {name}", name = name)).on_hover_text(lock_hint).clicked() {
-        send(if locked { Arrangement::Unlock } else { Arrangement::Lock });
+    if lock(ui, locked, &tf!("Lock {name}", name = name))
+        .on_hover_text(lock_hint)
+        .clicked()
+    {
+        send(if locked {
+            Arrangement::Unlock
+        } else {
+            Arrangement::Lock
+        });
     }
     let eye_hint = match shown {
         true => t("Hide in the large views; sensors go on seeing it"),
         false => t("Hidden in the large views. Click shows it."),
     };
-    if eye(ui, shown, &tf!("Show {name}", name = name)).on_hover_text(eye_hint).clicked() {
-        send(if shown { Arrangement::Hide } else { Arrangement::Show });
+    if eye(ui, shown, &tf!("Show {name}", name = name))
+        .on_hover_text(eye_hint)
+        .clicked()
+    {
+        send(if shown {
+            Arrangement::Hide
+        } else {
+            Arrangement::Show
+        });
     }
 }
 
@@ -81,7 +107,13 @@ pub(super) fn title(group: &Group) -> String {
 }
 
 /// Draws the row of a group.
-pub(super) fn group_ui(ui: &mut Ui, (i, group): (usize, &Group), scene: &Scene, state: &UiState, commands: &mut Vec<Command>) {
+pub(super) fn group_ui(
+    ui: &mut Ui,
+    (i, group): (usize, &Group),
+    scene: &Scene,
+    state: &UiState,
+    commands: &mut Vec<Command>,
+) {
     let name = title(group);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -98,7 +130,14 @@ pub(super) fn group_ui(ui: &mut Ui, (i, group): (usize, &Group), scene: &Scene, 
         let label = tf!("Group {name}", name = &name);
         let row = ui
             .allocate_ui(egui::vec2(room, theme::ROW), |ui| {
-                icons::row(ui, theme::text_weak(), &name, &count, group.members.is_within(&chosen), &label)
+                icons::row(
+                    ui,
+                    theme::text_weak(),
+                    &name,
+                    &count,
+                    group.members.is_within(&chosen),
+                    &label,
+                )
             })
             .inner;
         if row.clicked() {

@@ -6,8 +6,8 @@ use glam::DVec3;
 use language::{t, tf};
 
 use super::box_menu;
-use super::id::PaneId;
 use super::group_list::{self, Row};
+use super::id::PaneId;
 use super::object_order::listing_ui;
 use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
@@ -320,7 +320,14 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
     let limit = SceneBox::LIMIT_M;
     // In the box's own axes there is no place but where it is: the fields shift it.
     let position = match local {
-        false => numbers(ui, t("Position"), ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05),
+        false => numbers(
+            ui,
+            t("Position"),
+            ["X", "Y", "Z"],
+            &mut center,
+            -limit..=limit,
+            0.05,
+        ),
         true => {
             let start = shift_start(ui, b);
             let mut shift = start.to_local(b.center_m);
@@ -346,7 +353,9 @@ fn inspector(ui: &mut Ui, b: &SceneBox, hand: &Hand, commands: &mut Vec<Command>
                 .speed(0.5)
                 .fixed_decimals(1)
                 .suffix("°");
-            let drag = ui.add_sized([64.0, theme::ROW], drag).accessible_name(t("Heading"));
+            let drag = ui
+                .add_sized([64.0, theme::ROW], drag)
+                .accessible_name(t("Heading"));
             speed(ui, b);
             drag
         })
@@ -456,10 +465,25 @@ fn several(ui: &mut Ui, frame: &Frame, hand: &Hand, commands: &mut Vec<Command>)
     label_ui(ui, &boxes, commands);
     let limit = SceneBox::LIMIT_M;
     let (mut center, mut size, mut yaw_deg) = (middle_m, first.size_m, heading_deg(first.yaw_rad));
-    let position = numbers(ui, t("Middle"), ["X", "Y", "Z"], &mut center, -limit..=limit, 0.05);
+    let position = numbers(
+        ui,
+        t("Middle"),
+        ["X", "Y", "Z"],
+        &mut center,
+        -limit..=limit,
+        0.05,
+    );
     let names = [t("Length"), t("Width"), t("Height")];
     let dimensions = numbers(ui, t("Size"), names, &mut size, 0.1..=60.0, 0.05);
-    let turned = number(ui, t("Heading"), t("Heading"), &mut yaw_deg, -360.0..=360.0, "°", 1);
+    let turned = number(
+        ui,
+        t("Heading"),
+        t("Heading"),
+        &mut yaw_deg,
+        -360.0..=360.0,
+        "°",
+        1,
+    );
     let of_each = |edit: &dyn Fn(&SceneBox) -> [Option<DVec3>; 2], yaw_deg: Option<f64>| {
         let one = |b: &SceneBox| {
             let [center_m, size_m] = edit(b);

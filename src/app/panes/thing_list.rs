@@ -89,11 +89,7 @@ pub fn row_ui(ui: &mut Ui, row: &ThingRow<'_>, scene: &Scene, hand: &mut Hand, c
                 height = format!("{:.1}", thing.form.height_m()),
                 away = format!("{:.0}", at_m.length())
             );
-            let label = tf!(
-                "Thing {id} {name}",
-                id = thing.id.0,
-                name = t(thing.form.name())
-            );
+            let label = tf!("Thing {id} {name}", id = thing.id.0, name = t(thing.form.name()));
             let response = ui
                 .horizontal(|ui| {
                     ui.add_space(theme::ROW);

@@ -127,18 +127,30 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Selection, "hide", "Hide what is chosen", "Ctrl+H", || {
         arrange(Arrangement::Hide)
     }),
-    action(Selection, "hide_others", "Hide all other boxes", "Ctrl+Alt+H", || {
-        Command::Tools(ToolCommand::HideOthers)
-    }),
-    action(Selection, "show_all", "Show all that is hidden", "Ctrl+Shift+H", || {
-        Command::Tools(ToolCommand::ShowAll)
-    }),
+    action(
+        Selection,
+        "hide_others",
+        "Hide all other boxes",
+        "Ctrl+Alt+H",
+        || Command::Tools(ToolCommand::HideOthers),
+    ),
+    action(
+        Selection,
+        "show_all",
+        "Show all that is hidden",
+        "Ctrl+Shift+H",
+        || Command::Tools(ToolCommand::ShowAll),
+    ),
     action(Selection, "lock", "Lock what is chosen", "Ctrl+L", || {
         arrange(Arrangement::Lock)
     }),
-    action(Selection, "unlock_all", "Unlock everything", "Ctrl+Shift+L", || {
-        Command::Tools(ToolCommand::UnlockAll)
-    }),
+    action(
+        Selection,
+        "unlock_all",
+        "Unlock everything",
+        "Ctrl+Shift+L",
+        || Command::Tools(ToolCommand::UnlockAll),
+    ),
     action(Selection, "row", "Row of copies", "Ctrl+Shift+D", || {
         Command::Tools(ToolCommand::AskRow)
     }),

@@ -93,7 +93,12 @@ pub(super) fn choose_groups(scene: &Scene, hand: &mut Hand) {
         return;
     }
     let last = hand.selected;
-    let boxes: Vec<BoxId> = whole.boxes.into_iter().filter(|id| Some(*id) != last).chain(last).collect();
+    let boxes: Vec<BoxId> = whole
+        .boxes
+        .into_iter()
+        .filter(|id| Some(*id) != last)
+        .chain(last)
+        .collect();
     hand.choose(&boxes, Choose::Only);
     let things: Vec<ThingId> = whole.things.into_iter().collect();
     hand.choose_things(&things, Choose::Add);

@@ -37,7 +37,15 @@ pub enum Change {
 }
 
 /// Every step, oldest first, each to the version that the next one takes.
-pub const ALL: [Migration; 7] = [v1::TO_V2, v2::TO_V3, v3::TO_V4, v4::TO_V5, v5::TO_V6, v6::TO_V7, v7::TO_V8];
+pub const ALL: [Migration; 7] = [
+    v1::TO_V2,
+    v2::TO_V3,
+    v3::TO_V4,
+    v4::TO_V5,
+    v5::TO_V6,
+    v6::TO_V7,
+    v7::TO_V8,
+];
 
 /// What a step may change.
 pub trait Entries {
