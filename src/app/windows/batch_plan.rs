@@ -6,6 +6,7 @@ use egui::{DragValue, Ui};
 use glam::DVec2;
 
 use crate::batch::plan::{Axis, Base, Change, FORMAT, Generate, Output, Plan, Seeds, VERSION, Value};
+use language::{t, tf};
 use scene::{BoxId, Scene, TimeOfDay, Weather};
 use widgets::{icons, theme};
 
@@ -162,20 +163,20 @@ impl PlanForm {
         let kinds = [
             (
                 false,
-                "Variants of this scene",
-                "every combination of what is ticked below",
+                t("Variants of this scene"),
+                t("every combination of what is ticked below"),
             ),
-            (true, "A plan from a file", "JSON, see docs/batches.md"),
+            (true, t("A plan from a file"), t("JSON, see docs/batches.md")),
         ];
         let mut changed = icons::segments(ui, &mut self.from_file, &kinds);
         ui.add_space(theme::GAP);
         if self.from_file {
-            changed |= path_row(ui, "Plan", &mut self.plan_file, "plan.json");
+            changed |= path_row(ui, t("Plan"), &mut self.plan_file, "plan.json");
         } else {
             self.scene_ui(ui, scene, chosen, qualities);
         }
-        let hint = "a new folder, or one that holds a part of this batch";
-        if path_row(ui, "Folder", &mut self.folder, hint) || changed {
+        let hint = t("a new folder, or one that holds a part of this batch");
+        if path_row(ui, t("Folder"), &mut self.folder, hint) || changed {
             self.problem = None;
         }
         if let Some(problem) = &self.problem {
@@ -188,11 +189,14 @@ impl PlanForm {
                     true => !self.plan_file.trim().is_empty(),
                     false => !self.formats.is_empty(),
                 };
-            let button = egui::Button::new("Add to the queue").fill(ui.visuals().selection.bg_fill);
+            let button = egui::Button::new(t("Add to the queue")).fill(ui.visuals().selection.bg_fill);
             add = ui.add_enabled(ready, button).clicked();
             if !self.from_file {
                 let n = self.plan(scene, chosen).count();
-                let text = format!("{n} variant{}", if n == 1 { "" } else { "s" });
+                let text = match n {
+                    1 => tf!("{n} variant", n = n),
+                    _ => tf!("{n} variants", n = n),
+                };
                 ui.label(egui::RichText::new(text).color(theme::text_weak()));
             }
         });
@@ -202,88 +206,94 @@ impl PlanForm {
     fn scene_ui(&mut self, ui: &mut Ui, scene: &Scene, chosen: Option<BoxId>, qualities: &[String]) {
         let grid = egui::Grid::new("batch plan").num_columns(2).spacing([12.0, 6.0]);
         grid.show(ui, |ui| {
-            ui.label("Time of day");
+            ui.label(t("Time of day"));
             ui.horizontal_wrapped(|ui| {
                 for time in TimeOfDay::ALL {
-                    tick(ui, &mut self.times, time, &theme::sentence(time.name()));
+                    tick(ui, &mut self.times, time, &theme::sentence(t(time.name())));
                 }
             });
             ui.end_row();
-            ui.label("Weather");
+            ui.label(t("Weather"));
             ui.horizontal_wrapped(|ui| {
                 for weather in Weather::ALL {
-                    tick(ui, &mut self.weathers, weather, &theme::sentence(weather.name()));
+                    tick(
+                        ui,
+                        &mut self.weathers,
+                        weather,
+                        &theme::sentence(t(weather.name())),
+                    );
                 }
             });
             ui.end_row();
-            ui.label("Chosen object");
+            ui.label(t("Chosen object"));
             match chosen {
                 None => {
-                    let text = "choose one in the scene to vary where it is";
+                    let text = t("choose one in the scene to vary where it is");
                     ui.label(egui::RichText::new(text).color(theme::text_weak()));
                 }
                 Some(_) => {
                     ui.vertical(|ui| {
-                        range_ui(ui, "ahead and back", &mut self.ahead);
-                        range_ui(ui, "left and right", &mut self.aside);
+                        range_ui(ui, t("ahead and back"), &mut self.ahead);
+                        range_ui(ui, t("left and right"), &mut self.aside);
                     });
                 }
             }
             ui.end_row();
-            ui.label("Occupancy");
+            ui.label(t("Occupancy"));
             ui.horizontal(|ui| {
+                let generated = |quality: &str| tf!("generated: {quality}", quality = t(quality));
                 let text = self
                     .quality
                     .as_deref()
-                    .map_or("as drafted".into(), |q| format!("generated: {q}"));
+                    .map_or_else(|| t("as drafted").into(), generated);
                 egui::ComboBox::from_id_salt("batch quality")
                     .selected_text(text)
                     .show_ui(ui, |ui| {
-                        ui.selectable_value(&mut self.quality, None, "as drafted");
+                        ui.selectable_value(&mut self.quality, None, t("as drafted"));
                         for quality in qualities {
                             let value = Some(quality.clone());
-                            ui.selectable_value(&mut self.quality, value, format!("generated: {quality}"));
+                            ui.selectable_value(&mut self.quality, value, generated(quality));
                         }
                     });
                 if self.quality.is_some() {
                     ui.add(DragValue::new(&mut self.seeds).range(1..=1000));
-                    ui.label("times, from other noise");
+                    ui.label(t("times, from other noise"));
                 }
             });
             ui.end_row();
-            ui.label("Files");
+            ui.label(t("Files"));
             ui.horizontal(|ui| {
                 let text = match self.formats.len() {
-                    0 => "none".to_owned(),
+                    0 => t("none").to_owned(),
                     1..=3 => self.formats.join(", "),
-                    n => format!("{n} formats"),
+                    n => tf!("{n} formats", n = n),
                 };
                 ui.menu_button(format!("{text}…"), |ui| {
                     egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-                        tick(ui, &mut self.formats, "loom", "loom: the scene itself");
+                        tick(ui, &mut self.formats, "loom", t("loom: the scene itself"));
                         for format in formats::export::all() {
-                            tick(ui, &mut self.formats, format.id, format.title);
+                            tick(ui, &mut self.formats, format.id, t(format.title));
                         }
                     });
                 });
                 let [width, height] = &mut self.size_px;
-                ui.label("pictures");
+                ui.label(t("pictures"));
                 ui.add(DragValue::new(width).range(16..=4096));
                 ui.label("×");
                 ui.add(DragValue::new(height).range(16..=4096));
             });
             ui.end_row();
             if scene.clip().length_s > 0.0 {
-                ui.label("Moments");
+                ui.label(t("Moments"));
                 ui.add(
                     DragValue::new(&mut self.frames_hz)
                         .range(0.1..=30.0)
-                        .suffix(" per second"),
+                        .suffix(t(" per second")),
                 );
                 ui.end_row();
             }
-            ui.label("Checks");
-            ui.checkbox(&mut self.check, "count what the quality checks find");
+            ui.label(t("Checks"));
+            ui.checkbox(&mut self.check, t("count what the quality checks find"));
             ui.end_row();
         });
     }
@@ -297,7 +307,7 @@ fn path_row(ui: &mut Ui, label: &str, path: &mut String, hint: &str) -> bool {
             .hint_text(hint);
         let field = ui.add(field);
         let changed = field.changed();
-        field.accessible_name(format!("{label} of the batch"));
+        field.accessible_name(tf!("{label} of the batch", label = label));
         changed
     });
     row.inner
@@ -324,9 +334,9 @@ fn range_ui(ui: &mut Ui, text: &str, range: &mut Range) {
                     .speed(0.1)
                     .suffix(" m"),
             );
-            ui.label("in");
+            ui.label(t("in"));
             ui.add(DragValue::new(&mut range.steps).range(2..=MOST_STEPS));
-            ui.label("steps");
+            ui.label(t("steps"));
         });
     });
 }

@@ -8,6 +8,7 @@ use egui::{Color32, Rect, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, 
 
 use super::batch_plan::PlanForm;
 use crate::batch::queue::{Item, Priority, Queue, State};
+use language::{t, tf};
 use scene::{BoxId, Scene};
 use widgets::{icons, theme};
 
@@ -87,7 +88,7 @@ impl BatchesWindow {
         open: &mut bool,
     ) -> Option<Asked> {
         let mut asked = None;
-        egui::Window::new("Batches")
+        egui::Window::new(t("Batches"))
             .id(egui::Id::unique("batches"))
             .open(open)
             .default_pos(egui::pos2(260.0, 90.0))
@@ -118,12 +119,12 @@ impl BatchesWindow {
     }
 
     fn queue_ui(&mut self, ui: &mut Ui, queue: &Queue) {
-        if ui.selectable_label(self.is_new, "New batch…").clicked() {
+        if ui.selectable_label(self.is_new, t("New batch…")).clicked() {
             self.is_new = true;
         }
         ui.separator();
         if queue.items().is_empty() {
-            let text = "A batch makes many variants of a scene, one after the other, while you go on.";
+            let text = t("A batch makes many variants of a scene, one after the other, while you go on.");
             ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         }
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -141,10 +142,10 @@ impl BatchesWindow {
         let all = item.plan.count();
         let marks = &item.marks;
         let kinds = [
-            (Shown::All, "All", "every variant"),
-            (Shown::Kept, "Kept", "without those that were discarded"),
-            (Shown::Starred, "Starred", "with a star"),
-            (Shown::Failed, "Failed", "could not be made"),
+            (Shown::All, t("All"), t("every variant")),
+            (Shown::Kept, t("Kept"), t("without those that were discarded")),
+            (Shown::Starred, t("Starred"), t("with a star")),
+            (Shown::Failed, t("Failed"), t("could not be made")),
         ];
         icons::segments(ui, &mut self.shown, &kinds);
         let failed = |v: usize| {
@@ -162,7 +163,9 @@ impl BatchesWindow {
             })
             .collect();
         if item.plan.pack.is_some() {
-            ui.label("The variants lie in tars; there are no small pictures of them.");
+            ui.label(t(
+                "The variants lie in tars; there are no small pictures of them.",
+            ));
             return None;
         }
         let mut asked = None;
@@ -231,12 +234,18 @@ fn cell_size() -> egui::Vec2 {
 fn told(item: &Item) -> (Color32, String) {
     let of = item.plan.count();
     match &item.state {
-        State::Waiting => (theme::text_weak(), "waits".into()),
-        State::Running => (theme::accent(), format!("{} of {of}", item.done)),
-        State::Paused => (theme::warn(), format!("paused, {} of {of}", item.done)),
-        State::Done(_) if item.failed.is_empty() => (theme::good(), format!("{of} ready")),
-        State::Done(_) => (theme::warn(), format!("{} failed", item.failed.len())),
-        State::Failed(_) => (theme::bad(), "failed".into()),
+        State::Waiting => (theme::text_weak(), t("waits").into()),
+        State::Running => (
+            theme::accent(),
+            tf!("{done} of {all}", done = item.done, all = of),
+        ),
+        State::Paused => (
+            theme::warn(),
+            tf!("paused, {done} of {all}", done = item.done, all = of),
+        ),
+        State::Done(_) if item.failed.is_empty() => (theme::good(), tf!("{n} ready", n = of)),
+        State::Done(_) => (theme::warn(), tf!("{n} failed", n = item.failed.len())),
+        State::Failed(_) => (theme::bad(), t("failed").into()),
     }
 }
 
@@ -255,41 +264,41 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
     });
     ui.horizontal(|ui| {
         let mut chosen = priority;
-        ui.label("Priority");
-        let names = Priority::ALL.map(|p| (p, p.label(), ""));
+        ui.label(t("Priority"));
+        let names = Priority::ALL.map(|p| (p, t(p.label()), ""));
         if icons::segments(ui, &mut chosen, &names) {
             queue.set_priority(id, chosen);
         }
         match &state {
             State::Running | State::Waiting => {
                 if ui
-                    .button("Pause")
-                    .on_hover_text("after the variant at hand")
+                    .button(t("Pause"))
+                    .on_hover_text(t("after the variant at hand"))
                     .clicked()
                 {
                     queue.pause(id);
                 }
             }
             State::Paused => {
-                if ui.button("Go on").clicked() {
+                if ui.button(t("Go on")).clicked() {
                     queue.resume(id);
                 }
             }
             State::Done(report) if !report.failed.is_empty() => {
-                if ui.button("Try the failed ones again").clicked() {
+                if ui.button(t("Try the failed ones again")).clicked() {
                     queue.resume(id);
                 }
             }
             State::Failed(_) => {
-                if ui.button("Try again").clicked() {
+                if ui.button(t("Try again")).clicked() {
                     queue.resume(id);
                 }
             }
             State::Done(_) => {}
         }
         if ui
-            .button("Take out of the queue")
-            .on_hover_text("its files stay")
+            .button(t("Take out of the queue"))
+            .on_hover_text(t("its files stay"))
             .clicked()
         {
             queue.remove(id);
@@ -301,7 +310,8 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
         }
         State::Done(_) => {}
         _ => {
-            let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32).text(format!("{done} of {of}"));
+            let text = tf!("{done} of {all}", done = done, all = of);
+            let bar = egui::ProgressBar::new(done as f32 / of.max(1) as f32).text(text);
             ui.add(bar.desired_height(16.0));
         }
     }
@@ -321,7 +331,7 @@ impl Cell<'_> {
         let (id, variant) = (self.item.id, self.variant);
         let is_starred = self.item.marks.starred.contains(&variant);
         let is_discarded = self.item.marks.discarded.contains(&variant);
-        let name = format!("Variant {variant}");
+        let name = tf!("Variant {n}", n = variant);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
         let picture = Rect::from_min_size(rect.min, PICTURE);
         ui.painter().rect_filled(rect, theme::RADIUS, theme::field());
@@ -333,21 +343,24 @@ impl Cell<'_> {
                     .image(texture, picture, unit, Color32::from_white_alpha(faint));
             }
             (None, Some(why)) => label(ui, picture, why, theme::bad()),
-            (None, None) => label(ui, picture, "not made yet", theme::text_weak()),
+            (None, None) => label(ui, picture, t("not made yet"), theme::text_weak()),
         }
         let below = Rect::from_min_max(pos2(rect.left(), picture.bottom()), rect.max);
         let caption = Rect::from_min_max(below.min, pos2(below.right() - 48.0, below.bottom()));
         label(ui, caption, &self.changes(), theme::text());
         let mut asked = None;
         let buttons = [
-            (is_starred, "Star"),
-            (is_discarded, "Discard: marked in the index, the files stay"),
+            (is_starred, t("Star")),
+            (is_discarded, t("Discard: marked in the index, the files stay")),
         ];
         for (i, (on, hint)) in buttons.into_iter().enumerate() {
             let at = pos2(below.right() - 36.0 + 24.0 * i as f32, below.center().y);
             let button = Rect::from_center_size(at, vec2(22.0, CAPTION));
             let clicked = ui.interact(button, ui.scope_id().with((id, variant, i)), Sense::click());
-            let spoken = format!("{} variant {variant}", hint.split(':').next().unwrap_or(hint));
+            let spoken = match i {
+                0 => tf!("Star variant {n}", n = variant),
+                _ => tf!("Discard variant {n}", n = variant),
+            };
             clicked.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, on, &spoken));
             let color = match (on, i, clicked.hovered()) {
                 (true, 0, _) => theme::warn(),
@@ -373,7 +386,12 @@ impl Cell<'_> {
             }
         }
         icons::focus_ring(ui, &response, rect);
-        let text = format!("{name}: {}\nDouble-click opens it.", self.changes());
+        let changes = self.changes();
+        let text = tf!(
+            "{name}: {changes}\nDouble-click opens it.",
+            name = name,
+            changes = changes
+        );
         if response.on_hover_text(text).double_clicked() {
             asked = Some(Asked::Open(id, variant));
         }
@@ -388,18 +406,18 @@ impl Cell<'_> {
         for (axis, value) in self.item.plan.sweep.iter().zip(values) {
             for change in axis.value(value) {
                 parts.push(match change {
-                    Change::Seed(seed) => format!("seed {seed}"),
+                    Change::Seed(seed) => tf!("seed {seed}", seed = seed),
                     Change::Base(_) | Change::Edits(_) => format!("{} {value}", axis.name),
                     Change::Conditions { time, weather } => {
-                        let names = [time.map(|t| t.name()), weather.map(|w| w.name())];
+                        let names = [time.map(|time| t(time.name())), weather.map(|w| t(w.name()))];
                         names.into_iter().flatten().collect::<Vec<_>>().join(" ")
                     }
                     Change::Words(words) => words,
                     Change::Offset { by_m, .. } => match by_m.y == 0.0 {
-                        true => format!("{:+.1} m ahead", by_m.x),
-                        false => format!("{:+.1} m left", by_m.y),
+                        true => tf!("{m} m ahead", m = format!("{:+.1}", by_m.x)),
+                        false => tf!("{m} m left", m = format!("{:+.1}", by_m.y)),
                     },
-                    Change::Count { class, n } => format!("{n} {}", class.label()),
+                    Change::Count { class, n } => format!("{n} {}", t(&class.label())),
                 });
             }
         }

@@ -7,6 +7,7 @@ use egui::{DragValue, Ui};
 use crate::camera_views::LidarModel;
 use crate::export::{ExportOptions, ExportProgress, Format};
 use formats::export::{Product, Span};
+use language::{t, tf};
 use sensors::cameras::{self, ViewId};
 use widgets::{icons, theme};
 
@@ -94,7 +95,7 @@ pub fn export_window(
     open: &mut bool,
 ) -> Option<Asked> {
     let mut asked = None;
-    egui::Window::new("Export")
+    egui::Window::new(t("Export"))
         .id(egui::Id::unique("export"))
         .open(open)
         .default_pos(egui::pos2(380.0, 120.0))
@@ -107,30 +108,30 @@ pub fn export_window(
             options(ui, dialog);
             let folder = dialog.fills_a_folder();
             ui.horizontal(|ui| {
-                ui.label(if folder { "Folder" } else { "File" });
+                ui.label(if folder { t("Folder") } else { t("File") });
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if input.browse && ui.button("Browse…").clicked() {
+                    if input.browse && ui.button(t("Browse…")).clicked() {
                         asked = Some(Asked::Browse);
                     }
                     let field = egui::TextEdit::singleline(&mut dialog.path).desired_width(f32::INFINITY);
-                    ui.add(field).accessible_name("Export path");
+                    ui.add(field).accessible_name(t("Export path"));
                 });
             });
             let there = Path::new(dialog.path.trim()).is_file() && dialog.path != dialog.written;
             if !folder && there {
                 ui.colored_label(
                     ui.visuals().warn_fg_color,
-                    "The file exists and will be replaced.",
+                    t("The file exists and will be replaced."),
                 );
             }
             if input.errors > 0 {
                 let text = match input.errors {
-                    1 => "The checks found an error in this scene.".to_owned(),
-                    n => format!("The checks found {n} errors in this scene."),
+                    1 => t("The checks found an error in this scene.").to_owned(),
+                    n => tf!("The checks found {n} errors in this scene.", n = n),
                 };
                 ui.horizontal(|ui| {
                     ui.colored_label(ui.visuals().warn_fg_color, text);
-                    if ui.small_button("Show checks").clicked() {
+                    if ui.small_button(t("Show checks")).clicked() {
                         asked = Some(Asked::Checks);
                     }
                 });
@@ -138,7 +139,7 @@ pub fn export_window(
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let enabled = input.busy.is_none() && !dialog.path.trim().is_empty();
-                let button = egui::Button::new("Export files").fill(ui.visuals().selection.bg_fill);
+                let button = egui::Button::new(t("Export files")).fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
                     let formats = dialog.format.map_or_else(formats::export::usual, |f| vec![f]);
                     asked = Some(Asked::Write(formats));
@@ -155,8 +156,8 @@ pub fn export_window(
 fn busy(ui: &mut Ui, progress: &ExportProgress) {
     let stop = !progress.is_cancelled();
     if ui
-        .add_enabled(stop, egui::Button::new("Cancel export"))
-        .on_hover_text("Stops before the next picture; nothing is written")
+        .add_enabled(stop, egui::Button::new(t("Cancel export")))
+        .on_hover_text(t("Stops before the next picture; nothing is written"))
         .clicked()
     {
         progress.cancel();
@@ -164,18 +165,18 @@ fn busy(ui: &mut Ui, progress: &ExportProgress) {
     match (stop, progress.pictures()) {
         (true, Some((done, of))) => {
             let bar = egui::ProgressBar::new(done as f32 / of as f32).desired_width(150.0);
-            ui.add(bar.text(format!("Picture {} of {of}", (done + 1).min(of))))
-                .accessible_name("Export progress");
+            let text = tf!("Picture {n} of {all}", n = (done + 1).min(of), all = of);
+            ui.add(bar.text(text)).accessible_name(t("Export progress"));
             // Nobody else wakes the window while a picture is made.
             ui.ctx()
                 .request_repaint_after(std::time::Duration::from_millis(250));
         }
         (true, None) => {
             ui.spinner();
-            ui.weak("Exporting…");
+            ui.weak(t("Exporting…"));
         }
         (false, _) => {
-            ui.weak("Stopping…");
+            ui.weak(t("Stopping…"));
         }
     }
 }
@@ -199,7 +200,7 @@ fn found(search: &str) -> [Vec<Format>; GROUPS.len()] {
     let words: Vec<String> = search.split_whitespace().map(str::to_lowercase).collect();
     let mut out: [Vec<Format>; GROUPS.len()] = Default::default();
     for format in formats::export::all() {
-        let text = format!("{} {}", format.id, format.title).to_lowercase();
+        let text = format!("{} {} {}", format.id, format.title, t(format.title)).to_lowercase();
         if words.iter().all(|word| text.contains(word)) {
             out[group_of(format)].push(format);
         }
@@ -216,9 +217,20 @@ fn pick_found(dialog: &mut ExportDialog) {
     }
 }
 
+/// Its title without how those below a heading begin, which the heading says.
+fn short(format: Format, starts: &[&str]) -> &'static str {
+    let own = t(format.title);
+    match starts.iter().any(|s| format.title.starts_with(s)) {
+        true => own
+            .split_once([':', '：'])
+            .map_or(own, |(_, rest)| rest.trim_start()),
+        false => own,
+    }
+}
+
 fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
     let before = dialog.format;
-    let hint = format!("Search {} formats", formats::export::all().len());
+    let hint = tf!("Search {n} formats", n = formats::export::all().len());
     let field = egui::TextEdit::singleline(&mut dialog.search)
         .hint_text(hint)
         .desired_width(f32::INFINITY);
@@ -226,7 +238,7 @@ fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
     if field.changed() {
         pick_found(dialog);
     }
-    field.accessible_name("Search formats");
+    field.accessible_name(t("Search formats"));
     egui::ScrollArea::vertical()
         .max_height(LIST_HEIGHT)
         .auto_shrink([false, true])
@@ -237,36 +249,33 @@ fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
                 if formats.is_empty() {
                     continue;
                 }
-                icons::section(ui, heading);
+                icons::section(ui, t(heading));
                 for format in formats {
-                    let mut starts = starts.iter();
-                    let short = starts.find_map(|s| format.title.strip_prefix(s));
-                    let radio =
-                        egui::RadioButton::new(dialog.format == Some(*format), short.unwrap_or(format.title));
+                    let is_chosen = dialog.format == Some(*format);
+                    let radio = egui::RadioButton::new(is_chosen, short(*format, starts));
                     if ui.add(radio).clicked() {
                         dialog.format = Some(*format);
                     }
                 }
             }
             if found.iter().all(Vec::is_empty) {
-                ui.weak("No format is called so.");
+                ui.weak(t("No format is called so."));
             }
         });
     ui.radio_value(
         &mut dialog.format,
         None,
-        "Every format but splats, into one folder",
+        t("Every format but splats, into one folder"),
     );
     if let Some(format) = dialog.format {
         let span = match format.span {
-            Span::Moment => "The moment that is shown.",
-            Span::Clip => "The whole clip.",
+            Span::Moment => t("The moment that is shown."),
+            Span::Clip => t("The whole clip."),
         };
-        let lost = match format.lost {
-            "" => String::new(),
-            lost => format!(" Read again it lacks: {lost}."),
-        };
-        ui.weak(format!("{span}{lost}"));
+        ui.weak(match format.lost {
+            "" => span.to_owned(),
+            lost => tf!("{span} Read again it lacks: {lost}.", span = span, lost = t(lost)),
+        });
     }
     if dialog.format != before {
         dialog.path = dialog.suggested();
@@ -277,8 +286,8 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
     let (format, options) = (dialog.format, &mut dialog.options);
     let size = |ui: &mut Ui, size: &mut [u32; 2]| {
         ui.horizontal(|ui| {
-            ui.label("Size");
-            for (value, name) in size.iter_mut().zip(["Width", "Height"]) {
+            ui.label(t("Size"));
+            for (value, name) in size.iter_mut().zip([t("Width"), t("Height")]) {
                 ui.add(DragValue::new(value).range(1..=8192).suffix(" px"))
                     .accessible_name(name);
             }
@@ -286,7 +295,9 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
     };
     let Some(format) = format else {
         size(ui, &mut options.camera_size);
-        ui.weak("Cameras of this size; everything else as it is set for its kind.");
+        ui.weak(t(
+            "Cameras of this size; everything else as it is set for its kind.",
+        ));
         return;
     };
     for product in format.needs {
@@ -294,42 +305,42 @@ fn options(ui: &mut Ui, dialog: &mut ExportDialog) {
             Product::CameraMaps => {
                 size(ui, &mut options.camera_size);
                 ui.horizontal(|ui| {
-                    ui.label("From");
+                    ui.label(t("From"));
                     // The usual one first.
                     for source in cameras::sources_of(ViewId::SEMANTIC).into_iter().rev() {
-                        ui.radio_value(&mut options.source, source.id(), source.id().name());
+                        ui.radio_value(&mut options.source, source.id(), t(source.id().name()));
                     }
                 });
             }
             Product::Pictures | Product::Truth => {
                 size(ui, &mut options.camera_size);
-                ui.weak("Some twenty seconds for six pictures of 800 x 450.");
+                ui.weak(t("Some twenty seconds for six pictures of 800 x 450."));
             }
             Product::Sweep => {
                 ui.horizontal(|ui| {
-                    ui.label("Sweep");
-                    ui.radio_value(&mut options.lidar, LidarModel::Exact, "exact");
+                    ui.label(t("Sweep"));
+                    ui.radio_value(&mut options.lidar, LidarModel::Exact, t("exact"));
                     ui.radio_value(
                         &mut options.lidar,
                         LidarModel::Learned,
-                        "learned, with intensity and lost echoes",
+                        t("learned, with intensity and lost echoes"),
                     );
                 });
             }
             Product::View => {
                 size(ui, &mut options.shot.size);
                 ui.horizontal(|ui| {
-                    ui.label("Samples per axis");
+                    ui.label(t("Samples per axis"));
                     ui.add(DragValue::new(&mut options.shot.supersample).range(1..=8))
-                        .accessible_name("Samples per axis");
-                    ui.checkbox(&mut options.shot.transparent, "Transparent");
-                    ui.checkbox(&mut options.shot.boxes, "Boxes");
-                    ui.checkbox(&mut options.shot.lidar, "LiDAR");
+                        .accessible_name(t("Samples per axis"));
+                    ui.checkbox(&mut options.shot.transparent, t("Transparent"));
+                    ui.checkbox(&mut options.shot.boxes, t("Boxes"));
+                    ui.checkbox(&mut options.shot.lidar, t("LiDAR"));
                 });
-                ui.weak("Seen as the 3D view shows it now.");
+                ui.weak(t("Seen as the 3D view shows it now."));
             }
             Product::Gaussians => {
-                ui.weak("Baked from pictures of many places: a minute or two.");
+                ui.weak(t("Baked from pictures of many places: a minute or two."));
             }
             Product::Observed | Product::Seen => {}
         }

@@ -5,6 +5,7 @@ use egui::{DragValue, Ui};
 use crate::command::Command;
 use crate::fields::{caption, field, number};
 use editor::Edit;
+use language::{t, tf};
 use scene::{Camera, Lens, ReadOut, Shutter};
 use widgets::theme;
 
@@ -64,10 +65,10 @@ pub fn rows(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands
     };
     let now = of(&camera.lens);
     ui.horizontal(|ui| {
-        caption(ui, "Lens");
-        ui.menu_button(KINDS[now].title, |ui| {
+        caption(ui, t("Lens"));
+        ui.menu_button(t(KINDS[now].title), |ui| {
             for kind in &KINDS {
-                if ui.button(kind.title).on_hover_text(kind.hint).clicked() {
+                if ui.button(t(kind.title)).on_hover_text(t(kind.hint)).clicked() {
                     let mut new = camera.clone();
                     let fov_deg = new.fov_deg();
                     new.lens = kind.lens;
@@ -100,8 +101,8 @@ pub fn rows(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands
 fn widest(ui: &mut Ui, max_angle_deg: &mut f64) -> egui::Response {
     number(
         ui,
-        "Sees to",
-        "Largest angle from the axis",
+        t("Sees to"),
+        t("Largest angle from the axis"),
         max_angle_deg,
         10.0..=180.0,
         "°",
@@ -119,7 +120,11 @@ fn coefficients(ui: &mut Ui, name: &str, values: &mut [f64]) -> egui::Response {
             let last = first + values.len() - 1;
             let text = match first == last {
                 true => format!("{name}{first}"),
-                false => format!("{name}{first} to {name}{last}"),
+                false => tf!(
+                    "{first} to {last}",
+                    first = format!("{name}{first}"),
+                    last = format!("{name}{last}")
+                ),
             };
             caption(ui, &text);
             for (i, value) in values.iter_mut().enumerate() {
@@ -142,9 +147,9 @@ fn coefficients(ui: &mut Ui, name: &str, values: &mut [f64]) -> egui::Response {
 fn shutter(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands: &mut Vec<Command>) {
     let mut new = camera.clone();
     let mut rolls = camera.shutter.is_some();
-    let toggled = ui
-        .checkbox(&mut rolls, "Rolling shutter")
-        .on_hover_text("Rows are read one after another, while the vehicle and what it sees move on");
+    let toggled = ui.checkbox(&mut rolls, t("Rolling shutter")).on_hover_text(t(
+        "Rows are read one after another, while the vehicle and what it sees move on",
+    ));
     if toggled.changed() {
         new.shutter = rolls.then_some(Shutter {
             readout_s: 0.03,
@@ -156,8 +161,8 @@ fn shutter(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands:
     let mut readout_ms = shutter.readout_s * 1e3;
     let changed = number(
         ui,
-        "Read-out",
-        "Read-out time",
+        t("Read-out"),
+        t("Read-out time"),
         &mut readout_ms,
         0.0..=1000.0,
         " ms",
@@ -166,15 +171,15 @@ fn shutter(ui: &mut Ui, camera: &Camera, set: &dyn Fn(Camera) -> Edit, commands:
     shutter.readout_s = readout_ms / 1e3;
     field(&changed, "Change shutter", set(new.clone()), commands);
     ui.horizontal(|ui| {
-        caption(ui, "Read");
+        caption(ui, t("Read"));
         let now = new.shutter.map(|s| s.direction);
         let title = READ_OUTS
             .iter()
             .find(|(d, _)| Some(*d) == now)
-            .map_or("", |r| r.1);
+            .map_or("", |r| t(r.1));
         ui.menu_button(title, |ui| {
             for (direction, title) in READ_OUTS {
-                if ui.button(title).clicked() {
+                if ui.button(t(title)).clicked() {
                     let mut new = new.clone();
                     if let Some(shutter) = &mut new.shutter {
                         shutter.direction = direction;

@@ -7,6 +7,7 @@ use egui::{Id, Key, Modal, Ui, vec2};
 use crate::command::Command;
 use crate::shell::actions::ACTIONS;
 pub use items::Known;
+use language::t;
 use widgets::theme;
 
 /// Lines that are shown at most.
@@ -29,6 +30,8 @@ enum Does {
 
 struct Item {
     title: String,
+    /// The title in the language that is shown.
+    shown: String,
     right: String,
     does: Does,
 }
@@ -69,7 +72,7 @@ impl Palette {
         let shown = modal.show(ui.ctx(), |ui| {
             ui.set_width(520.0);
             let field = egui::TextEdit::singleline(&mut self.query)
-                .hint_text("Type to find a command, a setting, weather, an object, a file")
+                .hint_text(t("Type to find a command, a setting, weather, an object, a file"))
                 .desired_width(f32::INFINITY)
                 .margin(vec2(8.0, 6.0));
             let field = ui.add(field);
@@ -84,8 +87,8 @@ impl Palette {
             // The chosen line stays in sight.
             let first = self.chosen.saturating_sub(SHOWN - 1);
             for (i, item) in items.iter().enumerate().skip(first).take(SHOWN) {
-                let name = egui::RichText::new(&item.title).color(theme::text());
-                let right = egui::RichText::new(&item.right).color(theme::text_weak());
+                let name = egui::RichText::new(&item.shown).color(theme::text());
+                let right = egui::RichText::new(t(&item.right)).color(theme::text_weak());
                 let fill = if i == self.chosen {
                     theme::accent_fill()
                 } else {
@@ -100,7 +103,7 @@ impl Palette {
                 }
             }
             if lines == 0 {
-                ui.label(egui::RichText::new("Nothing of that name").color(theme::text_weak()));
+                ui.label(egui::RichText::new(t("Nothing of that name")).color(theme::text_weak()));
             }
         });
         if let Some(i) = run.filter(|i| *i < lines) {
@@ -116,18 +119,22 @@ impl Palette {
 }
 
 /// Those in which every word of the query begins a word, then those that hold it, the best ones first. If there are none, those
-/// that hold its letters in order and not far apart.
+/// that hold its letters in order and not far apart. The English title counts as much as the one that is shown.
 fn matching(items: Vec<Item>, query: &str) -> Vec<Item> {
+    let best = |item: &Item, of: fn(&str, &str) -> Option<u32>| {
+        let own = (item.shown != item.title).then(|| of(&item.shown, query));
+        of(&item.title, query).into_iter().chain(own.flatten()).min()
+    };
     let mut found: Vec<(u32, Item)> = Vec::new();
     let mut others = Vec::new();
     for item in items {
-        match by_words(&item.title, query) {
+        match best(&item, by_words) {
             Some(score) => found.push((score, item)),
             None => others.push(item),
         }
     }
     if found.is_empty() {
-        let near = |item: Item| Some((score(&item.title, query)?, item));
+        let near = |item: Item| Some((best(&item, score)?, item));
         found.extend(others.into_iter().filter_map(near));
     }
     found.sort_by_key(|(score, _)| *score);
@@ -143,7 +150,8 @@ fn by_words(text: &str, query: &str) -> Option<u32> {
         cost += match () {
             () if words().any(|word| word == wanted) => 0,
             () if words().any(|word| word.starts_with(wanted)) => 1,
-            () if wanted.chars().count() > 1 && text.contains(wanted) => 4,
+            // (where words are not parted, one letter is one)
+            () if (wanted.chars().count() > 1 || !wanted.is_ascii()) && text.contains(wanted) => 4,
             () => return None,
         };
     }
@@ -224,5 +232,25 @@ mod tests {
             assert!(matching(items(&known), nothing).is_empty(), "{nothing}");
         }
         assert_eq!(matching(items(&known), "").len(), items(&known).len());
+    }
+
+    #[test]
+    fn the_english_and_what_is_shown_find_a_line() {
+        for (query, lines) in [
+            ("rain", 1),
+            ("weather", 1),
+            ("雨", 1),
+            ("天気", 1),
+            ("snow", 0),
+            ("雪", 0),
+        ] {
+            let item = Item {
+                title: "Weather: rain".into(),
+                shown: "天気: 小雨".into(),
+                right: String::new(),
+                does: Does::Commands(Vec::new()),
+            };
+            assert_eq!(matching(vec![item], query).len(), lines, "{query}");
+        }
     }
 }

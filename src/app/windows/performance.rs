@@ -4,6 +4,7 @@ use egui::accesskit::Role;
 use egui::{Align2, Color32, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use crate::shell::perf::{BLOCKED_S, Perf, Quantiles, SHOWN};
+use language::{t, tf};
 use widgets::theme;
 
 /// Draws it into the upper right corner of `over` while it is open.
@@ -12,7 +13,8 @@ pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {
         return;
     }
     let mut open = true;
-    egui::Window::new("Performance")
+    egui::Window::new(t("Performance"))
+        .id(egui::Id::unique("performance"))
         .open(&mut open)
         .collapsible(false)
         .resizable(false)
@@ -26,7 +28,7 @@ pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {
                 .spacing([theme::GAP, 2.0])
                 .show(ui, |ui| {
                     for title in ["ms", "middle", "95 %", "most", "of"] {
-                        weak(ui, title);
+                        weak(ui, t(title));
                     }
                     ui.end_row();
                     row(ui, "Frame", perf.frames.quantiles());
@@ -38,17 +40,24 @@ pub fn performance_ui(ui: &Ui, over: Rect, perf: &mut Perf) {
             let [all, working] = perf.blocked;
             weak(
                 ui,
-                &format!("Input held up over 50 ms: {all} frames, {working} of them while generating"),
+                &tf!(
+                    "Input held up over 50 ms: {all} frames, {working} of them while generating",
+                    all = all,
+                    working = working
+                ),
             );
             let cpu = perf.cpu_share.map_or_else(
-                || "not known here".to_owned(),
-                |share| format!("{:.0} % of a core", share * 100.0),
+                || t("not known here").to_owned(),
+                |share| tf!("{percent} % of a core", percent = format!("{:.0}", share * 100.0)),
             );
-            weak(ui, &format!("Processor: {cpu}"));
+            weak(ui, &tf!("Processor: {share}", share = cpu));
             if !perf.stages.is_empty() {
-                let of = |(name, s): (&&str, &f64)| format!("{name} {:.0}", s * 1e3);
+                let of = |(name, s): (&&str, &f64)| format!("{} {:.0}", t(name), s * 1e3);
                 let stages: Vec<String> = perf.stages.iter().map(of).collect();
-                weak(ui, &format!("Last generation, ms: {}", stages.join(", ")));
+                weak(
+                    ui,
+                    &tf!("Last generation, ms: {stages}", stages = stages.join(", ")),
+                );
             }
         });
     perf.open = open;
@@ -59,7 +68,7 @@ fn weak(ui: &mut Ui, text: &str) {
 }
 
 fn row(ui: &mut Ui, name: &str, q: Quantiles) {
-    ui.label(egui::RichText::new(name).small());
+    ui.label(egui::RichText::new(t(name)).small());
     for value in [q.p50, q.p95, q.max] {
         let slow = q.n > 0 && value > BLOCKED_S && name != "Edit to result";
         let color = if slow { theme::warn() } else { theme::text() };
@@ -79,7 +88,10 @@ fn bars(ui: &mut Ui, perf: &Perf) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::hover());
     let last = perf.frames.newest(1).last().unwrap_or(0.0);
     response.widget_info(|| {
-        let text = format!("Newest frames; the last took {:.0} ms", last * 1e3);
+        let text = tf!(
+            "Newest frames; the last took {ms} ms",
+            ms = format!("{:.0}", last * 1e3)
+        );
         WidgetInfo::labeled(Role::Image, true, text)
     });
     let painter = ui.painter_at(rect);

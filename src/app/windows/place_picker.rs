@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use authoring::open::Placement;
 use formats::opendrive::RoadNetwork;
+use language::{t, tf};
 use widgets::theme;
 
 /// Size of the picture, points.
@@ -110,7 +111,11 @@ impl PlacePicker {
     fn picture(&mut self, ui: &mut Ui) {
         let (rect, response) = ui.allocate_exact_size(PICTURE_POINTS, Sense::click_and_drag());
         response.widget_info(|| {
-            WidgetInfo::labeled(Role::Canvas, true, "Network of roads: a click chooses the place")
+            WidgetInfo::labeled(
+                Role::Canvas,
+                true,
+                t("Network of roads: a click chooses the place"),
+            )
         });
         let extent_m = (self.bounds_m[1] - self.bounds_m[0]).max(DVec2::splat(1.0));
         let fits = (f64::from(rect.width()) / extent_m.x).min(f64::from(rect.height()) / extent_m.y) * 0.94;
@@ -166,9 +171,13 @@ impl PlacePicker {
 
     fn options(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            ui.label("Map");
+            ui.label(t("Map"));
             ui.add_enabled_ui(!self.whole, |ui| {
-                for (value, hint) in self.size_m.iter_mut().zip(["Length, along the heading", "Width"]) {
+                for (value, hint) in self
+                    .size_m
+                    .iter_mut()
+                    .zip([t("Length, along the heading"), t("Width")])
+                {
                     let value = DragValue::new(value)
                         .range(20.0..=Placement::MAX_SIZE_M)
                         .speed(1.0)
@@ -185,17 +194,19 @@ impl PlacePicker {
                     }
                 }
             });
-            ui.checkbox(&mut self.whole, "All of it");
+            ui.checkbox(&mut self.whole, t("All of it"));
         });
         ui.horizontal(|ui| {
-            ui.checkbox(&mut self.traffic, "Traffic");
-            ui.checkbox(&mut self.scenery, "Scenery");
-            ui.label("Seed");
+            ui.checkbox(&mut self.traffic, t("Traffic"));
+            ui.checkbox(&mut self.scenery, t("Scenery"));
+            ui.label(t("Seed"));
             ui.add(DragValue::new(&mut self.seed).speed(0.1));
             let degrees = self.at.1.to_degrees().rem_euclid(360.0);
-            let text = format!(
-                "at {:.0}, {:.0} m, heading {degrees:.0}°",
-                self.at.0.x, self.at.0.y
+            let text = tf!(
+                "at {x}, {y} m, heading {degrees}°",
+                x = format!("{:.0}", self.at.0.x),
+                y = format!("{:.0}", self.at.0.y),
+                degrees = format!("{degrees:.0}")
             );
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
         });
@@ -205,7 +216,7 @@ impl PlacePicker {
 /// Draws the window; true once a scene is to be made.
 pub fn place_picker(ui: &Ui, picker: &mut PlacePicker, open: &mut bool) -> bool {
     let mut make = false;
-    egui::Window::new(format!("A place on {}", picker.name))
+    egui::Window::new(tf!("A place on {roads}", roads = picker.name))
         .id(egui::Id::unique("place picker"))
         .open(open)
         .default_pos(pos2(380.0, 110.0))
@@ -216,13 +227,13 @@ pub fn place_picker(ui: &Ui, picker: &mut PlacePicker, open: &mut bool) -> bool 
             picker.options(ui);
             let problem = picker.placement().problem_on(&picker.network);
             ui.horizontal(|ui| {
-                let button = egui::Button::new("Make the scene").selected(true);
+                let button = egui::Button::new(t("Make the scene")).selected(true);
                 make = ui.add_enabled(problem.is_none(), button).clicked();
                 let weak = |text: &str, color: Color32| egui::RichText::new(text).color(color);
                 match problem {
                     Some(problem) => ui.label(weak(&problem, theme::bad())),
                     None => ui.label(weak(
-                        "Click chooses a lane · drag pans · wheel zooms",
+                        t("Click chooses a lane · drag pans · wheel zooms"),
                         theme::text_weak(),
                     )),
                 };

@@ -3,6 +3,7 @@
 use egui::{Id, Modal, Ui};
 
 use crate::shell::recovery::{Stale, ago};
+use language::{t, tf};
 use widgets::theme;
 
 /// What the user wants.
@@ -23,33 +24,34 @@ pub fn recovery_ui(ui: &Ui, offer: &Stale, more: usize) -> Option<Answer> {
         .frame(theme::dialog_frame(ui.style()))
         .show(ui.ctx(), |ui| {
             ui.set_width(440.0);
-            ui.heading(format!("Recover “{}”?", offer.name));
+            ui.heading(tf!("Recover “{name}”?", name = offer.name));
             ui.add_space(theme::GAP);
-            let when = offer.saved.elapsed().map_or_else(|_| "just now".into(), ago);
-            ui.label(format!(
-                "Sceneloom ended unexpectedly. Unsaved work from {when} was kept."
+            let when = offer.saved.elapsed().map_or_else(|_| t("just now").into(), ago);
+            ui.label(tf!(
+                "Sceneloom ended unexpectedly. Unsaved work from {when} was kept.",
+                when = when
             ));
             if let Some(original) = &offer.original {
-                ui.weak(format!(
-                    "It belongs to {}, which is as it was last saved.",
-                    original.display()
+                ui.weak(tf!(
+                    "It belongs to {file}, which is as it was last saved.",
+                    file = original.display()
                 ));
             }
             if more > 0 {
-                ui.weak(format!("{more} more to ask about after this."));
+                ui.weak(tf!("{n} more to ask about after this.", n = more));
             }
             ui.add_space(2.0 * theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui
-                    .add(egui::Button::new("Recover").fill(ui.visuals().selection.bg_fill))
+                    .add(egui::Button::new(t("Recover")).fill(ui.visuals().selection.bg_fill))
                     .clicked()
                 {
                     answer = Some(Answer::Recover);
                 }
-                if ui.button("Later").clicked() {
+                if ui.button(t("Later")).clicked() {
                     answer = Some(Answer::Later);
                 }
-                if ui.button("Discard").clicked() {
+                if ui.button(t("Discard")).clicked() {
                     answer = Some(Answer::Discard);
                 }
             });

@@ -5,6 +5,7 @@ use egui::{DragValue, Ui};
 use crate::command::Command;
 use crate::fields::{caption, number};
 use editor::arrange::{self, MAX_COPIES, RowAlong};
+use language::{t, tf};
 use scene::{Frame, SceneBox};
 use widgets::icons;
 use widgets::theme;
@@ -31,49 +32,54 @@ pub fn show(ui: &Ui, frame: &Frame, hand: &mut Hand, commands: &mut Vec<Command>
         .frame(theme::dialog_frame(ui.style()))
         .show(ui.ctx(), |ui| {
             ui.set_width(330.0);
-            ui.heading("Row of copies");
+            ui.heading(t("Row of copies"));
             ui.add_space(theme::GAP);
             let row = &mut hand.row;
             ui.horizontal(|ui| {
-                caption(ui, "Copies");
+                caption(ui, t("Copies"));
                 let drag = DragValue::new(&mut row.copies).range(1..=MAX_COPIES);
-                ui.add_sized([86.0, theme::ROW], drag).accessible_name("Copies");
+                ui.add_sized([86.0, theme::ROW], drag)
+                    .accessible_name(t("Copies"));
             });
             number(
                 ui,
-                "Spacing",
-                "Spacing",
+                t("Spacing"),
+                t("Spacing"),
                 &mut row.spacing_m,
                 -80.0..=80.0,
                 " m",
                 2,
             );
             ui.horizontal(|ui| {
-                caption(ui, "Along");
+                caption(ui, t("Along"));
                 icons::segments(
                     ui,
                     &mut row.along,
                     &[
-                        (RowAlong::Heading, "Heading", "straight ahead"),
-                        (RowAlong::Lane, "Lane", "the lane under each box"),
-                        (RowAlong::Side, "Left", "to the left of the heading"),
+                        (RowAlong::Heading, t("Heading"), t("straight ahead")),
+                        (RowAlong::Lane, t("Lane"), t("the lane under each box")),
+                        (RowAlong::Side, t("Left"), t("to the left of the heading")),
                     ],
                 );
             });
             let (asked, come) = (hand.row.copies * hand.chosen().len(), coming(frame, hand).len());
             let text = match asked - come.min(asked) {
-                0 => format!("{come} boxes come"),
-                out => format!("{come} boxes come; {out} would lie outside the map and are left out"),
+                0 => tf!("{n} boxes come", n = come),
+                out => tf!(
+                    "{n} boxes come; {out} would lie outside the map and are left out",
+                    n = come,
+                    out = out
+                ),
             };
             ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let add = ui.add(egui::Button::new("Add copies").fill(theme::accent_fill()));
+                let add = ui.add(egui::Button::new(t("Add copies")).fill(theme::accent_fill()));
                 let enter = ui.input(|i| i.key_pressed(egui::Key::Enter));
                 if add.clicked() || enter {
                     done = Some(true);
                 }
-                if ui.button("Cancel row").clicked() {
+                if ui.button(t("Cancel row")).clicked() {
                     done = Some(false);
                 }
             });

@@ -10,6 +10,7 @@ use crate::command::{Command, FileCommand};
 use crate::fields::{caption, field, number, numbers};
 use crate::panes::camera_strip::camera_label;
 use editor::Edit;
+use language::{t, tf};
 use scene::rig::Aim;
 use scene::rig_presets::{LIDARS, RIGS};
 use scene::{Camera, LidarPattern, SensorRig};
@@ -29,7 +30,7 @@ pub fn sensors_ui(
     commands: &mut Vec<Command>,
 ) {
     let mut open = windows.sensors;
-    egui::Window::new("Sensors")
+    egui::Window::new(t("Sensors"))
         .id(egui::Id::unique("sensors"))
         .open(&mut open)
         // Beside the views, in which the fields of view are shown.
@@ -68,19 +69,19 @@ fn changed(rig: &SensorRig, change: impl FnOnce(&mut SensorRig)) -> Edit {
 
 fn presets(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        ui.menu_button("Presets", |ui| {
+        ui.menu_button(t("Presets"), |ui| {
             for preset in &RIGS {
-                if ui.button(preset.name).clicked() {
+                if ui.button(t(preset.name)).clicked() {
                     let rig = Box::new((preset.build)());
                     commands.push(Command::Apply("Replace sensors", vec![Edit::SetRig { rig }]));
                     ui.close();
                 }
             }
         });
-        if ui.button("Import…").clicked() {
+        if ui.button(t("Import…")).clicked() {
             commands.push(Command::File(FileCommand::ImportRig));
         }
-        if ui.button("Export…").clicked() {
+        if ui.button(t("Export…")).clicked() {
             commands.push(Command::File(FileCommand::ExportRig));
         }
     });
@@ -92,25 +93,26 @@ fn lists(
     (choice, cameras): (&mut SensorChoice, &mut CamerasShown),
     commands: &mut Vec<Command>,
 ) {
-    section(ui, "Cameras");
+    section(ui, t("Cameras"));
     for (i, camera) in rig.cameras.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 2.0;
             let shown = !cameras.is_hidden(i);
             let (icon, hint) = match shown {
-                true => (Icon::Eye, "in the strip and in the 3D view"),
-                false => (Icon::EyeOff, "not rendered"),
+                true => (Icon::Eye, t("in the strip and in the 3D view")),
+                false => (Icon::EyeOff, t("not rendered")),
             };
-            if icons::button(ui, icon, &format!("Show {}", camera.name), hint, false, true).clicked() {
+            let show = tf!("Show {name}", name = camera.name);
+            if icons::button(ui, icon, &show, hint, false, true).clicked() {
                 cameras.hidden ^= 1 << i;
             }
             let right = format!("{:.0}°", camera.fov_deg());
             let chosen = *choice == SensorChoice::Camera(i);
-            let label = format!("Camera {}", camera.name);
+            let label = tf!("Camera {name}", name = camera.name);
             if icons::row(
                 ui,
                 theme::accent(),
-                &camera_label(&camera.name),
+                t(&camera_label(&camera.name)),
                 &right,
                 chosen,
                 &label,
@@ -121,23 +123,26 @@ fn lists(
             }
         });
     }
-    section(ui, "LiDARs");
+    section(ui, t("LiDARs"));
     for (i, lidar) in rig.lidars.iter().enumerate() {
         let right = format!("{} x {}", lidar.elevations_deg.len(), lidar.columns);
         let chosen = *choice == SensorChoice::Lidar(i);
         let name = if i == 0 {
-            format!("{} (shown)", lidar.name)
+            tf!("{name} (shown)", name = lidar.name)
         } else {
             lidar.name.clone()
         };
-        let label = format!("LiDAR {}", lidar.name);
+        let label = tf!("LiDAR {name}", name = lidar.name);
         if icons::row(ui, theme::text(), &name, &right, chosen, &label).clicked() {
             *choice = SensorChoice::Lidar(i);
         }
     }
     ui.horizontal(|ui| {
         if ui
-            .add_enabled(rig.cameras.len() < MAX_CAMERAS, egui::Button::new("Add camera"))
+            .add_enabled(
+                rig.cameras.len() < MAX_CAMERAS,
+                egui::Button::new(t("Add camera")),
+            )
             .clicked()
         {
             let mut camera = Camera::new(&free_name("CAM", rig), 70.0);
@@ -149,9 +154,9 @@ fn lists(
             ));
         }
         ui.add_enabled_ui(rig.lidars.len() < MAX_LIDARS, |ui| {
-            ui.menu_button("Add LiDAR", |ui| {
+            ui.menu_button(t("Add LiDAR"), |ui| {
                 for preset in &LIDARS {
-                    if ui.button(preset.name).clicked() {
+                    if ui.button(t(preset.name)).clicked() {
                         let mut lidar = (preset.build)();
                         lidar.name = free_name("LIDAR", rig);
                         *choice = SensorChoice::Lidar(rig.lidars.len());
@@ -169,7 +174,7 @@ fn lists(
             SensorChoice::Camera(i) => i < rig.cameras.len(),
             SensorChoice::Lidar(i) => i < rig.lidars.len(),
         };
-        if icons::button(ui, Icon::Copy, "Duplicate sensor", "", false, exists).clicked() {
+        if icons::button(ui, Icon::Copy, t("Duplicate sensor"), "", false, exists).clicked() {
             let copy = changed(rig, |r| match what {
                 SensorChoice::Camera(i) => r.cameras.push(Camera {
                     name: free_name("CAM", rig),
@@ -182,7 +187,7 @@ fn lists(
             });
             commands.push(Command::Apply("Duplicate sensor", vec![copy]));
         }
-        if icons::button(ui, Icon::Trash, "Remove sensor", "", false, exists).clicked() {
+        if icons::button(ui, Icon::Trash, t("Remove sensor"), "", false, exists).clicked() {
             let rest = changed(rig, |r| match what {
                 SensorChoice::Camera(i) => drop(r.cameras.remove(i)),
                 SensorChoice::Lidar(i) => drop(r.lidars.remove(i)),
@@ -210,7 +215,7 @@ fn free_name(stem: &str, rig: &SensorRig) -> String {
 }
 
 fn camera_fields(ui: &mut Ui, rig: &SensorRig, index: usize, camera: &Camera, commands: &mut Vec<Command>) {
-    section(ui, &camera_label(&camera.name));
+    section(ui, t(&camera_label(&camera.name)));
     let mut new = camera.clone();
     let set = |new: Camera| changed(rig, |r| r.cameras[index] = new);
     let renamed = name_row(ui, &mut new.name);
@@ -227,7 +232,15 @@ fn camera_fields(ui: &mut Ui, rig: &SensorRig, index: usize, camera: &Camera, co
     field(&turned, "Aim sensor", set(new.clone()), commands);
     let mut fov_deg = new.fov_deg();
     let widest = if new.lens.is_wide() { 340.0 } else { 170.0 };
-    let zoomed = number(ui, "View", "Field of view", &mut fov_deg, 5.0..=widest, "°", 1);
+    let zoomed = number(
+        ui,
+        t("View"),
+        t("Field of view"),
+        &mut fov_deg,
+        5.0..=widest,
+        "°",
+        1,
+    );
     if zoomed.changed() {
         new.set_fov_deg(fov_deg);
     }
@@ -254,10 +267,10 @@ fn lidar_fields(
         commands.push(Command::Apply("Rename sensor", vec![set(new.clone())]));
     }
     ui.horizontal(|ui| {
-        caption(ui, "Pattern");
-        ui.menu_button(format!("{} beams", lidar.elevations_deg.len()), |ui| {
+        caption(ui, t("Pattern"));
+        ui.menu_button(tf!("{n} beams", n = lidar.elevations_deg.len()), |ui| {
             for preset in &LIDARS {
-                if ui.button(preset.name).clicked() {
+                if ui.button(t(preset.name)).clicked() {
                     // The pattern changes, the mount stays.
                     let pattern = LidarPattern {
                         name: new.name.clone(),
@@ -270,7 +283,7 @@ fn lidar_fields(
                 }
             }
         });
-        if index > 0 && ui.button("Show this one").clicked() {
+        if index > 0 && ui.button(t("Show this one")).clicked() {
             commands.push(Command::Apply(
                 "Choose LiDAR",
                 vec![changed(rig, |r| r.lidars.swap(0, index))],
@@ -286,17 +299,33 @@ fn lidar_fields(
     }
     field(&turned, "Aim sensor", set(new.clone()), commands);
     let mut columns = f64::from(new.columns);
-    let stepped = number(ui, "Columns", "Columns", &mut columns, 1.0..=8192.0, "", 0);
+    let stepped = number(ui, t("Columns"), t("Columns"), &mut columns, 1.0..=8192.0, "", 0);
     new.columns = columns as u32;
     field(&stepped, "Change columns", set(new.clone()), commands);
-    let ranged = number(ui, "Range", "Range", &mut new.max_range_m, 1.0..=300.0, " m", 0);
+    let ranged = number(
+        ui,
+        t("Range"),
+        t("Range"),
+        &mut new.max_range_m,
+        1.0..=300.0,
+        " m",
+        0,
+    );
     field(&ranged, "Change range", set(new.clone()), commands);
-    let sector = number(ui, "Sector", "Sector", &mut new.sector_deg, 1.0..=360.0, "°", 0);
+    let sector = number(
+        ui,
+        t("Sector"),
+        t("Sector"),
+        &mut new.sector_deg,
+        1.0..=360.0,
+        "°",
+        0,
+    );
     field(&sector, "Change sector", set(new.clone()), commands);
     let spin = number(
         ui,
-        "Spin",
-        "Revolutions per second",
+        t("Spin"),
+        t("Revolutions per second"),
         &mut new.spin_hz,
         0.0..=50.0,
         " Hz",
@@ -319,15 +348,15 @@ fn lidar_fields(
             "Change own vehicle" => &mut new.own_body,
             _ => &mut new.beyond_grid,
         };
-        if ui.checkbox(on, text).on_hover_text(hover).changed() {
+        if ui.checkbox(on, t(text)).on_hover_text(t(hover)).changed() {
             commands.push(Command::Apply(name, vec![set(new.clone())]));
         }
     }
     let mut kmh = rig.ego_speed_mps * 3.6;
     let speed = number(
         ui,
-        "Speed",
-        "Speed of the vehicle",
+        t("Speed"),
+        t("Speed of the vehicle"),
         &mut kmh,
         0.0..=200.0,
         " km/h",
@@ -337,7 +366,12 @@ fn lidar_fields(
     field(&speed, "Change speed", edit, commands);
     let low = lidar.elevations_deg.first().copied().unwrap_or(0.0);
     let high = lidar.elevations_deg.last().copied().unwrap_or(0.0);
-    let text = format!("{low:.1}° to {high:.1}°, {} rays a sweep", lidar.rays());
+    let text = tf!(
+        "{low}° to {high}°, {rays} rays a sweep",
+        low = format!("{low:.1}"),
+        high = format!("{high:.1}"),
+        rays = lidar.rays()
+    );
     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
 }
 
@@ -351,7 +385,7 @@ fn name_row(ui: &mut Ui, name: &mut String) -> bool {
     let (of, mut typed) = text.expect("just set");
     let response = ui
         .horizontal(|ui| {
-            caption(ui, "Name");
+            caption(ui, t("Name"));
             ui.add(egui::TextEdit::singleline(&mut typed).desired_width(180.0))
         })
         .inner;
@@ -365,15 +399,38 @@ fn name_row(ui: &mut Ui, name: &mut String) -> bool {
 
 fn mount(ui: &mut Ui, translation_m: &mut [f64; 3]) -> egui::Response {
     let mut p = DVec3::from(*translation_m);
-    let response = numbers(ui, "Mount", ["Forward", "Left", "Up"], &mut p, -20.0..=20.0, 0.02);
+    let response = numbers(
+        ui,
+        t("Mount"),
+        ["Forward", "Left", "Up"].map(t),
+        &mut p,
+        -20.0..=20.0,
+        0.02,
+    );
     *translation_m = p.to_array();
     response
 }
 
 fn aim_rows(ui: &mut Ui, aim: &mut Aim) -> egui::Response {
-    let yaw = number(ui, "Yaw", "Yaw", &mut aim.yaw_deg, -180.0..=180.0, "°", 1);
-    let pitch = number(ui, "Pitch", "Pitch", &mut aim.pitch_deg, -89.0..=89.0, "°", 1);
-    let roll = number(ui, "Roll", "Roll", &mut aim.roll_deg, -180.0..=180.0, "°", 1);
+    let yaw = number(ui, t("Yaw"), t("Yaw"), &mut aim.yaw_deg, -180.0..=180.0, "°", 1);
+    let pitch = number(
+        ui,
+        t("Pitch"),
+        t("Pitch"),
+        &mut aim.pitch_deg,
+        -89.0..=89.0,
+        "°",
+        1,
+    );
+    let roll = number(
+        ui,
+        t("Roll"),
+        t("Roll"),
+        &mut aim.roll_deg,
+        -180.0..=180.0,
+        "°",
+        1,
+    );
     yaw.union(pitch).union(roll)
 }
 

@@ -4,6 +4,7 @@ use egui::{Ui, Window};
 
 use crate::shell::guests::{Guests, OpenDoor};
 use crate::shell::settings::Settings;
+use language::t;
 use scene::classes::Palette;
 use widgets::theme::{self, Theme};
 
@@ -12,7 +13,8 @@ pub fn settings_ui(ui: &Ui, settings: &mut Settings, guests: &Guests, open: &mut
     if !*open {
         return;
     }
-    Window::new("Settings")
+    Window::new(t("Settings"))
+        .id(egui::Id::unique("settings"))
         .open(open)
         .resizable(false)
         .collapsible(false)
@@ -23,51 +25,51 @@ pub fn settings_ui(ui: &Ui, settings: &mut Settings, guests: &Guests, open: &mut
                 .num_columns(2)
                 .spacing([theme::GAP * 2.0, theme::GAP])
                 .show(ui, |ui| {
-                    ui.label("Theme");
+                    ui.label(t("Theme"));
                     ui.horizontal(|ui| {
-                        ui.selectable_value(&mut settings.theme, Theme::Dark, "Dark");
-                        ui.selectable_value(&mut settings.theme, Theme::Light, "Light");
+                        ui.selectable_value(&mut settings.theme, Theme::Dark, t("Dark"));
+                        ui.selectable_value(&mut settings.theme, Theme::Light, t("Light"));
                     });
                     ui.end_row();
-                    ui.label("Class colours");
+                    ui.label(t("Class colours"));
                     ui.horizontal(|ui| {
-                        ui.selectable_value(&mut settings.classes, Palette::Standard, "Standard");
+                        ui.selectable_value(&mut settings.classes, Palette::Standard, t("Standard"));
                         ui.selectable_value(
                             &mut settings.classes,
                             Palette::ColorBlindSafe,
-                            "Colour-blind safe",
+                            t("Colour-blind safe"),
                         );
                     });
                     ui.end_row();
-                    ui.label("Size of everything");
+                    ui.label(t("Size of everything"));
                     let mut percent = (ui.ctx().zoom_factor() * 100.0).round();
                     let slider = egui::DragValue::new(&mut percent)
                         .range(50.0..=300.0)
                         .speed(5.0)
                         .suffix(" %");
-                    if ui.add(slider).on_hover_text("Ctrl + and Ctrl −").changed() {
+                    if ui.add(slider).on_hover_text(t("Ctrl + and Ctrl −")).changed() {
                         settings.ui_scale = percent / 100.0;
                         ui.ctx().set_zoom_factor(settings.ui_scale);
                     }
                     ui.end_row();
-                    ui.label("Memory for undo");
+                    ui.label(t("Memory for undo"));
                     let field = egui::DragValue::new(&mut settings.history_mb)
                         .range(Settings::HISTORY_MB)
                         .speed(4.0)
                         .suffix(" MB");
                     ui.add(field)
-                        .on_hover_text("Older steps go when the history takes more")
-                        .accessible_name("Memory for undo");
+                        .on_hover_text(t("Older steps go when the history takes more"))
+                        .accessible_name(t("Memory for undo"));
                     ui.end_row();
-                    ui.label("At the start");
-                    ui.checkbox(&mut settings.start_screen, "Show the start screen");
+                    ui.label(t("At the start"));
+                    ui.checkbox(&mut settings.start_screen, t("Show the start screen"));
                     ui.end_row();
                     if guests.are_possible() {
-                        ui.label("Assistants");
-                        ui.checkbox(&mut settings.assistants, "May drive this editor")
-                            .on_hover_text(
+                        ui.label(t("Assistants"));
+                        ui.checkbox(&mut settings.assistants, t("May drive this editor"))
+                            .on_hover_text(t(
                                 "Programs on this machine that show the token work on the scene, by a fixed set of calls; each change can be undone",
-                            );
+                            ));
                         ui.end_row();
                     }
                 });
@@ -83,13 +85,11 @@ pub fn settings_ui(ui: &Ui, settings: &mut Settings, guests: &Guests, open: &mut
 /// Where assistants ask, and what they must show.
 fn door_ui(ui: &mut Ui, door: &OpenDoor) {
     ui.add_space(theme::GAP);
-    let row = |ui: &mut Ui, name: &str, value: &str| {
+    let row = |ui: &mut Ui, name: &str, copies: &str, value: &str| {
         ui.label(name);
         ui.horizontal(|ui| {
             ui.monospace(value);
-            let copy = ui
-                .small_button("Copy")
-                .on_hover_text(format!("Copy the {}", name.to_lowercase()));
+            let copy = ui.small_button(t("Copy")).on_hover_text(copies);
             if copy.clicked() {
                 ui.ctx().copy_text(value.to_owned());
             }
@@ -100,11 +100,11 @@ fn door_ui(ui: &mut Ui, door: &OpenDoor) {
         .num_columns(2)
         .spacing([theme::GAP * 2.0, theme::GAP])
         .show(ui, |ui| {
-            row(ui, "Address", &door.url);
-            row(ui, "Token", &door.token);
-            ui.label("Files");
+            row(ui, t("Address"), t("Copy the address"), &door.url);
+            row(ui, t("Token"), t("Copy the token"), &door.token);
+            ui.label(t("Files"));
             ui.monospace(door.folder.display().to_string())
-                .on_hover_text("The one folder whose files assistants may read and write");
+                .on_hover_text(t("The one folder whose files assistants may read and write"));
             ui.end_row();
         });
 }

@@ -5,6 +5,7 @@ use egui::{Id, Key, Modal, Ui, WidgetInfo, vec2};
 
 use crate::shell::actions::{ACTIONS, ActionDef, Group, When};
 use crate::shell::keymap::{Chord, Chords, Keymap, PRESETS};
+use language::{t, tf};
 use widgets::theme;
 
 /// What no preset changes: the pointer, and keys that go with it.
@@ -76,26 +77,29 @@ impl Shortcuts {
 
     fn head(&mut self, ui: &mut Ui, keymap: &mut Keymap) {
         ui.horizontal(|ui| {
-            ui.heading("Keys");
+            ui.heading(t("Keys"));
             ui.add_space(theme::GAP);
             let search = egui::TextEdit::singleline(&mut self.query)
-                .hint_text("Search")
+                .hint_text(t("Search"))
                 .desired_width(200.0);
             ui.add(search);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let changed = !keymap.own.is_empty();
-                if ui.add_enabled(changed, egui::Button::new("Reset mine")).clicked() {
+                if ui
+                    .add_enabled(changed, egui::Button::new(t("Reset mine")))
+                    .clicked()
+                {
                     keymap.reset();
                 }
                 let mut preset = keymap.preset.clone();
                 egui::ComboBox::from_id_salt("key preset")
-                    .selected_text(preset.as_str())
+                    .selected_text(t(&preset))
                     .show_ui(ui, |ui| {
                         for (name, _) in PRESETS {
-                            ui.selectable_value(&mut preset, name.to_owned(), name);
+                            ui.selectable_value(&mut preset, name.to_owned(), t(name));
                         }
                     });
-                ui.label(egui::RichText::new("Preset").color(theme::text_weak()));
+                ui.label(egui::RichText::new(t("Preset")).color(theme::text_weak()));
                 if preset != keymap.preset {
                     *keymap = Keymap::new(&preset, Chords::new());
                 }
@@ -103,11 +107,11 @@ impl Shortcuts {
         });
         let (text, color) = match self.awaiting {
             Some(_) => (
-                "Press the new chord. Esc leaves it as it was.",
+                t("Press the new chord. Esc leaves it as it was."),
                 theme::text_weak(),
             ),
             None if !self.said.is_empty() => (self.said.as_str(), theme::warn()),
-            None => ("Click a chord to change it.", theme::text_weak()),
+            None => (t("Click a chord to change it."), theme::text_weak()),
         };
         ui.label(egui::RichText::new(text).small().color(color));
     }
@@ -115,19 +119,19 @@ impl Shortcuts {
     fn group(&mut self, ui: &mut Ui, group: Group, title: &str, keymap: &mut Keymap) {
         let wanted = self.query.to_lowercase();
         let fits = |a: &&ActionDef| {
-            let text = format!("{} {}", a.title, keymap.text(a.id)).to_lowercase();
+            let text = format!("{} {} {}", a.title, keymap.text(a.id), t(a.title)).to_lowercase();
             a.group == group && text.contains(&wanted)
         };
         let actions: Vec<&'static ActionDef> = ACTIONS.iter().filter(fits).collect();
         if actions.is_empty() {
             return;
         }
-        widgets::icons::section(ui, title);
+        widgets::icons::section(ui, t(title));
         for action in actions {
             ui.horizontal(|ui| {
                 let chords = keymap.text(action.id);
                 let text = match (self.awaiting == Some(action.id), chords.is_empty()) {
-                    (true, _) => "press…".to_owned(),
+                    (true, _) => t("press…").to_owned(),
                     (false, true) => "–".to_owned(),
                     (false, false) => chords,
                 };
@@ -141,19 +145,19 @@ impl Shortcuts {
                 if ui.add(button).clicked() {
                     self.awaiting = Some(action.id);
                 }
-                let place = match action.when {
-                    When::Always => "",
-                    When::Over3d => "  (3D)",
-                    When::Chosen => "  (chosen)",
-                    When::Things => "  (thing chosen)",
+                let own = t(action.title);
+                let title = match action.when {
+                    When::Always => own.to_owned(),
+                    When::Over3d => tf!("{title}  (3D)", title = own),
+                    When::Chosen => tf!("{title}  (chosen)", title = own),
+                    When::Things => tf!("{title}  (thing chosen)", title = own),
                 };
-                let title = format!("{}{place}", action.title);
                 ui.label(egui::RichText::new(title).color(theme::text_weak()));
                 if keymap.is_changed(action.id) {
                     let back = ui
-                        .small_button("Reset")
-                        .on_hover_text("The chord of the preset again");
-                    let name = format!("Reset the chord of {}", action.title);
+                        .small_button(t("Reset"))
+                        .on_hover_text(t("The chord of the preset again"));
+                    let name = tf!("Reset the chord of {action}", action = own);
                     back.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                     if back.clicked() {
                         keymap.reset_one(action.id);
@@ -166,19 +170,22 @@ impl Shortcuts {
 
     fn fixed(&self, ui: &mut Ui) {
         let wanted = self.query.to_lowercase();
-        let fits = |(keys, what): &&(&str, &str)| format!("{keys} {what}").to_lowercase().contains(&wanted);
+        let fits = |(keys, what): &&(&str, &str)| {
+            let text = format!("{keys} {what} {} {}", t(keys), t(what)).to_lowercase();
+            text.contains(&wanted)
+        };
         let rows: Vec<_> = FIXED.iter().filter(fits).collect();
         if rows.is_empty() {
             return;
         }
-        widgets::icons::section(ui, "Pointer");
+        widgets::icons::section(ui, t("Pointer"));
         for (keys, what) in rows {
             ui.horizontal(|ui| {
                 ui.scope(|ui| {
                     ui.set_width(158.0);
-                    ui.label(egui::RichText::new(*keys).color(theme::text_strong()));
+                    ui.label(egui::RichText::new(t(keys)).color(theme::text_strong()));
                 });
-                ui.label(egui::RichText::new(*what).color(theme::text_weak()));
+                ui.label(egui::RichText::new(t(what)).color(theme::text_weak()));
             });
         }
     }
@@ -201,10 +208,14 @@ impl Shortcuts {
             let losers = keymap.rebind(id, chord);
             self.said = match losers.is_empty() {
                 true => String::new(),
-                false => format!(
-                    "{chord} was the chord of {}: it is not any more.",
-                    losers.join(", ")
-                ),
+                false => {
+                    let losers: Vec<&str> = losers.into_iter().map(t).collect();
+                    tf!(
+                        "{chord} was the chord of {actions}: it is not any more.",
+                        chord = chord,
+                        actions = losers.join(", ")
+                    )
+                }
             };
         }
     }

@@ -7,6 +7,7 @@ use egui::{Id, Modal, Sense, Ui, WidgetInfo, vec2};
 
 use crate::command::{Command, FileCommand};
 use crate::shell::settings::Settings;
+use language::{t, tf};
 use widgets::theme;
 use world::template::TEMPLATES;
 
@@ -27,7 +28,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                 .size(24.0)
                 .color(theme::text_strong()),
         );
-        let text = "Paint a street, place what stands on it, and see what the sensors would see.";
+        let text = t("Paint a street, place what stands on it, and see what the sensors would see.");
         ui.label(egui::RichText::new(text).color(theme::text_weak()));
         ui.add_space(theme::GAP);
         if let Some(words) = describe(ui) {
@@ -35,23 +36,25 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
         }
         ui.add_space(theme::GAP);
         ui.columns_const(|[left, right]: &mut [Ui; 2]| {
-            widgets::icons::section(left, "Begin");
-            if wide(left, "Go on with this scene", "Esc").clicked() {
+            widgets::icons::section(left, t("Begin"));
+            if wide(left, t("Go on with this scene"), "Esc").clicked() {
                 *open = false;
             }
-            if wide(left, "Open or import…", "Ctrl+O").clicked() {
+            if wide(left, t("Open or import…"), "Ctrl+O").clicked() {
                 choose(open, Command::File(FileCommand::Open));
             }
-            if wide(left, "New random scene", "Ctrl+N").clicked() {
+            if wide(left, t("New random scene"), "Ctrl+N").clicked() {
                 choose(open, Command::File(FileCommand::New));
             }
-            if wide(left, "Tour in three steps", "").clicked() {
+            if wide(left, t("Tour in three steps"), "").clicked() {
                 choose(open, Command::BeginTour);
             }
             left.add_space(theme::GAP);
-            widgets::icons::section(left, "Recent");
+            widgets::icons::section(left, t("Recent"));
             if settings.recent.is_empty() {
-                let text = "Scenes that you open or save appear here. A file can also be dropped on the window: a scene, a road (OpenDRIVE, Lanelet2, CommonRoad), labels, a point cloud, a glTF model.";
+                let text = t(
+                    "Scenes that you open or save appear here. A file can also be dropped on the window: a scene, a road (OpenDRIVE, Lanelet2, CommonRoad), labels, a point cloud, a glTF model.",
+                );
                 // Columns justify what is in them; words do not want that.
                 left.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
                     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
@@ -62,7 +65,7 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
                     choose(open, Command::File(FileCommand::OpenPath(path.to_owned())));
                 }
             }
-            widgets::icons::section(right, "Roads to begin with");
+            widgets::icons::section(right, t("Roads to begin with"));
             for pair in TEMPLATES.chunks(2) {
                 right.columns(2, |cells| {
                     for (ui, name) in cells.iter_mut().zip(pair) {
@@ -76,8 +79,8 @@ pub fn start_ui(ui: &Ui, settings: &mut Settings, open: &mut bool, commands: &mu
         });
         ui.add_space(theme::GAP);
         ui.horizontal(|ui| {
-            ui.checkbox(&mut settings.start_screen, "Show this at the start");
-            let text = "Ctrl+K finds any command, ? shows the keys";
+            ui.checkbox(&mut settings.start_screen, t("Show this at the start"));
+            let text = t("Ctrl+K finds any command, ? shows the keys");
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             });
@@ -111,18 +114,19 @@ fn describe(ui: &mut Ui) -> Option<String> {
     let mut typed: Described = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     let made = ui
         .horizontal(|ui| {
+            let example = "night, rain, a roundabout, five cones block my lane";
             let field = egui::TextEdit::singleline(&mut typed.words)
-                .hint_text("Describe a scene: night, rain, a roundabout, five cones block my lane")
+                .hint_text(tf!("Describe a scene: {example}", example = example))
                 .margin(vec2(8.0, 6.0))
                 .desired_width(ui.available_width() - 96.0);
-            let field = ui.add(field).accessible_name("Describe a scene");
+            let field = ui.add(field).accessible_name(t("Describe a scene"));
             let pass = ui.ctx().cumulative_pass_nr();
             if typed.drawn.replace(pass).is_none_or(|drawn| drawn + 2 < pass) {
                 field.request_focus();
             }
             let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let some = !typed.words.trim().is_empty();
-            let button = egui::Button::new("Make it")
+            let button = egui::Button::new(t("Make it"))
                 .fill(theme::accent_fill())
                 .min_size(vec2(84.0, 28.0));
             let clicked = ui.add_enabled(some, button).clicked();
@@ -167,7 +171,7 @@ fn picture(ui: &Ui, name: &str) -> Option<egui::TextureHandle> {
 /// A template as a picture, with its name below.
 fn road(ui: &mut Ui, name: &'static str) -> egui::Response {
     const HEIGHT: f32 = 100.0;
-    let label = theme::sentence(&name.replace('_', " "));
+    let label = theme::sentence(t(&name.replace('_', " ")));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
     let (above, below) = rect.split_top_bottom_at_y(rect.bottom() - 18.0);

@@ -3,6 +3,7 @@
 use egui::{Align2, Area, Id, Order, Rect, Ui, vec2};
 
 use editor::Document;
+use language::{t, tf};
 use scene::Conditions;
 use widgets::theme;
 
@@ -84,21 +85,29 @@ pub fn tour_ui(ui: &Ui, over: Rect, tour: &mut Option<Tour>, document: &Document
                 match STEPS.get(at.step) {
                     Some((title, text)) => {
                         let n = STEPS.len();
-                        ui.heading(format!("{} of {n}: {title}", at.step + 1));
-                        ui.label(*text);
+                        let title = t(title);
+                        ui.heading(tf!(
+                            "{step} of {all}: {title}",
+                            step = at.step + 1,
+                            all = n,
+                            title = title
+                        ));
+                        ui.label(t(text));
                         ui.add_space(theme::GAP / 2.0);
                         ui.horizontal(|ui| {
-                            if ui.button("Skip").clicked() {
+                            if ui.button(t("Skip")).clicked() {
                                 at.next(document);
                             }
-                            ends |= ui.button("End the tour").clicked();
+                            ends |= ui.button(t("End the tour")).clicked();
                         });
                     }
                     None => {
-                        ui.heading("That was the tour");
-                        ui.label("Ctrl+K finds every command, setting and object. ? shows the keys.");
+                        ui.heading(t("That was the tour"));
+                        ui.label(t(
+                            "Ctrl+K finds every command, setting and object. ? shows the keys.",
+                        ));
                         ui.add_space(theme::GAP / 2.0);
-                        ends |= ui.button("Good").clicked();
+                        ends |= ui.button(t("Good")).clicked();
                     }
                 }
             });

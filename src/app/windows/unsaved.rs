@@ -2,6 +2,7 @@
 
 use egui::{Id, Modal, Ui};
 
+use language::{t, tf};
 use widgets::theme;
 
 /// What the user wants to become of unsaved changes.
@@ -22,21 +23,21 @@ pub fn unsaved_ui(ui: &Ui, name: &str) -> Option<Unsaved> {
         .frame(theme::dialog_frame(ui.style()))
         .show(ui.ctx(), |ui| {
             ui.set_width(400.0);
-            ui.heading("Unsaved changes");
+            ui.heading(t("Unsaved changes"));
             ui.add_space(theme::GAP);
-            ui.label(format!("“{name}” has changes that are in no file yet."));
+            ui.label(tf!("“{name}” has changes that are in no file yet.", name = name));
             ui.add_space(2.0 * theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui
-                    .add(egui::Button::new("Save changes").fill(theme::accent_fill()))
+                    .add(egui::Button::new(t("Save changes")).fill(theme::accent_fill()))
                     .clicked()
                 {
                     answer = Some(Unsaved::Save);
                 }
-                if ui.button("Discard changes").clicked() {
+                if ui.button(t("Discard changes")).clicked() {
                     answer = Some(Unsaved::Discard);
                 }
-                if ui.button("Keep editing").clicked() {
+                if ui.button(t("Keep editing")).clicked() {
                     answer = Some(Unsaved::Stay);
                 }
             });

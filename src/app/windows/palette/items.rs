@@ -10,8 +10,9 @@ use crate::shell::keymap::Keymap;
 use crate::tools::ToolCommand;
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, ThingKind};
+use language::{filled, t, tf};
 use scene::background::{LineKind, PostKind};
-use scene::{Class, Scene, TimeOfDay, Weather};
+use scene::{Class, Scene, SceneBox, TimeOfDay, Weather};
 use sensors::cameras;
 use world::template::TEMPLATES;
 
@@ -39,6 +40,46 @@ pub struct Known<'a> {
     pub scene: &'a Scene,
 }
 
+/// A title in English, and in the language that is shown.
+type Title = [String; 2];
+
+/// A title with a name in it that is a text of the interface.
+fn titled(text: &str, name: &str) -> Title {
+    titled_as(text, [name, t(name)])
+}
+
+/// The same with a name in English and as it is shown.
+fn titled_as(text: &str, [english, own]: [&str; 2]) -> Title {
+    [
+        filled(text, &[("name", &english)]),
+        filled(t(text), &[("name", &own)]),
+    ]
+}
+
+/// A title of its own inside a line: small in English, as it is in other languages.
+fn inside(title: &str) -> [String; 2] {
+    let (small, own) = (title.to_lowercase(), t(title));
+    let own = if own == title {
+        small.clone()
+    } else {
+        own.to_owned()
+    };
+    [small, own]
+}
+
+/// What a box is called in the language that is shown.
+fn called(b: &SceneBox) -> String {
+    let class = b.class.label();
+    let name = match b.label.name.is_empty() {
+        true => t(&class),
+        false => b.label.name.as_str(),
+    };
+    match b.label.paint {
+        Some(paint) => tf!("{paint} {name}", paint = t(paint.name()), name = name),
+        None => name.to_owned(),
+    }
+}
+
 /// Every line there is.
 pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     let (keymap, scene) = (known.keymap, known.scene);
@@ -48,13 +89,15 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
         .filter(|(_, a)| a.id != "palette")
         .map(|(i, a)| Item {
             title: a.title.to_owned(),
+            shown: t(a.title).to_owned(),
             right: keymap.first(a.id),
             does: Does::Action(i),
         })
         .collect();
-    let mut add = |title: String, right: &str, command: Command| {
+    let mut add = |[title, shown]: Title, right: &str, command: Command| {
         out.push(Item {
             title,
+            shown,
             right: right.to_owned(),
             does: Does::Commands(match right {
                 // Light and air are seen in pictures.
@@ -68,17 +111,16 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     };
     for pane in panes::infos() {
         add(
-            format!("Pane: {}", pane.title),
+            titled("Pane: {name}", &pane.title),
             "pane",
             Command::View(ViewCommand::ShowPane(pane.id)),
         );
     }
     for class in Class::OBJECTS {
-        let title = format!("Place a box: {}", class.label());
+        let title = titled("Place a box: {name}", &class.label());
         add(title, "box", Command::PlaceClass(class));
     }
-    for (kind, name) in kinds() {
-        let title = format!("Beside the road: {name}");
+    for (kind, title) in kinds() {
         add(
             title,
             "thing",
@@ -87,34 +129,43 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     }
     for weather in Weather::ALL {
         let command = conditions::becomes(scene, scene.conditions.time, weather);
-        add(format!("Weather: {}", weather.name()), CONDITIONS, command);
+        add(titled("Weather: {name}", weather.name()), CONDITIONS, command);
     }
     for time in TimeOfDay::ALL {
         let command = conditions::becomes(scene, time, scene.conditions.weather);
-        add(format!("Time of day: {}", time.name()), CONDITIONS, command);
+        add(titled("Time of day: {name}", time.name()), CONDITIONS, command);
     }
     for view in cameras::views() {
-        let title = format!("Cameras: {}", view.title.to_lowercase());
+        let names = inside(view.title);
+        let title = titled_as("Cameras: {name}", names.each_ref().map(String::as_str));
         add(title, "view", Command::View(ViewCommand::Cameras(view.id)));
     }
     for name in TEMPLATES {
         add(
-            format!("New scene: {name}"),
+            titled("New scene: {name}", name),
             "file",
             Command::File(FileCommand::NewFrom(name)),
         );
     }
     for b in scene.frame().boxes.values().take(MOST_OBJECTS) {
-        let title = format!("Choose {}, number {}", b.called(), b.id.0);
+        let (text, id) = ("Choose {name}, number {id}", b.id.0);
+        let title = [
+            filled(text, &[("name", &b.called()), ("id", &id)]),
+            filled(t(text), &[("name", &called(b)), ("id", &id)]),
+        ];
         add(title, "object", Command::Select(Some(b.id)));
     }
     for name in SETTINGS {
-        add(format!("Settings: {name}"), "settings", Command::OpenSettings);
+        add(
+            titled("Settings: {name}", name),
+            "settings",
+            Command::OpenSettings,
+        );
     }
     for path in known.recent {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         add(
-            format!("Open {name}"),
+            titled_as("Open {name}", [&*name; 2]),
             "recent file",
             Command::File(FileCommand::OpenPath(path.clone())),
         );
@@ -123,9 +174,15 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
 }
 
 /// Every kind of thing that a tool draws or puts down.
-fn kinds() -> Vec<(ThingKind, String)> {
-    let trees = TREES.map(|(kind, name, _)| (ThingKind::Tree(kind), format!("{} tree", name.to_lowercase())));
-    let lines = LineKind::ALL.map(|kind| (ThingKind::Line(kind), kind.name().to_owned()));
-    let posts = PostKind::ALL.map(|kind| (ThingKind::Post(kind), kind.name().to_owned()));
+fn kinds() -> Vec<(ThingKind, Title)> {
+    let trees = TREES.map(|(kind, name, _)| {
+        let names = inside(name);
+        let names = names.each_ref().map(String::as_str);
+        let title = titled_as("Beside the road: {name} tree", names);
+        (ThingKind::Tree(kind), title)
+    });
+    let other = |name: &str| titled("Beside the road: {name}", name);
+    let lines = LineKind::ALL.map(|kind| (ThingKind::Line(kind), other(kind.name())));
+    let posts = PostKind::ALL.map(|kind| (ThingKind::Post(kind), other(kind.name())));
     trees.into_iter().chain(lines).chain(posts).collect()
 }
