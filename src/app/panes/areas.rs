@@ -3,6 +3,7 @@
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
 use super::compare::tag;
+use language::t;
 
 /// The left and the right half of an area, with a line between them.
 pub(crate) fn halves(area: Rect) -> (Rect, Rect) {
@@ -20,8 +21,8 @@ pub(crate) fn left_part(area: Rect, at: f32) -> Rect {
 
 /// Names the two halves.
 pub(crate) fn sides(ui: &Ui, left: Rect, right: Rect) {
-    tag(ui, left.left_top() + vec2(8.0, 8.0), "before", false);
-    tag(ui, right.left_top() + vec2(8.0, 8.0), "after", false);
+    tag(ui, left.left_top() + vec2(8.0, 8.0), t("before"), false);
+    tag(ui, right.left_top() + vec2(8.0, 8.0), t("after"), false);
 }
 
 /// Draws within a rectangle.

@@ -12,6 +12,7 @@ use crate::command::Command;
 use crate::map_edges;
 use crate::views_shown::Underlay;
 use editor::pick;
+use language::t;
 use widgets::icons::{self, Icon};
 
 /// The bird's-eye view.
@@ -36,15 +37,15 @@ impl Pane for Bev {
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
         let choices = [
-            (Underlay::Layout, "Layout", "map layers"),
-            (Underlay::Occupancy, "Occupancy", "voxels from above"),
-            (Underlay::Both, "Both", "layers over voxels"),
+            (Underlay::Layout, t("Layout"), t("map layers")),
+            (Underlay::Occupancy, t("Occupancy"), t("voxels from above")),
+            (Underlay::Both, t("Both"), t("layers over voxels")),
         ];
         icons::choice(
             ui,
             &mut cx.state.shown.underlay,
             &choices,
-            "Bird's-eye view shows",
+            t("Bird's-eye view shows"),
         );
     }
 

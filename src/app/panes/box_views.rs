@@ -10,6 +10,7 @@ use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::tools::Hand;
 use editor::Edit;
+use language::{t, tf};
 use scene::{Class, Extent, LidarSweep, Scene, SceneBox};
 use viewport::GROUND_TOP_M;
 use widgets::icons::Icon;
@@ -101,7 +102,7 @@ impl BoxViews {
         ui.painter().rect_filled(all, 0.0, theme::well());
         let Some(b) = hand.selected.and_then(|id| scene.frame().boxes.get(&id)) else {
             self.held = None;
-            hint(ui, all, "Choose a box to see it from three sides.");
+            hint(ui, all, t("Choose a box to see it from three sides."));
             return;
         };
         let along = if all.height() > all.width() {
@@ -133,7 +134,11 @@ impl BoxViews {
         commands: &mut Vec<Command>,
     ) {
         let response = ui.interact(rect, ui.scope_id().with(("box view", index)), Sense::drag());
-        let label = format!("Box {} {}", b.id.0, view.name.to_lowercase());
+        let label = tf!(
+            "Box {number} {view}",
+            number = b.id.0,
+            view = t(view.name).to_lowercase()
+        );
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, label.as_str()));
         // While a face is held the picture keeps the frame of the box that the drag began with.
         let frame = self.held.filter(|h| h.start.id == b.id).map_or(*b, |h| h.start);
@@ -206,7 +211,9 @@ impl BoxViews {
         let font = egui::TextStyle::Small.resolve(ui.style());
         let meters = format!(
             "{}   {:.2} x {:.2} m",
-            view.name, b.size_m[view.right.0], b.size_m[view.up.0]
+            t(view.name),
+            b.size_m[view.right.0],
+            b.size_m[view.up.0]
         );
         painter.text(
             rect.left_top() + vec2(8.0, 3.0),

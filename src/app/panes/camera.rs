@@ -10,6 +10,7 @@ use super::conditions::conditions;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::{Command, FileCommand};
+use language::{t, tf};
 use sensors::cameras;
 use widgets::icons::{self, Icon};
 
@@ -45,8 +46,8 @@ impl Pane for Camera {
 
     fn title_in(&self, scene: &Scene) -> String {
         match scene.rig.cameras.get(usize::from(self.index)) {
-            Some(camera) => format!("Camera: {}", camera_label(&camera.name)),
-            None => self.title(),
+            Some(camera) => tf!("Camera: {name}", name = camera_label(&camera.name)),
+            None => t(&self.title()).to_owned(),
         }
     }
 
@@ -67,8 +68,8 @@ impl Pane for Camera {
         let own = cx.state.cameras.own.entry(self.index).or_default();
         let title = |id| views.iter().find(|v| v.id == id).map_or("", |v| v.title);
         let selected = match own.view {
-            Some(id) => title(id).to_owned(),
-            None => format!("{} (all)", title(strip)),
+            Some(id) => t(title(id)).to_owned(),
+            None => tf!("{view} (all)", view = t(title(strip))),
         };
         // From the right to the left.
         // The camera of the pane may be another than that of its name.
@@ -79,8 +80,8 @@ impl Pane for Camera {
         if icons::button(
             ui,
             Icon::Camera,
-            "Save picture",
-            "as it is shown, beside the scene",
+            t("Save picture"),
+            t("as it is shown, beside the scene"),
             false,
             count > 0,
         )
@@ -91,38 +92,38 @@ impl Pane for Camera {
         let legend = icons::button(
             ui,
             Icon::List,
-            "Legend",
-            "what the colours mean",
+            t("Legend"),
+            t("what the colours mean"),
             own.legend,
             true,
         );
         if legend.clicked() {
             own.legend = !own.legend;
         }
-        if icons::button(ui, Icon::StepForward, "Next camera", &name, false, count > 1).clicked() {
+        if icons::button(ui, Icon::StepForward, t("Next camera"), &name, false, count > 1).clicked() {
             own.on_by = step(own.on_by, count, true);
         }
-        if icons::button(ui, Icon::StepBack, "Previous camera", &name, false, count > 1).clicked() {
+        if icons::button(ui, Icon::StepBack, t("Previous camera"), &name, false, count > 1).clicked() {
             own.on_by = step(own.on_by, count, false);
         }
         egui::ComboBox::from_id_salt(("camera mode", self.index))
             .selected_text(selected)
             .width(112.0)
             .show_ui(ui, |ui| {
-                ui.selectable_value(&mut own.view, None, "As in the strip")
-                    .on_hover_text("What all cameras show");
+                ui.selectable_value(&mut own.view, None, t("As in the strip"))
+                    .on_hover_text(t("What all cameras show"));
                 for view in &views {
-                    ui.selectable_value(&mut own.view, Some(view.id), view.title)
-                        .on_hover_text(view.hint);
+                    ui.selectable_value(&mut own.view, Some(view.id), t(view.title))
+                        .on_hover_text(t(view.hint));
                 }
             })
             .response
-            .accessible_name("Camera picture");
+            .accessible_name(t("Camera picture"));
         let source = cameras::source_of(view, cx.state.cameras.source);
         if source.needs().conditions {
-            ui.menu_button("Light…", |ui| conditions(ui, cx.scene, commands))
+            ui.menu_button(t("Light…"), |ui| conditions(ui, cx.scene, commands))
                 .response
-                .on_hover_text("Time of day and weather of the scene");
+                .on_hover_text(t("Time of day and weather of the scene"));
         }
     }
 

@@ -4,6 +4,7 @@ use egui::Ui;
 
 use crate::camera_views::CamerasShown;
 use crate::command::{Command, Window};
+use language::{t, tf};
 use sensors::cameras::{self, Knob};
 use widgets::icons;
 use widgets::theme;
@@ -26,12 +27,15 @@ pub fn header(
 ) {
     ui.horizontal(|ui| {
         let views = cameras::views();
-        let choices: Vec<_> = views.iter().map(|v| (v.id, v.title, v.hint)).collect();
+        let choices: Vec<_> = views.iter().map(|v| (v.id, t(v.title), t(v.hint))).collect();
         icons::segments(ui, &mut shown.view, &choices);
         ui.add_space(8.0);
         let sources = cameras::sources_of(shown.view);
         if sources.len() > 1 {
-            let choices: Vec<_> = sources.iter().map(|s| (s.id(), s.title(), s.hint())).collect();
+            let choices: Vec<_> = sources
+                .iter()
+                .map(|s| (s.id(), t(s.title()), t(s.hint())))
+                .collect();
             icons::segments(ui, &mut shown.source, &choices);
         }
         if shown.shown_source().needs().conditions {
@@ -43,23 +47,27 @@ pub fn header(
                     .suffix(" m")
                     .fixed_decimals(1);
                 ui.spacing_mut().slider_width = 220.0;
-                ui.add(slider).on_hover_text("Depth of the plane");
+                ui.add(slider).on_hover_text(t("Depth of the plane"));
             }
             None => {}
         }
         if stale {
             ui.add_space(4.0);
             ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
-            ui.label(egui::RichText::new("updating").small().color(theme::text_weak()));
+            ui.label(
+                egui::RichText::new(t("updating"))
+                    .small()
+                    .color(theme::text_weak()),
+            );
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             // The menu has it too.
-            if ui.available_width() > SENSORS_BUTTON && ui.button("Sensors…").clicked() {
+            if ui.available_width() > SENSORS_BUTTON && ui.button(t("Sensors…")).clicked() {
                 commands.push(Command::Toggle(Window::Sensors));
             }
             let text = input
                 .lidar_points
-                .map(|n| format!("LiDAR  {} returns", thousands(n)));
+                .map(|n| tf!("LiDAR  {n} returns", n = thousands(n)));
             // Only where it hides no button.
             if let Some(text) = text.filter(|_| ui.available_width() > LIDAR_TEXT) {
                 ui.label(egui::RichText::new(text).small().color(theme::text_weak()));

@@ -2,6 +2,7 @@
 
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
+use language::t;
 use scene::Class;
 use sensors::cameras::{CameraPicture, DEPTH_M, ViewId};
 use sensors::color::ramp;
@@ -41,7 +42,7 @@ fn classes(ui: &Ui, over: Rect, classes: &[Class]) {
         .map(|c| {
             (
                 theme::class_color(*c),
-                painter.layout_no_wrap(theme::sentence(&c.label()), font.clone(), theme::ON_CANVAS),
+                painter.layout_no_wrap(theme::sentence(t(&c.label())), font.clone(), theme::ON_CANVAS),
             )
         })
         .collect();

@@ -17,6 +17,7 @@ use crate::camera_views::{CameraView, CamerasShown, march};
 use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
 use crate::state::UiState;
+use language::{t, tf};
 use scene::{Camera, Class, Scene, SceneRev};
 use sensors::cameras::ViewId;
 use sensors::march::{MarchHit, MarchScene};
@@ -123,7 +124,7 @@ impl CameraStrip {
             }
         }
         if shown.is_empty() {
-            let text = "No camera is shown. Sensors… adds and shows them.";
+            let text = t("No camera is shown. Sensors… adds and shows them.");
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
         }
     }
@@ -175,7 +176,7 @@ impl CameraStrip {
         self.note_stale(ui, input.stale);
         let area = ui.available_rect_before_wrap();
         let Some(camera) = input.scene.rig.cameras.get(index) else {
-            let text = "The vehicle has no such camera. Sensors… adds one.";
+            let text = t("The vehicle has no such camera. Sensors… adds one.");
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
             return;
         };
@@ -254,23 +255,24 @@ impl CameraStrip {
         let label = camera_label(&camera.name);
         let Some(hit) = self.hit(scene, camera, part) else {
             let blind = ray_of(camera, part) == DVec3::ZERO;
-            return format!("{label}  ·  {}", if blind { "outside the lens" } else { "sky" });
+            let what = if blind { t("outside the lens") } else { t("sky") };
+            return format!("{label}  ·  {what}");
         };
         let pose = camera.ego_from_camera();
         let ray = ray_of(camera, part);
         let name = match hit.id {
-            17 => "crossing".to_owned(),
-            18 => "road divider".to_owned(),
-            19 => "lane divider".to_owned(),
-            id => Class::from_id(id).map_or_else(|| "unknown".into(), Class::label),
+            17 => t("crossing").to_owned(),
+            18 => t("road divider").to_owned(),
+            19 => t("lane divider").to_owned(),
+            id => {
+                Class::from_id(id).map_or_else(|| t("unknown").into(), |class| t(&class.label()).to_owned())
+            }
         };
         let name = hit.box_id.map_or(name.clone(), |id| format!("{name} #{}", id.0));
         let p = pose.translation_m + ray * hit.t;
         let (x, y, z) = (p.x + 0.0, p.y + 0.0, p.z + 0.0);
-        format!(
-            "{label}  ·  {name}  ·  {:.1} m away  ·  {x:.1}, {y:.1}, {z:.1} m",
-            hit.t
-        )
+        let away = tf!("{distance} m away", distance = format!("{:.1}", hit.t));
+        format!("{label}  ·  {name}  ·  {away}  ·  {x:.1}, {y:.1}, {z:.1} m")
     }
 
     fn picture(
@@ -285,7 +287,7 @@ impl CameraStrip {
         let camera = scene.rig.cameras.get(index)?;
         let label = camera_label(&camera.name);
         let response = ui.interact(rect, ui.scope_id().with(("camera", index)), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Camera {label}")));
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, tf!("Camera {name}", name = label)));
         let painter = ui.painter_at(rect.expand(1.0));
         match self.texture(index) {
             Some(texture) => {
@@ -302,7 +304,7 @@ impl CameraStrip {
                 painter.text(
                     rect.center(),
                     Align2::CENTER_CENTER,
-                    "rendering…",
+                    t("rendering…"),
                     font,
                     theme::text_weak(),
                 );
@@ -367,7 +369,7 @@ impl CameraStrip {
         };
         let aspect = camera.width as f32 / camera.height.max(1) as f32;
         let width = (over.width() * 0.72).min((over.height() * 0.8) * aspect);
-        let window = egui::Window::new(format!("Camera: {}", camera_label(&camera.name)))
+        let window = egui::Window::new(tf!("Camera: {name}", name = camera_label(&camera.name)))
             .id(egui::Id::unique("enlarged camera"))
             .collapsible(false)
             .resizable(false)
@@ -376,7 +378,7 @@ impl CameraStrip {
         window.open(&mut open).show(ui.ctx(), |ui| {
             let size = vec2(width, width / aspect);
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-            response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Enlarged camera"));
+            response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("Enlarged camera")));
             ui.painter().image(texture.id(), rect, unit(), Color32::WHITE);
             box_outlines::draw(ui.painter(), rect, camera, input.scene, state);
             if let (true, Some(p)) = (response.clicked(), response.interact_pointer_pos()) {
@@ -389,10 +391,10 @@ impl CameraStrip {
                     .hover_pos()
                     .map(|p| self.pixel_text(input.scene, camera, (p - rect.min) / rect.size()));
                 ui.label(text.unwrap_or_else(|| {
-                    "Move over the picture to read a pixel; a click chooses the box there".into()
+                    t("Move over the picture to read a pixel; a click chooses the box there").into()
                 }));
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if ui.button("Look through in 3D").clicked() {
+                    if ui.button(t("Look through in 3D")).clicked() {
                         commands.push(Command::View(ViewCommand::LookThrough(index)));
                         commands.push(Command::View(ViewCommand::Inspect(None)));
                     }
@@ -451,7 +453,10 @@ fn badge(ui: &Ui, painter: &egui::Painter, left_bottom: egui::Pos2, text: &str, 
 
 /// `CAM_FRONT_LEFT` as a person says it.
 pub fn camera_label(name: &str) -> String {
-    theme::sentence(&name.trim_start_matches("CAM_").replace('_', " ").to_lowercase())
+    theme::sentence(t(&name
+        .trim_start_matches("CAM_")
+        .replace('_', " ")
+        .to_lowercase()))
 }
 
 /// 34567 as `34,567`.

@@ -10,11 +10,13 @@ use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
 
 use super::id::PaneId;
+use super::label::called;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use crate::finding_marks::FindingMarks;
 use editor::checks::{Counts, Finding, Severity, waive};
 use editor::fix::fix_these;
+use language::{t, tf};
 use row::{key, row, sign};
 use scene::{BoxId, Frame, Scene};
 use triage::{Grouping, Line, Triage};
@@ -130,7 +132,7 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     let Some(findings) = input.findings else {
         ui.horizontal(|ui| {
             ui.spinner();
-            ui.weak("Checking the scene…");
+            ui.weak(t("Checking the scene…"));
         });
         return;
     };
@@ -140,7 +142,9 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     let counts = Counts::of(open.iter().copied());
     if open.is_empty() {
         all_is_well(ui, counts, &waived);
-        ui.weak("Checked while you work: boxes, occupancy, roads, lanes, what cameras and LiDAR see.");
+        ui.weak(t(
+            "Checked while you work: boxes, occupancy, roads, lanes, what cameras and LiDAR see.",
+        ));
         waived_ui(ui, &waived, input, commands);
         return;
     }
@@ -153,12 +157,12 @@ fn list_ui(ui: &mut Ui, input: &ChecksInput<'_>, pointed: &mut Pointed, commands
     ui.separator();
     reason_ui(ui, &open, commands);
     let name = |id: BoxId| match input.frame().boxes.get(&id) {
-        Some(b) => format!("{} {}", b.called(), id.0),
-        None => format!("box {}", id.0),
+        Some(b) => format!("{} {}", called(b), id.0),
+        None => tf!("box {number}", number = id.0),
     };
     let lines = triage.lines(&open, &name);
     if lines.is_empty() {
-        ui.weak("None of these: the filter leaves all of them out.");
+        ui.weak(t("None of these: the filter leaves all of them out."));
     }
     let height = (ui.available_height() - waived::height(ui, &waived)).max(3.0 * theme::ROW);
     egui::ScrollArea::vertical()
@@ -181,9 +185,9 @@ fn all_is_well(ui: &mut Ui, counts: Counts, waived: &[&Finding]) {
         let (dot, _) = ui.allocate_exact_size(vec2(12.0, 12.0), egui::Sense::hover());
         ui.painter().circle_filled(dot.center(), 4.0, theme::good());
         ui.label(match (counts.infos, waived.len()) {
-            (0, 0) => "All is well: no check found anything.",
-            (0, _) => "All is well, but for what was waived.",
-            _ => "All is well. Worth knowing:",
+            (0, 0) => t("All is well: no check found anything."),
+            (0, _) => t("All is well, but for what was waived."),
+            _ => t("All is well. Worth knowing:"),
         });
     });
 }
@@ -204,25 +208,26 @@ fn bar(
                 severity_button(ui, severity, n, hidden);
             }
         }
-        icons::segments(ui, &mut triage.grouping, &Grouping::ALL);
+        let groupings = Grouping::ALL.map(|(grouping, name, hint)| (grouping, t(name), t(hint)));
+        icons::segments(ui, &mut triage.grouping, &groupings);
         if input.stale {
             ui.spinner();
         }
         let fixable = open.iter().filter(|f| !f.fixes.is_empty()).count();
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let button = egui::Button::new(format!("Fix all ({fixable})"));
+            let button = egui::Button::new(tf!("Fix all ({n})", n = fixable));
             let response = ui.add_enabled(fixable > 0 && !input.stale, button);
             if response
-                .on_hover_text("Repairs all that can be repaired, as one step to undo")
+                .on_hover_text(t("Repairs all that can be repaired, as one step to undo"))
                 .clicked()
             {
                 commands.push(Command::FixAll);
             }
             let field = egui::TextEdit::singleline(&mut triage.words)
                 .id(egui::Id::unique("filter of the findings"))
-                .hint_text("Filter")
+                .hint_text(t("Filter"))
                 .desired_width(ui.available_width().clamp(40.0, 130.0));
-            ui.add(field).accessible_name("Filter the findings");
+            ui.add(field).accessible_name(t("Filter the findings"));
         });
     });
 }
@@ -239,8 +244,15 @@ fn severity_button(ui: &mut Ui, severity: Severity, n: usize, hidden: &mut bool)
         ui.spacing_mut().item_spacing.x = 3.0;
         sign(ui, severity);
         let button = egui::Button::selectable(!*hidden, egui::RichText::new(&text).color(color));
-        let response = ui.add(button).on_hover_text("Listed, or left out");
-        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, !*hidden, format!("List {text}")));
+        let response = ui.add(button).on_hover_text(t("Listed, or left out"));
+        response.widget_info(|| {
+            WidgetInfo::selected(
+                Role::CheckBox,
+                true,
+                !*hidden,
+                tf!("List {findings}", findings = text),
+            )
+        });
         if response.clicked() {
             *hidden ^= true;
         }
@@ -274,12 +286,12 @@ fn group_row(
         egui::Layout::right_to_left(egui::Align::Center),
         |ui| {
             if fixable.len() > 1 {
-                let button = egui::Button::new(format!("Fix {}", fixable.len())).small();
+                let button = egui::Button::new(tf!("Fix {n}", n = fixable.len())).small();
                 let response = ui.add_enabled(!input.stale, button);
-                let name = format!("Fix {}: {title}", fixable.len());
+                let name = tf!("Fix {n}: {what}", n = fixable.len(), what = t(title));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 if response
-                    .on_hover_text("Repairs these, as one step to undo")
+                    .on_hover_text(t("Repairs these, as one step to undo"))
                     .clicked()
                 {
                     let these: Vec<Finding> = fixable.iter().map(|i| open[*i].clone()).collect();
@@ -292,9 +304,10 @@ fn group_row(
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 sign(ui, *worst);
                 fold_sign(ui, *folded);
-                let text = egui::RichText::new(format!("{}  {}", theme::sentence(title), of.len())).strong();
+                let text =
+                    egui::RichText::new(format!("{}  {}", theme::sentence(t(title)), of.len())).strong();
                 let response = ui.add(egui::Button::new(text).frame(false).truncate());
-                let name = format!("{title}, {}", of.len());
+                let name = format!("{}, {}", t(title), of.len());
                 response.widget_info(|| WidgetInfo::selected(Role::Button, true, !folded, &name));
                 if response.clicked() && !triage.turned.remove(title) {
                     triage.turned.insert(title.clone());
@@ -318,18 +331,13 @@ fn fold_sign(ui: &mut Ui, folded: bool) {
 
 /// `2 errors`, `1 warning`, `3 infos`
 fn words(severity: Severity, n: usize) -> String {
-    let what = match severity {
-        Severity::Info => "info",
-        other => other.name(),
-    };
-    format!(
-        "{n} {what}{}",
-        if n == 1 || severity == Severity::Info {
-            ""
-        } else {
-            "s"
-        }
-    )
+    match (severity, n) {
+        (Severity::Info, _) => tf!("{n} info", n = n),
+        (Severity::Warning, 1) => tf!("{n} warning", n = n),
+        (Severity::Warning, _) => tf!("{n} warnings", n = n),
+        (Severity::Error, 1) => tf!("{n} error", n = n),
+        (Severity::Error, _) => tf!("{n} errors", n = n),
+    }
 }
 
 /// `2 errors, 1 warning`
@@ -337,7 +345,7 @@ pub fn in_words(counts: Counts) -> String {
     let some = Severity::ALL.into_iter().filter(|s| counts.count(*s) > 0);
     let all: Vec<String> = some.map(|s| words(s, counts.count(s))).collect();
     match all.is_empty() {
-        true => "no finding".into(),
+        true => t("no finding").into(),
         false => all.join(", "),
     }
 }

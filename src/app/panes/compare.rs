@@ -15,6 +15,7 @@ use crate::camera_views::Wanted;
 use crate::canvas::Canvas;
 use crate::sensing::Sensing;
 use crate::view3d::View3d;
+use language::{t, tf};
 use viewport::BrushCells;
 use widgets::theme;
 
@@ -56,14 +57,16 @@ impl Difference {
 
     /// What each colour means, and how many there are of it; nothing that is not there.
     pub(crate) fn legend(&self) -> Vec<(Color32, String)> {
-        let names = ["added", "removed", "of another class"];
-        let lists = [&self.added, &self.removed, &self.changed];
-        let parts = DIFFERENCE_COLORS.iter().zip(lists).zip(names);
+        let counts = [&self.added, &self.removed, &self.changed].map(|list| list.len());
+        let texts = [
+            tf!("{n} added", n = counts[0]),
+            tf!("{n} removed", n = counts[1]),
+            tf!("{n} of another class", n = counts[2]),
+        ];
+        let parts = DIFFERENCE_COLORS.iter().zip(counts).zip(texts);
         parts
-            .filter(|((_, list), _)| !list.is_empty())
-            .map(|(([r, g, b], list), name)| {
-                (Color32::from_rgb(*r, *g, *b), format!("{} {name}", list.len()))
-            })
+            .filter(|((_, count), _)| *count > 0)
+            .map(|(([r, g, b], _), text)| (Color32::from_rgb(*r, *g, *b), text))
             .collect()
     }
 
@@ -193,15 +196,15 @@ pub(crate) fn wipe_line(ui: &Ui, rect: Rect, at: &mut f32) {
         theme::accent(),
         Stroke::new(1.5, Color32::WHITE),
     );
-    tag(ui, rect.left_top() + vec2(8.0, 8.0), "before", false);
-    tag(ui, rect.right_top() + vec2(-8.0, 8.0), "after", true);
+    tag(ui, rect.left_top() + vec2(8.0, 8.0), t("before"), false);
+    tag(ui, rect.right_top() + vec2(-8.0, 8.0), t("after"), true);
 }
 
 /// What the colours of a view mean, in its upper left corner.
 pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
     const SWATCH: f32 = 10.0;
     if entries.is_empty() {
-        return tag(ui, at, "no voxel differs", false);
+        return tag(ui, at, t("no voxel differs"), false);
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter();

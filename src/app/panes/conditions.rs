@@ -5,6 +5,7 @@ use egui::{DragValue, Ui};
 use crate::command::Command;
 use crate::fields::{fields, number};
 use editor::Edit;
+use language::t;
 use scene::{Conditions, Scene, Sun, TimeOfDay, Weather};
 use widgets::theme;
 
@@ -17,26 +18,26 @@ pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     let (mut time, mut weather) = (now.time, now.weather);
     egui::ComboBox::from_id_salt("time of day")
         .width(80.0)
-        .selected_text(theme::sentence(time.name()))
+        .selected_text(theme::sentence(t(time.name())))
         .show_ui(ui, |ui| {
             for value in TimeOfDay::ALL {
-                ui.selectable_value(&mut time, value, theme::sentence(value.name()));
+                ui.selectable_value(&mut time, value, theme::sentence(t(value.name())));
             }
         });
     egui::ComboBox::from_id_salt("weather")
         .width(100.0)
-        .selected_text(theme::sentence(weather.name()))
+        .selected_text(theme::sentence(t(weather.name())))
         .show_ui(ui, |ui| {
             for value in Weather::ALL {
-                ui.selectable_value(&mut weather, value, theme::sentence(value.name()));
+                ui.selectable_value(&mut weather, value, theme::sentence(t(value.name())));
             }
         });
     if (time, weather) != (now.time, now.weather) {
         commands.push(becomes(scene, time, weather));
     }
-    ui.menu_button("Air and sun…", |ui| air_and_sun(ui, now, commands))
+    ui.menu_button(t("Air and sun…"), |ui| air_and_sun(ui, now, commands))
         .response
-        .on_hover_text("Wet ground, visibility, sun and seed of the pictures");
+        .on_hover_text(t("Wet ground, visibility, sun and seed of the pictures"));
 }
 
 /// What gives a scene another time of day and weather, the words of its style with them.
@@ -54,8 +55,8 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     let mut new = now;
     let mut response = number(
         ui,
-        "Wet",
-        "Wetness of the ground",
+        t("Wet"),
+        t("Wetness of the ground"),
         &mut new.wetness,
         0.0..=1.0,
         "",
@@ -64,8 +65,8 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     let [near, far] = Conditions::VISIBILITY_M;
     response |= number(
         ui,
-        "Sight",
-        "Visibility, m",
+        t("Sight"),
+        t("Visibility, m"),
         &mut new.visibility_m,
         near..=far,
         " m",
@@ -73,8 +74,8 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     );
     let mut placed = now.sun.is_some();
     response |= ui
-        .checkbox(&mut placed, "Place the sun")
-        .on_hover_text("Else it stands as the time of day has it");
+        .checkbox(&mut placed, t("Place the sun"))
+        .on_hover_text(t("Else it stands as the time of day has it"));
     new.sun = placed.then(|| {
         now.sun.unwrap_or(Sun {
             azimuth_deg: 0.0,
@@ -85,8 +86,8 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
         let azimuth = &mut sun.azimuth_deg;
         response |= number(
             ui,
-            "Azimuth",
-            "Azimuth of the sun",
+            t("Azimuth"),
+            t("Azimuth of the sun"),
             azimuth,
             -180.0..=180.0,
             "°",
@@ -95,8 +96,8 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
         let elevation = &mut sun.elevation_deg;
         response |= number(
             ui,
-            "Height",
-            "Elevation of the sun",
+            t("Height"),
+            t("Elevation of the sun"),
             elevation,
             0.0..=90.0,
             "°",
@@ -105,10 +106,10 @@ fn air_and_sun(ui: &mut Ui, now: Conditions, commands: &mut Vec<Command>) {
     }
     response |= ui
         .horizontal(|ui| {
-            crate::fields::caption(ui, "Seed");
+            crate::fields::caption(ui, t("Seed"));
             let seed = DragValue::new(&mut new.seed).speed(0.05);
             ui.add_sized([86.0, theme::ROW], seed)
-                .accessible_name("Seed of the pictures")
+                .accessible_name(t("Seed of the pictures"))
         })
         .inner;
     let edit = Edit::SetConditions { conditions: new };

@@ -6,6 +6,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use editor::Document;
+use language::{t, tf};
 use widgets::icons::Icon;
 use widgets::theme;
 
@@ -50,7 +51,11 @@ impl Pane for History {
 pub fn history_title(document: &Document) -> String {
     let mb = |bytes: usize| bytes as f64 / f64::from(1 << 20);
     let (used, limit) = (mb(document.history_bytes()), mb(document.history_limit()));
-    format!("{used:.1} of {limit:.0} MB")
+    tf!(
+        "{used} of {limit} MB",
+        used = format!("{used:.1}"),
+        limit = format!("{limit:.0}")
+    )
 }
 
 /// Draws every step; a click goes there.
@@ -82,7 +87,7 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
             // Known by its number, wherever the list is scrolled to.
             let row = |ui: &mut Ui| ui.allocate_exact_size(size, egui::Sense::click());
             let (rect, response) = ui.push_id(i, row).inner;
-            let name = format!("History {i} {}", labels[i]);
+            let name = tf!("History {number} {step}", number = i, step = t(labels[i]));
             response.widget_info(|| {
                 egui::WidgetInfo::selected(egui::accesskit::Role::Button, true, i == at, &name)
             });
@@ -93,14 +98,14 @@ pub fn history_ui(ui: &mut Ui, document: &Document, commands: &mut Vec<Command>)
             };
             ui.painter().rect_filled(rect, theme::RADIUS, fill);
             let font = egui::TextStyle::Body.resolve(ui.style());
-            let mut line = egui::text::LayoutJob::simple_singleline(labels[i].to_owned(), font, color);
+            let mut line = egui::text::LayoutJob::simple_singleline(t(labels[i]).to_owned(), font, color);
             line.wrap = egui::text::TextWrapping::truncate_at_width(rect.width() - 16.0);
             let galley = ui.fonts_mut(|fonts| fonts.layout_job(line));
             let at = rect.left_center() + egui::vec2(8.0, -galley.size().y / 2.0);
             let cut = galley.elided;
             ui.painter().galley(at, galley, color);
             let response = match cut {
-                true => response.on_hover_text(labels[i]),
+                true => response.on_hover_text(t(labels[i])),
                 false => response,
             };
             if response.clicked() {

@@ -5,9 +5,23 @@ use egui::{Color32, Ui};
 use crate::command::Command;
 use crate::fields::caption;
 use editor::Edit;
+use language::{t, tf};
 use scene::{BoxLabel, BoxName, Paint, SceneBox};
 use widgets::icons;
 use widgets::theme;
+
+/// What a box is called in the language that is shown; a name that was given to it stays as it is.
+pub(super) fn called(b: &SceneBox) -> String {
+    let name = if b.label.name.is_empty() {
+        t(&b.class.label()).to_owned()
+    } else {
+        b.label.name.as_str().to_owned()
+    };
+    match b.label.paint {
+        Some(paint) => tf!("{paint} {name}", paint = t(paint.name()), name = name),
+        None => name,
+    }
+}
 
 /// A field for the name and a list of paints; what is set holds for all of the boxes.
 pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
@@ -35,7 +49,7 @@ pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
     };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        caption(ui, "Name");
+        caption(ui, t("Name"));
         let room = ui.available_width();
         let name = if one_name { first.label.name.as_str() } else { "" };
         if let Some(name) = name_field(ui, first, name, (room * 0.56).clamp(60.0, 150.0)) {
@@ -43,9 +57,9 @@ pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
         }
         let mut paint = first.label.paint;
         let shown = match (one_paint, paint) {
-            (false, _) => "Several".to_owned(),
-            (true, None) => "Any paint".to_owned(),
-            (true, Some(paint)) => theme::sentence(paint.name()),
+            (false, _) => t("Several").to_owned(),
+            (true, None) => t("Any paint").to_owned(),
+            (true, Some(paint)) => theme::sentence(t(paint.name())),
         };
         if one_paint && let Some(paint) = paint {
             let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, theme::ROW), egui::Sense::hover());
@@ -59,20 +73,20 @@ pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
         let mut picked = false;
         combo
             .show_ui(ui, |ui| {
-                picked |= ui.selectable_value(&mut paint, None, "Any paint").clicked();
+                picked |= ui.selectable_value(&mut paint, None, t("Any paint")).clicked();
                 for other in Paint::ALL {
                     ui.horizontal(|ui| {
                         let (rect, _) =
                             ui.allocate_exact_size(egui::vec2(14.0, theme::ROW), egui::Sense::hover());
                         icons::swatch(ui, rect.center(), 12.0, color(other));
-                        let name = theme::sentence(other.name());
+                        let name = theme::sentence(t(other.name()));
                         picked |= ui.selectable_value(&mut paint, Some(other), name).clicked();
                     });
                 }
             })
             .response
-            .on_hover_text("Colour in camera pictures; words find the box by it")
-            .accessible_name("Paint");
+            .on_hover_text(t("Colour in camera pictures; words find the box by it"))
+            .accessible_name(t("Paint"));
         if paint != before || picked && !one_paint {
             commands.extend(apply("Paint box", &|label| BoxLabel { paint, ..label }));
         }
@@ -85,13 +99,13 @@ fn name_field(ui: &mut Ui, b: &SceneBox, name: &str, width: f32) -> Option<BoxNa
     let typed: Option<String> = ui.data(|d| d.get_temp(memory));
     let mut text = typed.clone().unwrap_or_else(|| name.to_owned());
     let field = egui::TextEdit::singleline(&mut text)
-        .hint_text(b.class.label())
+        .hint_text(t(&b.class.label()).to_owned())
         .char_limit(BoxName::MOST_BYTES)
         .desired_width(width);
     let field = ui
         .add_sized([width, theme::ROW], field)
-        .on_hover_text("What words call it: “taxi”, “the crashed van”")
-        .accessible_name("Name");
+        .on_hover_text(t("What words call it: “taxi”, “the crashed van”"))
+        .accessible_name(t("Name"));
     if field.changed() {
         ui.data_mut(|d| d.insert_temp(memory, text));
         return None;

@@ -12,6 +12,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::camera_views::LidarModel;
 use crate::command::Command;
+use language::{t, tf};
 use scene::{LidarSweep, Scene};
 use viewport::{LidarColorMode, lidar_colors};
 use widgets::icons::Icon;
@@ -48,15 +49,15 @@ impl Pane for Lidar {
         let models = [(LidarModel::Exact, "Exact"), (LidarModel::Learned, "Learned")];
         let model = models.iter().find(|(m, _)| *m == cx.state.lidar.model);
         egui::ComboBox::from_id_salt("sweep model")
-            .selected_text(model.map_or("Exact", |(_, name)| name))
+            .selected_text(t(model.map_or("Exact", |(_, name)| name)))
             .width(84.0)
             .show_ui(ui, |ui| {
                 for (model, name) in models {
-                    ui.selectable_value(&mut cx.state.lidar.model, model, name);
+                    ui.selectable_value(&mut cx.state.lidar.model, model, t(name));
                 }
             })
             .response
-            .accessible_name("LiDAR model");
+            .accessible_name(t("LiDAR model"));
         let colors = [
             (LidarColorMode::Range, "Range"),
             (LidarColorMode::Class, "Class"),
@@ -66,15 +67,15 @@ impl Pane for Lidar {
         ];
         let shown = colors.iter().find(|(mode, _)| *mode == cx.state.lidar.colors);
         egui::ComboBox::from_id_salt("sweep colours")
-            .selected_text(shown.map_or("Range", |(_, name)| name))
+            .selected_text(t(shown.map_or("Range", |(_, name)| name)))
             .width(84.0)
             .show_ui(ui, |ui| {
                 for (mode, name) in colors {
-                    ui.selectable_value(&mut cx.state.lidar.colors, mode, name);
+                    ui.selectable_value(&mut cx.state.lidar.colors, mode, t(name));
                 }
             })
             .response
-            .accessible_name("LiDAR colour");
+            .accessible_name(t("LiDAR colour"));
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
@@ -140,10 +141,10 @@ impl SweepPicture {
     ) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "LiDAR sweep"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("LiDAR sweep")));
         ui.painter().rect_filled(rect, 0.0, theme::well());
         let (Some(sweep), Some(lidar)) = (sweep, scene.rig.lidars.first()) else {
-            let text = "This vehicle has no LiDAR. Sensors… adds one.";
+            let text = t("This vehicle has no LiDAR. Sensors… adds one.");
             let font = egui::TextStyle::Body.resolve(ui.style());
             let painter = ui.painter();
             painter.text(
@@ -175,10 +176,18 @@ impl SweepPicture {
             let ring = (f64::from(1.0 - part.y) * rings as f64) as usize;
             let near = nearest(sweep, mount, ring.min(rings - 1), azimuth_deg);
             *readout = match near {
-                Some((range_m, class)) => {
-                    format!("azimuth {azimuth_deg:.0}°  ·  beam {ring}  ·  {range_m:.2} m  ·  {class}")
-                }
-                None => format!("azimuth {azimuth_deg:.0}°  ·  beam {ring}  ·  no return"),
+                Some((range_m, class)) => tf!(
+                    "azimuth {azimuth}°  ·  beam {beam}  ·  {range} m  ·  {class}",
+                    azimuth = format!("{azimuth_deg:.0}"),
+                    beam = ring,
+                    range = format!("{range_m:.2}"),
+                    class = class
+                ),
+                None => tf!(
+                    "azimuth {azimuth}°  ·  beam {beam}  ·  no return",
+                    azimuth = format!("{azimuth_deg:.0}"),
+                    beam = ring
+                ),
             };
         }
     }
@@ -209,7 +218,7 @@ impl SweepDifference {
         let rect = ui.available_rect_before_wrap();
         let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         ui.painter().image(handle.id(), rect, unit, Color32::WHITE);
-        let names = ["nearer or new", "farther or gone"];
+        let names = [t("nearer or new"), t("farther or gone")];
         let colors = DIFFERENCE_COLORS.map(|[r, g, b]| Color32::from_rgb(r, g, b));
         let entries: Vec<_> = colors.into_iter().zip(names.map(str::to_owned)).collect();
         legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
@@ -270,7 +279,8 @@ fn nearest(sweep: &LidarSweep, mount: DVec3, ring: usize, at_deg: f64) -> Option
         .iter()
         .filter(|p| usize::from(p.ring) == ring)
         .min_by(|a, b| off(a.position_in_ego).total_cmp(&off(b.position_in_ego)))?;
-    (off(found.position_in_ego) <= 1.0).then(|| (f64::from(found.range_m), found.class.label()))
+    (off(found.position_in_ego) <= 1.0)
+        .then(|| (f64::from(found.range_m), t(&found.class.label()).to_owned()))
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use glam::dvec2;
 use super::compare::tag;
 use crate::canvas::ScreenMap;
 use crate::shell::tuning::LastEdit;
+use language::tf;
 use scene::Window;
 use scene::grid::{BRICK, bricks_along};
 use sensors::learned_caster::Sampled;
@@ -57,20 +58,20 @@ pub fn draw(ui: &egui::Ui, area: Rect, map: &ScreenMap, last: &LastEdit, sampled
     for segment in sampled.iter().flat_map(|s| &s.segments) {
         painter.line_segment(segment.map(|p| map.to_screen(p.truncate())), orange);
     }
-    let text = format!(
-        "{} of {} tokens (blue)  ·  {} columns (yellow)  ·  {} of {} bricks (green)",
-        last.tokens.len(),
-        TOKENS * TOKENS,
-        last.report.region_columns,
-        last.bricks.len(),
-        bricks[0] * bricks[1],
+    let text = tf!(
+        "{tokens} of {all_tokens} tokens (blue)  ·  {columns} columns (yellow)  ·  {bricks} of {all_bricks} bricks (green)",
+        tokens = last.tokens.len(),
+        all_tokens = TOKENS * TOKENS,
+        columns = last.report.region_columns,
+        bricks = last.bricks.len(),
+        all_bricks = bricks[0] * bricks[1],
     );
     if let Some(s) = sampled {
-        let text = format!(
-            "{} of {} LiDAR rays shot, sampled on {:.0} % of their way (orange)",
-            s.rays,
-            s.of,
-            100.0 * s.share
+        let text = tf!(
+            "{rays} of {all} LiDAR rays shot, sampled on {percent} % of their way (orange)",
+            rays = s.rays,
+            all = s.of,
+            percent = format!("{:.0}", 100.0 * s.share)
         );
         tag(ui, pos2(area.left() + 8.0, area.top() + 32.0), &text, false);
     }

@@ -4,10 +4,12 @@ use egui::{DragValue, Ui};
 
 use scene::{BoxId, Class, Scene};
 
+use super::label::called;
 use crate::command::{Command, TimeCommand};
 use crate::state::UiState;
 use editor::Edit;
 use editor::traffic::{Template, Wish};
+use language::{t, tf};
 use widgets::theme;
 
 /// The button and what it opens.
@@ -15,8 +17,8 @@ pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut V
     let id = state.selected.filter(|id| scene.frame().boxes.contains_key(id));
     let chosen = id.and_then(|id| scene.frame().boxes.get(&id));
     let title = match chosen {
-        Some(b) => format!("Motion of {} {}", b.called(), b.id.0),
-        None => "Motion of the ego vehicle".to_owned(),
+        Some(b) => tf!("Motion of {object} {number}", object = called(b), number = b.id.0),
+        None => t("Motion of the ego vehicle").to_owned(),
     };
     let button = ui.menu_button(format!("{title}…"), |ui| {
         ui.set_min_width(240.0);
@@ -24,7 +26,7 @@ pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut V
     });
     button
         .response
-        .on_hover_text("How it moves from now on; choose an object for its motion");
+        .on_hover_text(t("How it moves from now on; choose an object for its motion"));
 }
 
 /// The ways to move that a box, or (`None`) the ego vehicle, can be given.
@@ -42,7 +44,7 @@ pub(super) fn motions(
         |(_, values)| values,
     );
     egui::Grid::new("wish").num_columns(2).show(ui, |ui| {
-        ui.label("Speed");
+        ui.label(t("Speed"));
         ui.add(
             DragValue::new(&mut kmh)
                 .range(0.0..=360.0)
@@ -55,7 +57,7 @@ pub(super) fn motions(
     let mut chosen = None;
     let mut choices = |ui: &mut Ui, templates: Vec<Template>| {
         for template in templates {
-            let button = ui.button(template.title()).on_hover_text(template.hint());
+            let button = ui.button(t(template.title())).on_hover_text(t(template.hint()));
             if button.clicked() {
                 chosen = Some(template);
             }
@@ -64,12 +66,12 @@ pub(super) fn motions(
     choices(ui, steady);
     ui.separator();
     ui.horizontal(|ui| {
-        ui.label("At second");
+        ui.label(t("At second"));
         let value = DragValue::new(&mut at_s)
             .range(0.0..=600.0)
             .speed(0.1)
             .fixed_decimals(1);
-        ui.add(value).on_hover_text("When the motions below begin");
+        ui.add(value).on_hover_text(t("When the motions below begin"));
     });
     choices(ui, timed);
     ui.data_mut(|d| d.insert_temp(wish_id, (class, [kmh, at_s])));
@@ -86,8 +88,8 @@ pub(super) fn motions(
     ui.separator();
     let moves = scene.clip().motion(id).is_some();
     let still = ui
-        .add_enabled(moves, egui::Button::new("Stand still here"))
-        .on_hover_text("It stands where it is at this moment, for the whole scene");
+        .add_enabled(moves, egui::Button::new(t("Stand still here")))
+        .on_hover_text(t("It stands where it is at this moment, for the whole scene"));
     if still.clicked() {
         let edit = Edit::SetMotion {
             id,
@@ -99,7 +101,7 @@ pub(super) fn motions(
         ui.close();
     }
     ui.label(
-        egui::RichText::new("Undo takes it back.")
+        egui::RichText::new(t("Undo takes it back."))
             .small()
             .color(theme::text_weak()),
     );

@@ -22,6 +22,7 @@ use crate::shell::tuning::Tuning;
 use crate::shell::versions::Versions;
 use crate::state::UiState;
 use crate::view3d::View3d;
+use language::t;
 use widgets::icons::Icon;
 
 /// Where a pane opens that is nowhere yet.
@@ -105,9 +106,9 @@ pub trait Pane {
     /// Its name for a person.
     fn title(&self) -> String;
 
-    /// Its name beside a scene: a camera carries the one that the rig gives it.
+    /// Its name beside a scene, in the language that is shown: a camera carries the one that the rig gives it.
     fn title_in(&self, _scene: &Scene) -> String {
-        self.title()
+        t(&self.title()).to_owned()
     }
 
     /// Stands beside its name in menus.

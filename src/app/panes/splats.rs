@@ -12,6 +12,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::baking::{Baking, Seen};
 use crate::command::Command;
+use language::{t, tf};
 use viewport::ViewCamera;
 use widgets::icons::Icon;
 use widgets::theme;
@@ -55,7 +56,7 @@ impl Pane for Splats {
             return;
         };
         if baking.busy.is_some() {
-            if ui.button("Cancel baking").clicked() {
+            if ui.button(t("Cancel baking")).clicked() {
                 baking.cancel();
             }
             return;
@@ -64,10 +65,10 @@ impl Pane for Splats {
             return;
         };
         if baked.of != cx.document.settled_scene().rev {
-            let button = egui::Button::new("Bake again").fill(theme::accent_fill());
+            let button = egui::Button::new(t("Bake again")).fill(theme::accent_fill());
             if ui
                 .add(button)
-                .on_hover_text("the scene has changed since")
+                .on_hover_text(t("the scene has changed since"))
                 .clicked()
             {
                 baking.bake(cx.document.settled_scene());
@@ -83,7 +84,7 @@ impl Pane for Splats {
             return;
         }
         let response = ui.allocate_rect(rect, Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Splats"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("Splats")));
         fly(ui, &response, &mut cx.view3d.camera);
         self.look(ui, rect, &cx.view3d.camera);
         let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -101,7 +102,7 @@ impl Pane for Splats {
                     .as_ref()
                     .and_then(|b| b.baked.as_ref())
                     .map_or(0, |b| b.count);
-                format!("{count} Gaussians")
+                tf!("{n} Gaussians", n = count)
             }
         };
         let font = egui::TextStyle::Small.resolve(ui.style());
@@ -123,7 +124,10 @@ impl Pane for Splats {
 impl Splats {
     fn progress(&self) -> String {
         let share = self.baking.as_ref().map_or(0.0, |b| b.share);
-        format!("Baking again: {:.0} %", 100.0 * share)
+        tf!(
+            "Baking again: {percent} %",
+            percent = format!("{:.0}", 100.0 * share)
+        )
     }
 
     /// What is shown before anything was baked.
@@ -139,16 +143,18 @@ impl Splats {
             ui.add_space((rect.height() / 2.0 - 60.0).max(8.0));
             if self.baking.as_ref().is_some_and(|b| b.busy.is_some()) {
                 let share = self.baking.as_ref().map_or(0.0, |b| b.share);
-                ui.label("Baking from pictures of many places…");
+                ui.label(t("Baking from pictures of many places…"));
                 ui.add_space(theme::GAP);
                 let bar = egui::ProgressBar::new(share).desired_width((rect.width() - 40.0).min(260.0));
                 ui.add(bar.desired_height(14.0).text(format!("{:.0} %", 100.0 * share)));
                 return;
             }
-            let text = "The scene as 3-D Gaussians, with the colours of the camera pictures, as viewers of splats show it. It is baked in the background, a minute or two.";
+            let text = t(
+                "The scene as 3-D Gaussians, with the colours of the camera pictures, as viewers of splats show it. It is baked in the background, a minute or two.",
+            );
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
             ui.add_space(theme::GAP);
-            let button = egui::Button::new("Bake the scene").fill(theme::accent_fill());
+            let button = egui::Button::new(t("Bake the scene")).fill(theme::accent_fill());
             if ui.add(button).clicked() {
                 self.bake(ui, cx);
             }

@@ -12,6 +12,7 @@ use super::camera_strip::thousands;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
+use language::{t, tf};
 use widgets::icons::{Icon, section};
 use widgets::theme;
 
@@ -102,40 +103,53 @@ impl Pane for Statistics {
                 .auto_shrink(false);
             area.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
-                ui.label(format!("Drivable area: {:.0} m²", counts.drivable_m2));
-                ui.label(format!(
-                    "Occupied: {:.1} % of all voxels",
-                    counts.occupied * 100.0
+                ui.label(tf!(
+                    "Drivable area: {area} m²",
+                    area = format!("{:.0}", counts.drivable_m2)
                 ));
-                ui.label(format!("Beside the road: {} things", thousands(counts.things)));
+                ui.label(tf!(
+                    "Occupied: {percent} % of all voxels",
+                    percent = format!("{:.1}", counts.occupied * 100.0)
+                ));
+                ui.label(tf!("Beside the road: {n} things", n = thousands(counts.things)));
                 ui.label(match points {
-                    Some(points) => format!("Last sweep: {} points", thousands(points)),
-                    None => "Last sweep: none yet".to_owned(),
+                    Some(points) => tf!("Last sweep: {n} points", n = thousands(points)),
+                    None => t("Last sweep: none yet").to_owned(),
                 });
-                section(ui, "Voxels");
+                section(ui, t("Voxels"));
                 let most = counts.voxels.first().map_or(1, |(_, n)| *n);
                 for (class, n) in &counts.voxels {
-                    bar(ui, *class, *n, most, if *n == 1 { "voxel" } else { "voxels" });
+                    let all = thousands(*n);
+                    let what = match n {
+                        1 => tf!("{n} voxel", n = all),
+                        _ => tf!("{n} voxels", n = all),
+                    };
+                    bar(ui, *class, *n, most, &what);
                 }
-                section(ui, "Boxes");
+                section(ui, t("Boxes"));
                 let most = counts.boxes.values().copied().max().unwrap_or(1);
                 for (class, n) in &counts.boxes {
-                    bar(ui, *class, *n, most, if *n == 1 { "box" } else { "boxes" });
+                    let all = thousands(*n);
+                    let what = match n {
+                        1 => tf!("{n} box", n = all),
+                        _ => tf!("{n} boxes", n = all),
+                    };
+                    bar(ui, *class, *n, most, &what);
                 }
                 if counts.boxes.is_empty() {
-                    ui.label(egui::RichText::new("none").color(theme::text_weak()));
+                    ui.label(egui::RichText::new(t("none")).color(theme::text_weak()));
                 }
             });
         });
     }
 }
 
-/// A row: the class, a bar as long as its share of the most, how many there are.
+/// A row: the class, a bar as long as its share of the most, how many there are; `what` says that in words.
 fn bar(ui: &mut Ui, class: Class, n: usize, most: usize, what: &str) {
     let size = vec2(ui.available_width(), ROW_POINTS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let (name, number) = (theme::sentence(&class.label()), thousands(n));
-    let label = format!("{name}: {number} {what}");
+    let (name, number) = (theme::sentence(t(&class.label())), thousands(n));
+    let label = format!("{name}: {what}");
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
     let font = TextStyle::Small.resolve(ui.style());
     let painter = ui.painter_at(rect);

@@ -10,6 +10,7 @@ use crate::tools::things::building::{FACADES, ROOFS};
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, words};
 use editor::Edit;
+use language::{t, tf};
 use scene::background::{LineKind, PostKind, STOREY_M};
 use scene::{Background, Form, Thing};
 use widgets::icons::{self, Icon};
@@ -67,11 +68,14 @@ pub fn inspector(ui: &mut Ui, things: &[&Thing], settled: &Background, commands:
     header(ui, things, &what, commands);
     kinds(ui, things, &what, commands);
     let mut height = first.form.height_m();
-    let response = number(ui, "Height", "Height", &mut height, 0.1..=300.0, " m", 1);
+    let response = number(ui, t("Height"), t("Height"), &mut height, 0.1..=300.0, " m", 1);
     let lower = height < first_before.form.height_m();
-    let verb = if lower { "Lower" } else { "Raise" };
+    let label = match lower {
+        true => tf!("Lower {things}", things = what),
+        false => tf!("Raise {things}", things = what),
+    };
     let edits = changes(&before, |form| set_height(form, height));
-    field(&response, format!("{verb} {what}"), edits, commands);
+    field(&response, label, edits, commands);
     if forms.iter().all(|f| matches!(f, Form::Building(_))) {
         building(ui, things, &what, commands);
     }
@@ -81,23 +85,30 @@ pub fn inspector(ui: &mut Ui, things: &[&Thing], settled: &Background, commands:
 fn header(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = match things {
-            [one] => format!("{} #{}", theme::sentence(one.form.name()), one.id.0),
-            _ => format!("{what} chosen"),
+            [one] => format!("{} #{}", theme::sentence(t(one.form.name())), one.id.0),
+            _ => tf!("{things} chosen", things = what),
         };
         ui.label(egui::RichText::new(name).color(theme::text_strong()));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
-            if icons::button(ui, Icon::Trash, "Delete things", "Del", false, true).clicked() {
+            if icons::button(ui, Icon::Trash, t("Delete things"), "Del", false, true).clicked() {
                 commands.push(Command::Tools(ToolCommand::Delete));
             }
-            if icons::button(ui, Icon::Copy, "Duplicate things", "Ctrl+D", false, true).clicked() {
+            if icons::button(ui, Icon::Copy, t("Duplicate things"), "Ctrl+D", false, true).clicked() {
                 commands.push(Command::Tools(ToolCommand::Duplicate));
             }
-            if icons::button(ui, Icon::Focus, "Frame things", "F", false, true).clicked() {
+            if icons::button(ui, Icon::Focus, t("Frame things"), "F", false, true).clicked() {
                 commands.push(Command::View(ViewCommand::FrameSelection));
             }
         });
     });
+}
+
+/// Choices with their texts in the language that is shown.
+fn shown<T, const N: usize>(
+    choices: [(T, &'static str, &'static str); N],
+) -> [(T, &'static str, &'static str); N] {
+    choices.map(|(value, name, hint)| (value, t(name), t(hint)))
 }
 
 /// Storeys by buttons, roof and facade.
@@ -112,7 +123,7 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
     let ids = || things.iter().map(|t| t.id).collect();
     let lowest = things.iter().map(|t| t.form.height_m()).fold(f64::MAX, f64::min);
     ui.horizontal(|ui| {
-        caption(ui, "Storeys");
+        caption(ui, t("Storeys"));
         let small = egui::vec2(theme::ROW, theme::ROW);
         let step = |ui: &mut Ui, sign: &str, name: &str, enabled: bool| {
             let button = ui.add_enabled(enabled, egui::Button::new(sign).min_size(small));
@@ -121,12 +132,12 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
             });
             button.on_hover_text(name).clicked()
         };
-        let mut raise = |verb: &str, by_m: f64| {
+        let mut raise = |label: String, by_m: f64| {
             let edits = vec![Edit::RaiseThings { ids: ids(), by_m }];
-            send(ThingCommand::Apply(format!("{verb} {what}"), edits), commands);
+            send(ThingCommand::Apply(label, edits), commands);
         };
-        if step(ui, "−", "One storey less", lowest > STOREY_M + 0.5) {
-            raise("Lower", -STOREY_M);
+        if step(ui, "−", t("One storey less"), lowest > STOREY_M + 0.5) {
+            raise(tf!("Lower {things}", things = what), -STOREY_M);
         }
         let same = things
             .iter()
@@ -134,44 +145,44 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
         let text = if same {
             first.storeys().to_string()
         } else {
-            "several".to_owned()
+            t("several").to_owned()
         };
         ui.label(egui::RichText::new(text).color(theme::text_strong()));
-        if step(ui, "+", "One storey more", true) {
-            raise("Raise", STOREY_M);
+        if step(ui, "+", t("One storey more"), true) {
+            raise(tf!("Raise {things}", things = what), STOREY_M);
         }
     });
     let mut roof = first.roof;
     ui.horizontal(|ui| {
-        caption(ui, "Roof");
-        if icons::segments(ui, &mut roof, &ROOFS) {
+        caption(ui, t("Roof"));
+        if icons::segments(ui, &mut roof, &shown(ROOFS)) {
             let edits = changes(things, |form| {
                 if let Form::Building(b) = form {
                     b.roof = roof;
                 }
             });
             send(
-                ThingCommand::Apply(format!("Change roof of {what}"), edits),
+                ThingCommand::Apply(tf!("Change roof of {things}", things = what), edits),
                 commands,
             );
         }
     });
     if first.outline_m.len() != 4 && first.roof != Default::default() {
         ui.label(
-            egui::RichText::new("Only four corners carry a ridge: the roof is flat")
+            egui::RichText::new(t("Only four corners carry a ridge: the roof is flat"))
                 .small()
                 .color(theme::text_weak()),
         );
     }
     let mut facade = first.facade;
-    if list(ui, "Facade", &mut facade, &FACADES) {
+    if list(ui, t("Facade"), &mut facade, &shown(FACADES)) {
         let edits = changes(things, |form| {
             if let Form::Building(b) = form {
                 b.facade = facade;
             }
         });
         send(
-            ThingCommand::Apply(format!("Change facade of {what}"), edits),
+            ThingCommand::Apply(tf!("Change facade of {things}", things = what), edits),
             commands,
         );
     }
@@ -181,17 +192,17 @@ fn building(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Comma
 fn kinds(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>) {
     let mut apply = |edits| {
         send(
-            ThingCommand::Apply(format!("Change kind of {what}"), edits),
+            ThingCommand::Apply(tf!("Change kind of {things}", things = what), edits),
             commands,
         )
     };
-    let lines = LineKind::ALL.map(|kind| (kind, theme::sentence(kind.name())));
-    let posts = PostKind::ALL.map(|kind| (kind, theme::sentence(kind.name())));
+    let lines = LineKind::ALL.map(|kind| (kind, theme::sentence(t(kind.name()))));
+    let posts = PostKind::ALL.map(|kind| (kind, theme::sentence(t(kind.name()))));
     let all = |of: fn(&Form) -> bool| things.iter().all(|t| of(&t.form));
     match &things[0].form {
         Form::Tree(tree) if all(|f| matches!(f, Form::Tree(_))) => {
             let mut kind = tree.kind;
-            if list(ui, "Kind", &mut kind, &TREES) {
+            if list(ui, t("Kind"), &mut kind, &shown(TREES)) {
                 apply(changes(things, |form| {
                     if let Form::Tree(t) = form {
                         t.kind = kind;
@@ -202,7 +213,7 @@ fn kinds(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>
         Form::Line(line) if all(|f| matches!(f, Form::Line(_))) => {
             let mut kind = line.kind;
             let named = lines.each_ref().map(|(kind, name)| (*kind, &name[..], ""));
-            if list(ui, "Kind", &mut kind, &named) {
+            if list(ui, t("Kind"), &mut kind, &named) {
                 apply(changes(things, |form| {
                     if let Form::Line(l) = form {
                         (l.kind, l.width_m) = (kind, kind.typical_m().1);
@@ -213,7 +224,7 @@ fn kinds(ui: &mut Ui, things: &[&Thing], what: &str, commands: &mut Vec<Command>
         Form::Post(post) if all(|f| matches!(f, Form::Post(_))) => {
             let mut kind = post.kind;
             let named = posts.each_ref().map(|(kind, name)| (*kind, &name[..], ""));
-            if list(ui, "Kind", &mut kind, &named) {
+            if list(ui, t("Kind"), &mut kind, &named) {
                 apply(changes(things, |form| {
                     if let Form::Post(p) = form {
                         (p.kind, p.height_m) = (kind, kind.typical_height_m());
@@ -327,18 +338,22 @@ fn numbers(ui: &mut Ui, chosen: Chosen<'_>, what: &str, commands: &mut Vec<Comma
         let decimals = if of.suffix == "°" { 0 } else { 2 };
         let response = number(
             ui,
-            of.title,
-            of.title,
+            t(of.title),
+            t(of.title),
             &mut value,
             of.range.clone(),
-            of.suffix,
+            t(of.suffix),
             decimals,
         );
-        let response = response.on_hover_text(theme::sentence(of.name));
+        let response = response.on_hover_text(theme::sentence(t(of.name)));
         let edits = changes(chosen.settled, |form| (of.set)(form, value));
         field(
             &response,
-            format!("Change {} of {what}", of.title.to_lowercase()),
+            tf!(
+                "Change {what} of {things}",
+                what = t(of.title).to_lowercase(),
+                things = what
+            ),
             edits,
             commands,
         );

@@ -14,6 +14,7 @@ use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, ToolState, option_rows};
 use crate::views_shown::Underlay;
 use editor::tools::brush;
+use language::{t, tf};
 use scene::{BevLayer, BevLayout, Frame};
 use widgets::hint::caption;
 use widgets::icons::Icon;
@@ -54,29 +55,32 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         options(ui, frame, &mut state.tools, commands);
         ui.add_space(theme::GAP);
-        section(ui, "Map layers");
+        section(ui, t("Map layers"));
         for layer in BevLayer::MAP {
             layer_row(ui, &frame.layout, layer, &mut state.tools, commands);
         }
         opacity_rows(ui, &mut state.tools, state.shown.underlay == Underlay::Both);
         ui.add_space(theme::GAP);
-        section(ui, "Overlays");
-        toggle_row(ui, "Boxes", &mut state.shown.boxes);
+        section(ui, t("Overlays"));
+        toggle_row(ui, t("Boxes"), &mut state.shown.boxes);
         things_row(ui, &state.tools, commands);
-        toggle_row(ui, "Lanes and dividers", &mut state.shown.lines);
-        toggle_row(ui, "LiDAR points in BEV", &mut state.shown.lidar_from_above);
-        toggle_row(ui, "Grid, 10 m", &mut state.shown.grid);
+        toggle_row(ui, t("Lanes and dividers"), &mut state.shown.lines);
+        toggle_row(ui, t("LiDAR points in BEV"), &mut state.shown.lidar_from_above);
+        toggle_row(ui, t("Grid, 10 m"), &mut state.shown.grid);
         if frame.inferred.unobserved.is_some() {
-            toggle_row(ui, "Unobserved", &mut state.shown.unobserved);
+            toggle_row(ui, t("Unobserved"), &mut state.shown.unobserved);
         }
         ui.add_space(theme::GAP);
-        section(ui, "Scenery");
+        section(ui, t("Scenery"));
         let named = &mut state.named;
-        density_row(ui, "Vegetation", &mut named.vegetation, TYPICAL_VEGETATION as f32);
-        density_row(ui, "Buildings", &mut named.building, TYPICAL_BUILDING as f32);
-        density_row(ui, "Clutter", &mut named.clutter, 0.25);
-        density_row(ui, "Completeness", &mut named.completeness, 1.0);
-        caption(ui, "What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there.");
+        density_row(ui, t("Vegetation"), &mut named.vegetation, TYPICAL_VEGETATION as f32);
+        density_row(ui, t("Buildings"), &mut named.building, TYPICAL_BUILDING as f32);
+        density_row(ui, t("Clutter"), &mut named.clutter, 0.25);
+        density_row(ui, t("Completeness"), &mut named.completeness, 1.0);
+        caption(
+            ui,
+            t("What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there."),
+        );
         scenery_row(ui, &mut state.tools, commands);
     });
 }
@@ -87,25 +91,26 @@ fn scenery_row(ui: &mut Ui, tools: &mut ToolState, commands: &mut Vec<Command>) 
         let chosen = &mut tools.drawer;
         egui::ComboBox::from_id_salt("setting")
             .width(92.0)
-            .selected_text(chosen.label())
+            .selected_text(t(chosen.label()))
             .show_ui(ui, |ui| {
                 for drawer in Drawer::all() {
-                    ui.selectable_value(chosen, drawer, drawer.label());
+                    ui.selectable_value(chosen, drawer, t(drawer.label()));
                 }
             })
             .response
-            .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Kind of place"));
-        let hint =
-            "Regenerates what stands beside the roads, as things: by rules for a kind of place, or by a network; voxels of scenery without a thing go";
-        let draw = ui.button("Draw").on_hover_text(hint);
-        draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Draw scenery"));
+            .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, t("Kind of place")));
+        let hint = t(
+            "Regenerates what stands beside the roads, as things: by rules for a kind of place, or by a network; voxels of scenery without a thing go",
+        );
+        let draw = ui.button(t("Draw")).on_hover_text(hint);
+        draw.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Draw scenery")));
         if draw.clicked() {
             commands.push(Command::Generation(GenerationCommand::DrawScenery));
         }
     });
     let place = match tools.region.is_empty() {
-        true => "Everywhere; in a region if one is marked (N).",
-        false => "In the marked region.",
+        true => t("Everywhere; in a region if one is marked (N)."),
+        false => t("In the marked region."),
     };
     caption(ui, place);
 }
@@ -127,7 +132,7 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
         let slider = egui::Slider::new(&mut shown, 0.0..=1.0).fixed_decimals(2);
         let slider = ui
             .add_enabled(on, slider)
-            .accessible_name(format!("{name} density"));
+            .accessible_name(tf!("{name} density", name = name));
         if slider.changed() {
             *value = Some(shown);
         }
@@ -154,11 +159,13 @@ fn layer_row(
     commands: &mut Vec<Command>,
 ) {
     let label = layer.label();
+    let label = t(&label);
     let shown = tools.shows(layer);
     let chosen = tools.tool == brush::ID && tools.layer == layer;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        let shows = eye(ui, shown, &format!("Show {label}")).on_hover_text("Alt+click shows it alone");
+        let shows = eye(ui, shown, &tf!("Show {what}", what = label))
+            .on_hover_text(t("Alt+click shows it alone"));
         if shows.clicked() && ui.input(|i| i.modifiers.alt) {
             solo(tools, layer);
         } else if shows.clicked() {
@@ -166,7 +173,7 @@ fn layer_row(
             tools.before_solo = None;
         }
         let locked = tools.is_locked(layer);
-        if lock(ui, locked, &format!("Lock {label}")).clicked() {
+        if lock(ui, locked, &tf!("Lock {what}", what = label)).clicked() {
             tools.layers_locked ^= layer.bit();
         }
         let share = layout.count(layer) as f64 * 100.0 / layout.extent().columns() as f64;
@@ -176,11 +183,13 @@ fn layer_row(
             s => format!("{s:.0} %"),
         };
         let color = theme::rgb(layer.color()).gamma_multiply(if shown { 1.0 } else { 0.4 });
-        let name = theme::sentence(&label);
-        let row = icons::row(ui, color, &name, &right, chosen, &format!("Paint {label}"));
+        let name = theme::sentence(label);
+        let row = icons::row(ui, color, &name, &right, chosen, &tf!("Paint {what}", what = label));
         let hint = match BevLayer::GROUND.contains(&layer) {
-            true => "Choose for the brush. A place is road, walkway or car park: what is painted last replaces the others",
-            false => "Choose for the brush",
+            true => t(
+                "Choose for the brush. A place is road, walkway or car park: what is painted last replaces the others",
+            ),
+            false => t("Choose for the brush"),
         };
         if row.on_hover_text(hint).clicked() {
             tools.layer = layer;
@@ -214,15 +223,15 @@ fn opacity_rows(ui: &mut Ui, tools: &mut ToolState, over_voxels: bool) {
         });
     };
     if let Some(k) = DRAW_ORDER.iter().position(|layer| *layer == tools.layer) {
-        let name = format!("Opacity of {}", tools.layer.label());
-        slider(ui, "Opacity", &mut tools.layer_opacity[k], &name);
+        let name = tf!("Opacity of {layer}", layer = t(&tools.layer.label()));
+        slider(ui, t("Opacity"), &mut tools.layer_opacity[k], &name);
     }
     if over_voxels {
         slider(
             ui,
-            "All, on voxels",
+            t("All, on voxels"),
             &mut tools.layers_opacity,
-            "Opacity of the layers over voxels",
+            t("Opacity of the layers over voxels"),
         );
     }
 }
@@ -244,7 +253,7 @@ pub(super) fn lock(ui: &mut Ui, locked: bool, name: &str) -> egui::Response {
 fn toggle_row(ui: &mut Ui, name: &str, on: &mut bool) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        if eye(ui, *on, &format!("Show {}", name.to_lowercase())).clicked() {
+        if eye(ui, *on, &tf!("Show {what}", what = name.to_lowercase())).clicked() {
             *on = !*on;
         }
         let color = if *on { theme::text() } else { theme::text_weak() };
@@ -265,17 +274,17 @@ fn things_row(ui: &mut Ui, tools: &ToolState, commands: &mut Vec<Command>) {
     let things = &tools.things;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        if eye(ui, things.shown, "Show background things").clicked() {
+        if eye(ui, things.shown, t("Show background things")).clicked() {
             send(ThingCommand::ToggleShown);
         }
-        if lock(ui, things.locked, "Lock background things").clicked() {
+        if lock(ui, things.locked, t("Lock background things")).clicked() {
             send(ThingCommand::ToggleLocked);
         }
         let color = match things.is_open() {
             true => theme::text(),
             false => theme::text_weak(),
         };
-        ui.label(egui::RichText::new("Background things").color(color));
+        ui.label(egui::RichText::new(t("Background things")).color(color));
     });
 }
 

@@ -10,8 +10,9 @@ use crate::shell::tuning::{LastEdit, Measuring, Tuning, predicted};
 use crate::trade_plot::front_plot;
 use job::GenParams;
 use judge::machine::{Load, machine};
-use judge::presets::figures::{percent, seconds};
+use judge::presets::figures::{self, seconds};
 use judge::presets::plan::Mark;
+use language::{t, tf};
 use trade::Preset;
 use widgets::icons::Icon;
 use widgets::theme;
@@ -57,10 +58,10 @@ pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: 
                 .map(|l| (l.report.total_s(), l.measured_error));
             let size = vec2(ui.available_width().max(120.0), 230.0);
             front_plot(ui, &marks(tuning), current.as_deref(), last, size);
-            let from = format!(
-                "Errors: {} held-out edits against {}. X-Scene's time is the paper's.",
-                edits(tuning),
-                tuning.presets.reference
+            let from = tf!(
+                "Errors: {n} held-out edits against {reference}. X-Scene's time is the paper's.",
+                n = edits(tuning),
+                reference = t(&tuning.presets.reference)
             );
             ui.label(RichText::new(from).small().color(theme::text_weak()));
             ui.separator();
@@ -68,6 +69,11 @@ pub fn trade_ui(ui: &mut Ui, tuning: &mut Tuning, params: &GenParams, commands: 
             ui.separator();
             stability(ui, tuning);
         });
+}
+
+/// A share as people read it.
+fn percent(share: f64) -> String {
+    t(&figures::percent(share)).to_owned()
 }
 
 fn edits(tuning: &Tuning) -> usize {
@@ -89,49 +95,53 @@ fn marks(tuning: &Tuning) -> Vec<Mark> {
 fn slider(ui: &mut Ui, tuning: &Tuning, params: &GenParams, commands: &mut Vec<Command>) {
     let presets = &tuning.presets.all;
     if presets.is_empty() {
-        ui.label("Nothing was measured for these weights: run `sceneloom trade`.");
+        ui.label(t(
+            "Nothing was measured for these weights: run `sceneloom trade`.",
+        ));
         return;
     }
     let current = tuning.current(params);
     let mut at = current.unwrap_or(0);
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Fast").color(theme::text_weak()));
+        ui.label(RichText::new(t("Fast")).color(theme::text_weak()));
         ui.spacing_mut().slider_width = (ui.available_width() - 70.0).max(60.0);
         let slider = Slider::new(&mut at, 0..=presets.len() - 1).show_value(false);
         let response = ui
             .add(slider)
-            .on_hover_text("Each preset is a setting on the measured front");
-        let name = presets[at].name.clone();
+            .on_hover_text(t("Each preset is a setting on the measured front"));
+        let name = tf!("Quality: {preset}", preset = t(&presets[at].name));
         response.widget_info(|| {
-            let mut info = egui::WidgetInfo::slider(true, at as f64, format!("Quality: {name}"));
-            info.label = Some(format!("Quality: {name}"));
+            let mut info = egui::WidgetInfo::slider(true, at as f64, &name);
+            info.label = Some(name.clone());
             info
         });
         if response.changed() && Some(at) != current {
             commands.push(Command::Generation(GenerationCommand::Quality(at)));
         }
-        ui.label(RichText::new("Exact").color(theme::text_weak()));
+        ui.label(RichText::new(t("Exact")).color(theme::text_weak()));
     });
     let tokens = tuning.tokens_of_next();
     match current {
         Some(i) => {
-            ui.label(RichText::new(theme::sentence(&presets[i].name)).strong());
-            let of = if tuning.last.is_some() {
-                "An edit as large as the last one: "
-            } else {
-                "An edit of a few vehicles' size: "
-            };
+            ui.label(RichText::new(theme::sentence(t(&presets[i].name))).strong());
             let predicted = predicted(&presets[i], tuning.predicted_s(&presets[i], tokens));
-            ui.label(RichText::new(of.to_owned() + &predicted).small());
+            let text = if tuning.last.is_some() {
+                tf!("An edit as large as the last one: {cost}", cost = predicted)
+            } else {
+                tf!("An edit of a few vehicles' size: {cost}", cost = predicted)
+            };
+            ui.label(RichText::new(text).small());
             let factor = tuning.window_factor();
             if factor > 1.25 {
-                let text =
-                    format!("{factor:.1} times as long as in quiet: this window is drawn by the same cores");
+                let text = tf!(
+                    "{times} times as long as in quiet: this window is drawn by the same cores",
+                    times = format!("{factor:.1}")
+                );
                 ui.label(RichText::new(text).small().color(theme::text_weak()));
             }
         }
         None => {
-            ui.label(RichText::new("Own settings, not measured").strong());
+            ui.label(RichText::new(t("Own settings, not measured")).strong());
         }
     }
 }
@@ -140,35 +150,50 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| match tuning.measuring() {
         Some((Measuring::Presets, done, all)) => {
             ui.add(egui::Spinner::new().size(13.0));
-            ui.label(format!(
-                "Calibrating, {done} of {all} presets timed, 30 s at most"
+            ui.label(tf!(
+                "Calibrating, {done} of {all} presets timed, 30 s at most",
+                done = done,
+                all = all
             ));
-            if ui.button("Stop").clicked() {
+            if ui.button(t("Stop")).clicked() {
                 commands.push(Command::Generation(GenerationCommand::StopMeasuring));
             }
         }
         _ => {
-            let text = "Times every preset on this computer: 30 s at most. Best while nothing else runs.";
-            if ui.button("Calibrate").on_hover_text(text).clicked() {
+            let text = t("Times every preset on this computer: 30 s at most. Best while nothing else runs.");
+            if ui.button(t("Calibrate")).on_hover_text(text).clicked() {
                 commands.push(Command::Generation(GenerationCommand::Calibrate));
             }
             let load = Load::now();
             let (line, color) = match (tuning.calibrated, load.is_busy()) {
                 (_, true) => (
-                    format!("busy: {}; times would be too long", load.describe()),
+                    tf!(
+                        "busy: {load} running processes per core on {cores} cores; times would be too long",
+                        load = format!("{:.2}", load.per_core.unwrap_or_default()),
+                        cores = load.cores
+                    ),
                     theme::warn(),
                 ),
                 (true, _) => (
-                    format!("times of this machine ({})", tuning.presets.machine),
+                    tf!(
+                        "times of this machine ({machine})",
+                        machine = tuning.presets.machine
+                    ),
                     theme::text_weak(),
                 ),
                 // (weights and program may be older than this one)
                 (false, _) if tuning.presets.machine == machine() => (
-                    format!("times of a machine like this one ({})", tuning.presets.machine),
+                    tf!(
+                        "times of a machine like this one ({machine})",
+                        machine = tuning.presets.machine
+                    ),
                     theme::text_weak(),
                 ),
                 (false, _) => (
-                    format!("times of another machine ({})", tuning.presets.machine),
+                    tf!(
+                        "times of another machine ({machine})",
+                        machine = tuning.presets.machine
+                    ),
                     theme::warn(),
                 ),
             };
@@ -176,7 +201,7 @@ fn calibration(ui: &mut Ui, tuning: &Tuning, commands: &mut Vec<Command>) {
         }
     });
     if let Some(message) = &tuning.message {
-        ui.label(RichText::new(message).small().color(theme::text_weak()));
+        ui.label(RichText::new(t(message)).small().color(theme::text_weak()));
     }
 }
 
@@ -194,10 +219,10 @@ fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
 }
 
 fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
-    ui.label(RichText::new("Receipt of the last edit").strong());
+    ui.label(RichText::new(t("Receipt of the last edit")).strong());
     let measuring = tuning.measuring();
     let Some(last) = &tuning.last else {
-        ui.label(RichText::new("Edit something: what it cost is written here.").color(theme::text_weak()));
+        ui.label(RichText::new(t("Edit something: what it cost is written here.")).color(theme::text_weak()));
         return;
     };
     let r = &last.report;
@@ -205,61 +230,82 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
         ui.spacing_mut().item_spacing.y = 2.0;
         row(
             ui,
-            "Region",
-            format!("{} columns ({})", r.region_columns, percent(r.region_share)),
-        );
-        row(
-            ui,
-            "Computed",
-            format!("{} of 625 tokens, {} network calls", r.tokens, r.network_calls),
-        );
-        let predicted = last
-            .predicted_s
-            .map_or(String::new(), |s| format!(", predicted {}", seconds(s)));
-        row(
-            ui,
-            "Time",
-            format!(
-                "{}{predicted}; on screen after {}",
-                seconds(r.total_s()),
-                seconds(last.settled_s)
+            t("Region"),
+            tf!(
+                "{n} columns ({share})",
+                n = r.region_columns,
+                share = percent(r.region_share)
             ),
         );
-        row(ui, "Stages", stages(last));
+        row(
+            ui,
+            t("Computed"),
+            tf!(
+                "{tokens} of 625 tokens, {calls} network calls",
+                tokens = r.tokens,
+                calls = r.network_calls
+            ),
+        );
+        let (took, settled) = (seconds(r.total_s()), seconds(last.settled_s));
+        let time = match last.predicted_s {
+            Some(s) => tf!(
+                "{took}, predicted {predicted}; on screen after {settled}",
+                took = took,
+                predicted = seconds(s),
+                settled = settled
+            ),
+            None => tf!(
+                "{took}; on screen after {settled}",
+                took = took,
+                settled = settled
+            ),
+        };
+        row(ui, t("Time"), time);
+        row(ui, t("Stages"), stages(last));
         let error = match (last.measured_error, last.predicted_error) {
             (Some(e), Some([_, low, high])) => {
                 let where_ = match e {
-                    e if e < low => "better than predicted",
-                    e if e <= high => "as predicted",
-                    _ => "more than predicted",
+                    e if e < low => t("better than predicted"),
+                    e if e <= high => t("as predicted"),
+                    _ => t("more than predicted"),
                 };
-                format!(
-                    "{} measured, {where_} ({} to {})",
-                    percent(e),
-                    percent(low),
-                    percent(high)
+                tf!(
+                    "{error} measured, {verdict} ({low} to {high})",
+                    error = percent(e),
+                    verdict = where_,
+                    low = percent(low),
+                    high = percent(high)
                 )
             }
-            (Some(e), None) => format!("{} measured", percent(e)),
+            (Some(e), None) => tf!("{error} measured", error = percent(e)),
             (None, Some([e, low, high])) => {
-                format!("{} predicted ({} to {})", percent(e), percent(low), percent(high))
+                tf!(
+                    "{error} predicted ({low} to {high})",
+                    error = percent(e),
+                    low = percent(low),
+                    high = percent(high)
+                )
             }
-            (None, None) => "unknown for own settings".into(),
+            (None, None) => t("unknown for own settings").into(),
         };
-        row(ui, "Differs", error);
+        row(ui, t("Differs"), error);
         let untouched = if r.untouched_voxels_changed == 0 {
-            format!("identical, {:016x}", r.untouched_hash)
+            tf!("identical, {hash}", hash = format!("{:016x}", r.untouched_hash))
         } else {
-            format!("{} CHANGED", r.untouched_voxels_changed)
+            tf!("{n} CHANGED", n = r.untouched_voxels_changed)
         };
-        row(ui, "Untouched", untouched);
+        row(ui, t("Untouched"), untouched);
     });
     ui.horizontal_wrapped(|ui| {
         match measuring {
             Some((Measuring::Error, done, all)) => {
                 ui.add(egui::Spinner::new().size(13.0));
-                ui.label(format!("Measuring against the reference, step {done} of {all}"));
-                if ui.button("Stop").clicked() {
+                ui.label(tf!(
+                    "Measuring against the reference, step {done} of {all}",
+                    done = done,
+                    all = all
+                ));
+                if ui.button(t("Stop")).clicked() {
                     commands.push(Command::Generation(GenerationCommand::StopMeasuring));
                 }
             }
@@ -268,17 +314,21 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
                     .presets
                     .named("reference")
                     .map(|s| s.invert_s + s.cost.fixed_s);
-                let about = about.map_or(String::new(), |s| format!(" About {}.", seconds(s)));
-                let text = format!(
-                    "Runs the reference on the same edit in the background and says how much differs.{about}"
-                );
-                if ui.button("Refine").on_hover_text(text).clicked() {
+                let about = about.map_or(String::new(), |s| {
+                    format!(" {}", tf!("About {time}.", time = seconds(s)))
+                });
+                let does =
+                    t("Runs the reference on the same edit in the background and says how much differs.");
+                let text = format!("{does}{about}");
+                if ui.button(t("Refine")).on_hover_text(text).clicked() {
                     commands.push(Command::Generation(GenerationCommand::Refine));
                 }
             }
         }
-        ui.checkbox(&mut tuning.show_modelled, "Show what was computed")
-            .on_hover_text("Tokens, columns and bricks of the last edit, in the bird's-eye view");
+        ui.checkbox(&mut tuning.show_modelled, t("Show what was computed"))
+            .on_hover_text(t(
+                "Tokens, columns and bricks of the last edit, in the bird's-eye view",
+            ));
     });
 }
 
@@ -286,13 +336,13 @@ fn receipt(ui: &mut Ui, tuning: &mut Tuning, commands: &mut Vec<Command>) {
 fn stages(last: &LastEdit) -> String {
     let parts = last.report.wall_s.iter().filter(|(_, s)| **s >= 1e-3);
     parts
-        .map(|(name, s)| format!("{name} {}", seconds(*s)))
+        .map(|(name, s)| format!("{} {}", t(name), seconds(*s)))
         .collect::<Vec<_>>()
         .join(", ")
 }
 
 fn stability(ui: &mut Ui, tuning: &Tuning) {
-    ui.label(RichText::new("Stability").strong());
+    ui.label(RichText::new(t("Stability")).strong());
     let s = &tuning.stability;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
@@ -301,25 +351,38 @@ fn stability(ui: &mut Ui, tuning: &Tuning) {
         {
             let sound = (0.9..=1.1).contains(&std) && max < 6.0;
             let verdict = if sound {
-                "as a draw would be"
+                t("as a draw would be")
             } else {
-                "unlike a draw (std 0.9 to 1.1, max 6)"
+                t("unlike a draw (std 0.9 to 1.1, max 6)")
             };
             row(
                 ui,
-                "Inverted noise",
-                format!("std {std:.2}, max {max:.1}: {verdict}"),
+                t("Inverted noise"),
+                tf!(
+                    "std {std}, max {max}: {verdict}",
+                    std = format!("{std:.2}"),
+                    max = format!("{max:.1}"),
+                    verdict = verdict
+                ),
             );
         }
         row(
             ui,
-            "Generations",
-            format!("{}, {} with a fallback or warning", s.runs, s.fallbacks),
+            t("Generations"),
+            tf!(
+                "{n}, {fallbacks} with a fallback or warning",
+                n = s.runs,
+                fallbacks = s.fallbacks
+            ),
         );
         row(
             ui,
-            "Failed",
-            format!("{}, {} by a number that was not finite", s.failures, s.not_finite),
+            t("Failed"),
+            tf!(
+                "{n}, {not_finite} by a number that was not finite",
+                n = s.failures,
+                not_finite = s.not_finite
+            ),
         );
         let color = if s.untouched_changed == 0 {
             theme::text()
@@ -328,8 +391,8 @@ fn stability(ui: &mut Ui, tuning: &Tuning) {
         };
         row(
             ui,
-            "Untouched",
-            RichText::new(format!("{} voxels changed", s.untouched_changed)).color(color),
+            t("Untouched"),
+            RichText::new(tf!("{n} voxels changed", n = s.untouched_changed)).color(color),
         );
     });
     if let Some(notes) = tuning
@@ -339,7 +402,7 @@ fn stability(ui: &mut Ui, tuning: &Tuning) {
         .filter(|n| !n.is_empty())
     {
         for note in notes {
-            ui.label(RichText::new(note).small().color(theme::warn()));
+            ui.label(RichText::new(t(note)).small().color(theme::warn()));
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::comparing::{CompareMode, Comparing};
 use crate::shell::versions::{Version, Versions};
+use language::t;
 use scene::SceneRev;
 use widgets::icons;
 use widgets::icons::Icon;
@@ -61,7 +62,9 @@ pub fn versions_ui(
     commands: &mut Vec<Command>,
 ) {
     if versions.list().len() < 2 {
-        let text = "Each generation leaves a version here: click one to compare with it, double-click to go back to it, right-click to name it. They are saved with the scene.";
+        let text = t(
+            "Each generation leaves a version here: click one to compare with it, double-click to go back to it, right-click to name it. They are saved with the scene.",
+        );
         ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         ui.add_space(4.0);
     }
@@ -81,6 +84,14 @@ pub fn versions_ui(
         });
 }
 
+/// What a version is called in the language that is shown; a name that was given to it stays as it is.
+fn title(version: &Version) -> &str {
+    match version.name.is_empty() {
+        true => t(version.title()),
+        false => version.title(),
+    }
+}
+
 /// One version of the list.
 struct Entry {
     rev: SceneRev,
@@ -96,7 +107,7 @@ impl Entry {
             return;
         }
         let is_shown = self.rev == self.shown;
-        let title = versions.list()[i].title().to_owned();
+        let title = title(&versions.list()[i]).to_owned();
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_shown, &title));
         let fill = match (is_shown, self.before == Some(self.rev), response.hovered()) {
             (true, ..) => theme::accent_fill(),
@@ -115,9 +126,9 @@ impl Entry {
             line(at, &title, egui::TextStyle::Body, theme::text_strong());
         }
         let below = match (version.name.is_empty(), version.note.is_empty()) {
-            (true, _) => version.note.clone(),
-            (false, true) => version.label.clone(),
-            (false, false) => format!("{} · {}", version.label, version.note),
+            (true, _) => t(&version.note).to_owned(),
+            (false, true) => t(&version.label).to_owned(),
+            (false, false) => format!("{} · {}", t(&version.label), t(&version.note)),
         };
         let found = versions.findings_in_words(i);
         let below = match found {
@@ -134,7 +145,7 @@ impl Entry {
         let star = Rect::from_center_size(pos2(rect.right() - 16.0, rect.center().y), vec2(24.0, 24.0));
         let starring = ui.interact(star, ui.scope_id().with(("star", i)), Sense::click());
         let starred = version.starred;
-        starring.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, "Keep this version"));
+        starring.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, t("Keep this version")));
         let color = if starred {
             theme::warn()
         } else {
@@ -142,7 +153,7 @@ impl Entry {
         };
         icons::star(ui, star.center(), color, starred);
         icons::focus_ring(ui, &starring, star);
-        if starring.on_hover_text("Keep this version").clicked() {
+        if starring.on_hover_text(t("Keep this version")).clicked() {
             versions.star(self.rev);
         }
         icons::focus_ring(ui, &response, rect);
@@ -166,20 +177,20 @@ impl Entry {
     }
 
     fn menu(&self, ui: &mut Ui, versions: &mut Versions, commands: &mut Vec<Command>) {
-        if ui.button("Compare with it").clicked() {
+        if ui.button(t("Compare with it")).clicked() {
             commands.push(self.compare());
         }
-        if ui.button("Go back to it").clicked() {
+        if ui.button(t("Go back to it")).clicked() {
             commands.push(self.go_back());
         }
         ui.separator();
-        if ui.button("Name…").clicked()
+        if ui.button(t("Name…")).clicked()
             && let Some(i) = versions.of(self.rev)
         {
-            versions.renaming = Some((self.rev, versions.list()[i].title().to_owned()));
+            versions.renaming = Some((self.rev, title(&versions.list()[i]).to_owned()));
         }
         let is_last = versions.list().len() < 2;
-        if ui.add_enabled(!is_last, egui::Button::new("Remove")).clicked() {
+        if ui.add_enabled(!is_last, egui::Button::new(t("Remove"))).clicked() {
             versions.remove(self.rev);
         }
     }
@@ -192,7 +203,7 @@ impl Entry {
         let field = egui::TextEdit::singleline(text)
             .id_salt("version name")
             .char_limit(Versions::LONGEST_NAME)
-            .hint_text("name");
+            .hint_text(t("name"));
         let field = ui.put(rect, field);
         if field.lost_focus() {
             let text = text.clone();
@@ -228,5 +239,6 @@ fn line(ui: &Ui, at: egui::Pos2, room: f32, text: &str, style: egui::TextStyle, 
 
 /// What the header of the list offers.
 pub fn versions_controls(ui: &mut Ui, how: &mut Comparing) {
-    icons::choice(ui, &mut how.mode, &CompareMode::ALL, "Compare");
+    let choices = CompareMode::ALL.map(|(mode, name, hint)| (mode, t(name), t(hint)));
+    icons::choice(ui, &mut how.mode, &choices, t("Compare"));
 }

@@ -13,6 +13,7 @@ use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use crate::views_shown::ViewsShown;
 use editor::pick::{self, Hit};
+use language::t;
 use scene::Scene;
 use viewport::{LayoutPlane, LidarColorMode, ViewOptions, ViewPreset};
 use widgets::icons::{self, Icon};
@@ -39,18 +40,18 @@ impl Pane for View3dPane {
     }
 
     fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        if icons::button(ui, Icon::Camera, "Screenshot", "F12", false, true).clicked() {
+        if icons::button(ui, Icon::Camera, t("Screenshot"), "F12", false, true).clicked() {
             commands.push(Command::File(FileCommand::QuickShot));
         }
-        let show = egui::containers::menu::MenuButton::new("Show").config(
+        let show = egui::containers::menu::MenuButton::new(t("Show")).config(
             egui::containers::menu::MenuConfig::new()
                 .close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside),
         );
         let (options, UiState { shown, lidar, .. }) = (&mut cx.view3d.options, &mut *cx.state);
         show.ui(ui, |ui| show_menu(ui, options, shown, lidar));
-        ui.menu_button("View", |ui| {
+        ui.menu_button(t("View"), |ui| {
             for preset in ViewPreset::ALL {
-                if ui.button(theme::sentence(preset.name())).clicked() {
+                if ui.button(theme::sentence(t(preset.name()))).clicked() {
                     commands.push(Command::View(ViewCommand::Preset(preset)));
                     ui.close();
                 }
@@ -152,17 +153,17 @@ fn under(view: &View3d, scene: &Scene, at: egui::Pos2) -> Under {
 
 fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, sweep: &mut LidarShown) {
     ui.set_min_width(200.0);
-    ui.checkbox(&mut options.voxels, "Voxels");
-    ui.checkbox(&mut options.voxel_edges, "Voxel edges");
-    ui.checkbox(&mut options.shadows, "Shadows");
-    ui.checkbox(&mut options.markings, "Road markings");
-    ui.checkbox(&mut shown.boxes, "Boxes");
-    ui.checkbox(&mut options.lidar, "LiDAR points");
-    ui.checkbox(&mut options.ego, "Ego vehicle");
-    ui.checkbox(&mut options.frusta, "Camera frusta");
-    ui.checkbox(&mut shown.grid, "Grid");
+    ui.checkbox(&mut options.voxels, t("Voxels"));
+    ui.checkbox(&mut options.voxel_edges, t("Voxel edges"));
+    ui.checkbox(&mut options.shadows, t("Shadows"));
+    ui.checkbox(&mut options.markings, t("Road markings"));
+    ui.checkbox(&mut shown.boxes, t("Boxes"));
+    ui.checkbox(&mut options.lidar, t("LiDAR points"));
+    ui.checkbox(&mut options.ego, t("Ego vehicle"));
+    ui.checkbox(&mut options.frusta, t("Camera frusta"));
+    ui.checkbox(&mut shown.grid, t("Grid"));
     let mut plane = options.layout_plane == LayoutPlane::Always;
-    if ui.checkbox(&mut plane, "Layout on the ground").changed() {
+    if ui.checkbox(&mut plane, t("Layout on the ground")).changed() {
         options.layout_plane = if plane {
             LayoutPlane::Always
         } else {
@@ -170,7 +171,7 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, swe
         };
     }
     let mut clipped = options.clip_above_m.is_some();
-    if ui.checkbox(&mut clipped, "Cut above").changed() {
+    if ui.checkbox(&mut clipped, t("Cut above")).changed() {
         options.clip_above_m = clipped.then_some(2.0);
     }
     if let Some(height_m) = &mut options.clip_above_m {
@@ -181,21 +182,21 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, swe
         );
     }
     ui.separator();
-    ui.label(egui::RichText::new("LiDAR").small().color(theme::text_weak()));
+    ui.label(egui::RichText::new(t("LiDAR")).small().color(theme::text_weak()));
     icons::segments(
         ui,
         &mut sweep.model,
         &[
-            (LidarModel::Exact, "Exact", "every ray to the first voxel"),
+            (LidarModel::Exact, t("Exact"), t("every ray to the first voxel")),
             (
                 LidarModel::Learned,
-                "Learned",
-                "ranges within voxels, echo strength, lost echoes",
+                t("Learned"),
+                t("ranges within voxels, echo strength, lost echoes"),
             ),
         ],
     );
     ui.label(
-        egui::RichText::new("LiDAR colour")
+        egui::RichText::new(t("LiDAR colour"))
             .small()
             .color(theme::text_weak()),
     );
@@ -203,18 +204,18 @@ fn show_menu(ui: &mut Ui, options: &mut ViewOptions, shown: &mut ViewsShown, swe
         ui,
         &mut sweep.colors,
         &[
-            (LidarColorMode::Range, "Range", "near warm, far cool"),
-            (LidarColorMode::Class, "Class", "of the voxel hit"),
-            (LidarColorMode::Ring, "Ring", "beam"),
+            (LidarColorMode::Range, t("Range"), t("near warm, far cool")),
+            (LidarColorMode::Class, t("Class"), t("of the voxel hit")),
+            (LidarColorMode::Ring, t("Ring"), t("beam")),
             (
                 LidarColorMode::Intensity,
-                "Echo",
-                "strength, from the learned LiDAR",
+                t("Echo"),
+                t("strength, from the learned LiDAR"),
             ),
             (
                 LidarColorMode::Drop,
-                "Loss",
-                "how likely an echo is lost, from the learned LiDAR",
+                t("Loss"),
+                t("how likely an echo is lost, from the learned LiDAR"),
             ),
         ],
     );

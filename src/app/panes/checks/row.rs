@@ -7,6 +7,7 @@ use super::waived::waive_button;
 use super::{ChecksInput, Pointed, marks_of};
 use crate::command::{Command, TimeCommand, ViewCommand};
 use editor::checks::{Finding, Severity};
+use language::{t, tf};
 use widgets::theme;
 
 /// Draws a finding.
@@ -17,6 +18,7 @@ pub(super) fn row(
     pointed: &mut Pointed,
     commands: &mut Vec<Command>,
 ) {
+    let says = t(&finding.text);
     let line = egui::Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), theme::ROW));
     if ui.rect_contains_pointer(line) {
         pointed.hovered = Some(marks_of(ui, finding, input.scene));
@@ -30,7 +32,7 @@ pub(super) fn row(
                 if finding.fixes.len() > 1 {
                     ui.menu_button("…", |ui| {
                         for fix in &finding.fixes {
-                            if ui.button(fix.label).clicked() {
+                            if ui.button(t(fix.label)).clicked() {
                                 commands.push(Command::Apply(fix.label, fix.edits.clone()));
                                 ui.close();
                             }
@@ -38,30 +40,31 @@ pub(super) fn row(
                     })
                     .response
                     .widget_info(|| {
-                        WidgetInfo::labeled(Role::Button, true, format!("Ways to fix: {}", finding.text))
+                        WidgetInfo::labeled(Role::Button, true, tf!("Ways to fix: {finding}", finding = says))
                     });
                 }
-                let fix = ui.add(egui::Button::new("Fix").small());
+                let fix = ui.add(egui::Button::new(t("Fix")).small());
                 fix.widget_info(|| {
-                    WidgetInfo::labeled(Role::Button, true, format!("{}: {}", first.label, finding.text))
+                    WidgetInfo::labeled(Role::Button, true, format!("{}: {says}", t(first.label)))
                 });
-                if fix.on_hover_text(first.label).clicked() {
+                if fix.on_hover_text(t(first.label)).clicked() {
                     commands.push(Command::Apply(first.label, first.edits.clone()));
                 }
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 sign(ui, finding.severity);
                 if input.lasts && finding.time_s.is_none() {
-                    ui.weak("now")
-                        .on_hover_text("Found at the moment shown; there may be others at other moments");
+                    ui.weak(t("now")).on_hover_text(t(
+                        "Found at the moment shown; there may be others at other moments",
+                    ));
                 }
                 let of_box = finding.box_id.is_some() && finding.box_id == input.selected;
                 let chosen = of_box || pointed.clicked.as_ref() == Some(&key(finding));
-                let text = egui::RichText::new(&finding.text);
+                let text = egui::RichText::new(says);
                 let label = egui::Button::selectable(chosen, text).truncate();
                 let response = ui.add(label);
                 response.widget_info(|| {
-                    let name = format!("{}: {}", theme::sentence(finding.severity.name()), finding.text);
+                    let name = format!("{}: {says}", theme::sentence(t(finding.severity.name())));
                     WidgetInfo::selected(Role::Button, true, chosen, name)
                 });
                 // Read already where it fits.
@@ -69,7 +72,7 @@ pub(super) fn row(
                     .intrinsic_size()
                     .is_some_and(|s| s.x > response.rect.width() + 1.0);
                 let response = match cut {
-                    true => response.on_hover_text(&finding.text),
+                    true => response.on_hover_text(says),
                     false => response,
                 };
                 if response.clicked() {

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use editor::checks::{Finding, Severity, title};
+use language::t;
 use scene::BoxId;
 
 /// How the list is parted.
@@ -63,7 +64,10 @@ impl Triage {
             .iter()
             .zip(self.hidden)
             .any(|(s, hidden)| hidden && *s == finding.severity);
-        let text = || format!("{} {} {}", finding.text, title(finding.check), finding.check).to_lowercase();
+        let text = || {
+            let (says, kind) = (&finding.text, title(finding.check));
+            format!("{says} {} {kind} {} {}", t(says), t(kind), finding.check).to_lowercase()
+        };
         !hidden
             && (self.words.is_empty() || {
                 let text = text();

@@ -9,6 +9,7 @@ use super::row::key;
 use crate::command::Command;
 use editor::Edit;
 use editor::checks::{Finding, waive};
+use language::{t, tf};
 use widgets::theme;
 
 /// What the title of the waived findings takes at the bottom, and what they take unfolded, points.
@@ -39,9 +40,15 @@ type Typing = Option<(String, String)>;
 
 /// The button that begins a waiver.
 pub(super) fn waive_button(ui: &mut Ui, finding: &Finding) {
-    let button = ui.add(egui::Button::new("Waive").small());
-    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Waive: {}", finding.text)));
-    if button.on_hover_text("Let it stand, with a reason").clicked() {
+    let button = ui.add(egui::Button::new(t("Waive")).small());
+    button.widget_info(|| {
+        WidgetInfo::labeled(
+            Role::Button,
+            true,
+            tf!("Waive: {finding}", finding = t(&finding.text)),
+        )
+    });
+    if button.on_hover_text(t("Let it stand, with a reason")).clicked() {
         let begun: Typing = Some((key(finding), String::new()));
         ui.data_mut(|d| d.insert_temp(typing(), begun));
     }
@@ -56,12 +63,12 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
         return;
     };
     let mut done = false;
-    ui.add(egui::Label::new(&finding.text).truncate());
+    ui.add(egui::Label::new(t(&finding.text)).truncate());
     ui.horizontal(|ui| {
         let field = egui::TextEdit::singleline(&mut text)
-            .hint_text("Why it may stay")
+            .hint_text(t("Why it may stay"))
             .desired_width((ui.available_width() - 150.0).max(120.0));
-        let field = ui.add(field).accessible_name("Reason of the waiver");
+        let field = ui.add(field).accessible_name(t("Reason of the waiver"));
         // Once, when the waiver begins.
         let asked = asked();
         if ui.data(|d| d.get_temp::<String>(asked)).as_ref() != Some(&of) {
@@ -70,7 +77,9 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
         }
         let entered = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         let ready = !text.trim().is_empty();
-        let clicked = ui.add_enabled(ready, egui::Button::new("Let it stand")).clicked();
+        let clicked = ui
+            .add_enabled(ready, egui::Button::new(t("Let it stand")))
+            .clicked();
         if ready && (clicked || entered) {
             commands.push(Command::Apply(
                 "Waive a finding",
@@ -83,7 +92,7 @@ pub(super) fn reason_ui(ui: &mut Ui, open: &[&Finding], commands: &mut Vec<Comma
             ));
             done = true;
         }
-        done |= ui.button("Cancel").clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
+        done |= ui.button(t("Cancel")).clicked() || ui.input(|i| i.key_pressed(egui::Key::Escape));
     });
     if done {
         ui.data_mut(|d| d.remove_temp::<String>(asked()));
@@ -103,7 +112,7 @@ pub(super) fn waived_ui(
         return;
     }
     ui.add_space(4.0);
-    let title = format!("{} waived", waived.len());
+    let title = tf!("{n} waived", n = waived.len());
     let list = egui::CollapsingHeader::new(title)
         .id_salt("waived findings")
         .default_open(false)
@@ -117,12 +126,12 @@ pub(super) fn waived_ui(
                             continue;
                         };
                         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                            let back = ui.add(egui::Button::new("Take back").small());
+                            let back = ui.add(egui::Button::new(t("Take back")).small());
                             back.widget_info(|| {
                                 WidgetInfo::labeled(
                                     Role::Button,
                                     true,
-                                    format!("Take back: {}", finding.text),
+                                    tf!("Take back: {finding}", finding = t(&finding.text)),
                                 )
                             });
                             if back.clicked() {
@@ -136,7 +145,7 @@ pub(super) fn waived_ui(
                                 ));
                             }
                             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                                let text = format!("{}  ·  {}", finding.text, waiver.reason);
+                                let text = format!("{}  ·  {}", t(&finding.text), waiver.reason);
                                 let label =
                                     egui::Label::new(egui::RichText::new(&text).color(theme::text_weak()));
                                 ui.add(label.truncate()).on_hover_text(&text);

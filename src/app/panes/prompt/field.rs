@@ -10,6 +10,7 @@ use super::plan::{Plan, Told};
 use super::typed_text::Both;
 use crate::command::{Command, FileCommand};
 use crate::text::doubts;
+use language::{t, tf};
 use scene::Scene;
 use widgets::icons::section;
 use widgets::theme;
@@ -133,7 +134,7 @@ impl PromptField {
         let field = egui::TextEdit::multiline(&mut self.prompt)
             .id(field_id())
             .lock_focus(self.offered.is_some())
-            .hint_text("Describe a scene, or say what should change in this one")
+            .hint_text(t("Describe a scene, or say what should change in this one"))
             .desired_rows(2)
             .desired_width(f32::INFINITY)
             .return_key(None);
@@ -146,7 +147,7 @@ impl PromptField {
             let caret = caret.filter(|_| !self.is_sent);
             self.offered = caret.and_then(|caret| Completion::at(&self.prompt, caret.0));
         }
-        field.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Prompt"));
+        field.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, t("Prompt")));
         if std::mem::take(&mut self.wants_focus) {
             field.request_focus();
         }
@@ -185,17 +186,17 @@ impl PromptField {
         ui.horizontal_wrapped(|ui| {
             let some = !self.prompt.trim().is_empty();
             let dice = ui
-                .button("Re-roll")
-                .on_hover_text("Another scene of the same words");
+                .button(t("Re-roll"))
+                .on_hover_text(t("Another scene of the same words"));
             if some && dice.clicked() {
                 self.seed = self.seed.wrapping_add(1) % 100_000;
                 make = true;
             }
             let seed = egui::DragValue::new(&mut self.seed)
                 .range(0..=99_999)
-                .prefix("seed ");
+                .prefix(t("seed "));
             ui.add(seed)
-                .on_hover_text("The same words and seed give the same scene");
+                .on_hover_text(t("The same words and seed give the same scene"));
             self.plan.switches(ui);
         });
         if change || make {
@@ -237,13 +238,13 @@ impl PromptField {
             ui.add_enabled(some, button).on_hover_text(hint).clicked()
         };
         let hints = [
-            "Enter: “remove the parked car”, “add two cones ahead”, “make it night”",
-            "Ctrl+Enter: road, objects and style are made from the words",
+            t("Enter: “remove the parked car”, “add two cones ahead”, “make it night”"),
+            t("Ctrl+Enter: road, objects and style are made from the words"),
         ];
         if !self.offers {
             let row = ui.horizontal(|ui| {
-                let change = button(ui, "Change this scene", hints[0], true);
-                (change, button(ui, "New scene", hints[1], false))
+                let change = button(ui, t("Change this scene"), hints[0], true);
+                (change, button(ui, t("New scene"), hints[1], false))
             });
             return row.inner;
         }
@@ -253,10 +254,12 @@ impl PromptField {
                 ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
             }
         };
-        ui.label("A scene is described. Enter again changes this one, Ctrl+Enter makes a new one.");
-        let change = button(ui, "Change this scene", hints[0], true);
+        ui.label(t(
+            "A scene is described. Enter again changes this one, Ctrl+Enter makes a new one.",
+        ));
+        let change = button(ui, t("Change this scene"), hints[0], true);
         says(ui, read.and_then(|r| r.edited.as_ref().ok()).map(|e| e.answer()));
-        let make = button(ui, "New scene", hints[1], false);
+        let make = button(ui, t("New scene"), hints[1], false);
         says(
             ui,
             read.and_then(|r| r.prompted.as_ref().ok()).map(|p| p.answer()),
@@ -331,7 +334,7 @@ impl PromptField {
                 };
                 let text = egui::RichText::new(shown).small().color(color);
                 let button = ui.add(egui::Button::new(text).fill(theme::field()));
-                let label = format!("Complete with {end}");
+                let label = tf!("Complete with {word}", word = end);
                 button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
                 if button.clicked() {
                     taken = Some(*end);
@@ -372,11 +375,15 @@ impl PromptField {
         if self.history.is_empty() {
             return;
         }
-        section(ui, "Typed before");
+        section(ui, t("Typed before"));
         for past in self.history.clone().iter().rev().take(5) {
             let text = egui::RichText::new(past).small().color(theme::text());
             let button = egui::Button::new(text).wrap().fill(theme::field());
-            if ui.add(button).on_hover_text("Alt+Up and Alt+Down too").clicked() {
+            if ui
+                .add(button)
+                .on_hover_text(t("Alt+Up and Alt+Down too"))
+                .clicked()
+            {
                 self.prompt.clone_from(past);
                 self.wants_focus = true;
             }
@@ -430,7 +437,7 @@ impl PromptField {
     }
 
     pub(super) fn examples(&mut self, ui: &mut Ui) {
-        section(ui, "Examples");
+        section(ui, t("Examples"));
         for example in EXAMPLES {
             let text = egui::RichText::new(example).small().color(theme::text());
             let button = egui::Button::new(text).wrap().fill(theme::field());

@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Pos2, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
+use language::{t, tf};
 use place::to_graph::Graphed;
 use scene::Class;
 use scene::graph::{Edge, LaneRole, NodeKind, RelationKind, SceneGraph};
@@ -14,12 +15,12 @@ const LINE: f32 = 19.0;
 
 fn name_of(graph: &SceneGraph, id: u32) -> String {
     match graph.node(id).map(|n| &n.kind) {
-        Some(NodeKind::Ego) => "ego".into(),
-        Some(NodeKind::Object(o)) => format!("{} {id}", o.class.label()),
+        Some(NodeKind::Ego) => t("ego").into(),
+        Some(NodeKind::Object(o)) => format!("{} {id}", t(&o.class.label())),
         Some(NodeKind::Lane { role, .. }) => role_name(*role),
-        Some(NodeKind::Crossing { .. }) => "crossing".into(),
-        Some(NodeKind::Junction) => "junction".into(),
-        None => "nothing".into(),
+        Some(NodeKind::Crossing { .. }) => t("crossing").into(),
+        Some(NodeKind::Junction) => t("junction").into(),
+        None => t("nothing").into(),
     }
 }
 
@@ -32,14 +33,14 @@ fn role_name(role: LaneRole) -> String {
         }
         out.extend(c.to_lowercase());
     }
-    match role {
-        LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming => format!("{out} lane"),
-        _ => out,
+    if let LaneRole::Ego | LaneRole::Left | LaneRole::Right | LaneRole::Oncoming = role {
+        out += " lane";
     }
+    t(&out).to_owned()
 }
 
 fn relation_name(r: RelationKind) -> String {
-    r.name().replace('_', " ")
+    t(&r.name().replace('_', " ")).to_owned()
 }
 
 /// One line of the picture: what stands in a relation to a node.
@@ -79,8 +80,12 @@ fn rows(graph: &SceneGraph) -> Vec<Row> {
         .zip(found)
         .filter(|(_, objects)| !objects.is_empty())
         .map(|((to, relation, and), objects)| {
-            let and = and.map_or(String::new(), |id| format!(" and {}", name_of(graph, id)));
-            let (to, relation) = (name_of(graph, to) + &and, relation_name(relation));
+            let to = name_of(graph, to);
+            let to = match and {
+                Some(id) => tf!("{one} and {other}", one = to, other = name_of(graph, id)),
+                None => to,
+            };
+            let relation = relation_name(relation);
             Row {
                 to,
                 relation,
@@ -96,7 +101,7 @@ fn rows(graph: &SceneGraph) -> Vec<Row> {
     }
     if !free.is_empty() {
         rows.push(Row {
-            to: "anywhere".into(),
+            to: t("anywhere").into(),
             relation: String::new(),
             objects: free,
         });
@@ -110,7 +115,7 @@ pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
     let width = ui.available_width().max(120.0);
     let (rect, response) =
         ui.allocate_exact_size(vec2(width, rows.len() as f32 * LINE + 8.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Scene graph"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, t("Scene graph")));
     let painter = ui.painter().with_clip_rect(rect);
     painter.rect_filled(rect, theme::RADIUS, theme::well());
     let font = FontId::proportional(11.5);
@@ -135,8 +140,8 @@ pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
         for (class, n) in &row.objects {
             painter.circle_filled(pos2(x + 4.0, y), 4.0, theme::class_color(*class));
             let name = match n {
-                1 => class.label().to_owned(),
-                n => format!("{n} × {}", class.label()),
+                1 => t(&class.label()).to_owned(),
+                n => format!("{n} × {}", t(&class.label())),
             };
             x = text(
                 pos2(x + 11.0, y),
@@ -154,7 +159,7 @@ pub(super) fn picture(ui: &mut Ui, graph: &SceneGraph) {
 pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u32> {
     let mut rolled = None;
     let mut gone = None;
-    section(ui, "Objects");
+    section(ui, t("Objects"));
     let ids: Vec<u32> = graphed.graph.objects().map(|o| o.0).take(60).collect();
     for id in ids {
         ui.horizontal(|ui| {
@@ -163,23 +168,23 @@ pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u3
             };
             if let NodeKind::Object(o) = &mut node.kind {
                 let combo = egui::ComboBox::from_id_salt(("class of node", id))
-                    .selected_text(format!("{} {id}", o.class.label()))
+                    .selected_text(format!("{} {id}", t(&o.class.label())))
                     .show_ui(ui, |ui| {
                         for class in Class::OBJECTS {
-                            ui.selectable_value(&mut o.class, class, class.label());
+                            ui.selectable_value(&mut o.class, class, t(&class.label()));
                         }
                     });
-                combo
-                    .response
-                    .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Class of node {id}")));
+                combo.response.widget_info(|| {
+                    WidgetInfo::labeled(Role::ComboBox, true, tf!("Class of node {n}", n = id))
+                });
             }
-            let again = ui.add_enabled(made, egui::Button::new("Re-roll").small());
-            again.widget_info(|| WidgetInfo::labeled(Role::Button, made, format!("Re-roll node {id}")));
+            let again = ui.add_enabled(made, egui::Button::new(t("Re-roll")).small());
+            again.widget_info(|| WidgetInfo::labeled(Role::Button, made, tf!("Re-roll node {n}", n = id)));
             if again.clicked() {
                 rolled = Some(id);
             }
             let out = ui.add(egui::Button::new("×").small());
-            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Take out node {id}")));
+            out.widget_info(|| WidgetInfo::labeled(Role::Button, true, tf!("Take out node {n}", n = id)));
             if out.clicked() {
                 gone = Some(id);
             }
@@ -196,7 +201,7 @@ pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u3
             .iter_mut()
             .for_each(|list| list.retain(|n| *n != id));
     }
-    if ui.button("Add object").clicked() {
+    if ui.button(t("Add object")).clicked() {
         let node = place::to_graph::node_of(Class::Car);
         graphed.graph.add(node);
     }
@@ -205,12 +210,18 @@ pub(super) fn nodes(ui: &mut Ui, graphed: &mut Graphed, made: bool) -> Option<u3
 
 /// Relations, each with its kind and what it is to.
 pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
-    section(ui, "Relations");
+    section(ui, t("Relations"));
     let all: Vec<(u32, String)> = graph.nodes.iter().map(|n| (n.id, name_of(graph, n.id))).collect();
     let mut gone = None;
     for (k, e) in graph.edges.iter_mut().enumerate().take(80) {
         ui.horizontal_wrapped(|ui| {
-            ends(ui, ("from", k), &mut e.from, &all, "From");
+            ends(
+                ui,
+                ("from", k),
+                &mut e.from,
+                &all,
+                &tf!("From of relation {n}", n = k + 1),
+            );
             let combo = egui::ComboBox::from_id_salt(("relation", k))
                 .selected_text(relation_name(e.relation))
                 .show_ui(ui, |ui| {
@@ -222,11 +233,17 @@ pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
                 });
             combo
                 .response
-                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Relation {}", k + 1)));
-            ends(ui, ("to", k), &mut e.to, &all, "To");
+                .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, tf!("Relation {n}", n = k + 1)));
+            ends(
+                ui,
+                ("to", k),
+                &mut e.to,
+                &all,
+                &tf!("To of relation {n}", n = k + 1),
+            );
             let out = ui.add(egui::Button::new("×").small());
             out.widget_info(|| {
-                WidgetInfo::labeled(Role::Button, true, format!("Take out relation {}", k + 1))
+                WidgetInfo::labeled(Role::Button, true, tf!("Take out relation {n}", n = k + 1))
             });
             if out.clicked() {
                 gone = Some(k);
@@ -237,7 +254,7 @@ pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
         graph.edges.remove(k);
     }
     let first = graph.objects().map(|o| o.0).next();
-    let add = ui.add_enabled(first.is_some(), egui::Button::new("Add relation"));
+    let add = ui.add_enabled(first.is_some(), egui::Button::new(t("Add relation")));
     if add.clicked()
         && let Some(from) = first
     {
@@ -247,11 +264,11 @@ pub(super) fn edges(ui: &mut Ui, graph: &mut SceneGraph) {
     }
 }
 
-fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], what: &str) {
+fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], label: &str) {
     let shown = all
         .iter()
         .find(|n| n.0 == *id)
-        .map_or("nothing", |n| n.1.as_str());
+        .map_or(t("nothing"), |n| n.1.as_str());
     let combo = egui::ComboBox::from_id_salt(salt)
         .selected_text(shown)
         .show_ui(ui, |ui| {
@@ -259,10 +276,9 @@ fn ends(ui: &mut Ui, salt: (&str, usize), id: &mut u32, all: &[(u32, String)], w
                 ui.selectable_value(id, *other, name);
             }
         });
-    let label = format!("{what} of relation {}", salt.1 + 1);
     combo
         .response
-        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &label));
+        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, label));
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use crate::command::Command;
 use crate::prompting::{Ask, Diffused, How, Keep, Laid, Placer, Remembered};
 use editor::Edit;
 use job::guard::Panicked;
+use language::{t, tf};
 use place::description::Description;
 use place::to_graph::{Graphed, to_graph};
 use widgets::theme;
@@ -61,23 +62,30 @@ impl Told {
             ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
         };
         if let Some((found, picture)) = remembered {
-            let road = if found.road { ", its road" } else { "" };
-            weak(ui, format!("From memory{road}: {}", found.filled.join(", ")));
+            let filled = found.filled.join(", ");
+            let text = match found.road {
+                true => tf!("From memory, its road: {filled}", filled = filled),
+                false => tf!("From memory: {filled}", filled = filled),
+            };
+            weak(ui, text);
             if let Some(picture) = picture {
-                picture.show(ui, "This scene was filled in from");
+                picture.show(ui, t("This scene was filled in from"));
             }
         }
         if let Some(d) = diffused {
             weak(
                 ui,
-                format!(
-                    "Diffusion took {:.2} s; the projection moved boxes by {:.1} m on average, {:.1} m at most; {} were placed by rules.",
-                    d.report.diffusion_s, d.mean_move_m, d.most_move_m, d.by_rules
+                tf!(
+                    "Diffusion took {time} s; the projection moved boxes by {mean} m on average, {most} m at most; {n} were placed by rules.",
+                    time = format!("{:.2}", d.report.diffusion_s),
+                    mean = format!("{:.1}", d.mean_move_m),
+                    most = format!("{:.1}", d.most_move_m),
+                    n = d.by_rules
                 ),
             );
         }
         for note in notes {
-            ui.label(egui::RichText::new(note).small().color(theme::warn()));
+            ui.label(egui::RichText::new(t(note)).small().color(theme::warn()));
         }
     }
 }
@@ -186,9 +194,11 @@ impl Plan {
     /// Placer, memory, and what of the open scene stays.
     pub fn switches(&mut self, ui: &mut Ui) {
         let mut diffusion = self.placer == Placer::Diffusion;
-        let said = "Boxes by the layout network and a projection; off: by rules, which keep to the words more exactly";
+        let said = t(
+            "Boxes by the layout network and a projection; off: by rules, which keep to the words more exactly",
+        );
         if ui
-            .checkbox(&mut diffusion, "Diffusion")
+            .checkbox(&mut diffusion, t("Diffusion"))
             .on_hover_text(said)
             .changed()
         {
@@ -199,18 +209,18 @@ impl Plan {
             };
             self.variants = None;
         }
-        let said = "What the words leave open comes from the nearest remembered scenes";
+        let said = t("What the words leave open comes from the nearest remembered scenes");
         if ui
-            .checkbox(&mut self.memory, "Memory")
+            .checkbox(&mut self.memory, t("Memory"))
             .on_hover_text(said)
             .changed()
         {
             self.variants = None;
         }
         let name = |s: Stays| match s {
-            Stays::Nothing => "keep nothing",
-            Stays::Road => "keep the road",
-            Stays::Objects => "keep the objects",
+            Stays::Nothing => t("keep nothing"),
+            Stays::Road => t("keep the road"),
+            Stays::Objects => t("keep the objects"),
         };
         let combo = egui::ComboBox::from_id_salt("what stays")
             .selected_text(name(self.stays))
@@ -221,9 +231,9 @@ impl Plan {
                     }
                 }
             });
-        combo
-            .response
-            .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "What of this scene a new one keeps"));
+        combo.response.widget_info(|| {
+            WidgetInfo::labeled(Role::ComboBox, true, t("What of this scene a new one keeps"))
+        });
     }
 
     /// A chip of an object: a menu with its number, a lock, another place. Commands change the open scene. The number that
@@ -253,23 +263,25 @@ impl Plan {
         let locked = self.locked.contains(&first);
         let mut shown = text.to_string();
         if locked {
-            shown = format!("{shown} (locked)");
+            shown = tf!("{things} (locked)", things = shown);
         }
         let here = self.made.as_ref().is_some_and(|(of, _)| *of == prompt);
         let response = widgets::chip::menu(ui, &shown, |ui| {
             ui.horizontal(|ui| {
-                ui.label("Number");
+                ui.label(t("Number"));
                 let mut n = count;
                 let drag = ui.add(egui::DragValue::new(&mut n).range(0..=count.max(60)));
-                drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, format!("Number of {text}")));
+                drag.widget_info(|| {
+                    WidgetInfo::labeled(Role::SpinButton, true, tf!("Number of {things}", things = text))
+                });
                 if n != count {
                     wanted = Some(n);
                 }
             });
             let mut lock = locked;
-            let said = "A re-roll or another seed leaves these where they are";
+            let said = t("A re-roll or another seed leaves these where they are");
             if ui
-                .add_enabled(here, egui::Checkbox::new(&mut lock, "Lock"))
+                .add_enabled(here, egui::Checkbox::new(&mut lock, t("Lock")))
                 .on_hover_text(said)
                 .changed()
             {
@@ -282,21 +294,21 @@ impl Plan {
                 }
             }
             let again = ui
-                .add_enabled(here && !locked, egui::Button::new("Re-roll these"))
-                .on_hover_text("Other places for these; all else stays");
+                .add_enabled(here && !locked, egui::Button::new(t("Re-roll these")))
+                .on_hover_text(t("Other places for these; all else stays"));
             if again.clicked() {
                 commands.extend(self.roll(objects, scene, read));
                 ui.close();
             }
             if !here {
                 ui.label(
-                    egui::RichText::new("after New scene")
+                    egui::RichText::new(t("after New scene"))
                         .small()
                         .color(theme::text_weak()),
                 );
             }
         });
-        let label = format!("Change {text}");
+        let label = tf!("Change {what}", what = text);
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
         wanted
     }
@@ -412,8 +424,8 @@ impl Plan {
     pub fn variants(&mut self, ui: &mut Ui, ask: &Ask) -> Option<u64> {
         let mut chosen = None;
         let button = ui
-            .button("Variants")
-            .on_hover_text("Four layouts of these words, side by side; a click takes one");
+            .button(t("Variants"))
+            .on_hover_text(t("Four layouts of these words, side by side; a click takes one"));
         if button.clicked() {
             self.start_variants(ask, ui.ctx());
         }
@@ -427,7 +439,7 @@ impl Plan {
             }
         }
         if let Some(panic) = &variants.problem {
-            let text = format!("No more variants: {panic}");
+            let text = tf!("No more variants: {problem}", problem = panic);
             ui.label(egui::RichText::new(text).small().color(theme::warn()));
         }
         // Square, as the map is.
@@ -438,7 +450,7 @@ impl Plan {
                 for k in [2 * pair, 2 * pair + 1] {
                     let seed = first.wrapping_add(k);
                     let (rect, response) = ui.allocate_exact_size(vec2(width, width), Sense::click());
-                    let name = format!("Variant of seed {seed}");
+                    let name = tf!("Variant of seed {seed}", seed = seed);
                     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                     let fill = if response.hovered() {
                         theme::field_hover()
@@ -461,14 +473,19 @@ impl Plan {
                     ui.painter().text(
                         rect.left_bottom() + vec2(4.0, -3.0),
                         egui::Align2::LEFT_BOTTOM,
-                        format!("seed {seed}"),
+                        tf!("seed {n}", n = seed),
                         egui::FontId::proportional(10.0),
                         theme::text_weak(),
                     );
                     widgets::icons::focus_ring(ui, &response, rect);
                     if let Some(laid) = variants.found.get(&seed) {
                         let boxes = &laid.placement.boxes;
-                        thumbnail::enlarged(&response, &laid.road.layout, boxes, "A click makes this scene");
+                        thumbnail::enlarged(
+                            &response,
+                            &laid.road.layout,
+                            boxes,
+                            t("A click makes this scene"),
+                        );
                     }
                     if response.clicked() {
                         chosen = Some(seed);
@@ -501,7 +518,7 @@ impl Plan {
         commands: &mut Vec<Command>,
     ) -> bool {
         let mut place = false;
-        egui::CollapsingHeader::new("Scene graph")
+        egui::CollapsingHeader::new(t("Scene graph"))
             .id_salt("scene graph")
             .default_open(false)
             .show(ui, |ui| {
@@ -523,12 +540,12 @@ impl Plan {
                 }
                 ui.horizontal(|ui| {
                     let button = ui
-                        .button("Place this graph")
-                        .on_hover_text("A new scene of these nodes and relations");
+                        .button(t("Place this graph"))
+                        .on_hover_text(t("A new scene of these nodes and relations"));
                     place = button.clicked();
                     let edited = self.graphed.is_some();
                     if ui
-                        .add_enabled(edited, egui::Button::new("As the words say"))
+                        .add_enabled(edited, egui::Button::new(t("As the words say")))
                         .clicked()
                     {
                         self.graphed = None;

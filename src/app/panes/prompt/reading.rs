@@ -8,6 +8,7 @@ use super::typed_text;
 use crate::command::Command;
 use crate::tools::things::ThingCommand;
 use crate::tools::{Choose, ToolCommand};
+use language::{t, tf};
 use scene::Scene;
 use scene::{TimeOfDay, Weather};
 use widgets::chip;
@@ -78,15 +79,15 @@ impl PromptField {
                         }
                         What::Time { what } => {
                             let names = TimeOfDay::ALL.iter().map(|t| (t.name(), What::Time { what: *t }));
-                            style_menu(ui, what.name(), names, i, &mut other);
-                            gone = gone.or(chip_end(ui, what.name()).then_some((i, None)));
+                            style_menu(ui, t(what.name()), names, i, &mut other);
+                            gone = gone.or(chip_end(ui, t(what.name())).then_some((i, None)));
                         }
                         What::Weather { what } => {
                             let names = Weather::ALL
                                 .iter()
                                 .map(|t| (t.name(), What::Weather { what: *t }));
-                            style_menu(ui, what.name(), names, i, &mut other);
-                            gone = gone.or(chip_end(ui, what.name()).then_some((i, None)));
+                            style_menu(ui, t(what.name()), names, i, &mut other);
+                            gone = gone.or(chip_end(ui, t(what.name())).then_some((i, None)));
                         }
                         what => gone = gone.or(one(ui, &sentence(what)).then_some((i, None))),
                     }
@@ -131,7 +132,7 @@ impl PromptField {
     fn say_doubts(&self, ui: &mut Ui, heard: &Heard) -> bool {
         for m in &heard.mended {
             let typed = m.span.of(&self.prompt);
-            let text = format!("“{typed}” is read as “{}”", m.to);
+            let text = tf!("“{typed}” is read as “{meant}”", typed = typed, meant = m.to);
             ui.label(egui::RichText::new(text).small().color(theme::text()));
         }
         if self.done.is_some() {
@@ -139,22 +140,25 @@ impl PromptField {
         }
         for m in &heard.missing {
             let why = match m.why {
-                Why::Unknown => "Not understood",
-                Why::NotCarriedOut => "No effect",
-                Why::TooLong => "Too long, not read",
+                Why::Unknown => t("Not understood"),
+                Why::NotCarriedOut => t("No effect"),
+                Why::TooLong => t("Too long, not read"),
             };
             warn(ui, &format!("{why}: “{}”", m.words));
         }
         if !heard.unsure.is_empty() {
-            let text = "Not sure that this is what was meant";
+            let text = t("Not sure that this is what was meant");
             ui.label(egui::RichText::new(text).small().color(theme::warn()));
         }
         let Some(other) = &heard.other else { return false };
-        let text = format!("It may also mean: {}", answer(other, None, &[], &[]));
+        let text = tf!(
+            "It may also mean: {answer}",
+            answer = answer(other, None, &[], &[])
+        );
         let text = egui::RichText::new(text).small().color(theme::text());
         let button = egui::Button::new(text).wrap().fill(theme::field());
         ui.add(button)
-            .on_hover_text("A click takes this reading")
+            .on_hover_text(t("A click takes this reading"))
             .clicked()
     }
 
@@ -187,7 +191,7 @@ impl PromptField {
                 let id = candidate.id;
                 let text = format!(
                     "{} #{}   {}",
-                    candidate.class.replace('_', " "),
+                    t(&candidate.class.replace('_', " ")),
                     id.0,
                     candidate.place
                 );
@@ -237,13 +241,13 @@ fn style_menu(
     chip::make_room(ui, text);
     let response = chip::menu(ui, text, |ui| {
         for (name, what) in names {
-            if ui.button(name).clicked() {
+            if ui.button(t(name)).clicked() {
                 *other = Some((act, what));
                 ui.close();
             }
         }
     });
-    let label = format!("Change {text}");
+    let label = tf!("Change {what}", what = text);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
 }
 
@@ -257,9 +261,9 @@ fn chip_end(ui: &mut Ui, text: &str) -> bool {
 }
 
 fn taken_out(response: egui::Response, text: &str) -> bool {
-    let label = format!("Take out {text}");
+    let label = tf!("Take out {what}", what = text);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
-    response.on_hover_text("A click takes it out").clicked()
+    response.on_hover_text(t("A click takes it out")).clicked()
 }
 
 fn warn(ui: &mut Ui, text: &str) {

@@ -7,6 +7,7 @@ use egui::{Sense, Ui, vec2};
 use crate::memory::layout_of;
 use crate::prompting::{Ask, Remembered, recall};
 use job::guard::Panicked;
+use language::{t, tf};
 use scene::{BevLayout, SceneBox};
 use widgets::theme;
 use widgets::thumbnail;
@@ -41,7 +42,7 @@ impl Recalled {
             let (rect, response) = ui.allocate_exact_size(vec2(SIDE, SIDE), Sense::hover());
             ui.painter().rect_filled(rect, theme::RADIUS, theme::well());
             thumbnail::scene(ui, rect, &self.layout, &self.boxes);
-            let name = format!("Remembered scene: {}", self.text);
+            let name = tf!("Remembered scene: {text}", text = self.text);
             response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, &name));
             thumbnail::enlarged(&response, &self.layout, &self.boxes, &self.text);
             ui.vertical(|ui| {
@@ -50,9 +51,9 @@ impl Recalled {
                 ui.label(small(title, theme::text_weak()));
                 let shown = egui::Label::new(small(&shortened(&self.text), theme::text())).wrap();
                 ui.add(shown).on_hover_text(&self.text);
-                let near = format!("similarity {:.2}", self.similarity);
+                let near = tf!("similarity {value}", value = format!("{:.2}", self.similarity));
                 ui.label(small(&near, theme::text_weak()))
-                    .on_hover_text("Cosine of what the two texts mean: 1 is the same");
+                    .on_hover_text(t("Cosine of what the two texts mean: 1 is the same"));
             });
         });
     }
@@ -106,18 +107,18 @@ impl Recall {
             self.look_up(ask, ui.ctx());
         }
         match &self.shown {
-            Some((_, Ok(Some(found)))) => found.show(ui, "Memory goes by"),
+            Some((_, Ok(Some(found)))) => found.show(ui, t("Memory goes by")),
             Some((_, Err(panic))) => {
-                let text = format!("Memory could not be looked into: {panic}");
+                let text = tf!("Memory could not be looked into: {problem}", problem = panic);
                 ui.label(egui::RichText::new(text).small().color(theme::warn()));
             }
             Some((_, Ok(None))) => {
-                ui.label(egui::RichText::new("Memory knows no scene like it").small());
+                ui.label(egui::RichText::new(t("Memory knows no scene like it")).small());
             }
             None => {
                 ui.horizontal(|ui| {
                     ui.spinner();
-                    ui.label(egui::RichText::new("Looking into memory…").small());
+                    ui.label(egui::RichText::new(t("Looking into memory…")).small());
                 });
             }
         }

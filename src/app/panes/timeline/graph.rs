@@ -5,6 +5,7 @@ use egui::{Align2, Pos2, Rect, Shape, Stroke, TextStyle, Ui, pos2, vec2};
 use scene::{BoxId, Moving, Scene};
 
 use super::rows::Track;
+use language::tf;
 use widgets::theme;
 
 /// Time between two points of a curve, s.
@@ -57,8 +58,18 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, track: Track) 
     let font = TextStyle::Small.resolve(ui.style());
     let now = at(scene.time_s()).map_or(0.0, |m| m.velocity_mps.length() * 3.6);
     for (i, (text, color)) in [
-        (format!("{now:.0} km/h (to {most_kmh:.0})"), theme::accent()),
-        (format!("{way_m:.0} m in all"), theme::text_weak()),
+        (
+            tf!(
+                "{now} km/h (to {most})",
+                now = format!("{now:.0}"),
+                most = format!("{most_kmh:.0}")
+            ),
+            theme::accent(),
+        ),
+        (
+            tf!("{way} m in all", way = format!("{way_m:.0}")),
+            theme::text_weak(),
+        ),
     ]
     .into_iter()
     .enumerate()

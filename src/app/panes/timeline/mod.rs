@@ -14,6 +14,7 @@ use super::motion_menu;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use editor::Edit;
+use language::{t, tf};
 use widgets::icons::Icon;
 use widgets::theme;
 
@@ -72,14 +73,17 @@ impl Pane for Timeline {
 
 /// A scene of one moment: what makes it a clip.
 fn still(ui: &mut Ui, scene: &scene::Scene, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-    ui.label("This scene is one moment: nothing in it moves.");
+    ui.label(t("This scene is one moment: nothing in it moves."));
     let hint =
-        "Let something move: choose an object, then a motion. Or make the scene longer and set keyframes.";
+        t("Let something move: choose an object, then a motion. Or make the scene longer and set keyframes.");
     ui.label(egui::RichText::new(hint).color(theme::text_weak()));
     ui.horizontal(|ui| {
         motion_menu::menu(ui, scene, cx.state, commands);
         transport::forecast(ui, commands);
-        if ui.button(format!("Make it {USUAL_LENGTH_S:.0} s long")).clicked() {
+        if ui
+            .button(tf!("Make it {n} s long", n = format!("{USUAL_LENGTH_S:.0}")))
+            .clicked()
+        {
             let edit = Edit::SetLength {
                 length_s: USUAL_LENGTH_S,
                 rate_hz: None,

@@ -5,8 +5,10 @@ use egui::Ui;
 use scene::{BoxId, Motion, Moving, Scene};
 
 use crate::command::Command;
+use crate::panes::label::called;
 use crate::playback::{Copied, Playback};
 use editor::Edit;
+use language::t;
 use widgets::theme;
 
 /// How many neighbours a thing can be attached to from the menu.
@@ -44,22 +46,22 @@ pub(super) fn entries(
     if let Some(motion) = motion {
         let timed = !matches!(motion, Motion::Attached { .. });
         for (text, times) in [("Twice as fast", 2.0), ("Half as fast", 0.5)] {
-            if ui.add_enabled(timed, egui::Button::new(text)).clicked() {
+            if ui.add_enabled(timed, egui::Button::new(t(text))).clicked() {
                 set(text, quicker(motion, times), there_s);
                 ui.close();
             }
         }
         if ui
-            .add_enabled(timed, egui::Button::new("Begin at this moment"))
+            .add_enabled(timed, egui::Button::new(t("Begin at this moment")))
             .clicked()
         {
             let start_s = start_s(motion);
             set("Begin later", motion.retimed(|t| t + now_s - start_s), there_s);
             ui.close();
         }
-        let hint = "In the line that we drive along: from our left to our right";
+        let hint = t("In the line that we drive along: from our left to our right");
         if ui
-            .button("Mirror to our other side")
+            .button(t("Mirror to our other side"))
             .on_hover_text(hint)
             .clicked()
         {
@@ -73,7 +75,7 @@ pub(super) fn entries(
             ui.close();
         }
         ui.separator();
-        if ui.button("Copy motion").clicked() {
+        if ui.button(t("Copy motion")).clicked() {
             playback.copied = place(0.0).map(|start| Copied {
                 motion: motion.clone(),
                 start,
@@ -85,9 +87,9 @@ pub(super) fn entries(
         .copied
         .clone()
         .zip(place(now_s).or_else(|| standing(scene, id)));
-    let hint = "The same way from where this is at the moment that is shown";
+    let hint = t("The same way from where this is at the moment that is shown");
     if ui
-        .add_enabled(copied.is_some(), egui::Button::new("Paste motion"))
+        .add_enabled(copied.is_some(), egui::Button::new(t("Paste motion")))
         .on_hover_text(hint)
         .clicked()
         && let Some((copied, here)) = copied
@@ -100,7 +102,7 @@ pub(super) fn entries(
         ui.close();
     }
     let Some(own) = id else { return };
-    ui.menu_button("Attach to", |ui| {
+    ui.menu_button(t("Attach to"), |ui| {
         let Some(here) = place(now_s) else { return };
         for (to, there, name) in neighbours(scene, own, &here) {
             if ui.button(name).clicked() {
@@ -116,12 +118,12 @@ pub(super) fn entries(
         }
     })
     .response
-    .on_hover_text("It keeps its place beside another moving object");
+    .on_hover_text(t("It keeps its place beside another moving object"));
     if let Some(motion) = motion {
         ui.separator();
         for (text, trimmed) in trims(there_s, now_s) {
             if ui
-                .add_enabled(trimmed != there_s, egui::Button::new(text))
+                .add_enabled(trimmed != there_s, egui::Button::new(t(text)))
                 .clicked()
             {
                 set(text, motion.clone(), trimmed);
@@ -150,8 +152,8 @@ fn trims(there_s: [Option<f64>; 2], now_s: f64) -> [(&'static str, [Option<f64>;
 /// What the row's thing is called.
 fn title(scene: &Scene, id: Option<BoxId>) -> String {
     match id.and_then(|id| scene.frame().boxes.get(&id)) {
-        Some(b) => format!("{} {}", theme::sentence(&b.called()), b.id.0),
-        None => "Ego vehicle".to_owned(),
+        Some(b) => format!("{} {}", theme::sentence(&called(b)), b.id.0),
+        None => t("Ego vehicle").to_owned(),
     }
 }
 
@@ -217,7 +219,7 @@ fn neighbours(scene: &Scene, own: BoxId, here: &Moving) -> Vec<(BoxId, Moving, S
             Some((
                 *id,
                 clip.moving(*id, scene.time_s())?,
-                format!("{} {}", t.made.called(), id.0),
+                format!("{} {}", called(&t.made), id.0),
             ))
         })
         .collect();

@@ -7,9 +7,11 @@ use scene::{BoxId, Motion, Scene};
 
 use super::row_menu;
 use crate::command::{Command, TimeCommand};
+use crate::panes::label::called;
 use crate::state::UiState;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
+use language::{t, tf};
 use widgets::theme;
 
 /// Width of the names, points.
@@ -126,13 +128,14 @@ impl Rows {
             ui.allocate_exact_size(vec2(ui.available_width(), ROW_POINTS), Sense::click_and_drag());
         let (name, color) = match id.and_then(|id| clip.tracks.get(&id)) {
             Some(t) => (
-                format!("{} {}", theme::sentence(&t.made.called()), t.made.id.0),
+                format!("{} {}", theme::sentence(&called(&t.made)), t.made.id.0),
                 theme::class_color(t.made.class),
             ),
-            None => ("Ego vehicle".to_owned(), theme::accent()),
+            None => (t("Ego vehicle").to_owned(), theme::accent()),
         };
         let chosen = id.is_some_and(|id| state.is_chosen(id)) || id.is_none() && state.selected.is_none();
-        response.widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, format!("Track {name}")));
+        response
+            .widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, tf!("Track {name}", name = name)));
         let painter = ui.painter_at(rect);
         if chosen {
             painter.rect_filled(rect, theme::RADIUS, theme::accent_fill());
@@ -292,8 +295,8 @@ fn faults(
         let knob = Rect::from_center_size(pos2(x, area.top() + RULER_POINTS - 4.0), vec2(9.0, 9.0));
         ui.painter().circle_filled(knob.center(), 3.5, color);
         let response = ui.interact(knob, ui.scope_id().with(("fault", i)), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &finding.text));
-        if response.on_hover_text(&finding.text).clicked() {
+        response.widget_info(|| WidgetInfo::labeled(Role::Button, true, t(&finding.text)));
+        if response.on_hover_text(t(&finding.text)).clicked() {
             if finding.box_id.is_some() {
                 commands.push(Command::Select(finding.box_id));
             }
@@ -307,7 +310,7 @@ fn ruler(ui: &Ui, rect: Rect, track: Track, scene: &Scene, state: &UiState, comm
     let (left, right) = track.ends();
     let strip = Rect::from_x_y_ranges(left - 6.0..=right + 6.0, rect.y_range());
     let response = ui.interact(strip, ui.scope_id().with("ruler"), Sense::click_and_drag());
-    let text = format!("Time {:.2} s", scene.time_s());
+    let text = tf!("Time {time} s", time = format!("{:.2}", scene.time_s()));
     response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, &text));
     let painter = ui.painter_at(rect);
     painter.rect_filled(

@@ -9,6 +9,7 @@ use crate::panes::motion_menu;
 use crate::playback::Playback;
 use crate::state::UiState;
 use editor::Edit;
+use language::{t, tf};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
@@ -26,27 +27,27 @@ pub(super) fn scope(ui: &mut Ui, state: &mut UiState) {
     let choices = [
         (
             Scope::WholeTrack,
-            scope_name(Scope::WholeTrack),
-            "it moves as before, elsewhere",
+            t(scope_name(Scope::WholeTrack)),
+            t("it moves as before, elsewhere"),
         ),
         (
             Scope::FromHereOn,
-            scope_name(Scope::FromHereOn),
-            "until a second before this moment it moves as before",
+            t(scope_name(Scope::FromHereOn)),
+            t("until a second before this moment it moves as before"),
         ),
         (
             Scope::Moment,
-            scope_name(Scope::Moment),
-            "a keyframe at this moment; its other keyframes stay",
+            t(scope_name(Scope::Moment)),
+            t("a keyframe at this moment; its other keyframes stay"),
         ),
     ];
     icons::choice(
         ui,
         &mut state.playback.scope,
         &choices,
-        "Moved objects change for",
+        t("Moved objects change for"),
     );
-    ui.label(RichText::new("Moving objects:").color(theme::text_weak()));
+    ui.label(RichText::new(t("Moving objects:")).color(theme::text_weak()));
 }
 
 /// The row of buttons and numbers.
@@ -96,7 +97,7 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
         ];
         for (icon, name, hint, command) in buttons {
             let selected = playing && command == TimeCommand::Play;
-            if icons::button(ui, icon, name, hint, selected, true).clicked() {
+            if icons::button(ui, icon, t(name), t(hint), selected, true).clicked() {
                 commands.push(Command::Time(command));
             }
         }
@@ -104,9 +105,13 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
         let frame = clip.frame_at(scene.time_s());
         let time = format!("{:5.2} s", scene.time_s());
         ui.label(RichText::new(time).monospace().color(theme::text_strong()))
-            .on_hover_text(format!("Frame {frame} of {}", clip.frames() - 1));
+            .on_hover_text(tf!(
+                "Frame {frame} of {last}",
+                frame = frame,
+                last = clip.frames() - 1
+            ));
         ui.label(
-            RichText::new(format!("frame {frame:>3}"))
+            RichText::new(tf!("frame {n}", n = format!("{frame:>3}")))
                 .small()
                 .monospace()
                 .color(theme::text_weak()),
@@ -114,21 +119,21 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
         ui.separator();
         length(ui, clip, commands);
         speed(ui, &mut state.playback);
-        ui.toggle_value(&mut state.playback.looping, "Loop");
+        ui.toggle_value(&mut state.playback.looping, t("Loop"));
         span(ui, clip, &mut state.playback, commands);
-        ui.toggle_value(&mut state.playback.paths, "Paths")
-            .on_hover_text("Where moving objects go, in both large views");
-        ui.toggle_value(&mut state.playback.onion, "Onion skin")
-            .on_hover_text("Where the chosen object is a second earlier and later");
-        ui.toggle_value(&mut state.playback.follow, "Follow us")
-            .on_hover_text("The 3D view goes along with the ego vehicle");
+        ui.toggle_value(&mut state.playback.paths, t("Paths"))
+            .on_hover_text(t("Where moving objects go, in both large views"));
+        ui.toggle_value(&mut state.playback.onion, t("Onion skin"))
+            .on_hover_text(t("Where the chosen object is a second earlier and later"));
+        ui.toggle_value(&mut state.playback.follow, t("Follow us"))
+            .on_hover_text(t("The 3D view goes along with the ego vehicle"));
         ui.separator();
         motion_menu::menu(ui, scene, state, commands);
         traffic(ui, scene, commands);
         forecast(ui, commands);
         if ui
-            .button("Save clip…")
-            .on_hover_text("Writes the 3D view of all that is played: .mp4, .gif or .png")
+            .button(t("Save clip…"))
+            .on_hover_text(t("Writes the 3D view of all that is played: .mp4, .gif or .png"))
             .clicked()
         {
             commands.push(Command::File(FileCommand::SaveClip));
@@ -143,10 +148,11 @@ fn traffic(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     if waiting == 0 {
         return;
     }
-    let hint = format!(
-        "{waiting} objects have a speed but stand still: they drive along their lanes and keep their distance"
+    let hint = tf!(
+        "{n} objects have a speed but stand still: they drive along their lanes and keep their distance",
+        n = waiting
     );
-    if ui.button("Let traffic drive").on_hover_text(hint).clicked() {
+    if ui.button(t("Let traffic drive")).on_hover_text(hint).clicked() {
         commands.push(Command::Time(TimeCommand::Traffic));
     }
 }
@@ -156,8 +162,10 @@ const FORECAST_S: f64 = 3.0;
 
 /// The button that lets the scene go on.
 pub(super) fn forecast(ui: &mut Ui, commands: &mut Vec<Command>) {
-    let hint = "3 s more: what moves goes on along its lane and behind whoever is ahead, so do we, and the map grows";
-    if ui.button("Forecast").on_hover_text(hint).clicked() {
+    let hint = t(
+        "3 s more: what moves goes on along its lane and behind whoever is ahead, so do we, and the map grows",
+    );
+    if ui.button(t("Forecast")).on_hover_text(hint).clicked() {
         commands.push(Command::Time(TimeCommand::Forecast(FORECAST_S)));
     }
 }
@@ -168,9 +176,9 @@ fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
         .range(0.0..=Clip::MAX_LENGTH_S)
         .speed(0.1)
         .fixed_decimals(1)
-        .prefix("of ")
+        .prefix(t("of "))
         .suffix(" s");
-    let response = ui.add(value).on_hover_text("How long the scene lasts");
+    let response = ui.add(value).on_hover_text(t("How long the scene lasts"));
     let edit = || Edit::SetLength {
         length_s,
         rate_hz: None,
@@ -188,7 +196,7 @@ fn length(ui: &mut Ui, clip: &Clip, commands: &mut Vec<Command>) {
         .suffix(" Hz");
     let response = ui
         .add(value)
-        .on_hover_text("Frames per second of single steps and of what is written");
+        .on_hover_text(t("Frames per second of single steps and of what is written"));
     if response.changed() && rate_hz != clip.rate_hz {
         let edit = Edit::SetLength {
             length_s: clip.length_s,
@@ -212,20 +220,20 @@ fn speed(ui: &mut Ui, playback: &mut Playback) {
             }
         })
         .response
-        .on_hover_text("How fast it plays");
+        .on_hover_text(t("How fast it plays"));
 }
 
 fn span(ui: &mut Ui, clip: &Clip, playback: &mut Playback, commands: &mut Vec<Command>) {
     if ui
-        .button("In")
-        .on_hover_text("What is played begins here")
+        .button(t("In"))
+        .on_hover_text(t("What is played begins here"))
         .clicked()
     {
         commands.push(Command::Time(TimeCommand::In));
     }
     if ui
-        .button("Out")
-        .on_hover_text("What is played ends here")
+        .button(t("Out"))
+        .on_hover_text(t("What is played ends here"))
         .clicked()
     {
         commands.push(Command::Time(TimeCommand::Out));
@@ -234,7 +242,7 @@ fn span(ui: &mut Ui, clip: &Clip, playback: &mut Playback, commands: &mut Vec<Co
     if playback.span_s.is_some()
         && ui
             .button(format!("{from:.1} – {to:.1} s ×"))
-            .on_hover_text("Plays all of it again")
+            .on_hover_text(t("Plays all of it again"))
             .clicked()
     {
         playback.span_s = None;
