@@ -77,12 +77,58 @@ fn copies_get_free_names_and_a_place_of_their_own() {
         DVec3::new(0.0, 5.0 + 1.9 + 0.6, 0.85)
     );
     assert_eq!(now.boxes[&BoxId(4)].velocity_mps, DVec2::new(5.0, 1.0));
-    let clipboard = Clipboard::of(&frame, &[BoxId(1), BoxId(2)]);
+    let scene = Scene::single("t", frame.clone(), Arc::default(), 1);
+    let clipboard = Clipboard::of(&scene, &[BoxId(1), BoxId(2)]);
     let pasted = paste(&frame, &clipboard, Some(DVec2::new(10.0, 10.0)));
     let now = after(&frame, &pasted.edits);
     assert_eq!(now.boxes[&BoxId(3)].center_m, DVec3::new(10.0, 7.5, 0.85));
     assert_eq!(paste(&frame, &Clipboard::default(), None), Added::default());
     assert_eq!(paste(&frame, &clipboard, Some(DVec2::NAN)).ids.len(), 2);
+}
+
+#[test]
+fn copies_move_and_are_grouped_as_what_they_are_copies_of() {
+    let frame = frame(&[car(1, 0.0, 0.0, 0.0), car(2, 0.0, 5.0, 0.0), car(3, 0.0, 9.0, 0.0)]);
+    let mut document = Document::new(Scene::single("t", frame, Arc::default(), 1));
+    let name = Default::default();
+    let key = |time_s, x| scene::Key {
+        time_s,
+        at_m: DVec2::new(x, 0.0),
+        yaw_deg: 0.0,
+    };
+    let edits = [
+        Edit::SetLength {
+            length_s: 4.0,
+            rate_hz: None,
+        },
+        Edit::SetMotion {
+            id: Some(BoxId(1)),
+            motion: Some(Motion::Keys(vec![key(0.0, 0.0), key(4.0, 20.0)])),
+            from_s: None,
+            to_s: Some(3.0),
+        },
+        Edit::Arrange {
+            boxes: vec![BoxId(1), BoxId(2), BoxId(3)],
+            things: Vec::new(),
+            how: Arrangement::Group { name },
+        },
+    ];
+    document.apply_all("x", &edits).expect("sound");
+    let scene = document.scene().clone();
+    let ids = [BoxId(1), BoxId(2)];
+    let added = duplicate(scene.frame(), &ids).with(&Ties::of(&scene, &ids));
+    document.apply_all("Duplicate", &added.edits).expect("sound");
+    let scene = document.scene();
+    let [old, new] = [BoxId(1), added.ids[0]].map(|id| {
+        let track = &scene.clip().tracks[&id];
+        assert_eq!(track.there_s, [None, Some(3.0)]);
+        [0.0, 2.0].map(|t| scene.clip().moving(id, t).expect("there").at_m)
+    });
+    assert_eq!(new[1] - new[0], old[1] - old[0]);
+    assert_ne!(new[0], old[0]);
+    let groups = &scene.arranged.groups;
+    assert_eq!(groups[1].members.boxes, added.ids.iter().copied().collect());
+    assert_eq!(groups[0].members.boxes.len(), 3);
 }
 
 #[test]

@@ -146,8 +146,7 @@ mod tests {
 
     fn document() -> Document {
         let layout = BevLayout::default();
-        let grid = VoxelGrid::filled(layout.extent(), Class::FREE);
-        let frame = Frame::new(layout, Default::default(), grid);
+        let frame = Frame::new(layout, Default::default(), VoxelGrid::new());
         let mut document = Document::new(Scene::single("t", frame, Default::default(), 1));
         let car = |x: f64| Edit::AddBox {
             class: Class::Car,

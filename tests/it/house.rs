@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 const DOCUMENT: &str = include_str!("../../docs/architecture.md");
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn read(path: &Path) -> String {
+pub fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
@@ -31,7 +31,7 @@ fn files(folder: &str, named: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
     found
 }
 
-fn rust(folder: &str) -> Vec<PathBuf> {
+pub fn rust(folder: &str) -> Vec<PathBuf> {
     files(folder, &|name| name.ends_with(".rs"))
 }
 

@@ -13,6 +13,7 @@ mod diffusion;
 mod fuzz;
 mod house;
 mod inferred;
+mod languages;
 mod map;
 mod opendrive;
 mod parity;

@@ -10,7 +10,7 @@ use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
 
 use super::id::PaneId;
-use super::label::called;
+use crate::state::called;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use crate::finding_marks::FindingMarks;

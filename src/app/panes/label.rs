@@ -5,23 +5,10 @@ use egui::{Color32, Ui};
 use crate::command::Command;
 use crate::fields::caption;
 use editor::Edit;
-use language::{t, tf};
+use language::t;
 use scene::{BoxLabel, BoxName, Paint, SceneBox};
 use widgets::icons;
 use widgets::theme;
-
-/// What a box is called in the language that is shown; a name that was given to it stays as it is.
-pub(super) fn called(b: &SceneBox) -> String {
-    let name = if b.label.name.is_empty() {
-        t(&b.class.label()).to_owned()
-    } else {
-        b.label.name.as_str().to_owned()
-    };
-    match b.label.paint {
-        Some(paint) => tf!("{paint} {name}", paint = t(paint.name()), name = name),
-        None => name,
-    }
-}
 
 /// A field for the name and a list of paints; what is set holds for all of the boxes.
 pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {

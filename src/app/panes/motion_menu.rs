@@ -4,7 +4,7 @@ use egui::{DragValue, Ui};
 
 use scene::{BoxId, Class, Scene};
 
-use super::label::called;
+use crate::state::called;
 use crate::command::{Command, TimeCommand};
 use crate::state::UiState;
 use editor::Edit;

@@ -12,7 +12,7 @@ use scene::{
     BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Kept, KeptVersion, Key, Motion,
     Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
-use scene::{Road, RoadId, RoadLane, RoadNetwork};
+use scene::{Arranged, Arrangement, Members, Road, RoadId, RoadLane, RoadNetwork};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
@@ -78,7 +78,24 @@ fn sample(version: u32) -> Scene {
     if version >= 7 {
         scene.roads = Arc::new(roads());
     }
+    if version >= 8 {
+        scene.arranged = Arc::new(arranged(&scene));
+    }
     scene
+}
+
+/// All that there is in one group, its boxes hidden, its things locked.
+fn arranged(scene: &Scene) -> Arranged {
+    let standing = scene.canvas().boxes.keys();
+    let boxes = standing.chain(scene.clip().tracks.keys()).copied();
+    let things = scene.background.iter().map(|t| t.id);
+    let all = Members::of(boxes, things);
+    let mut arranged = Arranged::default();
+    let name = BoxName::new("all of it");
+    arranged.arrange(&all, &Arrangement::Group { name });
+    arranged.arrange(&Members::of(all.boxes, []), &Arrangement::Hide);
+    arranged.arrange(&Members::of([], all.things), &Arrangement::Lock);
+    arranged
 }
 
 /// Two roads between three nodes.
@@ -237,6 +254,17 @@ fn assert_same(a: &Scene, b: &Scene) {
         assert_same(&x, &y);
     }
     assert_eq!(a.roads, b.roads);
+    assert_eq!(a.arranged, b.arranged);
+}
+
+#[test]
+fn unsound_groups_are_refused() {
+    let mut scene = sample(VERSION);
+    let mut arranged = arranged(&scene);
+    arranged.groups.push(arranged.groups[0].clone());
+    scene.arranged = Arc::new(arranged);
+    let error = to_bytes(&scene).expect_err("refused").to_string();
+    assert!(error.contains("group 1 has a member of another group"), "{error}");
 }
 
 #[test]
@@ -360,8 +388,8 @@ const FROM_0: Migration = Migration {
 
 #[test]
 fn an_older_version_goes_through_every_step() {
-    let [v1, v2, v3, v4, v5, v6] = migrate::ALL;
-    let chain = [FROM_0, v1, v2, v3, v4, v5, v6];
+    let [v1, v2, v3, v4, v5, v6, v7] = migrate::ALL;
+    let chain = [FROM_0, v1, v2, v3, v4, v5, v6, v7];
     let found = read::read(Cursor::new(of_version_0()), &chain).expect("version 0 opens");
     assert_same(&found, &sample(1));
     // The steps are for their versions only.

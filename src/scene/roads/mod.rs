@@ -231,18 +231,6 @@ impl Road {
             ..self.clone()
         }
     }
-
-    /// What it is in a few words: "2 + 1 lanes, 50 km/h".
-    pub fn summary(&self) -> String {
-        let lanes = match (self.driven(true), self.driven(false)) {
-            (0, 0) => "no lanes".to_owned(),
-            (1, 0) | (0, 1) => "one-way, 1 lane".to_owned(),
-            (n, 0) | (0, n) => format!("one-way, {n} lanes"),
-            (a, b) => format!("{a} + {b} lanes"),
-        };
-        let limit = self.limit_kph.map(|v| format!(", {v:.0} km/h"));
-        lanes + &limit.unwrap_or_default()
-    }
 }
 
 /// What is where roads meet.

@@ -5,7 +5,7 @@ use egui::Ui;
 use scene::{BoxId, Motion, Moving, Scene};
 
 use crate::command::Command;
-use crate::panes::label::called;
+use crate::state::called;
 use crate::playback::{Copied, Playback};
 use editor::Edit;
 use language::t;

@@ -7,7 +7,7 @@ use scene::{BoxId, Motion, Scene};
 
 use super::row_menu;
 use crate::command::{Command, TimeCommand};
-use crate::panes::label::called;
+use crate::state::called;
 use crate::state::UiState;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};

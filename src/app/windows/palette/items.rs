@@ -67,19 +67,6 @@ fn inside(title: &str) -> [String; 2] {
     [small, own]
 }
 
-/// What a box is called in the language that is shown.
-fn called(b: &SceneBox) -> String {
-    let class = b.class.label();
-    let name = match b.label.name.is_empty() {
-        true => t(&class),
-        false => b.label.name.as_str(),
-    };
-    match b.label.paint {
-        Some(paint) => tf!("{paint} {name}", paint = t(paint.name()), name = name),
-        None => name.to_owned(),
-    }
-}
-
 /// Every line there is.
 pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
     let (keymap, scene) = (known.keymap, known.scene);
