@@ -7,12 +7,13 @@ use crate::command::{Command, FileCommand, ViewCommand};
 use crate::panes::{self, conditions};
 use crate::shell::actions::ACTIONS;
 use crate::shell::keymap::Keymap;
+use crate::state::called;
 use crate::tools::ToolCommand;
 use crate::tools::things::tree::TREES;
 use crate::tools::things::{ThingCommand, ThingKind};
-use language::{filled, t, tf};
+use language::{filled, t};
 use scene::background::{LineKind, PostKind};
-use scene::{Class, Scene, SceneBox, TimeOfDay, Weather};
+use scene::{Class, Scene, TimeOfDay, Weather};
 use sensors::cameras;
 use world::template::TEMPLATES;
 
