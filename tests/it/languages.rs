@@ -72,7 +72,11 @@ fn every_language_has_every_text() {
         let missing: Vec<_> = wanted.difference(&has).collect();
         let spare: Vec<_> = has.difference(&wanted).collect();
         assert!(missing.is_empty(), "{} lacks {missing:#?}", language.code);
-        assert!(spare.is_empty(), "{} has what nobody looks up: {spare:#?}", language.code);
+        assert!(
+            spare.is_empty(),
+            "{} has what nobody looks up: {spare:#?}",
+            language.code
+        );
     }
 }
 
@@ -85,12 +89,21 @@ fn texts_that_travel_as_data_are_in_the_sources() {
             sources.push_str(&read(&path));
         }
     }
-    for (goes_on, _) in sources.clone().match_indices("\\\n").collect::<Vec<_>>().into_iter().rev() {
+    for (goes_on, _) in sources
+        .clone()
+        .match_indices("\\\n")
+        .collect::<Vec<_>>()
+        .into_iter()
+        .rev()
+    {
         let rest = sources[goes_on + 2..].len() - sources[goes_on + 2..].trim_start().len();
         sources.replace_range(goes_on..goes_on + 2 + rest, "");
     }
     let escaped = |text: &str| text.replace('\\', "\\\\").replace('"', "\\\"");
-    let gone: Vec<_> = as_data().into_iter().filter(|text| !sources.contains(&escaped(text))).collect();
+    let gone: Vec<_> = as_data()
+        .into_iter()
+        .filter(|text| !sources.contains(&escaped(text)))
+        .collect();
     assert!(gone.is_empty(), "{gone:#?}");
 }
 
@@ -101,7 +114,12 @@ fn keys_and_values_stay_in_translations() {
             assert_eq!(places(english), places(own), "{}: {english:?}", language.code);
             for chord in ["Ctrl+", "Shift+", "Alt+"] {
                 let count = |text: &str| text.matches(chord).count();
-                assert_eq!(count(english), count(own), "{}: {english:?} is {own:?}", language.code);
+                assert_eq!(
+                    count(english),
+                    count(own),
+                    "{}: {english:?} is {own:?}",
+                    language.code
+                );
             }
         }
     }

@@ -17,6 +17,7 @@ use super::dock::Dock;
 use super::files::Disk;
 use super::files::Files;
 pub use super::files::{NewScene, OpenScene, SaveScene};
+use super::folders;
 use super::generation::Generation;
 use super::guests::Guests;
 use super::live::Live;
@@ -34,7 +35,7 @@ use crate::windows::open::OpenWindows;
 use crate::windows::palette::Palette;
 use crate::windows::shortcuts::Shortcuts;
 use language::tf;
-use widgets::theme;
+use widgets::{fonts, theme};
 
 /// Makes the pipeline, on the worker's thread.
 pub type BuildPipeline = Box<dyn FnMut() -> Result<Box<dyn Pipeline>, GenError> + Send>;
@@ -136,11 +137,17 @@ impl SceneloomApp {
             None => (Settings::default(), None),
         };
         theme::apply(ctx, settings.theme);
+        let strange = folders::settings().map_or_else(Vec::new, |f| language::add_from(&f.join("languages")));
+        language::choose(&settings.language);
+        fonts::apply(ctx, &settings.language);
         settings.classes.make_current();
         if settings.ui_scale != 1.0 {
             ctx.set_zoom_factor(settings.ui_scale);
         }
         let mut toasts = Toasts::default();
+        for text in strange {
+            toasts.push(Level::Error, text, 0.0);
+        }
         if let Some(text) = complaint {
             let text = tf!("Standard settings are used: {error}", error = text);
             toasts.push(Level::Error, text, 0.0);
@@ -302,6 +309,8 @@ impl SceneloomApp {
     fn keep_settings(&mut self, ctx: &egui::Context) {
         if self.preferences.looks_changed() {
             theme::apply(ctx, self.preferences.settings.theme);
+            language::choose(&self.preferences.settings.language);
+            fonts::apply(ctx, &self.preferences.settings.language);
             self.preferences.settings.classes.make_current();
             self.views.forget_pictures();
         }

@@ -37,13 +37,14 @@ impl Preferences {
         }
     }
 
-    /// True once after theme or colours have changed; they are then written soon.
+    /// True once after theme, colours or language have changed; they are then written soon.
     pub(crate) fn looks_changed(&mut self) -> bool {
         let (now, kept) = (&self.settings, &mut self.kept);
-        if now.theme == kept.theme && now.classes == kept.classes {
+        if now.theme == kept.theme && now.classes == kept.classes && now.language == kept.language {
             return false;
         }
         (kept.theme, kept.classes) = (now.theme, now.classes);
+        kept.language.clone_from(&now.language);
         self.write_soon();
         true
     }

@@ -26,6 +26,8 @@ pub struct Settings {
     /// Dark or light.
     #[serde(rename = "look")]
     pub theme: Theme,
+    /// Language of the texts; empty means English.
+    pub language: String,
     /// Colours of the classes.
     pub classes: Palette,
     /// Size of everything, 1 = normal.
@@ -61,6 +63,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             theme: Theme::default(),
+            language: String::new(),
             classes: Palette::default(),
             ui_scale: 1.0,
             start_screen: true,

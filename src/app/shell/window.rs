@@ -20,7 +20,7 @@ use crate::state::UiState;
 use crate::windows::palette::Known;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
-use crate::windows::settings::settings_ui;
+use crate::windows::settings::{Choices, settings_ui};
 use crate::windows::start::start_ui;
 use crate::windows::tour::tour_ui;
 use crate::windows::unsaved::{self, Unsaved};
@@ -235,12 +235,12 @@ impl SceneloomApp {
         self.overlays
             .shortcuts
             .show(ui, &mut self.preferences.keymap, &mut self.state.windows.keys);
-        settings_ui(
-            ui,
-            &mut self.preferences.settings,
-            &self.guests,
-            &mut self.state.windows.settings,
-        );
+        let choices = Choices {
+            settings: &mut self.preferences.settings,
+            keymap: &mut self.preferences.keymap,
+            guests: &self.guests,
+        };
+        settings_ui(ui, choices, &mut self.state.windows, commands);
         start_ui(
             ui,
             &mut self.preferences.settings,

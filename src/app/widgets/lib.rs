@@ -2,6 +2,7 @@
 
 pub mod chip;
 mod damage;
+pub mod fonts;
 pub mod hint;
 mod icon;
 mod icon_shapes;

@@ -252,7 +252,7 @@ fn kinds(ui: &mut Ui, dialog: &mut ExportDialog) {
                 icons::section(ui, t(heading));
                 for format in formats {
                     let is_chosen = dialog.format == Some(*format);
-                    let radio = egui::RadioButton::new(is_chosen, short(*format, starts));
+                    let radio = egui::RadioButton::new(is_chosen, short(format, starts));
                     if ui.add(radio).clicked() {
                         dialog.format = Some(*format);
                     }

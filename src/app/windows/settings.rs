@@ -1,85 +1,192 @@
-//! The window of settings: theme, colours, size, what happens at the start, and whether assistants may come in.
+//! The window of settings, all in one place: language, looks, memory, keys, the first minutes, assistants.
 
 use egui::{Ui, Window};
 
+use crate::command::Command;
 use crate::shell::guests::{Guests, OpenDoor};
+use crate::shell::keymap::{Chords, Keymap, PRESETS};
 use crate::shell::settings::Settings;
+use crate::windows::open::OpenWindows;
 use language::t;
 use scene::classes::Palette;
+use widgets::icons::section;
 use widgets::theme::{self, Theme};
 
+/// Width of its contents, points.
+const WIDTH: f32 = 420.0;
+/// Width of the names, points.
+const NAMES: f32 = 130.0;
+
+/// What the window sets.
+pub struct Choices<'a> {
+    /// What is kept between sessions.
+    pub settings: &'a mut Settings,
+    /// Which key does what.
+    pub keymap: &'a mut Keymap,
+    /// Whether assistants may come in.
+    pub guests: &'a Guests,
+}
+
 /// Draws the window while it is open.
-pub fn settings_ui(ui: &Ui, settings: &mut Settings, guests: &Guests, open: &mut bool) {
-    if !*open {
+pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, commands: &mut Vec<Command>) {
+    if !windows.settings {
         return;
     }
+    let mut open = true;
     Window::new(t("Settings"))
         .id(egui::Id::unique("settings"))
-        .open(open)
+        .open(&mut open)
         .resizable(false)
         .collapsible(false)
-        .default_pos(ui.max_rect().center() - egui::vec2(190.0, 160.0))
+        .default_pos(ui.max_rect().center() - egui::vec2(WIDTH / 2.0, 240.0))
         .show(ui.ctx(), |ui| {
-            ui.set_width(380.0);
-            egui::Grid::new("settings")
-                .num_columns(2)
-                .spacing([theme::GAP * 2.0, theme::GAP])
-                .show(ui, |ui| {
-                    ui.label(t("Theme"));
-                    ui.horizontal(|ui| {
-                        ui.selectable_value(&mut settings.theme, Theme::Dark, t("Dark"));
-                        ui.selectable_value(&mut settings.theme, Theme::Light, t("Light"));
-                    });
-                    ui.end_row();
-                    ui.label(t("Class colours"));
-                    ui.horizontal(|ui| {
-                        ui.selectable_value(&mut settings.classes, Palette::Standard, t("Standard"));
-                        ui.selectable_value(
-                            &mut settings.classes,
-                            Palette::ColorBlindSafe,
-                            t("Colour-blind safe"),
-                        );
-                    });
-                    ui.end_row();
-                    ui.label(t("Size of everything"));
-                    let mut percent = (ui.ctx().zoom_factor() * 100.0).round();
-                    let slider = egui::DragValue::new(&mut percent)
-                        .range(50.0..=300.0)
-                        .speed(5.0)
-                        .suffix(" %");
-                    if ui.add(slider).on_hover_text(t("Ctrl + and Ctrl −")).changed() {
-                        settings.ui_scale = percent / 100.0;
-                        ui.ctx().set_zoom_factor(settings.ui_scale);
-                    }
-                    ui.end_row();
-                    ui.label(t("Memory for undo"));
-                    let field = egui::DragValue::new(&mut settings.history_mb)
-                        .range(Settings::HISTORY_MB)
-                        .speed(4.0)
-                        .suffix(" MB");
-                    ui.add(field)
-                        .on_hover_text(t("Older steps go when the history takes more"))
-                        .accessible_name(t("Memory for undo"));
-                    ui.end_row();
-                    ui.label(t("At the start"));
-                    ui.checkbox(&mut settings.start_screen, t("Show the start screen"));
-                    ui.end_row();
-                    if guests.are_possible() {
-                        ui.label(t("Assistants"));
-                        ui.checkbox(&mut settings.assistants, t("May drive this editor"))
-                            .on_hover_text(t(
-                                "Programs on this machine that show the token work on the scene, by a fixed set of calls; each change can be undone",
-                            ));
-                        ui.end_row();
-                    }
-                });
-            if let (true, Some(door)) = (settings.assistants, guests.open()) {
-                door_ui(ui, door);
-            }
-            if let Some(problem) = guests.problem() {
-                ui.colored_label(ui.visuals().error_fg_color, problem);
+            ui.set_width(WIDTH);
+            let Choices {
+                settings,
+                keymap,
+                guests,
+            } = choices;
+            section(ui, t("Looks"));
+            looks(ui, settings);
+            section(ui, t("Work"));
+            work(ui, settings, keymap, windows);
+            section(ui, t("First minutes"));
+            rows(ui, "first minutes", |ui| {
+                ui.label(t("At the start"));
+                ui.checkbox(&mut settings.start_screen, t("Show the start screen"));
+                ui.end_row();
+                ui.label(t("Tour"));
+                if ui.button(t("Begin the tour in three steps")).clicked() {
+                    commands.push(Command::BeginTour);
+                }
+                ui.end_row();
+            });
+            if guests.are_possible() {
+                section(ui, t("Assistants"));
+                assistants(ui, settings, guests);
             }
         });
+    windows.settings &= open;
+}
+
+/// Rows of a name and what it is set to.
+fn rows(ui: &mut Ui, salt: &str, add: impl FnOnce(&mut Ui)) {
+    egui::Grid::new(("settings", salt))
+        .num_columns(2)
+        .min_col_width(NAMES)
+        .spacing([theme::GAP * 2.0, theme::GAP])
+        .show(ui, add);
+    ui.add_space(theme::GAP);
+}
+
+fn looks(ui: &mut Ui, settings: &mut Settings) {
+    rows(ui, "looks", |ui| {
+        ui.label(t("Language"));
+        languages(ui, settings);
+        ui.end_row();
+        ui.label(t("Theme"));
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut settings.theme, Theme::Dark, t("Dark"));
+            ui.selectable_value(&mut settings.theme, Theme::Light, t("Light"));
+        });
+        ui.end_row();
+        ui.label(t("Class colours"));
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut settings.classes, Palette::Standard, t("Standard"));
+            ui.selectable_value(
+                &mut settings.classes,
+                Palette::ColorBlindSafe,
+                t("Colour-blind safe"),
+            );
+        });
+        ui.end_row();
+        ui.label(t("Size of everything"));
+        let mut percent = (ui.ctx().zoom_factor() * 100.0).round();
+        let slider = egui::DragValue::new(&mut percent)
+            .range(50.0..=300.0)
+            .speed(5.0)
+            .suffix(" %");
+        if ui.add(slider).on_hover_text(t("Ctrl + and Ctrl −")).changed() {
+            settings.ui_scale = percent / 100.0;
+            ui.ctx().set_zoom_factor(settings.ui_scale);
+        }
+        ui.end_row();
+    });
+}
+
+/// English and all that there is a file of.
+fn languages(ui: &mut Ui, settings: &mut Settings) {
+    let all = language::all();
+    let name = |code: &str| all.iter().find(|l| l.code == code).map_or("English", |l| &l.name);
+    egui::ComboBox::from_id_salt("language")
+        .selected_text(name(&settings.language))
+        .show_ui(ui, |ui| {
+            ui.selectable_value(&mut settings.language, String::new(), "English");
+            for language in all {
+                ui.selectable_value(&mut settings.language, language.code.clone(), &language.name);
+            }
+        })
+        .response
+        .on_hover_text(t(
+            "Texts of the window. Sentences that change a scene are read in English. A file of your own, languages/NAME.json beside the settings, adds a language.",
+        ))
+        .accessible_name(t("Language"));
+}
+
+fn work(ui: &mut Ui, settings: &mut Settings, keymap: &mut Keymap, windows: &mut OpenWindows) {
+    rows(ui, "work", |ui| {
+        ui.label(t("Keys"));
+        ui.horizontal(|ui| {
+            let mut preset = keymap.preset.clone();
+            egui::ComboBox::from_id_salt("preset of keys")
+                .selected_text(t(&preset))
+                .show_ui(ui, |ui| {
+                    for (name, _) in PRESETS {
+                        ui.selectable_value(&mut preset, name.to_owned(), t(name));
+                    }
+                })
+                .response
+                .on_hover_text(t(
+                    "Keys as in another program; choosing one drops changes of single keys",
+                ))
+                .accessible_name(t("Preset"));
+            if preset != keymap.preset {
+                *keymap = Keymap::new(&preset, Chords::new());
+            }
+            if ui.button(t("Change keys…")).clicked() {
+                windows.keys = true;
+            }
+        });
+        ui.end_row();
+        ui.label(t("Memory for undo"));
+        let field = egui::DragValue::new(&mut settings.history_mb)
+            .range(Settings::HISTORY_MB)
+            .speed(4.0)
+            .suffix(" MB");
+        ui.add(field)
+            .on_hover_text(t("Older steps go when the history takes more"))
+            .accessible_name(t("Memory for undo"));
+        ui.end_row();
+        ui.label(t("Recent files"));
+        let any = !settings.recent.is_empty();
+        if ui.add_enabled(any, egui::Button::new(t("Forget them"))).clicked() {
+            settings.recent.clear();
+        }
+        ui.end_row();
+    });
+}
+
+fn assistants(ui: &mut Ui, settings: &mut Settings, guests: &Guests) {
+    ui.checkbox(&mut settings.assistants, t("May drive this editor"))
+        .on_hover_text(t(
+            "Programs on this machine that show the token work on the scene, by a fixed set of calls; each change can be undone",
+        ));
+    if let (true, Some(door)) = (settings.assistants, guests.open()) {
+        door_ui(ui, door);
+    }
+    if let Some(problem) = guests.problem() {
+        ui.colored_label(ui.visuals().error_fg_color, problem);
+    }
 }
 
 /// Where assistants ask, and what they must show.
@@ -96,15 +203,12 @@ fn door_ui(ui: &mut Ui, door: &OpenDoor) {
         });
         ui.end_row();
     };
-    egui::Grid::new("assistants")
-        .num_columns(2)
-        .spacing([theme::GAP * 2.0, theme::GAP])
-        .show(ui, |ui| {
-            row(ui, t("Address"), t("Copy the address"), &door.url);
-            row(ui, t("Token"), t("Copy the token"), &door.token);
-            ui.label(t("Files"));
-            ui.monospace(door.folder.display().to_string())
-                .on_hover_text(t("The one folder whose files assistants may read and write"));
-            ui.end_row();
-        });
+    rows(ui, "assistants", |ui| {
+        row(ui, t("Address"), t("Copy the address"), &door.url);
+        row(ui, t("Token"), t("Copy the token"), &door.token);
+        ui.label(t("Files"));
+        ui.monospace(door.folder.display().to_string())
+            .on_hover_text(t("The one folder whose files assistants may read and write"));
+        ui.end_row();
+    });
 }

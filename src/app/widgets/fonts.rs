@@ -1,0 +1,79 @@
+//! Fonts for languages whose letters egui's own fonts lack: a small one comes along for the texts of the interface, and one of
+//! the system, if there is one, for all else that may be typed.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::{Context, FontData, FontDefinitions, FontFamily};
+
+/// Letters of the texts of the interface, cut out of Noto Sans CJK (SIL Open Font License 1.1) by
+/// `assets/languages/fonts.py`.
+const JAPANESE: &[u8] = include_bytes!("../../../assets/languages/ja.otf");
+const CHINESE: &[u8] = include_bytes!("../../../assets/languages/zh.otf");
+/// Letters with which languages name themselves.
+const NAMES: &[u8] = include_bytes!("../../../assets/languages/names.otf");
+
+/// Whole fonts where systems keep them, and which face of the file: first those with Japanese forms, then with Chinese ones.
+const OF_JAPANESE: [(&str, u32); 6] = [
+    ("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc", 0),
+    ("/usr/share/fonts/noto-cjk/NotoSansCJK-Regular.ttc", 0),
+    ("/usr/share/fonts/google-noto-cjk/NotoSansCJK-Regular.ttc", 0),
+    ("/System/Library/Fonts/ヒラギノ角ゴシック W3.ttc", 0),
+    ("C:/Windows/Fonts/YuGothR.ttc", 0),
+    ("C:/Windows/Fonts/msgothic.ttc", 0),
+];
+const OF_CHINESE: [(&str, u32); 7] = [
+    ("/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc", 2),
+    ("/usr/share/fonts/noto-cjk/NotoSansCJK-Regular.ttc", 2),
+    ("/usr/share/fonts/google-noto-cjk/NotoSansCJK-Regular.ttc", 2),
+    ("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc", 0),
+    ("/System/Library/Fonts/PingFang.ttc", 2),
+    ("/System/Library/Fonts/STHeiti Light.ttc", 0),
+    ("C:/Windows/Fonts/msyh.ttc", 0),
+];
+/// The largest font that is read, bytes.
+const LARGEST: u64 = 128 << 20;
+
+/// Uses the fonts that a language needs, by its code.
+pub fn apply(ctx: &Context, code: &str) {
+    let mut fonts = FontDefinitions::default();
+    let needs = match code {
+        "ja" => Some((JAPANESE, &OF_JAPANESE[..])),
+        "zh" => Some((CHINESE, &OF_CHINESE[..])),
+        _ => None,
+    };
+    if needs.is_none() {
+        add(&mut fonts, "names of languages", FontData::from_static(NAMES));
+    }
+    if let Some((small, system)) = needs {
+        add(
+            &mut fonts,
+            "letters of the interface",
+            FontData::from_static(small),
+        );
+        if let Some(font) = system
+            .iter()
+            .find_map(|(path, face)| read(Path::new(path), *face))
+        {
+            add(&mut fonts, "letters of the system", font);
+        }
+    }
+    ctx.set_fonts(fonts);
+}
+
+/// Behind the fonts that there are.
+fn add(fonts: &mut FontDefinitions, name: &str, font: FontData) {
+    fonts.font_data.insert(name.into(), Arc::new(font));
+    for family in [FontFamily::Proportional, FontFamily::Monospace] {
+        fonts.families.entry(family).or_default().push(name.into());
+    }
+}
+
+fn read(path: &Path, face: u32) -> Option<FontData> {
+    let path = PathBuf::from(path);
+    let fits = std::fs::metadata(&path).is_ok_and(|m| m.is_file() && m.len() <= LARGEST);
+    let bytes = fits.then(|| std::fs::read(&path).ok()).flatten()?;
+    let mut font = FontData::from_owned(bytes);
+    font.index = face;
+    Some(font)
+}
