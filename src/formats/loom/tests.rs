@@ -8,11 +8,11 @@ use glam::{DVec2, DVec3};
 use scene::background::{Background, Form, Tree, TreeKind};
 use scene::clip::ObjectVoxels;
 use scene::roads::{LaneKind, NodeId, NodeKind, RoadCrossing, RoadStop};
+use scene::{Arranged, Arrangement, BoxName, Members, Road, RoadId, RoadLane, RoadNetwork};
 use scene::{
     BevLayer, BevLayout, BoxId, Class, Clip, Conditions, Extent, Frame, Kept, KeptVersion, Key, Motion,
     Relief, Scene, SceneBox, SensorRig, TimeOfDay, Track, VoxelGrid, Weather,
 };
-use scene::{Arranged, Arrangement, Members, Road, RoadId, RoadLane, RoadNetwork};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
