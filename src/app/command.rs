@@ -33,6 +33,8 @@ pub enum Window {
     Export,
     /// The queue of batches.
     Batches,
+    /// The dialog of pictures.
+    Capture,
 }
 
 /// Commands for files and scenes.
@@ -54,8 +56,8 @@ pub enum FileCommand {
     Save,
     /// Asks for a file and saves there.
     SaveAs,
-    /// Asks for a file and saves the 3D view there.
-    ExportScreenshot,
+    /// Asks for a file and saves the picture there that the dialog of pictures describes.
+    AskCapture,
     /// Saves the 3D view beside the scene.
     QuickShot,
     /// Saves what a camera shows in a view beside the scene.

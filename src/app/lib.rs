@@ -8,6 +8,7 @@ pub mod canvas;
 mod canvas_draw;
 mod canvas_tools;
 mod chosen;
+pub mod capture;
 pub mod clip_export;
 pub mod command;
 pub mod export;

@@ -9,9 +9,11 @@ use serde_json::json;
 use super::progress::Progress;
 use super::render::size;
 use super::{Common, Outcome, output};
+use app::capture::{Turntable, turntable};
 use app::clip_export::{ClipOptions, ClipView, clip};
 use app::export::view_camera;
 use app::open;
+use app::picture::ShotOptions;
 use formats::video::VideoKind;
 use scene::Scene;
 use sensors::cameras;
@@ -21,7 +23,8 @@ use sensors::cameras;
 pub struct ClipCommand {
     /// Scene to read.
     scene: PathBuf,
-    /// What is shown: view (the 3D view), bev, or what cameras see (semantic, depth, picture, normals).
+    /// What is shown: view (the 3D view), turntable (it turns once around; also of a scene of one moment), bev, or what cameras
+    /// see (semantic, depth, picture, normals).
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
     /// Viewpoint of the 3D view: perspective, top, front, side, ego, or a camera of the rig (CAM_FRONT).
@@ -42,6 +45,9 @@ pub struct ClipCommand {
     /// Last moment, s; the end if left out.
     #[arg(long, value_name = "S")]
     to: Option<f64>,
+    /// How long one turn of the turntable takes, s.
+    #[arg(long, value_name = "S", default_value_t = 6.0)]
+    turn: f64,
     /// Frames per second; those of the scene if left out.
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
@@ -56,17 +62,28 @@ impl ClipCommand {
     pub(super) fn run(self) -> Outcome {
         let kind = VideoKind::of_path(&self.output).map_err(anyhow::Error::new)?;
         let scene = open::scene(&self.scene)?;
-        let options = self.options(&scene)?;
         let start = Instant::now();
         let progress = Progress::new(&self.common);
-        let bytes = clip(&scene, &options, kind, &|done, all| {
+        let go_on = |done, all| {
             progress.at("clip", done, all);
             true
-        })?;
+        };
+        let (bytes, frames) = match self.what.as_str() {
+            "turntable" => {
+                let turn = self.turntable(&scene)?;
+                let bytes = turntable(&scene.at(self.from), &turn, kind, &go_on)?;
+                (bytes, turn.frames() as usize)
+            }
+            _ => {
+                let options = self.options(&scene)?;
+                let [from, to] = options.span_s;
+                let frames = ((to - from) * options.rate_hz + 1e-6) as usize + 1;
+                (clip(&scene, &options, kind, &go_on)?, frames)
+            }
+        };
         progress.done();
         output::write_file(&self.output, &bytes)?;
         let wall_s = start.elapsed().as_secs_f64();
-        let frames = ((options.span_s[1] - options.span_s[0]) * options.rate_hz + 1e-6) as usize + 1;
         let report = json!({
             "file": self.output, "bytes": bytes.len(), "frames": frames, "wall_s": wall_s,
             "frames_per_s": frames as f64 / wall_s,
@@ -79,6 +96,19 @@ impl ClipCommand {
             )
         });
         Ok(())
+    }
+
+    fn turntable(&self, scene: &Scene) -> anyhow::Result<Turntable> {
+        Ok(Turntable {
+            shot: ShotOptions {
+                camera: view_camera(&scene.at(self.from), &self.view)?,
+                size: self.size,
+                supersample: 1,
+                ..ShotOptions::default()
+            },
+            seconds: self.turn,
+            rate_hz: self.rate.unwrap_or(15.0),
+        })
     }
 
     fn options(&self, scene: &Scene) -> anyhow::Result<ClipOptions> {
@@ -108,7 +138,10 @@ impl ClipCommand {
                 let views = cameras::views();
                 let Some(view) = views.iter().find(|v| v.id.name() == what) else {
                     let names: Vec<&str> = views.iter().map(|v| v.id.name()).collect();
-                    bail!("--what is {what:?}, expected view, bev, {}", names.join(", "));
+                    bail!(
+                        "--what is {what:?}, expected view, turntable, bev, {}",
+                        names.join(", ")
+                    );
                 };
                 let camera = match &self.camera {
                     None => None,

@@ -8,6 +8,7 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
 use super::toasts::Level;
+use crate::capture::{self, Turntable};
 use crate::clip_export::{ClipOptions, ClipView, clip};
 use crate::export::{ExportOptions, ExportProgress, Format, export_all};
 use crate::windows::export::{Asked, ExportDialog, ExportInput, export_window};
@@ -17,6 +18,8 @@ use language::{t, tf};
 
 /// Width and height of a clip, pixels.
 const CLIP_SIZE: [u32; 2] = [1280, 720];
+/// Frames per second of a turn.
+const TURN_HZ: f64 = 15.0;
 
 type Written = anyhow::Result<Vec<(PathBuf, u64)>>;
 
@@ -134,6 +137,40 @@ impl SceneloomApp {
                 !told.is_cancelled()
             };
             let bytes = clip(&scene, &options, kind, &go_on)?;
+            formats::atomic::write(&path, &bytes)?;
+            Ok(vec![(path, bytes.len() as u64)])
+        });
+    }
+
+    /// Writes the picture, or the turn, that the dialog of pictures describes.
+    pub(super) fn save_capture(&mut self, path: PathBuf, ctx: &egui::Context) {
+        let dialog = self.state.windows.capture.clone();
+        let scene = Arc::clone(self.document.settled_scene());
+        let mut options = dialog.options;
+        options.shot.camera = self.views.view3d.camera;
+        if !dialog.turns {
+            return self.run_export("the picture", ctx, move |_| {
+                let picture = capture::capture(&scene, &options)?;
+                let bytes = capture::to_png(&scene, &picture)?;
+                formats::atomic::write(&path, &bytes)?;
+                Ok(vec![(path, bytes.len() as u64)])
+            });
+        }
+        let kind = match VideoKind::of_path(&path) {
+            Ok(kind) => kind,
+            Err(error) => return self.fail(tf!("Not saved: {error}", error = error)),
+        };
+        let turn = Turntable {
+            shot: options.shot,
+            seconds: dialog.seconds,
+            rate_hz: TURN_HZ,
+        };
+        self.run_export("the turn", ctx, move |told| {
+            let go_on = |done, all| {
+                told.count(done, all);
+                !told.is_cancelled()
+            };
+            let bytes = capture::turntable(&scene, &turn, kind, &go_on)?;
             formats::atomic::write(&path, &bytes)?;
             Ok(vec![(path, bytes.len() as u64)])
         });

@@ -40,10 +40,13 @@ impl SceneloomApp {
                 let path = self.suggested("mp4");
                 self.files.dialogs.ask(Purpose::Clip, &path, ctx);
             }
-            FileCommand::ExportScreenshot => {
-                self.files
-                    .dialogs
-                    .ask(Purpose::Screenshot, &self.suggested("png"), ctx);
+            FileCommand::AskCapture => {
+                let (purpose, ending) = match self.state.windows.capture.turns {
+                    true => (Purpose::Turn, "gif"),
+                    false => (Purpose::Screenshot, "png"),
+                };
+                let path = self.suggested(ending);
+                self.files.dialogs.ask(purpose, &path, ctx);
             }
             FileCommand::QuickShot => {
                 let path = free_name(&self.suggested("png"));
@@ -169,7 +172,7 @@ impl SceneloomApp {
         match purpose {
             Purpose::Open => self.go_on(Next::Open(path), ctx),
             Purpose::SaveAs => self.save_to(path, ctx),
-            Purpose::Screenshot => self.screenshot(&path),
+            Purpose::Screenshot | Purpose::Turn => self.save_capture(path, ctx),
             Purpose::Clip => self.save_clip(path, ctx),
             Purpose::Model => self.read_model(path, false, ctx),
             Purpose::ModelShape => self.read_model(path, true, ctx),

@@ -19,6 +19,8 @@ pub enum Purpose {
     SaveAs,
     /// Where to save a picture.
     Screenshot,
+    /// Where to save a turn of the 3D view.
+    Turn,
     /// Where to save moving pictures.
     Clip,
     /// A model to put into the scene.
@@ -40,7 +42,8 @@ impl Purpose {
         match self {
             Purpose::Open => "Open scene or road",
             Purpose::SaveAs => "Save scene as",
-            Purpose::Screenshot => "Export screenshot",
+            Purpose::Screenshot => "Save picture",
+            Purpose::Turn => "Save turn: .gif, .png or .mp4",
             Purpose::Clip => "Save clip: .gif, .png or .mp4",
             Purpose::Model => "Place a model",
             Purpose::ModelShape => "Shape of the chosen box",
@@ -55,8 +58,9 @@ impl Purpose {
         match self {
             Purpose::Open => "Open file",
             Purpose::SaveAs => "Save file",
-            Purpose::Screenshot => "Export picture",
+            Purpose::Screenshot => "Save picture",
             Purpose::Clip => "Save clip",
+            Purpose::Turn => "Save turn",
             Purpose::Model => "Place model",
             Purpose::ModelShape => "Take shape",
             Purpose::ImportRig => "Import file",
@@ -135,7 +139,7 @@ impl FileDialogs {
                 .add_filter(t("All files"), &["*"]),
             Purpose::SaveAs => dialog.add_filter(t("Sceneloom scene"), &["loom"]),
             Purpose::Screenshot => dialog.add_filter(t("PNG picture"), &["png"]),
-            Purpose::Clip => dialog.add_filter(t("Moving pictures"), &["mp4", "gif", "png"]),
+            Purpose::Clip | Purpose::Turn => dialog.add_filter(t("Moving pictures"), &["mp4", "gif", "png"]),
             Purpose::Model | Purpose::ModelShape => dialog
                 .add_filter(
                     t("Models and scenes of one object"),
@@ -310,6 +314,7 @@ fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
         Purpose::SaveAs => "loom",
         Purpose::Screenshot => "png",
         Purpose::Clip => "mp4",
+        Purpose::Turn => "gif",
     };
     if path.extension().is_some() {
         path

@@ -79,8 +79,8 @@ fn file_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
         Command::File(FileCommand::QuickShot),
     );
     on(
-        item(ui, t("Export screenshot…"), "", true),
-        Command::File(FileCommand::ExportScreenshot),
+        item(ui, t("Pictures…"), "Ctrl+Shift+P", true),
+        Command::Toggle(Window::Capture),
     );
     on(
         item(ui, t("Save clip…"), "", true),

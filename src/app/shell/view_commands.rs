@@ -111,6 +111,10 @@ impl SceneloomApp {
         match window {
             Window::Export => self.toggle_export(),
             Window::Batches => self.toggle_batches(),
+            Window::Capture => {
+                let dialog = &mut self.state.windows.capture;
+                dialog.open = !dialog.open;
+            }
             Window::Palette => self.overlays.palette.toggle(),
             Window::Settings => self.state.windows.settings = !self.state.windows.settings,
             Window::Start => self.state.windows.start = !self.state.windows.start,

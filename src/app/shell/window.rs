@@ -17,6 +17,7 @@ use crate::shell::keys::Hands;
 use crate::shell::status::{StatusInput, status_ui};
 use crate::shell::toolbar::{ToolbarInput, toolbar_ui};
 use crate::state::UiState;
+use crate::windows::capture::capture_ui;
 use crate::windows::palette::Known;
 use crate::windows::performance::performance_ui;
 use crate::windows::sensors::sensors_ui;
@@ -241,6 +242,7 @@ impl SceneloomApp {
             guests: &self.guests,
         };
         settings_ui(ui, choices, &mut self.state.windows, commands);
+        capture_ui(ui, &mut self.state.windows.capture, commands);
         start_ui(
             ui,
             &mut self.preferences.settings,

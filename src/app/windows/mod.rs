@@ -2,6 +2,7 @@
 
 pub mod batch_plan;
 pub mod batches;
+pub mod capture;
 pub mod export;
 mod lens;
 pub mod open;

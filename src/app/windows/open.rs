@@ -1,5 +1,6 @@
 //! Which windows are open over the panes, and what is chosen in them.
 
+use super::capture::CaptureDialog;
 use super::tour::Tour;
 
 /// A sensor of the rig.
@@ -30,6 +31,8 @@ pub struct OpenWindows {
     pub start: bool,
     /// The tour of the first minutes; none while nobody is on it.
     pub tour: Option<Tour>,
+    /// The dialog of pictures.
+    pub capture: CaptureDialog,
     /// The sensors' window.
     pub sensors: bool,
     /// The sensor chosen in it.

@@ -321,9 +321,13 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(File, "screenshot", "Screenshot of the 3D view", "F12", || {
         Command::File(FileCommand::QuickShot)
     }),
-    action(File, "export_screenshot", "Export a screenshot", "", || {
-        Command::File(FileCommand::ExportScreenshot)
-    }),
+    action(
+        File,
+        "pictures",
+        "Pictures: any size, contact sheet, turntable",
+        "Ctrl+Shift+P",
+        || Command::Toggle(Window::Capture),
+    ),
     action(File, "place_model", "Place a model", "", || {
         Command::File(FileCommand::PlaceModel)
     }),

@@ -1,0 +1,192 @@
+//! The dialog of pictures: what is shown, how large, with what beside it; and the 3D view turned once around.
+
+use egui::{DragValue, Ui, Window};
+
+use crate::capture::{CaptureOptions, Subject};
+use crate::command::{Command, FileCommand};
+use language::{t, tf};
+use sensors::cameras;
+use widgets::icons::section;
+use widgets::theme;
+
+/// What is set in the dialog.
+#[derive(Clone, Debug)]
+pub struct CaptureDialog {
+    /// It is shown.
+    pub open: bool,
+    /// How a picture is taken.
+    pub options: CaptureOptions,
+    /// The 3D view turns once around what it looks at.
+    pub turns: bool,
+    /// How long a turn takes, s.
+    pub seconds: f64,
+}
+
+impl Default for CaptureDialog {
+    fn default() -> Self {
+        Self {
+            open: false,
+            options: CaptureOptions::default(),
+            turns: false,
+            seconds: 6.0,
+        }
+    }
+}
+
+/// Usual sizes: their names, of the 3D view or a map.
+const SIZES: [(&str, [u32; 2]); 5] = [
+    ("HD", [1280, 720]),
+    ("Full HD", [1920, 1080]),
+    ("4K", [3840, 2160]),
+    ("Square", [2048, 2048]),
+    ("A4 at 300 dpi", [3508, 2480]),
+];
+/// Usual sizes of a camera picture.
+const CAMERA_SIZES: [(&str, [u32; 2]); 3] = [
+    ("Small", [400, 225]),
+    ("Medium", [800, 450]),
+    ("Whole", [1600, 900]),
+];
+/// Largest side that is offered, pixels.
+const MOST_PX: u32 = 16_384;
+
+/// Draws the dialog while it is open.
+pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, commands: &mut Vec<Command>) {
+    if !dialog.open {
+        return;
+    }
+    let mut open = true;
+    Window::new(t("Pictures"))
+        .id(egui::Id::unique("pictures"))
+        .open(&mut open)
+        .resizable(false)
+        .collapsible(false)
+        .default_pos(ui.max_rect().center() - egui::vec2(210.0, 200.0))
+        .show(ui.ctx(), |ui| {
+            ui.set_width(420.0);
+            subject(ui, dialog);
+            section(ui, t("Size"));
+            sizes(ui, dialog);
+            section(ui, t("With"));
+            beside(ui, dialog);
+            ui.add_space(theme::GAP);
+            ui.horizontal(|ui| {
+                let name = if dialog.turns {
+                    t("Save turn…")
+                } else {
+                    t("Save picture…")
+                };
+                let accent = egui::Button::new(egui::RichText::new(name).color(theme::text_strong()));
+                if ui.add(accent.fill(theme::accent_fill())).clicked() {
+                    commands.push(Command::File(FileCommand::AskCapture));
+                }
+                ui.weak(match dialog.turns {
+                    true => t("GIF, MP4 or APNG, by the ending of the file"),
+                    false => t("PNG with the scene inside: opening it opens the scene"),
+                });
+            });
+        });
+    dialog.open &= open;
+}
+
+fn subject(ui: &mut Ui, dialog: &mut CaptureDialog) {
+    let options = &mut dialog.options;
+    ui.horizontal_wrapped(|ui| {
+        for (subject, _, title) in Subject::ALL {
+            let chosen = options.subject == subject && !(dialog.turns && subject == Subject::View);
+            if ui.selectable_label(chosen, t(title)).clicked() {
+                (options.subject, dialog.turns) = (subject, false);
+            }
+        }
+        if ui
+            .selectable_label(dialog.turns, t("Turntable"))
+            .on_hover_text(t("The 3D view turned once around what it looks at"))
+            .clicked()
+        {
+            (options.subject, dialog.turns) = (Subject::View, true);
+        }
+    });
+    ui.add_space(theme::GAP / 2.0);
+    match options.subject {
+        Subject::View => {
+            ui.weak(t("Seen as the 3D view shows it now."));
+        }
+        Subject::Cameras => {
+            ui.horizontal(|ui| {
+                ui.label(t("Showing"));
+                for view in cameras::views() {
+                    ui.selectable_value(&mut options.view, view.id, t(view.title))
+                        .on_hover_text(t(view.hint));
+                }
+            });
+        }
+        _ => {
+            ui.weak(t("Seen from above, ahead is up."));
+        }
+    }
+    ui.add_space(theme::GAP / 2.0);
+}
+
+fn sizes(ui: &mut Ui, dialog: &mut CaptureDialog) {
+    let options = &mut dialog.options;
+    let of_cameras = options.subject == Subject::Cameras;
+    let (size, usual) = match of_cameras {
+        true => (&mut options.camera_size, &CAMERA_SIZES[..]),
+        false => (&mut options.shot.size, &SIZES[..]),
+    };
+    ui.horizontal(|ui| {
+        let names = [t("Width"), t("Height")];
+        for (side, name) in size.iter_mut().zip(names) {
+            ui.add(DragValue::new(side).range(16..=MOST_PX).speed(4.0).suffix(" px"))
+                .accessible_name(name);
+        }
+        egui::ComboBox::from_id_salt("usual sizes")
+            .selected_text(t("Usual sizes"))
+            .show_ui(ui, |ui| {
+                for (name, usual) in usual {
+                    let text = tf!("{name}, {w} × {h}", name = t(name), w = usual[0], h = usual[1]);
+                    ui.selectable_value(size, *usual, text);
+                }
+            });
+    });
+    if of_cameras {
+        ui.weak(t("Of each camera; the sheet has three in a row."));
+    }
+    if dialog.turns {
+        ui.horizontal(|ui| {
+            ui.label(t("One turn takes"));
+            ui.add(
+                DragValue::new(&mut dialog.seconds)
+                    .range(1.0..=30.0)
+                    .speed(0.1)
+                    .suffix(" s"),
+            )
+            .accessible_name(t("One turn takes"));
+        });
+    }
+    ui.add_space(theme::GAP / 2.0);
+}
+
+fn beside(ui: &mut Ui, dialog: &mut CaptureDialog) {
+    let options = &mut dialog.options;
+    ui.horizontal_wrapped(|ui| {
+        if options.subject == Subject::View {
+            ui.checkbox(&mut options.shot.boxes, t("Boxes"));
+            ui.checkbox(&mut options.shot.lidar, t("LiDAR"));
+            if !dialog.turns {
+                ui.checkbox(&mut options.shot.transparent, t("Transparent background"));
+            }
+        }
+        if !dialog.turns {
+            ui.checkbox(&mut options.legend, t("Names, legend and scale"));
+        }
+    });
+    if options.subject == Subject::View {
+        ui.horizontal(|ui| {
+            ui.label(t("Samples per axis"));
+            ui.add(DragValue::new(&mut options.shot.supersample).range(1..=8))
+                .on_hover_text(t("More make edges smoother and take longer"))
+                .accessible_name(t("Samples per axis"));
+        });
+    }
+}
