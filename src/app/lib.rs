@@ -1,5 +1,6 @@
 //! The window with its panes. It knows every other room; only the command line knows it.
 
+mod arranging;
 mod baking;
 pub mod batch;
 mod bev_image;
@@ -7,8 +8,8 @@ pub mod camera_views;
 pub mod canvas;
 mod canvas_draw;
 mod canvas_tools;
-mod chosen;
 pub mod capture;
+mod chosen;
 pub mod clip_export;
 pub mod command;
 pub mod export;

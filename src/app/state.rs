@@ -5,6 +5,7 @@ use std::ops::{Deref, DerefMut};
 use glam::DVec2;
 
 use editor::Edit;
+use editor::tools::saved::SavedBrush;
 use job::Named;
 use language::{t, tf};
 use scene::SceneBox;
@@ -22,6 +23,8 @@ use super::windows::open::OpenWindows;
 pub struct UiState {
     /// The tools and what they hold: the state is a [`Hand`] with more.
     pub tools: ToolState,
+    /// Brushes that the user keeps.
+    pub brushes: Vec<SavedBrush>,
     /// What the two large views show of a scene.
     pub shown: ViewsShown,
     /// Edits of boxes and map layers correct what was inferred on import: no voxel changes.

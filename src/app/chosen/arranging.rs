@@ -2,32 +2,12 @@
 
 use language::{t, tf};
 
+use crate::arranging::{arranging, label};
 use crate::shell::app::SceneloomApp;
 use crate::shell::toasts::Level;
 use crate::tools::Choose;
 use editor::{Edit, arranged};
 use scene::{Arrangement, BoxId, Members};
-
-/// An edit that arranges.
-pub(crate) fn arranging(members: &Members, how: Arrangement) -> Edit {
-    Edit::Arrange {
-        boxes: members.boxes.iter().copied().collect(),
-        things: members.things.iter().copied().collect(),
-        how,
-    }
-}
-
-/// The name of the undo step.
-pub(crate) fn label(how: &Arrangement) -> &'static str {
-    match how {
-        Arrangement::Hide => "Hide",
-        Arrangement::Show => "Show",
-        Arrangement::Lock => "Lock",
-        Arrangement::Unlock => "Unlock",
-        Arrangement::Group { .. } => "Group",
-        Arrangement::Ungroup => "Ungroup",
-    }
-}
 
 impl SceneloomApp {
     fn members(&self) -> Members {

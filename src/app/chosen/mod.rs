@@ -1,6 +1,6 @@
 //! Carries out what is asked of the tools, and of what is chosen.
 
-pub(crate) mod arranging;
+mod arranging;
 mod carry;
 mod things;
 

@@ -10,10 +10,10 @@ use egui::accesskit::Role;
 use egui::{Ui, WidgetInfo, vec2};
 
 use super::id::PaneId;
-use crate::state::called;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
 use crate::finding_marks::FindingMarks;
+use crate::state::called;
 use editor::checks::{Counts, Finding, Severity, waive};
 use editor::fix::fix_these;
 use language::{t, tf};

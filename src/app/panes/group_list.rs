@@ -7,7 +7,7 @@ use egui::Ui;
 use language::{t, tf};
 
 use super::tools::{eye, lock};
-use crate::chosen::arranging;
+use crate::arranging;
 use crate::command::{Command, ViewCommand};
 use crate::state::UiState;
 use crate::tools::{Choose, ToolCommand};

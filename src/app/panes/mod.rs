@@ -28,6 +28,7 @@ pub mod objects;
 pub mod pane;
 pub mod pointed;
 pub mod prompt;
+mod saved_brushes;
 mod splats;
 mod statistics;
 mod thing_list;

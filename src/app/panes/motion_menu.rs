@@ -4,9 +4,9 @@ use egui::{DragValue, Ui};
 
 use scene::{BoxId, Class, Scene};
 
-use crate::state::called;
 use crate::command::{Command, TimeCommand};
 use crate::state::UiState;
+use crate::state::called;
 use editor::Edit;
 use editor::traffic::{Template, Wish};
 use language::{t, tf};

@@ -5,6 +5,7 @@ use egui::{Color32, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
+use super::saved_brushes::saved_brushes_ui;
 use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
@@ -54,6 +55,8 @@ impl Pane for Tools {
 pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         options(ui, frame, &mut state.tools, commands);
+        let UiState { tools, brushes, .. } = state;
+        saved_brushes_ui(ui, &mut tools.hand, brushes);
         ui.add_space(theme::GAP);
         section(ui, t("Map layers"));
         for layer in BevLayer::MAP {

@@ -153,6 +153,7 @@ impl SceneloomApp {
             toasts.push(Level::Error, text, 0.0);
         }
         let state = UiState {
+            brushes: settings.brushes.clone(),
             windows: OpenWindows {
                 start: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
                 ..OpenWindows::default()
@@ -321,6 +322,7 @@ impl SceneloomApp {
 
     fn write_settings(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
+        self.preferences.settings.brushes.clone_from(&self.state.brushes);
         let complaint = self.preferences.write(ctx.zoom_factor(), &self.views.dock, now_s);
         if let Some(text) = complaint {
             self.toasts.push(Level::Error, text, now_s);

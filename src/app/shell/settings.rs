@@ -13,6 +13,7 @@ use super::keymap::Chords;
 use super::workspace::Workspace;
 use crate::panes::id::PaneId;
 use editor::Document;
+use editor::tools::saved::SavedBrush;
 use scene::classes::Palette;
 use widgets::theme::Theme;
 
@@ -48,6 +49,8 @@ pub struct Settings {
     pub panes_known: Vec<PaneId>,
     /// Views that were kept, by number.
     pub bookmarks: BTreeMap<u8, Bookmark>,
+    /// Brushes that the user keeps.
+    pub brushes: Vec<SavedBrush>,
     /// Memory that the history may take, MB.
     pub history_mb: u32,
     /// Let assistants on this machine drive the editor, if they show the token.
@@ -74,6 +77,7 @@ impl Default for Settings {
             dock: None,
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
+            brushes: Vec::new(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             assistants: false,
             recent: Vec::new(),

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DVec2, DVec3};
 
+use serde::{Deserialize, Serialize};
+
 use crate::Edit;
 use crate::arrange::{Clipboard, LANE_REACH_M, Pivot, Row};
 use crate::flood::FillBounds;
@@ -18,6 +20,7 @@ use scene::{
 use super::ToolId;
 use super::beside::ThingState;
 use super::road::RoadHand;
+use super::saved::Stamp;
 
 /// States of the scene whose selection is kept.
 const REMEMBERED_SELECTIONS: usize = 512;
@@ -46,7 +49,8 @@ pub enum Choose {
 }
 
 /// What the voxel brush does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum VoxelVerb {
     /// Puts voxels on the face under the pointer.
     #[default]
@@ -67,7 +71,8 @@ impl VoxelVerb {
 }
 
 /// What a drag of the brush draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PaintShape {
     /// A stroke along the way; straight with Ctrl.
     #[default]
@@ -117,7 +122,8 @@ impl PaintShape {
 }
 
 /// What a drag of the voxel tool does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum VoxelMode {
     /// Follows the pointer.
     #[default]
@@ -130,20 +136,52 @@ pub enum VoxelMode {
     Fill,
     /// Chooses what is connected and of one class.
     Wand,
+    /// Chooses in a box on the ground, its height by the wheel.
+    ChooseBlock,
+    /// Chooses in a sphere.
+    ChooseSphere,
+    /// Chooses in an outline on the screen.
+    ChooseLasso,
     /// Pulls a face out or pushes it in.
     Extrude,
+    /// Sets down voxels that were kept.
+    Stamp,
 }
 
 impl VoxelMode {
     /// Every mode with its name and hint.
-    pub const ALL: [(VoxelMode, &'static str, &'static str); 6] = [
+    pub const ALL: [(VoxelMode, &'static str, &'static str); 10] = [
         (VoxelMode::Brush, "Dab", "B"),
         (VoxelMode::Block, "Block", "U; wheel sets the height"),
         (VoxelMode::Row, "Row", "L"),
         (VoxelMode::Fill, "Flood", "K; connected voxels of one class"),
         (VoxelMode::Wand, "Wand", "Shift+O; chooses connected voxels"),
         (VoxelMode::Extrude, "Pull", "P; drags a face out or in"),
+        (
+            VoxelMode::ChooseBlock,
+            "Choose box",
+            "chooses voxels in a box; wheel sets the height",
+        ),
+        (
+            VoxelMode::ChooseSphere,
+            "Choose sphere",
+            "chooses voxels in a sphere",
+        ),
+        (
+            VoxelMode::ChooseLasso,
+            "Choose lasso",
+            "chooses voxels in an outline on the screen",
+        ),
+        (VoxelMode::Stamp, "Stamp", "sets down voxels that were kept"),
     ];
+
+    /// True if it chooses voxels and changes none.
+    pub fn chooses(self) -> bool {
+        matches!(
+            self,
+            Self::Wand | Self::ChooseBlock | Self::ChooseSphere | Self::ChooseLasso
+        )
+    }
 }
 
 /// What the user holds.
@@ -205,8 +243,12 @@ pub struct Hand {
     pub voxel_height: usize,
     /// Voxels are painted on both sides of the ego x axis.
     pub symmetry: bool,
-    /// Voxels chosen by the wand.
+    /// Chosen voxels.
     pub voxels: Vec<Cell>,
+    /// Voxels that the stamp sets down.
+    pub stamp: Stamp,
+    /// An outline chooses voxels behind others, too.
+    pub voxels_through: bool,
     /// How a region is marked.
     pub region_shape: RegionShape,
     /// How far what is inpainted leaves what is there, 0 to 1.
@@ -259,6 +301,8 @@ impl Default for Hand {
             voxel_height: 1,
             symmetry: false,
             voxels: Vec::new(),
+            voxels_through: false,
+            stamp: Stamp::default(),
             region_shape: RegionShape::default(),
             region_strength: 1.0,
             region_m2: 0.0,

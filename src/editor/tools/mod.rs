@@ -12,6 +12,7 @@ mod rays;
 pub mod region;
 mod response;
 pub mod road;
+pub mod saved;
 pub mod select;
 pub mod setting;
 #[cfg(test)]

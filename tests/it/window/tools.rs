@@ -6,6 +6,7 @@ use app::Command;
 use app::tools::ToolCommand;
 use editor::Edit;
 use editor::arrange::{Row, RowAlong};
+use editor::tools::voxel::Joins;
 use editor::tools::{brush, circle, measure};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
@@ -482,7 +483,7 @@ fn voxels_are_drawn_chosen_and_pulled_in_the_3d_view() {
     bench.ask(ToolCommand::Shortcut("symmetry"));
     bench.ask(ToolCommand::Shortcut("voxel_fill"));
     bench.app().state.verb = app::tools::VoxelVerb::Remove;
-    bench.app().state.choose_voxels(vec![[1, 2, 3]], false);
+    bench.app().state.choose_voxels(vec![[1, 2, 3]], Joins::Replace);
     bench.ask(ToolCommand::Delete);
     assert!(bench.app().state.tools.voxels.is_empty());
     while bench.app().document.can_undo() {

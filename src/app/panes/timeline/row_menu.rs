@@ -5,8 +5,8 @@ use egui::Ui;
 use scene::{BoxId, Motion, Moving, Scene};
 
 use crate::command::Command;
-use crate::state::called;
 use crate::playback::{Copied, Playback};
+use crate::state::called;
 use editor::Edit;
 use language::t;
 use widgets::theme;

@@ -7,8 +7,8 @@ use scene::{BoxId, Motion, Scene};
 
 use super::row_menu;
 use crate::command::{Command, TimeCommand};
-use crate::state::called;
 use crate::state::UiState;
+use crate::state::called;
 use editor::Edit;
 use editor::checks::{Finding, Severity, waive};
 use language::{t, tf};

@@ -202,8 +202,7 @@ fn lanes_of(sections: &[Section], along: bool) -> Vec<f64> {
             .collect::<Vec<f64>>()
     };
     let counts: Vec<f64> = sections.iter().map(|s| of(s).len() as f64).collect();
-    // One that there is, not a mean of two.
-    let count = numeric::quantile::quantile(&counts, 0.5) as usize;
+    let count = median(counts) as usize;
     let same: Vec<Vec<f64>> = sections.iter().map(of).filter(|l| l.len() == count).collect();
     (0..count.min(scene::Road::MAX_LANES - 3))
         .map(|i| median(same.iter().map(|l| l[i]).collect()))
@@ -215,10 +214,10 @@ fn spacing(lanes: &[f64]) -> Option<f64> {
     (!gaps.is_empty()).then(|| median(gaps))
 }
 
-/// The middle value; 0 of none.
+/// The middle value, one that there is and not a mean of two (half of a road may have a parking strip); 0 of none.
 fn median(values: Vec<f64>) -> f64 {
     match values.is_empty() {
         true => 0.0,
-        false => numeric::quantile::median(&values),
+        false => numeric::quantile::quantile(&values, 0.5),
     }
 }

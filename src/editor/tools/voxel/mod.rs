@@ -1,5 +1,7 @@
 //! The voxel tool: dabs, blocks, rows, floods, chosen voxels and pulled faces, in space.
 
+mod choosing;
+mod options;
 mod target;
 
 use std::collections::BTreeSet;
@@ -13,11 +15,14 @@ use language::tf;
 use scene::{Class, Extent, Frame};
 
 use super::rays::{along_axis, on_plane};
-use super::setting::{self, Control, Number, Setting, Value};
+use super::saved::Stamp;
+use super::setting::{self, Setting, Value};
 use super::{
-    Act, At, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, Response, Shortcut, Sight, Tool,
-    ToolDef, ToolId, ViewKind, VoxelMode, VoxelVerb, Wants, When, hint_of,
+    Act, At, Context, Cursor, Event, Group, Hand, Hint, Mark, Modifiers, Pointer, Response, Shortcut, Sight,
+    Tool, ToolDef, ToolId, View, ViewKind, VoxelMode, VoxelVerb, Wants, When, hint_of,
 };
+pub use choosing::Joins;
+use choosing::{Area, joins};
 use target::target;
 
 /// Its name.
@@ -98,6 +103,27 @@ pub static DEF: ToolDef = ToolDef {
             mode(h, VoxelMode::Wand)
         }),
         shortcut(
+            "voxels_in_box",
+            "Voxels: choose in a box",
+            "",
+            When::Always,
+            |h| mode(h, VoxelMode::ChooseBlock),
+        ),
+        shortcut(
+            "voxels_in_sphere",
+            "Voxels: choose in a sphere",
+            "",
+            When::Always,
+            |h| mode(h, VoxelMode::ChooseSphere),
+        ),
+        shortcut(
+            "voxels_in_lasso",
+            "Voxels: choose by lasso",
+            "",
+            When::Always,
+            |h| mode(h, VoxelMode::ChooseLasso),
+        ),
+        shortcut(
             "symmetry",
             "Symmetry about the ego axis",
             "S",
@@ -130,6 +156,8 @@ enum Drag {
     Row { first: Cell, verb: VoxelVerb },
     /// A face pulled out or pushed in.
     Pull { first: VoxelHit, face: Vec<Cell> },
+    /// Voxels are chosen in it: in place of those chosen, besides them, or taken out of them.
+    Choose(Area),
 }
 
 /// The voxel tool.
@@ -179,7 +207,7 @@ impl Voxels {
     fn press(&mut self, cx: &mut Context<'_>, pointer: &Pointer) -> Response {
         let shift = pointer.held.shift;
         let mode = cx.hand.voxel_mode;
-        let verb = match shift && mode != VoxelMode::Wand {
+        let verb = match shift && !mode.chooses() {
             true => VoxelVerb::Remove,
             false => cx.hand.verb,
         };
@@ -191,6 +219,16 @@ impl Voxels {
             });
             return Response::hold();
         }
+        if mode == VoxelMode::Stamp {
+            return stamped(cx, pointer);
+        }
+        if mode.chooses() && mode != VoxelMode::Wand {
+            self.drag = Area::begin(cx, mode, pointer.at).map(Drag::Choose);
+            return match self.drag {
+                Some(_) => Response::hold(),
+                None => Response::none(),
+            };
+        }
         let Some(ray) = cx.view.ray(pointer.at) else {
             return Response::none();
         };
@@ -198,6 +236,9 @@ impl Voxels {
         let hit = pick::ray_voxels(&ray, &frame.occupancy, |_, _| true);
         let first = target(frame, verb, [1, 1], &ray).first().copied();
         self.drag = match mode {
+            VoxelMode::ChooseBlock | VoxelMode::ChooseSphere | VoxelMode::ChooseLasso | VoxelMode::Stamp => {
+                None
+            }
             VoxelMode::Block | VoxelMode::Brush => first.map(|cell| Drag::Block {
                 first: VoxelHit {
                     cell,
@@ -219,7 +260,7 @@ impl Voxels {
                 let cells =
                     voxel_ops::only(&frame.occupancy, cx.hand.both_sides(frame.extent(), cells), false);
                 if mode == VoxelMode::Wand {
-                    cx.hand.choose_voxels(cells, shift);
+                    cx.hand.choose_voxels(cells, joins(pointer.held));
                     return Response::none();
                 }
                 return flood(cells, class_of(cx.hand, verb));
@@ -236,6 +277,10 @@ impl Voxels {
         let extent = frame.extent();
         match &mut self.drag {
             None => Response::none(),
+            Some(Drag::Choose(area)) => {
+                area.drag(cx, pointer);
+                Response::none()
+            }
             Some(Drag::Dab { cells, verb, last }) => {
                 let before = cells.len();
                 let samples = (last.distance(at) / SAMPLE_EVERY).ceil().max(1.0) as usize;
@@ -313,6 +358,12 @@ impl Voxels {
     }
 
     fn scroll(&mut self, cx: &Context<'_>, notches: i32) -> Response {
+        if let Some(Drag::Choose(area)) = &mut self.drag {
+            return match area.scroll(notches) {
+                true => Response::taken(),
+                false => Response::none(),
+            };
+        }
         let Some(Drag::Block { height, .. }) = &mut self.drag else {
             return Response::none();
         };
@@ -322,13 +373,45 @@ impl Voxels {
         response
     }
 
-    fn release(&mut self) -> Response {
+    fn release(&mut self, cx: &mut Context<'_>, held: Modifiers) -> Response {
         let label = match self.drag.take() {
             None => return Response::none(),
+            Some(Drag::Choose(area)) => {
+                let frame = cx.settled.frame();
+                let cells = area.cells(frame, cx.view, cx.hand.voxels_through);
+                let both = cx.hand.both_sides(frame.extent(), cells);
+                let cells = voxel_ops::only(&frame.occupancy, both, false);
+                cx.hand.choose_voxels(cells, joins(held));
+                return Response::none();
+            }
             Some(Drag::Dab { verb, .. } | Drag::Block { verb, .. } | Drag::Row { verb, .. }) => step_of(verb),
             Some(Drag::Pull { .. }) => "Pull voxels",
         };
         Response::act(Act::Commit(label.into()))
+    }
+}
+
+/// Where the stamp would be set down by a press.
+fn stamp_at(frame: &Frame, hand: &Hand, view: &dyn View, at: DVec2) -> Vec<(Class, Vec<Cell>)> {
+    let cell = view
+        .ray(at)
+        .and_then(|ray| target(frame, VoxelVerb::Attach, [1, 1], &ray).first().copied());
+    cell.map_or_else(Vec::new, |cell| hand.stamp.at(frame, cell))
+}
+
+fn stamped(cx: &Context<'_>, pointer: &Pointer) -> Response {
+    if cx.hand.stamp.is_empty() {
+        let text = "Choose voxels first, by wand, box, sphere or lasso, and keep them as a stamp";
+        return Response::act(Act::Note(text.into()));
+    }
+    let parts = stamp_at(cx.frame(), cx.hand, cx.view, pointer.at);
+    let edits: Vec<Edit> = parts
+        .into_iter()
+        .map(|(class, cells)| Edit::PaintVoxels { cells, class })
+        .collect();
+    match edits.is_empty() {
+        true => Response::none(),
+        false => Response::act(Act::Apply("Stamp voxels".into(), edits)),
     }
 }
 
@@ -378,7 +461,7 @@ impl Tool for Voxels {
                 Response::none()
             }
             Event::Drag(pointer) => self.drag(cx, pointer),
-            Event::Release(_) => self.release(),
+            Event::Release(pointer) => self.release(cx, pointer.held),
             Event::Scroll(notches) => self.scroll(cx, *notches),
             Event::Cancel => {
                 self.drag = None;
@@ -403,7 +486,15 @@ impl Tool for Voxels {
             VoxelMode::Row => vec![verb, "Shift removes"],
             VoxelMode::Fill => vec!["Click floods one class", "Shift removes"],
             VoxelMode::Wand => vec!["Click chooses what is connected", "Shift adds", "Del removes"],
+            VoxelMode::ChooseBlock => vec![
+                "Drag chooses in a box",
+                "wheel sets the height",
+                "Shift adds, Ctrl takes out",
+            ],
+            VoxelMode::ChooseSphere => vec!["Drag chooses in a sphere", "Shift adds, Ctrl takes out"],
+            VoxelMode::ChooseLasso => vec!["Draw around voxels to choose them", "Shift adds, Ctrl takes out"],
             VoxelMode::Extrude => vec!["Drag pulls a face out or in"],
+            VoxelMode::Stamp => vec!["Click sets the kept voxels down", "Turn them in the options"],
         })
     }
 
@@ -419,12 +510,22 @@ impl Tool for Voxels {
         if sight.from_above() {
             return Vec::new();
         }
-        if hand.voxel_mode == VoxelMode::Wand {
+        if let Some(Drag::Choose(area)) = &self.drag {
+            return area.marks(sight.settled.frame(), hand, sight.view, CHOSEN);
+        }
+        if hand.voxel_mode.chooses() {
             return vec![Mark::Voxels(hand.voxels.clone(), CHOSEN)];
         }
         let Some(pointer) = sight.pointer else {
             return Vec::new();
         };
+        if hand.voxel_mode == VoxelMode::Stamp {
+            let parts = stamp_at(sight.settled.frame(), hand, sight.view, pointer.at);
+            return parts
+                .into_iter()
+                .map(|(class, cells)| Mark::Voxels(cells, class.color()))
+                .collect();
+        }
         let mut out = Vec::new();
         if let Some(ray) = sight.view.ray(pointer.at) {
             let color = match hand.verb {
@@ -453,62 +554,19 @@ impl Tool for Voxels {
     }
 
     fn options(&self, hand: &Hand) -> Vec<Setting> {
-        let mut out = vec![
-            Setting::title("Voxel brush"),
-            Setting::segments("mode", hand.voxel_mode, &VoxelMode::ALL, 3),
-        ];
-        if matches!(hand.voxel_mode, VoxelMode::Brush | VoxelMode::Block) {
-            let height = hand.voxel_height as f64;
-            out.push(Setting::number("height", "Height, vx", height, [1.0, 16.0], 0));
-        }
-        out.push(Setting::toggle(
-            "symmetry",
-            hand.symmetry,
-            "Symmetry about the ego axis",
-            "S",
-        ));
-        if hand.voxel_mode == VoxelMode::Wand {
-            out.extend(chosen(hand));
-        }
-        out.extend([
-            Setting::segments("verb", hand.verb, &VoxelVerb::ALL, 3),
-            Setting::gap(),
-            Setting::new(
-                "size",
-                Control::Number(Number {
-                    title: "Size",
-                    label: "Voxel brush size",
-                    hint: "[ and ]",
-                    value: hand.voxel_size as f64,
-                    range: [1.0, Hand::MAX_VOXEL_SIZE as f64],
-                    unit: " vx",
-                    decimals: 0,
-                    logarithmic: false,
-                    wide: true,
-                }),
-            ),
-            Setting::gap(),
-        ]);
-        out.push(match hand.verb {
-            VoxelVerb::Remove => Setting::text(
-                "Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.",
-            ),
-            _ => Setting::new(
-                "class",
-                Control::Class {
-                    chosen: hand.voxel_class,
-                    classes: Class::ALL.into_iter().filter(|c| *c != Class::Free).collect(),
-                    verb: "Voxel",
-                },
-            ),
-        });
-        out
+        options::options(hand)
     }
 
     fn set(&mut self, hand: &mut Hand, frame: &Frame, id: &str, value: Value) -> Vec<Act> {
         let number = value.number().map_or(1, |n| n.round().max(1.0) as usize);
         match (id, value) {
             ("mode", _) => setting::take(&mut hand.voxel_mode, value, &VoxelMode::ALL),
+            ("stamp", _) => match Stamp::of(frame, &hand.voxels) {
+                Some(stamp) => (hand.stamp, hand.voxel_mode) = (stamp, VoxelMode::Stamp),
+                None => return vec![Act::Note(tf!("A stamp has 1 to {n} voxels", n = Stamp::MOST))],
+            },
+            ("turn_stamp", _) => hand.stamp = hand.stamp.turned(),
+            ("through", _) => setting::take_on(&mut hand.voxels_through, value),
             ("height", _) => hand.voxel_height = number.min(16),
             ("symmetry", _) => setting::take_on(&mut hand.symmetry, value),
             ("verb", _) => setting::take(&mut hand.verb, value, &VoxelVerb::ALL),
@@ -537,50 +595,8 @@ impl Tool for Voxels {
 
     fn wants(&self) -> Wants {
         match self.drag {
-            Some(Drag::Block { .. }) => Wants::Wheel,
+            Some(Drag::Block { .. } | Drag::Choose(Area::Block { .. })) => Wants::Wheel,
             _ => Wants::Nothing,
         }
-    }
-}
-
-/// What can be done with the chosen voxels.
-fn chosen(hand: &Hand) -> [Setting; 2] {
-    let n = hand.voxels.len();
-    let text = match n {
-        0 => "Click voxels to choose what is connected; Shift adds.".to_owned(),
-        1 => "1 voxel chosen".to_owned(),
-        n => tf!("{n} voxels chosen", n = n),
-    };
-    let buttons = vec![
-        Setting::button("remove", "Remove them", "Del", n > 0),
-        Setting::button("recolour", "Recolour them", "in the class below", n > 0),
-        Setting::button("lock", "Lock them", "generation keeps them", n > 0),
-        Setting::button("unlock", "Unlock them", "", n > 0),
-    ];
-    [Setting::text(text), Setting::new("", Control::Row(buttons))]
-}
-
-impl Hand {
-    /// Chooses voxels; `add` to those chosen.
-    pub fn choose_voxels(&mut self, cells: Vec<Cell>, add: bool) {
-        if !add {
-            self.voxels.clear();
-        }
-        self.voxels.extend(cells);
-        self.voxels.sort_unstable();
-        self.voxels.dedup();
-    }
-
-    /// Gives the chosen voxels a class, and lets go of them; `free` removes them.
-    pub fn paint_chosen_voxels(&mut self, class: Class) -> Vec<Act> {
-        let cells = std::mem::take(&mut self.voxels);
-        if cells.is_empty() {
-            return Vec::new();
-        }
-        let label = match class {
-            Class::Free => "Remove voxels",
-            _ => "Recolour voxels",
-        };
-        vec![Act::Apply(label.into(), vec![Edit::PaintVoxels { cells, class }])]
     }
 }

@@ -1,0 +1,109 @@
+//! What can be set of the voxel tool, and done with chosen voxels.
+
+use crate::tools::setting::{Control, Number, Setting};
+use crate::tools::{Hand, VoxelMode, VoxelVerb};
+use language::tf;
+use scene::Class;
+
+/// Everything that can be set of the tool.
+pub(super) fn options(hand: &Hand) -> Vec<Setting> {
+    let mut out = vec![
+        Setting::title("Voxel brush"),
+        Setting::segments("mode", hand.voxel_mode, &VoxelMode::ALL, 3),
+    ];
+    if matches!(hand.voxel_mode, VoxelMode::Brush | VoxelMode::Block) {
+        let height = hand.voxel_height as f64;
+        out.push(Setting::number("height", "Height, vx", height, [1.0, 16.0], 0));
+    }
+    out.push(Setting::toggle(
+        "symmetry",
+        hand.symmetry,
+        "Symmetry about the ego axis",
+        "S",
+    ));
+    if hand.voxel_mode == VoxelMode::ChooseLasso {
+        let hint = "The outline chooses voxels behind others, too";
+        out.push(Setting::toggle(
+            "through",
+            hand.voxels_through,
+            "Hidden ones, too",
+            hint,
+        ));
+    }
+    if hand.voxel_mode.chooses() {
+        out.extend(chosen(hand));
+    }
+    if hand.voxel_mode == VoxelMode::Stamp {
+        out.extend(stamp(hand));
+        return out;
+    }
+    out.extend([
+        Setting::segments("verb", hand.verb, &VoxelVerb::ALL, 3),
+        Setting::gap(),
+        Setting::new(
+            "size",
+            Control::Number(Number {
+                title: "Size",
+                label: "Voxel brush size",
+                hint: "[ and ]",
+                value: hand.voxel_size as f64,
+                range: [1.0, Hand::MAX_VOXEL_SIZE as f64],
+                unit: " vx",
+                decimals: 0,
+                logarithmic: false,
+                wide: true,
+            }),
+        ),
+        Setting::gap(),
+    ]);
+    out.push(match hand.verb {
+        VoxelVerb::Remove => {
+            Setting::text("Removes voxels in the 3D view. Painted voxels are locked: generation keeps them.")
+        }
+        _ => Setting::new(
+            "class",
+            Control::Class {
+                chosen: hand.voxel_class,
+                classes: Class::ALL.into_iter().filter(|c| *c != Class::Free).collect(),
+                verb: "Voxel",
+            },
+        ),
+    });
+    out
+}
+
+/// What can be done with the chosen voxels.
+fn chosen(hand: &Hand) -> [Setting; 2] {
+    let n = hand.voxels.len();
+    let text = match n {
+        0 => "No voxel is chosen. Shift adds to those chosen, Ctrl takes out of them.".to_owned(),
+        1 => "1 voxel chosen".to_owned(),
+        n => tf!("{n} voxels chosen", n = n),
+    };
+    let buttons = vec![
+        Setting::button("remove", "Remove them", "Del", n > 0),
+        Setting::button("recolour", "Recolour them", "in the class below", n > 0),
+        Setting::button("lock", "Lock them", "generation keeps them", n > 0),
+        Setting::button("unlock", "Unlock them", "", n > 0),
+        Setting::button(
+            "stamp",
+            "Keep as stamp",
+            "set down elsewhere, as often as you like",
+            n > 0,
+        ),
+    ];
+    [Setting::text(text), Setting::new("", Control::Row(buttons))]
+}
+
+/// What can be done with the stamp.
+fn stamp(hand: &Hand) -> Vec<Setting> {
+    match hand.stamp.len() {
+        0 => vec![Setting::text(
+            "Choose voxels first, by wand, box, sphere or lasso, and keep them as a stamp",
+        )],
+        n => vec![
+            Setting::text(tf!("{n} voxels are set down where you click.", n = n)),
+            Setting::button("turn_stamp", "Turn by 90°", "", true),
+        ],
+    }
+}
