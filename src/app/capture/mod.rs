@@ -9,9 +9,10 @@ use formats::recipe::Recipe;
 use formats::video::{VideoKind, VideoWriter};
 use scene::{Camera, Scene};
 use sensors::appearance::Quality;
-use sensors::cameras::{self, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds};
+use sensors::cameras::{self, Detail, Ready, RenderOptions, SourceId, ViewId, bounds};
+use sensors::rolling;
 
-use crate::camera_views::{LidarModel, camera_input};
+use crate::camera_views::camera_input;
 use crate::panes::camera_strip::camera_label;
 use crate::picture::{self, Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
@@ -113,7 +114,7 @@ fn from_above(scene: &Scene, subject: Subject, options: &CaptureOptions) -> anyh
     let scale = wanted.ceil().max(1.0) as usize;
     let drawn = match subject {
         Subject::Occupancy => picture::occupancy_top(&frame.occupancy, scale),
-        Subject::Lidar => picture::lidar_top(extent, &LidarModel::Exact.sweep(scene)?, scale),
+        Subject::Lidar => picture::lidar_top(extent, &rolling::exact(scene), scale),
         _ => picture::layout_top(frame, scale),
     };
     let size = [extent.ny(), extent.nx()].map(|n| ((n as f64 * wanted) as u32).max(1));
