@@ -6,10 +6,12 @@ use std::sync::Arc;
 
 use egui::ColorImage;
 
+use language::t;
 use scene::Scene;
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
 use sensors::march::MarchScene;
 use viewport::LidarColorMode;
+use widgets::theme;
 
 pub use sensors::cameras::CameraPicture;
 
@@ -272,6 +274,14 @@ impl CameraView {
 fn colors(picture: &CameraPicture, view: ViewId, plane_m: f64) -> ColorImage {
     let (size, rgba) = picture.rgba(view, plane_m);
     ColorImage::from_rgba_unmultiplied(size, &rgba)
+}
+
+/// `CAM_FRONT_LEFT` as a person says it.
+pub fn camera_label(name: &str) -> String {
+    theme::sentence(t(&name
+        .trim_start_matches("CAM_")
+        .replace('_', " ")
+        .to_lowercase()))
 }
 
 #[cfg(test)]

@@ -12,8 +12,7 @@ use sensors::appearance::Quality;
 use sensors::cameras::{self, Detail, Ready, RenderOptions, SourceId, ViewId, bounds};
 use sensors::rolling;
 
-use crate::camera_views::camera_input;
-use crate::panes::camera_strip::camera_label;
+use crate::camera_views::{camera_input, camera_label};
 use crate::picture::{self, Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// What is shown.

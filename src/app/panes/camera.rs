@@ -4,11 +4,12 @@ use egui::Ui;
 
 use scene::Scene;
 
-use super::camera_strip::{CameraStrip, camera_label};
+use super::camera_strip::CameraStrip;
 use super::cameras::{Strips, compared};
 use super::conditions::conditions;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
+use crate::camera_views::camera_label;
 use crate::command::{Command, FileCommand};
 use language::{t, tf};
 use sensors::cameras;

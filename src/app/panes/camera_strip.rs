@@ -13,7 +13,7 @@ use super::box_outlines;
 use super::camera_difference::Differing;
 use super::camera_header::header;
 use super::camera_legend;
-use crate::camera_views::{CameraView, CamerasShown, march};
+use crate::camera_views::{CameraView, CamerasShown, camera_label, march};
 use crate::command::{Command, ViewCommand};
 use crate::sensing::Sensing;
 use crate::state::UiState;
@@ -449,14 +449,6 @@ fn badge(ui: &Ui, painter: &egui::Painter, left_bottom: egui::Pos2, text: &str, 
     let rect = Rect::from_min_size(left_bottom - vec2(0.0, size.y), size);
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(150));
     painter.galley(rect.min + vec2(5.0, 2.0), galley, color);
-}
-
-/// `CAM_FRONT_LEFT` as a person says it.
-pub fn camera_label(name: &str) -> String {
-    theme::sentence(t(&name
-        .trim_start_matches("CAM_")
-        .replace('_', " ")
-        .to_lowercase()))
 }
 
 /// 34567 as `34,567`.

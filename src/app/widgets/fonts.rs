@@ -36,6 +36,11 @@ const LARGEST: u64 = 128 << 20;
 
 /// Uses the fonts that a language needs, by its code.
 pub fn apply(ctx: &Context, code: &str) {
+    ctx.set_fonts(definitions(code, true));
+}
+
+/// The fonts of a language, with or without one of the system.
+fn definitions(code: &str, system_too: bool) -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let needs = match code {
         "ja" => Some((JAPANESE, &OF_JAPANESE[..])),
@@ -51,14 +56,12 @@ pub fn apply(ctx: &Context, code: &str) {
             "letters of the interface",
             FontData::from_static(small),
         );
-        if let Some(font) = system
-            .iter()
-            .find_map(|(path, face)| read(Path::new(path), *face))
-        {
+        let mut system = system.iter().filter(|_| system_too);
+        if let Some(font) = system.find_map(|(path, face)| read(Path::new(path), *face)) {
             add(&mut fonts, "letters of the system", font);
         }
     }
-    ctx.set_fonts(fonts);
+    fonts
 }
 
 /// Behind the fonts that there are.
@@ -76,4 +79,30 @@ fn read(path: &Path, face: u32) -> Option<FontData> {
     let mut font = FontData::from_owned(bytes);
     font.index = face;
     Some(font)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::FontId;
+
+    /// A translation with a letter that its font lacks: run `assets/languages/fonts.py`.
+    #[test]
+    fn every_letter_of_the_interface_has_a_shape() {
+        for language in language::all() {
+            let ctx = Context::default();
+            ctx.set_fonts(definitions(&language.code, false));
+            let _ = ctx.run_ui(Default::default(), |_| {});
+            let texts = language.texts().map(|(_, own)| own).chain([&*language.name]);
+            let letters: std::collections::BTreeSet<char> = texts.flat_map(str::chars).collect();
+            let font = FontId::proportional(14.0);
+            let lacks = ctx.fonts_mut(|fonts| {
+                let lacks = letters
+                    .iter()
+                    .filter(|c| !c.is_control() && !fonts.has_glyph(&font, **c));
+                lacks.collect::<String>()
+            });
+            assert_eq!(lacks, "", "{}", language.code);
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! Applies edits: changes the data, and at once puts a rough version into the voxels.
 
+mod arranged;
 mod at;
 mod box_run;
 mod boxes;
@@ -78,7 +79,7 @@ impl Apply for Edit {
             Self::SetMotion { .. } | Self::SetLength { .. } | Self::SetShape { .. } => {
                 motion::apply(self, scene)?
             }
-            Self::Arrange { .. } => crate::arranged::apply(self, scene)?,
+            Self::Arrange { .. } => arranged::apply(self, scene)?,
             Self::ChangeRoads { change } => crate::roads::apply(scene, change)?,
             Self::ExtendMap { .. } => extend::apply(self, scene)?,
             Self::LetMove { .. } => all_or_nothing(scene, &let_move::let_move(scene, self)?)?,
@@ -88,7 +89,7 @@ impl Apply for Edit {
             }
             edit => at::apply_scoped(edit, scene, Scope::default())?,
         }
-        crate::arranged::keep(scene);
+        arranged::keep(scene);
         Ok(())
     }
 }
@@ -123,7 +124,7 @@ pub fn apply_all(edits: &[Edit], scene: &mut Scene) -> Result<(), EditError> {
             things::replace_background(scene, background);
         }
     }
-    crate::arranged::keep(scene);
+    arranged::keep(scene);
     Ok(())
 }
 

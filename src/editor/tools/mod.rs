@@ -8,6 +8,7 @@ pub mod circle;
 mod hand;
 mod mark;
 pub mod measure;
+mod modes;
 mod rays;
 pub mod region;
 mod response;
@@ -24,8 +25,9 @@ mod toolbox;
 mod view;
 pub mod voxel;
 
-pub use hand::{Choose, DRAW_ORDER, Hand, PaintShape, RegionShape, VoxelMode, VoxelVerb, lane_heading};
+pub use hand::{Choose, DRAW_ORDER, Hand, lane_heading};
 pub use mark::{At, Mark, Role};
+pub use modes::{PaintShape, RegionShape, VoxelMode, VoxelVerb};
 pub use response::{Act, Area, Response};
 pub use setting::{Setting, Value};
 pub use tool::{Cursor, Group, Hint, Shortcut, Tool, ToolDef, ToolId, Wants, When, hint_of};

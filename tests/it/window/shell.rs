@@ -82,12 +82,12 @@ fn keys_are_changed_in_the_sheet() {
     bench.click("M");
     // A keyboard sends the modifier first.
     bench.key(Modifiers::CTRL, Key::ControlLeft);
-    bench.key(Modifiers::CTRL, Key::G);
-    assert_eq!(bench.app().preferences.keymap.text("measure_tool"), "Ctrl+G");
+    bench.key(Modifiers::CTRL, Key::J);
+    assert_eq!(bench.app().preferences.keymap.text("measure_tool"), "Ctrl+J");
     bench.key(Modifiers::NONE, Key::Escape);
     bench.key(Modifiers::NONE, Key::M);
     assert_eq!(bench.app().state.tool, select::ID, "the old chord is free");
-    bench.key(Modifiers::CTRL, Key::G);
+    bench.key(Modifiers::CTRL, Key::J);
     assert_eq!(bench.app().state.tool, measure::ID);
 }
 

@@ -1,0 +1,139 @@
+//! What brushes and the voxel tool do with a drag: shapes, verbs, modes, each with its name and hint.
+
+use serde::{Deserialize, Serialize};
+
+/// What the voxel brush does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VoxelVerb {
+    /// Puts voxels on the face under the pointer.
+    #[default]
+    Attach,
+    /// Takes voxels away.
+    Remove,
+    /// Gives voxels another class.
+    Recolour,
+}
+
+impl VoxelVerb {
+    /// Every verb with its name and key.
+    pub const ALL: [(VoxelVerb, &'static str, &'static str); 3] = [
+        (VoxelVerb::Attach, "Attach", "T"),
+        (VoxelVerb::Remove, "Remove", "R"),
+        (VoxelVerb::Recolour, "Recolour", "Y"),
+    ];
+}
+
+/// What a drag of the brush draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PaintShape {
+    /// A stroke along the way; straight with Ctrl.
+    #[default]
+    Stroke,
+    /// An upright rectangle from corner to corner.
+    Rectangle,
+    /// A straight stroke.
+    Line,
+    /// An outline, point by point.
+    Polygon,
+    /// A street along points.
+    Street,
+    /// What is connected and alike.
+    Fill,
+    /// Takes over the layer under the pointer.
+    Pick,
+}
+
+/// How a region is marked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum RegionShape {
+    /// From corner to corner.
+    #[default]
+    Rectangle,
+    /// What an outline goes around.
+    Lasso,
+    /// Along the way.
+    Brush,
+}
+
+impl PaintShape {
+    /// True for strokes, whose width the brush has.
+    pub fn has_width(self) -> bool {
+        matches!(self, PaintShape::Stroke | PaintShape::Line)
+    }
+
+    /// Every shape with its name and key.
+    pub const ALL: [(PaintShape, &'static str, &'static str); 7] = [
+        (PaintShape::Stroke, "Freehand", "B; straight with Ctrl held"),
+        (PaintShape::Rectangle, "Rectangle", "U"),
+        (PaintShape::Line, "Line", "L"),
+        (PaintShape::Polygon, "Polygon", "P"),
+        (PaintShape::Street, "Street", "P again"),
+        (PaintShape::Fill, "Fill", "K"),
+        (PaintShape::Pick, "Pick", "I, or Alt+click"),
+    ];
+}
+
+/// What a drag of the voxel tool does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VoxelMode {
+    /// Follows the pointer.
+    #[default]
+    Brush,
+    /// A box from corner to corner, its height by the wheel.
+    Block,
+    /// A straight line.
+    Row,
+    /// What is connected and of one class.
+    Fill,
+    /// Chooses what is connected and of one class.
+    Wand,
+    /// Chooses in a box on the ground, its height by the wheel.
+    ChooseBlock,
+    /// Chooses in a sphere.
+    ChooseSphere,
+    /// Chooses in an outline on the screen.
+    ChooseLasso,
+    /// Pulls a face out or pushes it in.
+    Extrude,
+    /// Sets down voxels that were kept.
+    Stamp,
+}
+
+impl VoxelMode {
+    /// Every mode with its name and hint.
+    pub const ALL: [(VoxelMode, &'static str, &'static str); 10] = [
+        (VoxelMode::Brush, "Dab", "B"),
+        (VoxelMode::Block, "Block", "U; wheel sets the height"),
+        (VoxelMode::Row, "Row", "L"),
+        (VoxelMode::Fill, "Flood", "K; connected voxels of one class"),
+        (VoxelMode::Wand, "Wand", "Shift+O; chooses connected voxels"),
+        (VoxelMode::Extrude, "Pull", "P; drags a face out or in"),
+        (
+            VoxelMode::ChooseBlock,
+            "Choose box",
+            "chooses voxels in a box; wheel sets the height",
+        ),
+        (
+            VoxelMode::ChooseSphere,
+            "Choose sphere",
+            "chooses voxels in a sphere",
+        ),
+        (
+            VoxelMode::ChooseLasso,
+            "Choose lasso",
+            "chooses voxels in an outline on the screen",
+        ),
+        (VoxelMode::Stamp, "Stamp", "sets down voxels that were kept"),
+    ];
+
+    /// True if it chooses voxels and changes none.
+    pub fn chooses(self) -> bool {
+        matches!(
+            self,
+            Self::Wand | Self::ChooseBlock | Self::ChooseSphere | Self::ChooseLasso
+        )
+    }
+}
