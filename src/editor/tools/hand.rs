@@ -17,6 +17,7 @@ use scene::{
 
 use super::ToolId;
 use super::beside::ThingState;
+use super::modes::{PaintShape, RegionShape, VoxelMode, VoxelVerb};
 use super::road::RoadHand;
 use super::saved::Stamp;
 
