@@ -85,6 +85,23 @@ def label_box(*, id: types.BoxId, label: types.BoxLabel) -> types.EditLabelBox:
     return cast('types.EditLabelBox', {"label_box": args})
 
 
+def arrange(
+    *,
+    how: types.Arrangement,
+    boxes: Sequence[types.BoxId] | None = None,
+    things: Sequence[types.ThingId] | None = None,
+) -> types.EditArrange:
+    """Groups, hides or locks boxes and things, or the opposite. No voxel changes, and nothing is
+    generated.
+
+    how: What is done to them.
+    boxes: The boxes.
+    things: The things.
+    """
+    args = _given({'how': how, 'boxes': boxes, 'things': things}, ['how'])
+    return cast('types.EditArrange', {"arrange": args})
+
+
 def set_box_class(*, class_: types.Class, id: types.BoxId) -> types.EditSetBoxClass:
     """Turns a box into another class; its size and paint stay, its name goes.
 

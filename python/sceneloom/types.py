@@ -7,6 +7,25 @@ from typing import TYPE_CHECKING, Any, Literal, Sequence, TypedDict
 if TYPE_CHECKING:
     from typing_extensions import NotRequired, TypeAlias
 
+ArrangementGroupArgs = TypedDict(
+    'ArrangementGroupArgs',
+    {
+        # Name of the group; empty means none.
+        'name': 'NotRequired[str]',
+    },
+)
+
+# Chosen and moved together from now on; what was in other groups leaves them.
+ArrangementGroup = TypedDict(
+    'ArrangementGroup',
+    {
+        'group': 'ArrangementGroupArgs',
+    },
+)
+
+# What is done to the arrangement of objects.
+Arrangement: TypeAlias = "Literal['hide', 'show', 'lock', 'unlock', 'ungroup'] | ArrangementGroup"
+
 # A channel of the bird's-eye-view layout, in UniScene's order; the discriminant is the bit. Layers 0 to 7 are
 # map layers that the user paints; 8 to 17 are the footprints of boxes.
 BevLayer: TypeAlias = "Literal['drivable_area', 'ped_crossing', 'walkway', 'stop_line', 'carpark_area', 'road_divider', 'lane_divider', 'road_block', 'car', 'truck', 'construction_vehicle', 'bus', 'trailer', 'barrier', 'motorcycle', 'bicycle', 'pedestrian', 'traffic_cone']"
@@ -326,6 +345,26 @@ EditLabelBox = TypedDict(
     'EditLabelBox',
     {
         'label_box': 'EditLabelBoxArgs',
+    },
+)
+
+EditArrangeArgs = TypedDict(
+    'EditArrangeArgs',
+    {
+        # The boxes.
+        'boxes': 'NotRequired[Sequence[BoxId]]',
+        # What is done to them.
+        'how': 'Arrangement',
+        # The things.
+        'things': 'NotRequired[Sequence[ThingId]]',
+    },
+)
+
+# Groups, hides or locks boxes and things, or the opposite. No voxel changes, and nothing is generated.
+EditArrange = TypedDict(
+    'EditArrange',
+    {
+        'arrange': 'EditArrangeArgs',
     },
 )
 
@@ -832,7 +871,7 @@ EditSetRig = TypedDict(
 
 # One change of the frame that is shown (or, for the prompt and the sensors, of the scene). As JSON:
 # `{"remove_box": {"id": 7}}`; unknown keys are refused by name.
-Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
+Edit: TypeAlias = 'EditRemoveBox | EditAddBox | EditMoveBox | EditLabelBox | EditArrange | EditSetBoxClass | EditPaintBev | EditAddThings | EditRemoveThings | EditMoveThings | EditRaiseThings | EditChangeThing | EditClearScenery | EditAddPolylines | EditChangeRoads | EditPaintVoxels | EditUnlockVoxels | EditClearPaint | EditCorrect | EditAt | EditSetShape | EditSetMotion | EditForecast | EditExtendMap | EditLetMove | EditSetLength | EditConfirmInferred | EditWaive | EditUnwaive | EditSetPrompt | EditSetConditions | EditKeepWords | EditSetRig'
 
 # Receipt of `export`.
 Exported = TypedDict(
