@@ -324,7 +324,7 @@ impl Canvas {
             draw_fields_of_view(ui, map, &scene.rig, pose, chosen);
         }
         if state.shown.boxes {
-            draw_boxes(ui, map, response, input.scene, &state.tools);
+            draw_boxes(ui, map, response, input.scene, state);
         }
         unsettled_marks::from_above(ui.painter(), map, self.extent, &input.unsettled, input.generating);
         if let Some(marks) = &state.shown.finding_marks {
@@ -378,7 +378,7 @@ impl Canvas {
         }
         if tools.row_open {
             for b in row::coming(input.scene.frame(), tools) {
-                draw_box(ui, map, &b, BoxStyle::Ghost);
+                draw_box(ui, map, &b, b.class.color(), BoxStyle::Ghost);
             }
         }
         let (marks, cursor) = self

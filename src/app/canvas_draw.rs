@@ -9,7 +9,8 @@ use scene::{BevLayer, LidarSweep, PolylineKind, Pose, Scene, SceneBox, SensorRig
 
 use super::camera_views::LidarShown;
 use super::screen_map::ScreenMap;
-use super::tools::Hand;
+use super::state::UiState;
+use viewport::track_color;
 use widgets::theme;
 
 /// What of `outer` is not covered by `inner`.
@@ -181,7 +182,16 @@ pub(super) enum BoxStyle {
     Ghost,
 }
 
-pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &Scene, hand: &Hand) {
+/// The colour of a box: its class's, or one of its own.
+pub(super) fn box_color(b: &SceneBox, by_track: bool) -> [u8; 3] {
+    match by_track {
+        true => track_color(b.id),
+        false => b.class.color(),
+    }
+}
+
+pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &Scene, state: &UiState) {
+    let (hand, by_track) = (&state.tools.hand, state.shown.by_track);
     let frame = scene.frame();
     let hovered = response
         .hover_pos()
@@ -196,20 +206,19 @@ pub(super) fn draw_boxes(ui: &Ui, map: &ScreenMap, response: &Response, scene: &
             } else {
                 BoxStyle::Plain
             };
-            draw_box(ui, map, b, style);
+            draw_box(ui, map, b, box_color(b, by_track), style);
         }
     }
     if let Some(b) = hand.selected.and_then(|id| frame.boxes.get(&id)) {
-        draw_box(ui, map, b, BoxStyle::Selected);
+        draw_box(ui, map, b, box_color(b, by_track), BoxStyle::Selected);
         if hand.tool == select::ID && !scene.arranged.locked.boxes.contains(&b.id) {
             draw_handles(ui, map, b);
         }
     }
 }
 
-pub(super) fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, style: BoxStyle) {
+pub(super) fn draw_box(ui: &Ui, map: &ScreenMap, b: &SceneBox, color: [u8; 3], style: BoxStyle) {
     let painter = ui.painter();
-    let color = b.class.color();
     let corners: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
     let (opacity, edge) = match style {
         BoxStyle::Plain => (0.42, Stroke::new(1.3, theme::rgb(color))),

@@ -120,7 +120,7 @@ impl Board<'_> {
             }
             Mark::Ghost(b) => {
                 if let Some(map) = self.map {
-                    draw_box(ui, map, b, BoxStyle::Ghost);
+                    draw_box(ui, map, b, b.class.color(), BoxStyle::Ghost);
                 }
             }
             Mark::Coming(form) => match self.map {

@@ -23,11 +23,9 @@ use super::marks::Board;
 use super::pointer::{self, Held, Step};
 use super::screen_map::{point, pos};
 use super::state::{UiState, called, position_text};
-use super::thing_outlines;
 use super::tools::ToolState;
-use super::track_marks;
-use super::unsettled_marks;
 use super::views_shown::ViewsShown;
+use super::{thing_outlines, track_marks, unsettled_marks};
 use crate::shell::live::Bounds;
 use widgets::software_ui;
 use widgets::theme;
@@ -396,6 +394,7 @@ impl View3d {
         let options = ViewOptions {
             grid_lines: state.shown.grid,
             boxes: state.shown.boxes,
+            by_track: state.shown.by_track,
             frusta: self.options.frusta || state.windows.sensors,
             samples: if coarse || gpu.software { 1 } else { 4 },
             point_px: self.options.point_px * self.pixels_per_point * if coarse { 0.5 } else { 1.0 },
@@ -455,6 +454,7 @@ impl View3d {
         let options = ViewOptions {
             grid_lines: shown.grid,
             boxes: shown.boxes,
+            by_track: shown.by_track,
             pixels_per_point: self.pixels_per_point,
             ..self.options.clone()
         };

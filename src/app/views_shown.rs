@@ -23,6 +23,8 @@ pub struct ViewsShown {
     pub underlay: Underlay,
     /// Boxes.
     pub boxes: bool,
+    /// A colour of its own for each box, in place of its class's.
+    pub by_track: bool,
     /// Lane centres and dividers as lines.
     pub lines: bool,
     /// The 10 m grid, in both views.
@@ -40,6 +42,7 @@ impl Default for ViewsShown {
         Self {
             underlay: Underlay::Both,
             boxes: true,
+            by_track: false,
             lines: true,
             grid: true,
             lidar_from_above: false,

@@ -27,6 +27,7 @@ pub mod shaders;
 mod shared;
 pub mod splats;
 mod target;
+mod track_color;
 pub mod ui_mesh;
 mod view;
 mod voxels;
@@ -40,6 +41,7 @@ pub use options::{Background, BrushCells, LayoutPlane, LidarView, ViewOptions, V
 pub use points::{LidarColorMode, lidar_colors};
 pub use shared::{COLOR_FORMAT, FRAME_UNIFORM_BYTES, FrameUniforms};
 pub use splats::{SPLAT_UNIFORM_BYTES, SplatError, SplatRenderer};
+pub use track_color::track_color;
 pub use view::Viewport;
 
 use scene::Extent;

@@ -9,6 +9,7 @@ use super::faces::{FaceList, FaceStyle};
 use super::lines::LineList;
 use super::meshing::NORMALS;
 use super::options::drop_m;
+use super::track_color::track_color;
 use super::{GROUND_TOP_M, ViewScene, ego};
 use scene::{Camera, Extent, Optics, SceneBox, SensorRig};
 
@@ -52,7 +53,11 @@ impl Marks {
                     center_m: b.center_m - down,
                     ..**b
                 };
-                marks.scene_box(&lowered, selected, scene.hovered == Some(b.id));
+                let color = match options.by_track {
+                    true => track_color(b.id),
+                    false => b.class.color(),
+                };
+                marks.scene_box(&lowered, color, selected, scene.hovered == Some(b.id));
             }
         }
         for brush in scene.brush {
@@ -149,8 +154,8 @@ impl Marks {
         self.faces.add(corners, [r, g, b, 16], FaceStyle::Plain);
     }
 
-    fn scene_box(&mut self, b: &SceneBox, selected: bool, hovered: bool) {
-        let [r, g, bl] = lighter(b.class.color(), if hovered { 0.55 } else { 0.22 });
+    fn scene_box(&mut self, b: &SceneBox, color: [u8; 3], selected: bool, hovered: bool) {
+        let [r, g, bl] = lighter(color, if hovered { 0.55 } else { 0.22 });
         let color = if selected {
             [SELECTED[0], SELECTED[1], SELECTED[2], 255]
         } else {

@@ -62,6 +62,8 @@ pub struct ViewOptions {
     pub layout_opacity: f32,
     /// Boxes as wire frames.
     pub boxes: bool,
+    /// A colour of its own for each box ([`track_color`](crate::track_color)), in place of its class's.
+    pub by_track: bool,
     /// How much lower than they are boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m below the
     /// physical one ([`GROUND_TOP_M`]), so with this things stand on the drawn road. Code that picks boxes in the view adds
     /// it to the ray's z first. 0 draws them where they are.
@@ -96,6 +98,7 @@ impl Default for ViewOptions {
             layout_plane: LayoutPlane::WhereEmpty,
             layout_opacity: 0.9,
             boxes: true,
+            by_track: false,
             drop_m: -GROUND_TOP_M,
             lidar: true,
             point_px: 2.5,

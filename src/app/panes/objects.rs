@@ -11,6 +11,7 @@ use super::id::PaneId;
 use super::object_order::listing_ui;
 use super::pane::{Pane, PaneContext, Place};
 use super::{thing_list, things};
+use crate::canvas_draw::box_color;
 use crate::command::{Command, ViewCommand};
 use crate::fields::{caption, field, fields, number, numbers};
 use crate::panes::label::label_ui;
@@ -250,9 +251,10 @@ fn box_row(
         b.center_m.truncate().distance(ego_m)
     );
     let label = tf!("Box {id} {name}", id = b.id.0, name = called(b));
+    let color = theme::rgb(box_color(b, state.shown.by_track));
     let color = match scene.arranged.hidden.boxes.contains(&b.id) {
-        true => theme::class_color(b.class).gamma_multiply(0.35),
-        false => theme::class_color(b.class),
+        true => color.gamma_multiply(0.35),
+        false => color,
     };
     let row = ui
         .horizontal(|ui| {

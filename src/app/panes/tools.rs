@@ -66,6 +66,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         ui.add_space(theme::GAP);
         section(ui, t("Overlays"));
         toggle_row(ui, t("Boxes"), &mut state.shown.boxes);
+        toggle_row(ui, t("A colour for each box"), &mut state.shown.by_track);
         things_row(ui, &state.tools, commands);
         toggle_row(ui, t("Lanes and dividers"), &mut state.shown.lines);
         toggle_row(ui, t("LiDAR points in BEV"), &mut state.shown.lidar_from_above);
