@@ -221,7 +221,8 @@ fn opacity_rows(ui: &mut Ui, tools: &mut ToolState, over_voxels: bool) {
     let slider = |ui: &mut Ui, caption: &str, value: &mut f32, name: &str| {
         ui.horizontal(|ui| {
             ui.label(egui::RichText::new(caption).color(theme::text_weak()));
-            ui.spacing_mut().slider_width = 74.0;
+            // (as much as the field beside it leaves)
+            ui.spacing_mut().slider_width = (ui.available_width() - 62.0).clamp(24.0, 74.0);
             let slider = egui::Slider::new(value, 0.0..=1.0).fixed_decimals(2);
             ui.add(slider).on_hover_text(name).accessible_name(name);
         });

@@ -79,16 +79,16 @@ fn keys_are_changed_in_the_sheet() {
     let mut bench = Bench::new();
     bench.off();
     bench.key(Modifiers::NONE, Key::Questionmark);
-    bench.click("M");
+    bench.click("A");
     // A keyboard sends the modifier first.
     bench.key(Modifiers::CTRL, Key::ControlLeft);
     bench.key(Modifiers::CTRL, Key::J);
-    assert_eq!(bench.app().preferences.keymap.text("measure_tool"), "Ctrl+J");
+    assert_eq!(bench.app().preferences.keymap.text("add_box_tool"), "Ctrl+J");
     bench.key(Modifiers::NONE, Key::Escape);
-    bench.key(Modifiers::NONE, Key::M);
+    bench.key(Modifiers::NONE, Key::A);
     assert_eq!(bench.app().state.tool, select::ID, "the old chord is free");
     bench.key(Modifiers::CTRL, Key::J);
-    assert_eq!(bench.app().state.tool, measure::ID);
+    assert_eq!(bench.app().state.tool, add_box::ID);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod choosing;
 mod options;
+mod stamping;
 mod target;
 
 use std::collections::BTreeSet;
@@ -19,10 +20,11 @@ use super::saved::Stamp;
 use super::setting::{self, Setting, Value};
 use super::{
     Act, At, Context, Cursor, Event, Group, Hand, Hint, Mark, Modifiers, Pointer, Response, Shortcut, Sight,
-    Tool, ToolDef, ToolId, View, ViewKind, VoxelMode, VoxelVerb, Wants, When, hint_of,
+    Tool, ToolDef, ToolId, ViewKind, VoxelMode, VoxelVerb, Wants, When, hint_of,
 };
 pub use choosing::Joins;
 use choosing::{Area, joins};
+use stamping::{stamp_at, stamped};
 use target::target;
 
 /// Its name.
@@ -388,30 +390,6 @@ impl Voxels {
             Some(Drag::Pull { .. }) => "Pull voxels",
         };
         Response::act(Act::Commit(label.into()))
-    }
-}
-
-/// Where the stamp would be set down by a press.
-fn stamp_at(frame: &Frame, hand: &Hand, view: &dyn View, at: DVec2) -> Vec<(Class, Vec<Cell>)> {
-    let cell = view
-        .ray(at)
-        .and_then(|ray| target(frame, VoxelVerb::Attach, [1, 1], &ray).first().copied());
-    cell.map_or_else(Vec::new, |cell| hand.stamp.at(frame, cell))
-}
-
-fn stamped(cx: &Context<'_>, pointer: &Pointer) -> Response {
-    if cx.hand.stamp.is_empty() {
-        let text = "Choose voxels first, by wand, box, sphere or lasso, and keep them as a stamp";
-        return Response::act(Act::Note(text.into()));
-    }
-    let parts = stamp_at(cx.frame(), cx.hand, cx.view, pointer.at);
-    let edits: Vec<Edit> = parts
-        .into_iter()
-        .map(|(class, cells)| Edit::PaintVoxels { cells, class })
-        .collect();
-    match edits.is_empty() {
-        true => Response::none(),
-        false => Response::act(Act::Apply("Stamp voxels".into(), edits)),
     }
 }
 
