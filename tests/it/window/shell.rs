@@ -4,7 +4,7 @@ use app::compare::CompareMode;
 use app::dock::Workspace;
 use app::panes::id::PaneId;
 use app::settings::Settings;
-use editor::tools::{add_box, measure, select};
+use editor::tools::{add_box, select};
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::kittest::Queryable;
 use scene::{BoxId, Class};
