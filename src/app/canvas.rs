@@ -17,6 +17,7 @@ use language::{t, tf};
 use scene::{BevLayer, Class, LidarSweep, Scene, SceneBox, SceneRev, Thing};
 
 use super::bev_image::{self, LayerStyle};
+use super::canvas_access;
 use super::canvas_draw::{
     BoxStyle, around, draw_box, draw_boxes, draw_ego, draw_fields_of_view, draw_grid, draw_lines,
     draw_points, draw_scale_bar,
@@ -149,6 +150,7 @@ impl Canvas {
             ui.set_clip_rect(clip);
             self.draw(ui, &response, &map, input, state);
         });
+        canvas_access::boxes(ui, &map, input.scene, state, commands);
         response
     }
 

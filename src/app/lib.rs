@@ -6,6 +6,7 @@ pub mod batch;
 mod bev_image;
 pub mod camera_views;
 pub mod canvas;
+mod canvas_access;
 mod canvas_draw;
 mod canvas_tools;
 pub mod capture;

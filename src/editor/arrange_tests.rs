@@ -88,7 +88,11 @@ fn copies_get_free_names_and_a_place_of_their_own() {
 
 #[test]
 fn copies_move_and_are_grouped_as_what_they_are_copies_of() {
-    let frame = frame(&[car(1, 0.0, 0.0, 0.0), car(2, 0.0, 5.0, 0.0), car(3, 0.0, 9.0, 0.0)]);
+    let frame = frame(&[
+        car(1, 0.0, 0.0, 0.0),
+        car(2, 0.0, 5.0, 0.0),
+        car(3, 0.0, 9.0, 0.0),
+    ]);
     let mut document = Document::new(Scene::single("t", frame, Arc::default(), 1));
     let name = Default::default();
     let key = |time_s, x| scene::Key {
