@@ -9,6 +9,7 @@ mod desk;
 mod editing;
 mod files;
 mod guests;
+mod objects;
 mod overdraw;
 mod recovery;
 mod sensors;
