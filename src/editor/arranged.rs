@@ -7,7 +7,7 @@ use scene::{BoxId, Edit, EditError, Members, Scene, ThingId};
 use super::apply::apply_all;
 
 /// The box that an edit changes by its number.
-fn box_of(edit: &Edit) -> Option<BoxId> {
+pub(crate) fn box_of(edit: &Edit) -> Option<BoxId> {
     match edit {
         Edit::RemoveBox { id }
         | Edit::MoveBox { id, .. }
@@ -21,7 +21,7 @@ fn box_of(edit: &Edit) -> Option<BoxId> {
 }
 
 /// The things that an edit changes by their numbers.
-fn things_of(edit: &Edit) -> &[ThingId] {
+pub(crate) fn things_of(edit: &Edit) -> &[ThingId] {
     match edit {
         Edit::RemoveThings { ids } | Edit::MoveThings { ids, .. } | Edit::RaiseThings { ids, .. } => ids,
         Edit::ChangeThing { id, .. } => std::slice::from_ref(id),

@@ -27,6 +27,7 @@ pub mod tools;
 pub mod traffic;
 pub mod transform;
 pub mod voxel_ops;
+pub mod within;
 
 pub use apply::forecast::{Forecast, forecast, traffic_drives};
 pub use apply::{Apply, apply_all};

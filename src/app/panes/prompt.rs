@@ -13,6 +13,7 @@ use egui::Ui;
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext, Place};
 use crate::command::Command;
+use language::t;
 use widgets::icons::Icon;
 use widgets::theme;
 
@@ -42,6 +43,15 @@ impl Pane for Prompt {
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let scene = cx.document.settled_scene();
-        theme::panel_frame().show(ui, |ui| cx.prompt.show(ui, scene, commands));
+        let tools = &mut cx.state.tools;
+        theme::panel_frame().show(ui, |ui| {
+            if !tools.region.is_empty() {
+                ui.checkbox(&mut tools.words_within, t("Only in the marked region"))
+                    .on_hover_text(t(
+                        "Words change only what lies there, and what they add comes there. Roads, time and weather are the whole scene's.",
+                    ));
+            }
+            cx.prompt.show(ui, scene, commands);
+        });
     }
 }

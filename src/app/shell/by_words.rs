@@ -7,7 +7,7 @@ use super::toasts::Level;
 use crate::prompting::Ask;
 use crate::tools::Choose;
 use editor::Edit;
-use language::t;
+use language::{t, tf};
 use scene::{BoxId, Frame};
 use sensors::cameras::pictures;
 
@@ -19,7 +19,22 @@ impl SceneloomApp {
     /// cameras show pictures where time or weather changed: classes and depths do not know them.
     pub(crate) fn apply_words(&mut self, words: &str, edits: &[Edit]) {
         let before = self.document.settled_scene().clone();
-        let mut edits = edits.to_vec();
+        let tools = &self.state.tools;
+        let (mut edits, left) = match tools.words_within {
+            true => tools.within_region(&before, edits.to_vec()),
+            false => (edits.to_vec(), 0),
+        };
+        if left > 0 {
+            let text = match left {
+                1 => t("1 change lies outside the marked region and was left out").to_owned(),
+                n => tf!(
+                    "{n} changes lie outside the marked region and were left out",
+                    n = n
+                ),
+            };
+            let now_s = self.now_s();
+            self.toasts.push(Level::Info, text, now_s);
+        }
         edits.push(Edit::KeepWords {
             words: words.to_owned(),
         });

@@ -2,11 +2,12 @@
 
 use std::ops::{Deref, DerefMut};
 
-use editor::Shape;
 use editor::tools::{Area, DRAW_ORDER, Hand, Toolbox};
+use editor::{Edit, Shape};
 use glam::DVec2;
 use job::GenParams;
 use job::inpaint::InpaintMask;
+use scene::Scene;
 
 use crate::scenery::Drawer;
 
@@ -22,6 +23,8 @@ pub struct ToolState {
     pub hand: Hand,
     /// Cells to inpaint although nothing was edited there.
     pub region: InpaintMask,
+    /// Words change only what lies in that region.
+    pub words_within: bool,
     /// How often cells were inpainted: each time from other noise.
     pub times_inpainted: u64,
     /// What draws scenery.
@@ -44,6 +47,7 @@ impl Default for ToolState {
             toolbox: Toolbox::default(),
             hand: Hand::default(),
             region: InpaintMask::default(),
+            words_within: false,
             times_inpainted: 0,
             drawer: Drawer::Rules(None),
             scenery_draws: 0,
@@ -70,6 +74,25 @@ impl DerefMut for ToolState {
 }
 
 impl ToolState {
+    /// Edits as far as they are of the marked region, and how many objects they leave out; see [`within`](editor::within).
+    pub fn within_region(&self, scene: &Scene, edits: Vec<Edit>) -> (Vec<Edit>, usize) {
+        let extent = scene.frame().extent();
+        let columns = extent
+            .all_columns()
+            .filter(|c| self.region.has_column(extent, *c));
+        let (count, sum) = columns.fold((0.0, DVec2::ZERO), |(n, sum), [x, y]| {
+            (n + 1.0, sum + extent.center(x, y, 0).truncate())
+        });
+        let inside = |p: DVec2| {
+            let column = extent.column_at(p.x, p.y);
+            column.is_some_and(|c| self.region.has_column(extent, c))
+        };
+        match count > 0.0 {
+            true => editor::within::within(scene, edits, &inside, sum / count),
+            false => (edits, 0),
+        }
+    }
+
     /// Makes parameters inpaint the region.
     pub fn inpaint_region(&mut self, params: &mut GenParams) {
         self.times_inpainted += 1;
