@@ -1,7 +1,10 @@
 //! Words: typed into the prompt, they change the scene or make another one, and all of it can be undone.
 
+use editor::tools::Area;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
+use glam::DVec2;
+use scene::BoxId;
 use sensors::cameras::pictures;
 
 use super::bench::Bench;
@@ -131,4 +134,32 @@ fn what_was_carried_out_is_not_said_to_be_not_understood() {
             .count(),
         0
     );
+}
+
+#[test]
+fn words_change_only_what_lies_in_the_marked_region() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.key(Modifiers::NONE, Key::A);
+    let at = bench.bev(-15.0, 2.0);
+    bench.drag(&[at], Modifiers::NONE);
+    assert_eq!(bench.frame().boxes.len(), 2);
+    // What is marked lies behind us, the car of the scene ahead.
+    let extent = bench.frame().extent();
+    let behind = Area::Rect(DVec2::new(-30.0, -10.0), DVec2::new(-5.0, 10.0));
+    bench.app().state.tools.mark(extent, &behind, true);
+    bench.steps(2);
+    bench.click("Only in the marked region");
+    say(&mut bench, "remove all cars");
+    bench.key(Modifiers::NONE, Key::Enter);
+    let left: Vec<_> = bench.frame().boxes.keys().copied().collect();
+    assert_eq!(left, [BoxId(7)]);
+    let told = bench.harness.query_by_label_contains("outside the marked region");
+    assert!(told.is_some());
+    // What is added comes there.
+    say(&mut bench, "add a bus 20 m ahead");
+    bench.key(Modifiers::NONE, Key::Enter);
+    let frame = bench.frame();
+    let bus = frame.boxes.values().find(|b| b.id != BoxId(7)).expect("a bus");
+    assert!((-30.0..-5.0).contains(&bus.center_m.x), "{bus:?}");
 }
