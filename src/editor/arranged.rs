@@ -229,7 +229,9 @@ mod tests {
             .expect("there");
         let seen = seen(document.scene());
         assert_eq!(solid(document.scene()), all);
-        assert_eq!(solid(&seen) * 3, all * 2);
+        // Of three cars alike two are seen, give or take how they lie on the grid.
+        let share = solid(&seen) as f64 / all as f64;
+        assert!((share - 2.0 / 3.0).abs() < 0.02, "{share}");
         assert_eq!((seen.frame().boxes.len(), seen.background.len()), (2, 0));
         document.undo();
         assert!(Arc::ptr_eq(&super::seen(document.scene()), document.scene()));

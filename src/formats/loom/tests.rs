@@ -528,7 +528,7 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 7; open it with the sceneloom that wrote it"
+        "manifest.json: version is 0, expected 8; open it with the sceneloom that wrote it"
     );
     for version in ["8", "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
