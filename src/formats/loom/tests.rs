@@ -535,7 +535,7 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         let bytes = pack(&[("manifest.json".to_owned(), manifest.into_bytes())]);
         let line = from_bytes(&bytes).expect_err("newer").to_string();
         assert!(
-            line.starts_with(&format!("manifest.json: version is {version}, expected 7;")),
+            line.starts_with(&format!("manifest.json: version is {version}, expected 8;")),
             "{line}"
         );
     }
