@@ -113,6 +113,7 @@ impl SceneryWish {
             forms.extend(on_map.iter().map(|t| t.form.clone()));
             cleared.extend(on_the_map(map, place.extent(), &columns));
         }
+        ids.retain(|id| !scene.arranged.locked.things.contains(id));
         let mut edits = Vec::new();
         if !ids.is_empty() {
             edits.push(Edit::RemoveThings { ids });
@@ -314,6 +315,29 @@ mod tests {
     fn scenery_voxels(grid: &VoxelGrid) -> usize {
         let counts = grid.class_counts();
         counts[usize::from(Class::Manmade.id())] + counts[usize::from(Class::Vegetation.id())]
+    }
+
+    #[test]
+    fn locked_things_stand_when_scenery_is_drawn_anew() {
+        let mut document = Document::new(open::from_template("straight", 7).expect("a template"));
+        let kept = document
+            .scene()
+            .background
+            .iter()
+            .next()
+            .expect("a thing")
+            .clone();
+        let lock = Edit::Arrange {
+            boxes: Vec::new(),
+            things: vec![kept.id],
+            how: scene::Arrangement::Lock,
+        };
+        document.apply("Lock", &lock).expect("there");
+        let edits = wish(11).edits(document.scene()).expect("rules");
+        document.apply_all("Draw scenery", &edits).expect("sound");
+        let after = &document.scene().background;
+        assert_eq!(after.get(kept.id), Some(&kept));
+        assert!(after.len() > 1);
     }
 
     #[test]
