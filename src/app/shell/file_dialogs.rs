@@ -58,9 +58,8 @@ impl Purpose {
         match self {
             Purpose::Open => "Open file",
             Purpose::SaveAs => "Save file",
-            Purpose::Screenshot => "Save picture",
+            Purpose::Screenshot | Purpose::Turn => "Save file",
             Purpose::Clip => "Save clip",
-            Purpose::Turn => "Save turn",
             Purpose::Model => "Place model",
             Purpose::ModelShape => "Take shape",
             Purpose::ImportRig => "Import file",

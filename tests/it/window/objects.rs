@@ -124,7 +124,7 @@ fn a_picture_of_the_map_is_saved_from_the_dialog() {
     bench.click("Map");
     bench.click("Save picture…");
     let path = bench.folder.path().join("map.png");
-    bench.give_path(&path, "Save picture");
+    bench.give_path(&path, "Save file");
     bench.wait_until("the picture", |_| path.exists());
     let bytes = std::fs::read(&path).expect("there");
     let inside = formats::png::notes_inside(&bytes).expect("a PNG");
