@@ -528,14 +528,17 @@ fn versions_that_nobody_knows_are_refused_in_one_line() {
         .to_string();
     assert_eq!(
         line,
-        "manifest.json: version is 0, expected 8; open it with the sceneloom that wrote it"
+        format!("manifest.json: version is 0, expected {VERSION}; open it with the sceneloom that wrote it")
     );
-    for version in ["8", "4294967298", "18446744073709551615"] {
+    let next = (VERSION + 1).to_string();
+    for version in [&next, "4294967298", "18446744073709551615"] {
         let manifest = format!("{{\"format\":\"sceneloom\",\"version\":{version},\"new\":[]}}");
         let bytes = pack(&[("manifest.json".to_owned(), manifest.into_bytes())]);
         let line = from_bytes(&bytes).expect_err("newer").to_string();
         assert!(
-            line.starts_with(&format!("manifest.json: version is {version}, expected 8;")),
+            line.starts_with(&format!(
+                "manifest.json: version is {version}, expected {VERSION};"
+            )),
             "{line}"
         );
     }
