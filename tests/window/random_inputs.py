@@ -11,7 +11,7 @@ import os, random, subprocess, sys, tempfile, time
 
 KEYS = """a b c d e f g h i k l m n o p q r s t u v w x y z 0 1 3 5 7 bracketleft bracketright comma period slash space Tab Return Escape Escape Delete
 BackSpace Left Right Up Down Prior Next Home F1 F2 F10 ctrl+z ctrl+z ctrl+y ctrl+d ctrl+a ctrl+i ctrl+c ctrl+v ctrl+x ctrl+k ctrl+m ctrl+comma ctrl+e ctrl+n
-ctrl+shift+a ctrl+Return ctrl+Tab shift+Tab shift+b shift+t shift+l shift+s shift+p shift+u shift+o shift+backslash alt+1 alt+2 alt+3 alt+4 alt+5 alt+6""".split()
+ctrl+g ctrl+h ctrl+l ctrl+shift+g ctrl+shift+h ctrl+shift+l ctrl+shift+p ctrl+shift+a ctrl+Return ctrl+Tab shift+Tab shift+b shift+t shift+l shift+s shift+p shift+u shift+o shift+backslash alt+1 alt+2 alt+3 alt+4 alt+5 alt+6""".split()
 WORDS = ["a bus ahead", "at night", "remove the cars", "four lanes", "rain", "12", "-3.5", "1e9", "nan", "", "ß 日本", "no sidewalk", "a roundabout here"]
 
 
