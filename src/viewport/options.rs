@@ -62,7 +62,7 @@ pub struct ViewOptions {
     pub layout_opacity: f32,
     /// Boxes as wire frames.
     pub boxes: bool,
-    /// A colour of its own for each box ([`track_color`](crate::track_color)), in place of its class's.
+    /// A colour of its own for each box, by its number, in place of its class's.
     pub by_track: bool,
     /// How much lower than they are boxes, ego vehicle and cameras are drawn, m. The voxels' ground lies 0.6 m below the
     /// physical one ([`GROUND_TOP_M`]), so with this things stand on the drawn road. Code that picks boxes in the view adds
