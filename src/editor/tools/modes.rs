@@ -109,24 +109,20 @@ impl VoxelMode {
         (VoxelMode::Block, "Block", "U; wheel sets the height"),
         (VoxelMode::Row, "Row", "L"),
         (VoxelMode::Fill, "Flood", "K; connected voxels of one class"),
-        (VoxelMode::Wand, "Wand", "Shift+O; chooses connected voxels"),
         (VoxelMode::Extrude, "Pull", "P; drags a face out or in"),
-        (
-            VoxelMode::ChooseBlock,
-            "Choose box",
-            "chooses voxels in a box; wheel sets the height",
-        ),
-        (
-            VoxelMode::ChooseSphere,
-            "Choose sphere",
-            "chooses voxels in a sphere",
-        ),
+        (VoxelMode::Stamp, "Stamp", "sets down voxels that were kept"),
+        (VoxelMode::Wand, "Wand", "Shift+O; chooses connected voxels"),
         (
             VoxelMode::ChooseLasso,
-            "Choose lasso",
+            "Lasso",
             "chooses voxels in an outline on the screen",
         ),
-        (VoxelMode::Stamp, "Stamp", "sets down voxels that were kept"),
+        (
+            VoxelMode::ChooseBlock,
+            "In box",
+            "chooses voxels in a box; wheel sets the height",
+        ),
+        (VoxelMode::ChooseSphere, "In sphere", "chooses voxels in a sphere"),
     ];
 
     /// True if it chooses voxels and changes none.
