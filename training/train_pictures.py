@@ -305,14 +305,15 @@ class Trainer:
 
     @torch.no_grad()
     def fix_latents(self):
-        """The encoder is done: statistics of its mean, and what the transformer will see."""
+        """The encoder is done: statistics of its mean, if they did not come with it, and what the transformer will see."""
         self.forget("vae_step")
-        with self.amp():
-            mean = torch.cat([self.vae.ema.moments(self.pool.pictures(self.args.pictures)[0])[0] for _ in range(8)])
         self.vae.model.load_state_dict(self.vae.ema.state_dict())
-        for model in (self.vae.model, self.vae.ema):
-            model.latent_mean.copy_(mean.mean((0, 2, 3)))
-            model.latent_std.copy_(mean.std((0, 2, 3)))
+        if not self.args.init_vae:
+            with self.amp():
+                mean = torch.cat([self.vae.ema.moments(self.pool.pictures(self.args.pictures)[0])[0] for _ in range(8)])
+            for model in (self.vae.model, self.vae.ema):
+                model.latent_mean.copy_(mean.mean((0, 2, 3)))
+                model.latent_std.copy_(mean.std((0, 2, 3)))
         model = self.vae.model
         for part in (model.stem, model.encoder, model.down, model.encoder_norm, model.encoder_head):
             part.requires_grad_(False)
@@ -563,7 +564,9 @@ def arguments():
     p.add_argument("--silent", type=float, default=0.04, help="share of samples that are told nothing, for guidance")
     p.add_argument("--sampling", type=int, default=4, help="steps of the pictures that are judged")
     p.add_argument("--guidance", type=float, default=2.0, help="of those pictures; 1 is none, and half of the work")
-    p.add_argument("--init-vae"), p.add_argument("--init-dit"), p.add_argument("--init-seg")
+    p.add_argument("--init-vae", help="weights to go on from; the encoder stays as it is, and its own part of the training is left out")
+    p.add_argument("--init-dit", help="weights to go on from")
+    p.add_argument("--init-seg", help="weights to go on from")
     p.add_argument("--seed", type=int, default=0)
     p.add_argument("--threads", type=int, default=2)
     p.add_argument("--note-s", type=float, default=20.0)

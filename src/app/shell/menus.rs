@@ -16,8 +16,18 @@ use widgets::theme;
 /// Takes a command if its entry was clicked.
 type On<'a> = dyn FnMut(bool, Command) + 'a;
 
-/// Draws the menus.
-pub(super) fn menus(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: &mut Vec<Command>) {
+/// Draws the menus, side by side or inside one.
+pub(super) fn menus(
+    ui: &mut Ui,
+    input: &ToolbarInput<'_>,
+    hand: &Hand,
+    folded: bool,
+    commands: &mut Vec<Command>,
+) {
+    if folded {
+        ui.menu_button(t("Menu"), |ui| menus(ui, input, hand, false, commands));
+        return;
+    }
     let on = &mut |clicked: bool, command: Command| {
         if clicked {
             commands.push(command);

@@ -53,38 +53,21 @@ pub struct ToolbarInput<'a> {
     pub preset: Option<usize>,
 }
 
-/// Draws the bar.
+/// Draws the bar. What it has no room for is folded into menus.
 pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: &mut Vec<Command>) {
+    let room = ui.max_rect().width();
+    let mut needs = Needs::load(ui);
+    let fold = needs.fold(room);
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.scope(|ui| {
             let widgets = &mut ui.visuals_mut().widgets;
             widgets.inactive.weak_bg_fill = egui::Color32::TRANSPARENT;
             ui.spacing_mut().item_spacing.x = 0.0;
-            menus(ui, input, hand, commands);
+            menus(ui, input, hand, fold >= Fold::Menus, commands);
         });
         divider(ui);
-        let narrow = ui.max_rect().width() < ROOM_FOR_ALL;
-        for tool in all() {
-            let folded = narrow && tool.group == Group::Beside;
-            let chosen = hand.tool == tool.id;
-            if !folded
-                && icons::button(
-                    ui,
-                    Icon::named(tool.icon),
-                    t(tool.title),
-                    t(tool.key),
-                    chosen,
-                    true,
-                )
-                .clicked()
-            {
-                commands.push(Command::Tool(tool.id));
-            }
-        }
-        if narrow {
-            thing_tools(ui, hand.tool, commands);
-        }
+        tools(ui, fold, hand.tool, commands);
         divider(ui);
         let hint = |label: Option<&str>, keys: &str| {
             label.map_or_else(|| keys.to_owned(), |label| format!("{}  ·  {keys}", t(label)))
@@ -113,41 +96,148 @@ pub fn toolbar_ui(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, commands: 
             commands.push(Command::Redo);
         }
         divider(ui);
-        let mut workspace = input.workspace;
-        let names = Workspace::ALL.map(|(workspace, name)| (workspace, t(name), t("arranges the panes")));
-        if icons::segments(ui, &mut workspace, &names) {
-            commands.push(Command::View(ViewCommand::Workspace(workspace)));
-        }
+        workspaces(ui, input.workspace, fold, commands);
         let left = ui.min_rect().right();
         let right = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            generation(ui, input, commands);
+            generation(ui, input, fold, commands);
             ui.min_rect().left()
         });
         title(ui, input, left, right.inner);
+        let taken = left - ui.max_rect().left() + ui.max_rect().right() - right.inner;
+        needs.learn(ui, fold, taken, room);
     });
 }
 
-/// In a narrower window the tools for things share one button, so that the name of the scene keeps its place, points.
-const ROOM_FOR_ALL: f32 = 1360.0;
+/// How much of the bar is folded into menus; each step folds what those before it do, too.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+enum Fold {
+    /// Nothing is.
+    Nothing,
+    /// The tools for things share one button.
+    Things,
+    /// The workspaces are a menu.
+    Workspaces,
+    /// All tools share one button, and what generates shows its icons only.
+    Tools,
+    /// The menus are one menu.
+    Menus,
+}
 
-/// One button for all tools for things; it opens their list.
-fn thing_tools(ui: &mut Ui, in_hand: ToolId, commands: &mut Vec<Command>) {
-    let selected = in_hand.def().group == Group::Beside;
-    let shown = if selected {
-        in_hand.def()
-    } else {
-        building::ID.def()
-    };
-    let hint = t("buildings, trees, hedges, shrubs, posts");
-    let icon = Icon::named(shown.icon);
-    let button = icons::button(ui, icon, t("Beside the road"), hint, selected, true);
+impl Fold {
+    const ALL: [Self; 5] = [
+        Self::Nothing,
+        Self::Things,
+        Self::Workspaces,
+        Self::Tools,
+        Self::Menus,
+    ];
+}
+
+/// Room for the name of the scene, points.
+const ROOM_FOR_NAME: f32 = 130.0;
+
+/// How wide the bar is at each step of folding, points, as far as it was drawn so. Names are longer in one language than in another.
+#[derive(Clone, Copy, Debug, Default)]
+struct Needs([Option<f32>; Fold::ALL.len()]);
+
+impl Needs {
+    fn id() -> egui::Id {
+        let language = language::chosen().map_or("en", |l| &l.code);
+        egui::Id::unique(("toolbar", language))
+    }
+
+    fn load(ui: &Ui) -> Self {
+        ui.data(|d| d.get_temp(Self::id())).unwrap_or_default()
+    }
+
+    /// The first step that fits, as far as is known.
+    fn fold(&self, room: f32) -> Fold {
+        let fits = |need: &Option<f32>| need.is_none_or(|need| need <= room);
+        Fold::ALL[self.0.iter().position(fits).unwrap_or(Fold::ALL.len() - 1)]
+    }
+
+    /// Notes how wide the bar was; it is drawn once more if that was too wide.
+    fn learn(&mut self, ui: &Ui, fold: Fold, taken: f32, room: f32) {
+        let name = if fold < Fold::Tools { ROOM_FOR_NAME } else { 0.0 };
+        self.0[fold as usize] = Some(taken + name);
+        let needs = *self;
+        ui.data_mut(|d| d.insert_temp(Self::id(), needs));
+        if self.fold(room) != fold {
+            ui.ctx().request_discard("the bar is folded");
+        }
+    }
+}
+
+/// The tools, those of one button in its list.
+fn tools(ui: &mut Ui, fold: Fold, in_hand: ToolId, commands: &mut Vec<Command>) {
+    if fold >= Fold::Tools {
+        let hint = t("Which tool is in hand");
+        let (tool, list) = (in_hand.def(), all().iter().copied());
+        return tool_list(ui, tool, (t(tool.title), hint), true, list, commands);
+    }
+    for tool in all() {
+        let folded = fold >= Fold::Things && tool.group == Group::Beside;
+        let (icon, chosen) = (Icon::named(tool.icon), in_hand == tool.id);
+        if !folded && icons::button(ui, icon, t(tool.title), t(tool.key), chosen, true).clicked() {
+            commands.push(Command::Tool(tool.id));
+        }
+    }
+    if fold >= Fold::Things {
+        let selected = in_hand.def().group == Group::Beside;
+        let shown = if selected { in_hand } else { building::ID };
+        let hint = t("buildings, trees, hedges, shrubs, posts");
+        tool_list(
+            ui,
+            shown.def(),
+            (t("Beside the road"), hint),
+            selected,
+            beside(),
+            commands,
+        );
+    }
+}
+
+/// One button for some tools; it opens their list, and looks chosen while one of them is in hand.
+fn tool_list(
+    ui: &mut Ui,
+    shown: &ToolDef,
+    (name, hint): (&str, &str),
+    chosen: bool,
+    list: impl Iterator<Item = &'static ToolDef>,
+    commands: &mut Vec<Command>,
+) {
+    let button = icons::button(ui, Icon::named(shown.icon), name, hint, chosen, true);
     egui::Popup::menu(&button).show(|ui| {
-        for tool in beside() {
+        for tool in list {
             if item(ui, t(tool.title), short(tool.key), true) {
                 commands.push(Command::Tool(tool.id));
             }
         }
     });
+}
+
+/// The workspaces side by side, or as a menu.
+fn workspaces(ui: &mut Ui, current: Workspace, fold: Fold, commands: &mut Vec<Command>) {
+    let mut chosen = current;
+    let names = Workspace::ALL.map(|(workspace, name)| (workspace, t(name), t("arranges the panes")));
+    if fold >= Fold::Workspaces {
+        let name = names.iter().find(|n| n.0 == current).map_or("", |n| n.1);
+        let menu = ui.menu_button(name, |ui| {
+            for (workspace, name, _) in names {
+                if ui.selectable_label(current == workspace, name).clicked() {
+                    chosen = workspace;
+                    ui.close();
+                }
+            }
+        });
+        menu.response
+            .on_hover_ui(|ui| icons::tip(ui, name, t("arranges the panes")));
+    } else {
+        icons::segments(ui, &mut chosen, &names);
+    }
+    if chosen != current {
+        commands.push(Command::View(ViewCommand::Workspace(chosen)));
+    }
 }
 
 /// The tools for things.
@@ -179,7 +269,8 @@ fn divider(ui: &mut Ui) {
 }
 
 /// From right to left: the button that generates, the live switch.
-fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
+fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, fold: Fold, commands: &mut Vec<Command>) {
+    let named = fold < Fold::Tools;
     ui.spacing_mut().item_spacing.x = theme::GAP;
     let (name, label, hint, fill, icon, command) = if input.busy {
         (
@@ -213,7 +304,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
             command,
         )
     };
-    if wide_button(ui, icon, name, hint, fill, label).clicked() {
+    if wide_button(ui, icon, (name, named), hint, fill, label).clicked() {
         commands.push(command);
     }
     let fill = if input.live {
@@ -226,7 +317,7 @@ fn generation(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>
     } else {
         t("off, Ctrl+Space")
     };
-    let live = wide_button(ui, Icon::Live, t("Live"), hint, fill, t("Live"));
+    let live = wide_button(ui, Icon::Live, (t("Live"), named), hint, fill, t("Live"));
     if input.live {
         let dot = live.rect.right_top() + vec2(-6.0, 6.0);
         ui.painter().circle_filled(dot, 3.0, theme::good());
@@ -266,20 +357,20 @@ fn quality(ui: &mut Ui, input: &ToolbarInput<'_>, commands: &mut Vec<Command>) {
         .on_hover_text(format!("{}{cost}", t("How exactly edits are generated")));
 }
 
-/// A button with an icon and a name, of one height with the others.
+/// A button with an icon and, if `named`, a name beside it; of one height with the others.
 fn wide_button(
     ui: &mut Ui,
     icon: Icon,
-    name: &str,
+    (name, named): (&str, bool),
     hint: &str,
     fill: egui::Color32,
     label: &str,
 ) -> egui::Response {
     let font = egui::TextStyle::Button.resolve(ui.style());
-    let galley = ui
-        .painter()
-        .layout_no_wrap(name.to_owned(), font, theme::text_strong());
-    let size = vec2(galley.size().x + 42.0, theme::ROW + 4.0);
+    let written = if named { name.to_owned() } else { String::new() };
+    let galley = ui.painter().layout_no_wrap(written, font, theme::text_strong());
+    let width = if named { galley.size().x + 42.0 } else { 34.0 };
+    let size = vec2(width, theme::ROW + 4.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));
     let fill = if response.hovered() {

@@ -17,6 +17,9 @@ const WIDTH: f32 = 420.0;
 /// Width of the names, points.
 const NAMES: f32 = 130.0;
 
+/// Height of the bars at the top and at the bottom, points.
+const BARS: f32 = 42.0;
+
 /// What the window sets.
 pub struct Choices<'a> {
     /// What is kept between sessions.
@@ -38,6 +41,8 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
         .open(&mut open)
         .resizable(false)
         .collapsible(false)
+        .vscroll(true)
+        .max_height(ui.max_rect().height() - 2.0 * BARS)
         .default_pos(ui.max_rect().center() - egui::vec2(WIDTH / 2.0, 240.0))
         .show(ui.ctx(), |ui| {
             ui.set_width(WIDTH);
