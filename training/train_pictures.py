@@ -461,12 +461,14 @@ class Trainer:
                 noted = self.seconds()
                 self.note(part="vae", step=self.vae.step, seg_step=self.seg.step, recorded=sum(x.graph is not None for x in self.steps.values()), **self.vae.means(), **self.seg.means(), **self.critic.means())
             self.maybe_save()
-        while self.held.seen < args.held_out and held.running:
+        # Who goes on from weights does not wait for all of them: they come meanwhile.
+        while self.held.seen < (8 if args.init_vae else args.held_out) and held.running:
             self.pool_held(held)
+            self.gather(streams)
             time.sleep(0.1)
         self.fix_latents()
         self.note(event="latents fixed", std=[round(v, 3) for v in self.vae.ema.latent_std.tolist()], held=self.held.count)
-        self.train_transformer(streams, end)
+        self.train_transformer(streams, held, end)
         streams.stop()
         held.stop()
         self.save(last=True)
@@ -476,7 +478,7 @@ class Trainer:
         if self.held.seen < self.args.held_out:
             self.held.take_all(held)
 
-    def train_transformer(self, streams, end):
+    def train_transformer(self, streams, held, end):
         args, begin = self.args, self.seconds()
         noted, spent = begin, {"dit": 0.0, "decoder": 0.0, "ablations": 0.0}
         shares = {"decoder": args.decoder_share, "ablations": args.ablation_share if self.ablations else 0.0}
@@ -509,6 +511,8 @@ class Trainer:
             if self.seconds() - noted > args.note_s:
                 self.sync()
                 noted = self.seconds()
+                self.pool_held(held)
+                self.held.encode(self.vae.ema, self.amp, self.held.seen)
                 self.note(part="dit", step=self.dit.step, encoded=self.pool.encoded, recorded=sum(x.graph is not None for x in self.steps.values()), spent={k: round(v, 1) for k, v in spent.items()}, **self.dit.means(), **self.held_v(self.dit.ema), **self.vae.means(), **self.seg.means(), vae_step=self.vae.step)
             self.maybe_save()
         self.figures["ablations"] = {n: {"steps": a.step, **a.means(), **self.held_v(a.ema)} for n, a in self.ablations.items()}
