@@ -99,6 +99,10 @@ pub enum ViewCommand {
     GoToBookmark(u8),
     /// Shows or hides the 10 m grid.
     ToggleGrid,
+    /// Shows the scene alone in the large views, without grid, lines, frames and marks, or all of that again.
+    ToggleClean,
+    /// The window fills the screen, or is a window again.
+    ToggleFullScreen,
     /// Compares with the version of that state.
     CompareWith(SceneRev),
     /// The next way to compare.
@@ -175,6 +179,12 @@ pub enum TimeCommand {
     ToEnd,
     /// The next (1) or previous (-1) keyframe of what is chosen.
     Key(i32),
+    /// Makes a keyframe of what is chosen at the moment that is shown.
+    KeyHere,
+    /// Takes the keyframe of what is chosen that is nearest to the moment that is shown away.
+    DropKey,
+    /// Puts what is chosen where it is now so many frames later, or earlier, and goes there.
+    CopyToFrame(i32),
     /// What is played begins here.
     In,
     /// What is played ends here.
@@ -220,8 +230,14 @@ pub enum Command {
     Tool(ToolId),
     /// Takes the tool that places boxes, with this class.
     PlaceClass(Class),
+    /// Paints with the layer or class of that place in the list of the tool in hand.
+    PaintWith(usize),
+    /// Paints with the layer or class before this one again.
+    PaintWithLast,
     /// Makes the brush in hand larger (1) or smaller (-1).
     BrushSize(i32),
+    /// Makes the voxel brush higher (1) or lower (-1).
+    BrushHeight(i32),
     /// What is read, written or begun.
     File(FileCommand),
     /// What the views show, and where the panes stand.

@@ -28,7 +28,7 @@ pub struct Playback {
     pub paths: bool,
     /// Where the chosen object is a second earlier and later is shown too.
     pub onion: bool,
-    /// The 3D view goes along with the ego vehicle.
+    /// The 3D view goes along with the chosen object, or with the ego vehicle.
     pub follow: bool,
     /// A motion that was copied.
     pub copied: Option<Copied>,

@@ -108,11 +108,15 @@ pub(super) fn lay_ground(frame: &mut Frame, cells: &[[usize; 2]]) {
 /// Lays ground in columns that were emptied: what the layout says, else what most of the
 /// nearest ground columns around have, else terrain.
 pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &[[usize; 2]]) {
+    if emptied.is_empty() {
+        return;
+    }
     // First all classes are found, then the ground is laid, so that the order of the columns does not matter.
+    let around = Around::of(grid, layout, emptied);
     let filled: Vec<u8> = emptied
         .iter()
-        .map(|&[x, y]| match ground_class(layout.cell(x, y)) {
-            Class::Terrain => nearby_ground(grid, layout, x, y),
+        .map(|&at| match ground_class(layout.cell(at[0], at[1])) {
+            Class::Terrain => around.ground(at),
             named => named.id(),
         })
         .collect();
@@ -121,33 +125,108 @@ pub(super) fn refill_ground(grid: &mut VoxelGrid, layout: &BevLayout, emptied: &
     }
 }
 
-/// Ground class that most columns have on the smallest square ring around (x, y) with any ground.
-fn nearby_ground(grid: &VoxelGrid, layout: &BevLayout, x: usize, y: usize) -> u8 {
-    let extent = layout.extent();
-    for reach in 1..=MAX_REACH {
-        let mut votes = [0usize; Class::COUNT];
-        let ys = y.saturating_sub(reach)..=(y + reach).min(extent.ny() - 1);
-        for i in x.saturating_sub(reach)..=(x + reach).min(extent.nx() - 1) {
-            for j in ys.clone() {
-                let on_ring = i.abs_diff(x).max(j.abs_diff(y)) == reach;
-                if on_ring {
-                    let below = grid.get(i, j, ground_bin(layout, i, j));
-                    if is_ground(below) {
-                        votes[below as usize] += 1;
-                    }
-                }
-            }
+/// The ground around columns.
+struct Around {
+    /// First column of the area that is looked at.
+    from: [usize; 2],
+    /// Its columns.
+    shape: [usize; 2],
+    /// Label of each column's ground bin, `[x][y]`.
+    labels: Vec<u8>,
+    /// How far, on a square ring, the nearest ground is; 0 on ground.
+    reach: Vec<usize>,
+}
+
+impl Around {
+    /// Of columns of a map, as far as ground is searched for.
+    fn of(grid: &VoxelGrid, layout: &BevLayout, columns: &[[usize; 2]]) -> Self {
+        let extent = layout.extent();
+        let map = [extent.nx(), extent.ny()];
+        let span = |axis: usize| {
+            let (low, high) = columns.iter().fold((usize::MAX, 0), |(low, high), c| {
+                (low.min(c[axis]), high.max(c[axis] + 1))
+            });
+            let from = low.min(high).saturating_sub(MAX_REACH);
+            (from, (high + MAX_REACH).min(map[axis]))
+        };
+        let ([x0, y0], [x1, y1]) = {
+            let (x, y) = (span(0), span(1));
+            ([x.0, y.0], [x.1, y.1])
+        };
+        let shape = [x1 - x0, y1 - y0];
+        let label = |x, y| grid.get(x, y, ground_bin(layout, x, y));
+        let labels: Vec<u8> = (x0..x1)
+            .flat_map(|x| (y0..y1).map(move |y| label(x, y)))
+            .collect();
+        let mut reach: Vec<usize> = labels
+            .iter()
+            .map(|l| if is_ground(*l) { 0 } else { usize::MAX })
+            .collect();
+        // Two sweeps give the distance on square rings, by the neighbours that were swept before.
+        let mut sweep = |x: usize, y: usize, ahead: bool| {
+            let (xs, ys) = (x.saturating_sub(1)..=(x + 1).min(shape[0] - 1), y);
+            let near = xs.flat_map(|i| {
+                let js = ys.saturating_sub(1)..=(ys + 1).min(shape[1] - 1);
+                js.map(move |j| [i, j])
+            });
+            let before = near.filter(|at| match ahead {
+                true => *at < [x, y],
+                false => *at > [x, y],
+            });
+            let nearest = before.map(|[i, j]| reach[i * shape[1] + j]).min();
+            let own = &mut reach[x * shape[1] + y];
+            *own = (*own).min(nearest.unwrap_or(usize::MAX).saturating_add(1));
+        };
+        for x in 0..shape[0] {
+            (0..shape[1]).for_each(|y| sweep(x, y, true));
         }
-        // First of the highest: a tie goes to the lower id.
-        let most = votes.iter().copied().max().unwrap_or(0);
-        if most > 0 {
-            return votes
-                .iter()
-                .position(|v| *v == most)
-                .unwrap_or(Class::Terrain as usize) as u8;
+        for x in (0..shape[0]).rev() {
+            (0..shape[1]).rev().for_each(|y| sweep(x, y, false));
+        }
+        Self {
+            from: [x0, y0],
+            shape,
+            labels,
+            reach,
         }
     }
-    Class::Terrain.id()
+
+    /// Ground class that most columns have on the smallest square ring around a column with any ground.
+    fn ground(&self, [x, y]: [usize; 2]) -> u8 {
+        let [x, y] = [x - self.from[0], y - self.from[1]];
+        let [nx, ny] = self.shape;
+        // A column is not on its own ring.
+        let mut reach = self.reach[x * ny + y];
+        if reach == 0 {
+            reach = 1;
+        }
+        let mut votes = [0usize; Class::COUNT];
+        while reach <= MAX_REACH {
+            let (low, high) = (y.saturating_sub(reach), (y + reach).min(ny - 1));
+            for i in x.saturating_sub(reach)..=(x + reach).min(nx - 1) {
+                let mut vote = |j: usize| {
+                    let label = self.labels[i * ny + j];
+                    if is_ground(label) {
+                        votes[label as usize] += 1;
+                    }
+                };
+                // All of it at both ends of the ring, two cells in between.
+                if i.abs_diff(x) == reach {
+                    (low..=high).for_each(&mut vote);
+                } else {
+                    let ends = [y.checked_sub(reach), (y + reach < ny).then_some(y + reach)];
+                    ends.into_iter().flatten().for_each(&mut vote);
+                }
+            }
+            // First of the highest: a tie goes to the lower id.
+            let most = votes.iter().copied().max().unwrap_or(0);
+            if most > 0 {
+                return votes.iter().position(|v| *v == most).unwrap_or(0) as u8;
+            }
+            reach += 1;
+        }
+        Class::Terrain.id()
+    }
 }
 
 fn is_ground(label: u8) -> bool {

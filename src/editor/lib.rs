@@ -6,11 +6,13 @@ pub mod arranged;
 pub mod checks;
 pub mod choose;
 pub mod document;
+pub mod fit;
 pub mod fix;
 pub mod flood;
 pub mod immediate;
 mod junction;
 pub mod kerb;
+pub mod keyframes;
 pub mod lanes;
 #[cfg(test)]
 mod map_tests;

@@ -132,6 +132,10 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             return;
         }
         let kept = after.in_extent(extent);
+        let near: Vec<Thing> = kept
+            .into_iter()
+            .filter(|t| gone.iter().any(|g| near(t, g)))
+            .collect();
         let Frame {
             layout,
             occupancy,
@@ -141,17 +145,14 @@ pub(super) fn replace_background(scene: &mut Scene, after: Background) {
             ..
         } = frame;
         let guessed = inferred.background;
-        redraw(occupancy, layout, painted, &gone, &come, &kept, guessed);
+        let change = Change::on(layout, &gone, &come, &near);
+        change.redraw(occupancy, layout, painted, guessed);
         let source = Arc::make_mut(source);
-        redraw(
-            &mut source.occupancy,
-            &source.layout,
-            painted,
-            &gone,
-            &come,
-            &kept,
-            guessed,
-        );
+        // Where voxels of things lie depends on the ground alone.
+        let other =
+            (source.layout.relief != layout.relief).then(|| Change::on(&source.layout, &gone, &come, &near));
+        let change = other.as_ref().unwrap_or(&change);
+        change.redraw(&mut source.occupancy, &source.layout, painted, guessed);
     });
 }
 
@@ -240,38 +241,49 @@ fn only_in(a: &Background, b: &Background) -> Vec<Thing> {
     a.iter().filter(|t| b.get(t.id) != Some(t)).cloned().collect()
 }
 
-/// Takes the voxels of `gone` out of a grid, and stamps those of `come`, and of `kept` where they were taken out. Where the
-/// kept ones are `guessed` from voxels they only get back what was of their class: more of them was never seen there.
-fn redraw(
-    grid: &mut VoxelGrid,
-    layout: &BevLayout,
-    painted: &VoxelPaint,
-    gone: &[Thing],
-    come: &[Thing],
-    kept: &[Thing],
-    guessed: bool,
-) {
-    let mut cleared: BTreeMap<[usize; 3], u8> = BTreeMap::new();
-    for thing in gone {
-        clear(grid, painted, thing, layout, &mut cleared);
-    }
-    let emptied: BTreeSet<[usize; 2]> = cleared
-        .keys()
-        .map(|[x, y, _]| [*x, *y])
-        .filter(|[x, y]| grid.get(*x, *y, ground_bin(layout, *x, *y)) == Class::FREE)
-        .collect();
-    refill_ground(grid, layout, &emptied.into_iter().collect::<Vec<_>>());
-    if !cleared.is_empty() {
-        for thing in kept.iter().filter(|t| gone.iter().any(|g| near(t, g))) {
-            let class = thing.form.class().id();
-            let wanted = |was: &u8| !guessed || *was == class;
-            stamp(grid, layout, painted, thing, |voxel| {
-                cleared.get(&voxel).is_some_and(wanted)
-            });
+/// Things with their voxels.
+type Drawn<'a> = Vec<(&'a Thing, Columns)>;
+
+/// What a change of the background does to the voxels of a map.
+struct Change<'a> {
+    /// Their voxels go.
+    gone: Drawn<'a>,
+    /// Their voxels come.
+    come: Drawn<'a>,
+    /// They stay, near to what goes.
+    kept: Drawn<'a>,
+}
+
+impl<'a> Change<'a> {
+    fn on(layout: &BevLayout, gone: &'a [Thing], come: &'a [Thing], kept: &'a [Thing]) -> Self {
+        let drawn = |things: &'a [Thing]| things.iter().map(|t| (t, t.columns(layout))).collect();
+        Self {
+            gone: drawn(gone),
+            come: drawn(come),
+            kept: drawn(kept),
         }
     }
-    for thing in come {
-        stamp(grid, layout, painted, thing, |_| true);
+
+    /// Takes the voxels of what goes out of a grid, and stamps those of what comes, and of what stays where they were taken
+    /// out. Where what stays is `guessed` from voxels it only gets back what was of its class: more of it was never seen there.
+    fn redraw(&self, grid: &mut VoxelGrid, layout: &BevLayout, painted: &VoxelPaint, guessed: bool) {
+        let mut cleared = Columns::new();
+        for (thing, own) in &self.gone {
+            clear(grid, painted, (thing, own), layout, &mut cleared);
+        }
+        let is_bare = |[x, y]: &[usize; 2]| grid.get(*x, *y, ground_bin(layout, *x, *y)) == Class::FREE;
+        let emptied: Vec<[usize; 2]> = cleared.keys().copied().filter(is_bare).collect();
+        refill_ground(grid, layout, &emptied);
+        for (thing, own) in &self.kept {
+            let class = thing.form.class().id();
+            stamp(grid, painted, own, |[x, y, z]| {
+                let was = cleared.get(&[x, y]).map_or(Class::FREE, |column| column[z]);
+                was != Class::FREE && (!guessed || was == class)
+            });
+        }
+        for (_, own) in &self.come {
+            stamp(grid, painted, own, |_| true);
+        }
     }
 }
 
@@ -284,13 +296,12 @@ fn near(a: &Thing, b: &Thing) -> bool {
 fn clear(
     grid: &mut VoxelGrid,
     painted: &VoxelPaint,
-    thing: &Thing,
+    (thing, own): (&Thing, &Columns),
     layout: &BevLayout,
-    cleared: &mut BTreeMap<[usize; 3], u8>,
+    cleared: &mut Columns,
 ) {
-    let own = thing.columns(layout);
     let extent = layout.extent();
-    let mut around = with_margin(extent, &own);
+    let mut around = with_margin(extent, own);
     let class = thing.form.class().id();
     let top = own
         .values()
@@ -306,15 +317,21 @@ fn clear(
     for [x, y] in around {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);
+        let mut taken = [Class::FREE; Extent::NZ];
         for z in 0..=top {
             // Its own voxels of any class (a deck, a bin), and its class right around it.
             let is_own = own
                 .get(&[x, y])
                 .is_some_and(|c| c[z] != Class::FREE && c[z] == column[z]);
             if (is_own || column[z] == class) && locked[z] == NOT_PAINTED {
-                // What it was first, if several things clear it.
-                cleared.entry([x, y, z]).or_insert(column[z]);
-                column[z] = Class::FREE;
+                taken[z] = std::mem::replace(&mut column[z], Class::FREE);
+            }
+        }
+        if taken != [Class::FREE; Extent::NZ] {
+            let before = cleared.entry([x, y]).or_insert([Class::FREE; Extent::NZ]);
+            // What it was first, if several things clear it.
+            for (before, taken) in before.iter_mut().zip(taken) {
+                *before = if *before == Class::FREE { taken } else { *before };
             }
         }
         if column != *grid.column(x, y) {
@@ -324,12 +341,19 @@ fn clear(
 }
 
 fn with_margin(extent: Extent, own: &Columns) -> BTreeSet<[usize; 2]> {
-    let around = own.keys().flat_map(|[x, y]| {
+    let around = |[x, y]: [usize; 2]| {
         let ys = y.saturating_sub(MARGIN)..=(y + MARGIN).min(extent.ny() - 1);
         let xs = x.saturating_sub(MARGIN)..=(x + MARGIN).min(extent.nx() - 1);
         xs.flat_map(move |x| ys.clone().map(move |y| [x, y]))
-    });
-    around.collect()
+    };
+    // Inside, where all neighbours are its own, there is no margin.
+    let rim = own
+        .keys()
+        .filter(|at| around(**at).any(|near| !own.contains_key(&near)));
+    own.keys()
+        .copied()
+        .chain(rim.flat_map(|at| around(*at)))
+        .collect()
 }
 
 /// Columns of an area of shrubs: what grows there is the area's, whether one of the plants drawn for it stands there or not.
@@ -341,14 +365,8 @@ fn grown_over(extent: Extent, thing: &Thing) -> Vec<[usize; 2]> {
     out
 }
 
-fn stamp(
-    grid: &mut VoxelGrid,
-    layout: &BevLayout,
-    painted: &VoxelPaint,
-    thing: &Thing,
-    wanted: impl Fn([usize; 3]) -> bool,
-) {
-    for ([x, y], voxels) in thing.columns(layout) {
+fn stamp(grid: &mut VoxelGrid, painted: &VoxelPaint, own: &Columns, wanted: impl Fn([usize; 3]) -> bool) {
+    for (&[x, y], voxels) in own {
         let locked = *painted.column(x, y);
         let mut column = *grid.column(x, y);
         for z in 0..Extent::NZ {

@@ -14,6 +14,7 @@ use crate::shell::toasts::Level;
 use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard, Ties};
+use editor::fit::fit;
 use editor::tools::{Act, road, voxel};
 use language::{t, tf};
 use scene::Extent;
@@ -124,6 +125,13 @@ impl SceneloomApp {
             }
             ToolCommand::DropToGround => {
                 self.apply_some("Drop to ground", arrange::drop_to_ground(&frame, &ids));
+            }
+            ToolCommand::Fit => {
+                let edits: Vec<Edit> = ids.iter().filter_map(|id| fit(&frame, *id)).collect();
+                match edits.is_empty() && !ids.is_empty() {
+                    true => self.note(t("It fits its voxels, or has too few of them")),
+                    false => self.apply_some("Fit to voxels", edits),
+                }
             }
             ToolCommand::ToLane => self.apply_some("Snap to lane", arrange::to_lane(&frame, &ids)),
             ToolCommand::Act(act) => self.act(act, ctx),

@@ -19,6 +19,7 @@ use crate::windows::tour::Tour;
 impl SceneloomApp {
     /// Carries out one command.
     pub fn execute(&mut self, command: Command, ctx: &Context) {
+        self.state.note_paint();
         let before = self.document.settled_scene().content();
         let travels = matches!(command, Command::Undo | Command::Redo | Command::JumpTo(_));
         self.state.remember_selection(before);
@@ -57,6 +58,7 @@ impl SceneloomApp {
                 toolbox.take(hand, tool);
             }
             Command::BrushSize(step) => self.state.step_brush(step),
+            Command::BrushHeight(step) => self.state.step_height(step),
             Command::ConfirmInferred => {
                 self.state.correcting = false;
                 self.apply("Confirm what was inferred", &[Edit::ConfirmInferred {}]);
@@ -69,8 +71,10 @@ impl SceneloomApp {
                 self.state.tool = add_box::ID;
                 self.state.box_class = class;
             }
+            Command::PaintWith(place) => self.state.paint_with(place),
+            Command::PaintWithLast => self.state.paint_with_last(),
             Command::File(command) => self.file_command(command, ctx),
-            Command::View(command) => self.view_command(command),
+            Command::View(command) => self.view_command(command, ctx),
             Command::Generation(command) => self.generation_command(command, ctx),
             Command::Time(command) => self.time_command(command),
             Command::Toggle(window) => self.toggle(window),

@@ -11,7 +11,13 @@ use crate::state::UiState;
 use crate::tools::{Hand, ToolCommand};
 
 /// Actions that do not wait for the end of a drag.
-const DURING_A_DRAG: [&str; 3] = ["escape", "brush_smaller", "brush_larger"];
+const DURING_A_DRAG: [&str; 5] = [
+    "escape",
+    "brush_smaller",
+    "brush_larger",
+    "brush_lower",
+    "brush_higher",
+];
 
 /// What the pointer is doing: some keys wait for its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,6 +26,8 @@ pub struct Hands {
     pub flying: bool,
     /// Drags something with the button down: only the keys of [`DURING_A_DRAG`] count.
     pub dragging: bool,
+    /// A new result waits for a decision.
+    pub staged: bool,
     /// Is over a window that floats over the panes: a key without Ctrl is not meant for the scene.
     pub over_window: bool,
 }
@@ -59,11 +67,14 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
         let brush = state.tool.def().is_brush;
         let chosen = state.any_chosen() && !state.tool.def().paints;
         let things = !state.tools.things.chosen.is_empty() && !brush;
+        let paints = state.tool.def().paints;
         let applies = |when| match when {
             When::Always => true,
             When::Over3d => over_3d,
             When::Chosen => chosen,
             When::Things => things,
+            When::Painting => paints,
+            When::Staged => hands.staged,
         };
         // Shift makes another key of some: `|` of a backslash. What is written on the key counts then.
         let on_key = || keymap.action(Chord::pressed(physical?, modifiers), applies);

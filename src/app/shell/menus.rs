@@ -10,6 +10,7 @@ use crate::panes::id::PaneId;
 use crate::tools::things::ThingCommand;
 use crate::tools::{Hand, ToolCommand};
 use language::{t, tf};
+use scene::Arrangement;
 use viewport::ViewPreset;
 use widgets::theme;
 
@@ -122,6 +123,61 @@ fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
         Command::Tools(ToolCommand::Duplicate),
     );
     on(item(ui, delete, "Del", some), Command::Tools(ToolCommand::Delete));
+    ui.separator();
+    let boxes = hand.selected.is_some();
+    let tool = |command| Command::Tools(command);
+    let has_copied = !hand.clipboard.is_empty();
+    on(item(ui, t("Cut"), "Ctrl+X", some), tool(ToolCommand::Cut));
+    on(item(ui, t("Copy"), "Ctrl+C", some), tool(ToolCommand::Copy));
+    on(
+        item(ui, t("Paste"), "Ctrl+V", has_copied),
+        tool(ToolCommand::Paste),
+    );
+    on(
+        item(ui, t("Row of copies"), "Ctrl+Shift+D", boxes),
+        tool(ToolCommand::AskRow),
+    );
+    on(
+        item(ui, t("Mirror about the ego axis"), "Ctrl+M", boxes),
+        tool(ToolCommand::Mirror(false)),
+    );
+    on(
+        item(ui, t("Mirrored copies"), "", boxes),
+        tool(ToolCommand::Mirror(true)),
+    );
+    ui.separator();
+    on(
+        item(ui, t("Select all boxes"), "Ctrl+A", true),
+        tool(ToolCommand::ChooseAll),
+    );
+    on(
+        item(ui, t("Invert the selection"), "Ctrl+I", true),
+        tool(ToolCommand::ChooseOthers),
+    );
+    let arrangements = [
+        (
+            "Group",
+            "Ctrl+G",
+            Arrangement::Group {
+                name: Default::default(),
+            },
+        ),
+        ("Ungroup", "Ctrl+Shift+G", Arrangement::Ungroup),
+        ("Hide what is chosen", "Ctrl+H", Arrangement::Hide),
+        ("Lock what is chosen", "Ctrl+L", Arrangement::Lock),
+    ];
+    for (name, keys, how) in arrangements {
+        on(item(ui, t(name), keys, some), tool(ToolCommand::Arrange(how)));
+    }
+    on(
+        item(ui, t("Show all that is hidden"), "Ctrl+Shift+H", true),
+        tool(ToolCommand::ShowAll),
+    );
+    on(
+        item(ui, t("Unlock everything"), "Ctrl+Shift+L", true),
+        tool(ToolCommand::UnlockAll),
+    );
+    ui.separator();
     on(
         item(ui, t("Shape from a model…"), "", hand.selected.is_some()),
         Command::File(FileCommand::ShapeOfChosen),
@@ -224,6 +280,14 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
     on(
         item(ui, t("Swap views"), "Ctrl+Tab", true),
         Command::View(ViewCommand::SwapPanes),
+    );
+    on(
+        item(ui, t("Nothing but the scene in the views"), "`", true),
+        Command::View(ViewCommand::ToggleClean),
+    );
+    on(
+        item(ui, t("Full screen"), "F11", true),
+        Command::View(ViewCommand::ToggleFullScreen),
     );
     on(
         item(ui, t("Grid"), "G", true),

@@ -8,9 +8,21 @@ use crate::panes::id::PaneId;
 use crate::panes::timeline::scope_name;
 use editor::Edit;
 use editor::document::Label;
-use editor::{forecast, traffic_drives};
+use editor::{forecast, keyframes, traffic_drives};
 use language::{t, tf};
-use scene::Scope;
+use scene::{BoxId, Pose, Scene, Scope};
+
+/// Where the view goes along: with that object while it is there, else with the ego vehicle.
+fn followed_pose(scene: &Scene, id: Option<BoxId>) -> Option<Pose> {
+    let Some(id) = id else {
+        return Some(scene.frame().world_from_ego);
+    };
+    let b = scene.frame().boxes.get(&id)?;
+    Some(Pose {
+        rotation: glam::DQuat::from_rotation_z(b.yaw_rad),
+        translation_m: b.center_m,
+    })
+}
 
 /// A key that comes up sooner than this was tapped, s.
 const TAP_S: f64 = 0.3;
@@ -56,6 +68,23 @@ impl SceneloomApp {
                     false => times.into_iter().rev().find(|t| *t < shown_s - 1e-6),
                 }
             }
+            TimeCommand::KeyHere => {
+                self.time_edit("Make keyframe", keyframes::key_here(&scene, self.state.selected));
+                None
+            }
+            TimeCommand::DropKey => {
+                self.time_edit(
+                    "Delete keyframe",
+                    keyframes::drop_key(&scene, self.state.selected),
+                );
+                None
+            }
+            TimeCommand::CopyToFrame(step) => {
+                let copied = keyframes::copy_to_frame(&scene, &self.state.chosen(), step);
+                let time_s = copied.as_ref().ok().map(|(time_s, _)| *time_s);
+                self.time_edit("Copy place to frame", copied.map(|(_, edits)| edits));
+                time_s
+            }
             TimeCommand::In | TimeCommand::Out => {
                 let [from, to] = playback.span(clip.length_s);
                 let span = match command {
@@ -94,6 +123,14 @@ impl SceneloomApp {
         }
     }
 
+    /// Applies edits as one step, or says why there are none.
+    fn time_edit(&mut self, label: &'static str, edits: Result<Vec<Edit>, &'static str>) {
+        match edits {
+            Ok(edits) => self.apply(label, &edits),
+            Err(why) => self.note(t(why)),
+        }
+    }
+
     /// Lets the scene go on, as a result that waits for a verdict.
     fn forecast(&mut self, seconds: f64) {
         let before = self.document.settled_scene().clone();
@@ -119,10 +156,13 @@ impl SceneloomApp {
     }
 
     fn show_time(&mut self, time_s: f64) {
-        let before = self.document.scene().frame().world_from_ego;
+        let followed = self.state.selected;
+        let before = followed_pose(self.document.scene(), followed);
         if self.document.show(time_s) && self.state.playback.follow {
-            let after = self.document.scene().frame().world_from_ego;
-            self.views.view3d.camera.go_along(&before, &after);
+            let after = followed_pose(self.document.scene(), followed);
+            if let (Some(before), Some(after)) = (before, after) {
+                self.views.view3d.camera.go_along(&before, &after);
+            }
         }
     }
 

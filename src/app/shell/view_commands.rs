@@ -2,6 +2,7 @@
 
 use super::app::SceneloomApp;
 use super::dock::Dock;
+use super::views::BeforeClean;
 use super::workspace::Workspace;
 use crate::command::{ViewCommand, Window};
 use crate::panes::compare::CompareMode;
@@ -12,7 +13,7 @@ use language::t;
 
 impl SceneloomApp {
     /// Carries out one of them.
-    pub(crate) fn view_command(&mut self, command: ViewCommand) {
+    pub(crate) fn view_command(&mut self, command: ViewCommand, ctx: &egui::Context) {
         match command {
             ViewCommand::KeepBookmark(slot) => self.keep_bookmark(slot),
             ViewCommand::GoToBookmark(slot) => self.go_to_bookmark(slot),
@@ -85,7 +86,33 @@ impl SceneloomApp {
                 self.views.prompt.focus();
             }
             ViewCommand::ToggleGrid => self.state.shown.grid = !self.state.shown.grid,
+            ViewCommand::ToggleClean => self.toggle_clean(),
+            ViewCommand::ToggleFullScreen => {
+                let is_full = ctx.input(|i| i.viewport().fullscreen.unwrap_or(false));
+                ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(!is_full));
+            }
         }
+    }
+
+    /// Takes all that is drawn over the scene off both views, or brings it back.
+    fn toggle_clean(&mut self) {
+        let options = &mut self.views.view3d.options;
+        let (shown, playback) = (&mut self.state.shown, &mut self.state.playback);
+        if let Some(before) = self.views.before_clean.take() {
+            shown.clone_from(&before.shown);
+            options.clone_from(&before.options);
+            playback.paths = before.paths;
+            return;
+        }
+        self.views.before_clean = Some(Box::new(BeforeClean {
+            shown: shown.clone(),
+            options: options.clone(),
+            paths: playback.paths,
+        }));
+        (shown.boxes, shown.lines, shown.grid) = (false, false, false);
+        (shown.lidar_from_above, shown.unobserved) = (false, false);
+        (options.lidar, options.frusta) = (false, false);
+        playback.paths = false;
     }
 
     pub(crate) fn frame_selection(&mut self) {

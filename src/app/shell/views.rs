@@ -11,7 +11,9 @@ use crate::panes::pane::Pane;
 use crate::panes::prompt::field::PromptField;
 use crate::seen::SeenScenes;
 use crate::view3d::View3d;
+use crate::views_shown::ViewsShown;
 use scene::{Extent, SceneBox};
+use viewport::ViewOptions;
 
 /// Owner of everything that draws the scene.
 pub struct Views {
@@ -28,6 +30,15 @@ pub struct Views {
     pub(crate) render_state: Option<egui_wgpu::RenderState>,
     /// What the bars leave to the panes, in the last frame.
     pub(crate) center: Rect,
+    /// What was shown before all but the scene was taken off the views.
+    pub(crate) before_clean: Option<Box<BeforeClean>>,
+}
+
+/// What a clean view brings back in the end.
+pub(crate) struct BeforeClean {
+    pub(crate) shown: ViewsShown,
+    pub(crate) options: ViewOptions,
+    pub(crate) paths: bool,
 }
 
 impl Views {
@@ -44,6 +55,7 @@ impl Views {
             seen: SeenScenes::default(),
             render_state,
             center: Rect::NOTHING,
+            before_clean: None,
         }
     }
 

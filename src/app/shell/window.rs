@@ -60,6 +60,7 @@ impl SceneloomApp {
                 flying: secondary && matches!(self.state.pointed.pane, Some(PaneId::VIEW3D | PaneId::SPLATS)),
                 dragging: primary && (self.views.canvas.is_dragging() || self.views.view3d.is_dragging()),
                 over_window,
+                staged: self.staged().is_some(),
             };
             keys::commands(
                 ui.ctx(),

@@ -49,6 +49,8 @@ pub enum ToolCommand {
     Mirror(bool),
     /// Lets the chosen boxes stand on the ground.
     DropToGround,
+    /// Fits the chosen boxes to their voxels.
+    Fit,
     /// Puts the chosen boxes on the middle of their lane, in its direction.
     ToLane,
     /// What a tool made of an event, or of an option that was set.

@@ -91,6 +91,8 @@ pub enum Icon {
     Circle,
     /// Road to the horizon.
     Road,
+    /// Way from point to point, with its end marked.
+    Path,
 }
 
 impl Icon {
@@ -104,6 +106,7 @@ impl Icon {
             "measure" => Self::Measure,
             "region" => Self::Region,
             "road" => Self::Road,
+            "path" => Self::Path,
             "building" => Self::Building,
             "tree" => Self::Tree,
             "fence" => Self::Fence,
@@ -157,6 +160,7 @@ impl Icon {
             Icon::Bars => shapes::BARS,
             Icon::Circle => shapes::CIRCLE,
             Icon::Road => shapes::ROAD,
+            Icon::Path => shapes::PATH,
         }
     }
 

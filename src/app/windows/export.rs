@@ -45,6 +45,8 @@ pub struct ExportDialog {
     pub path: String,
     /// Where the last export went: that it is there is no surprise.
     pub written: String,
+    /// Errors of the checks do not hold it back.
+    pub anyway: bool,
     search: String,
     folder: std::path::PathBuf,
     stem: String,
@@ -64,6 +66,7 @@ impl ExportDialog {
             options: ExportOptions::default(),
             path: String::new(),
             search: String::new(),
+            anyway: false,
             folder: scene_file.parent().unwrap_or(Path::new("")).to_path_buf(),
             stem,
         };
@@ -135,10 +138,13 @@ pub fn export_window(
                         asked = Some(Asked::Checks);
                     }
                 });
+                ui.checkbox(&mut dialog.anyway, t("Export all the same"))
+                    .on_hover_text(t("Repair or waive the errors instead, in the list of checks"));
             }
             ui.add_space(theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let enabled = input.busy.is_none() && !dialog.path.trim().is_empty();
+                let sound = input.errors == 0 || dialog.anyway;
+                let enabled = sound && input.busy.is_none() && !dialog.path.trim().is_empty();
                 let button = egui::Button::new(t("Export files")).fill(ui.visuals().selection.bg_fill);
                 if ui.add_enabled(enabled, button).clicked() {
                     let formats = dialog.format.map_or_else(formats::export::usual, |f| vec![f]);

@@ -151,6 +151,8 @@ impl Shortcuts {
                     When::Over3d => tf!("{title}  (3D)", title = own),
                     When::Chosen => tf!("{title}  (chosen)", title = own),
                     When::Things => tf!("{title}  (thing chosen)", title = own),
+                    When::Painting => tf!("{title}  (painting)", title = own),
+                    When::Staged => tf!("{title}  (new result)", title = own),
                 };
                 ui.label(egui::RichText::new(title).color(theme::text_weak()));
                 if keymap.is_changed(action.id) {

@@ -18,6 +18,7 @@ use scene::{
 use super::ToolId;
 use super::beside::ThingState;
 use super::modes::{PaintShape, RegionShape, VoxelMode, VoxelVerb};
+use super::paints::PaintsBefore;
 use super::road::RoadHand;
 use super::saved::Stamp;
 
@@ -130,6 +131,8 @@ pub struct Hand {
     pub row: Row,
     /// What the tools for things hold.
     pub things: ThingState,
+    /// What was painted with before.
+    pub painted_before: PaintsBefore,
 }
 
 impl Default for Hand {
@@ -175,6 +178,7 @@ impl Default for Hand {
             row_open: false,
             row: Row::default(),
             things: ThingState::default(),
+            painted_before: PaintsBefore::default(),
         }
     }
 }
@@ -207,6 +211,12 @@ impl Hand {
             let smaller = sizes.into_iter().rev().find(|s| *s < self.brush_m - 1e-6);
             smaller.unwrap_or(*Self::BRUSH_M.start())
         };
+    }
+
+    /// The voxel brush one voxel higher or lower.
+    pub fn step_height(&mut self, step: i32) {
+        let height = self.voxel_height as i32 + step;
+        self.voxel_height = height.clamp(1, Extent::NZ as i32) as usize;
     }
 
     /// True if the layer must not be painted.

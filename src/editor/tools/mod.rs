@@ -9,6 +9,8 @@ mod hand;
 mod mark;
 pub mod measure;
 mod modes;
+mod paints;
+pub mod path;
 mod rays;
 pub mod region;
 mod response;
@@ -47,6 +49,7 @@ static TOOLS: &[&ToolDef] = &[
     &measure::DEF,
     &region::DEF,
     &road::DEF,
+    &path::DEF,
     &beside::building::DEF,
     &beside::tree::DEF,
     &beside::line::DEF,

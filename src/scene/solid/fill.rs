@@ -50,38 +50,55 @@ pub fn fill(
     };
     let thin = reach.min_element() < Extent::VOXEL_M * 0.75;
     let needed = if thin { 1 } else { NEEDED };
+    // Samples are `x + 3 y + 9 z`; their places in voxel units.
+    let place = |x: usize, y: usize, z: usize, i: usize| {
+        let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+        let within = DVec3::new(f(i % SAMPLES), f(i / SAMPLES % SAMPLES), f(i / SAMPLES.pow(2)));
+        extent.from_voxel_units(DVec3::new(x as f64, y as f64, z as f64) + within)
+    };
+    let upright = solid.is_upright();
     for x in span(0) {
         for y in span(1) {
             if !column(x, y) {
                 continue;
             }
+            let footprint = upright.then(|| {
+                let inside = |i: usize| solid.contains(place(x, y, 0, i).truncate().extend(solid.center.z));
+                std::array::from_fn::<bool, { SAMPLES * SAMPLES }, _>(inside)
+            });
+            if footprint == Some([false; SAMPLES * SAMPLES]) {
+                continue;
+            }
             for z in span(2) {
-                let sample = |i: usize| {
-                    let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
-                    let u = DVec3::new(
-                        x as f64 + f(i % SAMPLES),
-                        y as f64 + f(i / SAMPLES % SAMPLES),
-                        z as f64 + f(i / SAMPLES.pow(2)),
-                    );
-                    u8::from(solid.contains(extent.from_voxel_units(u)))
-                };
-                let corners: u8 = CORNERS.map(sample).iter().sum();
-                // Without pores a voxel whose corners are all inside is full; a third of one needs a corner or the middle.
-                let votes = match corners {
-                    8 if solid.porosity <= 0.0 => 27,
-                    0 if !thin && solid.porosity <= 0.0 && sample(MIDDLE) == 0 => 0,
-                    _ => {
-                        corners
-                            + (0..SAMPLES.pow(3))
-                                .filter(|i| !CORNERS.contains(i))
-                                .map(sample)
-                                .sum::<u8>()
+                let votes = match &footprint {
+                    Some(footprint) => {
+                        let level = |k: usize| solid.spans(place(x, y, z, k * SAMPLES.pow(2)).z);
+                        let levels: [bool; SAMPLES] = std::array::from_fn(level);
+                        votes(solid, thin, |i| {
+                            footprint[i % footprint.len()] && levels[i / footprint.len()]
+                        })
                     }
+                    None => votes(solid, thin, |i| solid.contains(place(x, y, z, i))),
                 };
                 if votes >= needed {
                     visit(x, y, z, votes);
                 }
             }
+        }
+    }
+}
+
+/// How many of a voxel's 27 samples are inside.
+fn votes(solid: &Solid, thin: bool, inside: impl Fn(usize) -> bool) -> u8 {
+    let sample = |i: usize| u8::from(inside(i));
+    let corners: u8 = CORNERS.map(sample).iter().sum();
+    // Without pores a voxel whose corners are all inside is full; a third of one needs a corner or the middle.
+    match corners {
+        8 if solid.porosity <= 0.0 => 27,
+        0 if !thin && solid.porosity <= 0.0 && sample(MIDDLE) == 0 => 0,
+        _ => {
+            let others = (0..SAMPLES.pow(3)).filter(|i| !CORNERS.contains(i));
+            corners + others.map(sample).sum::<u8>()
         }
     }
 }

@@ -200,6 +200,16 @@ impl Solid {
         ((h >> 11) as f64) < self.porosity * (1u64 << 53) as f64
     }
 
+    /// True if every level of it looks the same, so that a point is inside where its level and its place on the ground are.
+    fn is_upright(&self) -> bool {
+        matches!(self.shape, Shape::Prism { .. }) && self.porosity <= 0.0
+    }
+
+    /// True if it reaches over that height, m.
+    fn spans(&self, z_m: f64) -> bool {
+        (z_m - self.center.z).abs() <= self.reach().z
+    }
+
     /// True if the point is in the solid and not in one of its pores.
     pub fn contains(&self, p: DVec3) -> bool {
         let inside = match &self.shape {

@@ -7,7 +7,7 @@ use scene::{BoxId, Motion, Moving, Scene};
 use crate::command::Command;
 use crate::playback::{Copied, Playback};
 use crate::state::called;
-use editor::Edit;
+use editor::{Edit, keyframes};
 use language::t;
 use widgets::theme;
 
@@ -43,6 +43,24 @@ pub(super) fn entries(
         ));
     };
     ui.label(egui::RichText::new(title(scene, id)).color(theme::text_weak()));
+    let steps = [
+        ("Keyframe here", "Make keyframe", keyframes::key_here(scene, id)),
+        (
+            "Take this keyframe away",
+            "Delete keyframe",
+            keyframes::drop_key(scene, id),
+        ),
+    ];
+    for (text, label, edits) in steps {
+        let button = ui.add_enabled(edits.is_ok(), egui::Button::new(t(text)));
+        if button.clicked()
+            && let Ok(edits) = edits
+        {
+            commands.push(Command::Apply(label, edits));
+            ui.close();
+        }
+    }
+    ui.separator();
     if let Some(motion) = motion {
         let timed = !matches!(motion, Motion::Attached { .. });
         for (text, times) in [("Twice as fast", 2.0), ("Half as fast", 0.5)] {

@@ -125,8 +125,10 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
             .on_hover_text(t("Where moving objects go, in both large views"));
         ui.toggle_value(&mut state.playback.onion, t("Onion skin"))
             .on_hover_text(t("Where the chosen object is a second earlier and later"));
-        ui.toggle_value(&mut state.playback.follow, t("Follow us"))
-            .on_hover_text(t("The 3D view goes along with the ego vehicle"));
+        ui.toggle_value(&mut state.playback.follow, t("Follow"))
+            .on_hover_text(t(
+                "The 3D view goes along with the chosen object, or with us if none is chosen",
+            ));
         ui.separator();
         motion_menu::menu(ui, scene, state, commands);
         traffic(ui, scene, commands);

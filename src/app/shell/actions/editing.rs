@@ -21,12 +21,68 @@ const fn raise(steps: i32) -> Command {
 
 /// What belongs to no one tool: tools, then the selection.
 pub(super) const ACTIONS: &[ActionDef] = &[
-    action(Tools, "brush_smaller", "Smaller brush", "[ {", || {
+    action(Tools, "brush_smaller", "Smaller brush", "[", || {
         Command::BrushSize(-1)
     })
     .repeats(),
-    action(Tools, "brush_larger", "Larger brush", "] }", || {
+    action(Tools, "brush_larger", "Larger brush", "]", || {
         Command::BrushSize(1)
+    })
+    .repeats(),
+    action(Tools, "paint_1", "Paint with layer or class 1", "1", || {
+        Command::PaintWith(0)
+    })
+    .painting(),
+    action(Tools, "paint_2", "Paint with layer or class 2", "2", || {
+        Command::PaintWith(1)
+    })
+    .painting(),
+    action(Tools, "paint_3", "Paint with layer or class 3", "3", || {
+        Command::PaintWith(2)
+    })
+    .painting(),
+    action(Tools, "paint_4", "Paint with layer or class 4", "4", || {
+        Command::PaintWith(3)
+    })
+    .painting(),
+    action(Tools, "paint_5", "Paint with layer or class 5", "5", || {
+        Command::PaintWith(4)
+    })
+    .painting(),
+    action(Tools, "paint_6", "Paint with layer or class 6", "6", || {
+        Command::PaintWith(5)
+    })
+    .painting(),
+    action(Tools, "paint_7", "Paint with layer or class 7", "7", || {
+        Command::PaintWith(6)
+    })
+    .painting(),
+    action(Tools, "paint_8", "Paint with layer or class 8", "8", || {
+        Command::PaintWith(7)
+    })
+    .painting(),
+    action(Tools, "paint_9", "Paint with layer or class 9", "9", || {
+        Command::PaintWith(8)
+    })
+    .painting(),
+    action(Tools, "paint_0", "Paint with layer or class 10", "0", || {
+        Command::PaintWith(9)
+    })
+    .painting(),
+    action(
+        Tools,
+        "paint_last",
+        "Paint with the layer or class before this one",
+        "X",
+        || Command::PaintWithLast,
+    )
+    .painting(),
+    action(Tools, "brush_lower", "Lower voxel brush", "Shift+[ {", || {
+        Command::BrushHeight(-1)
+    })
+    .repeats(),
+    action(Tools, "brush_higher", "Higher voxel brush", "Shift+] }", || {
+        Command::BrushHeight(1)
     })
     .repeats(),
     action(
@@ -171,6 +227,14 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Selection, "to_ground", "To the ground", "Shift+D", || {
         Command::Tools(ToolCommand::DropToGround)
     })
+    .chosen(),
+    action(
+        Selection,
+        "fit",
+        "Fit to its voxels, which stay",
+        "Shift+F",
+        || Command::Tools(ToolCommand::Fit),
+    )
     .chosen(),
     action(
         Selection,

@@ -22,6 +22,10 @@ pub enum When {
     Chosen,
     /// While a thing beside the road is chosen and no brush is in hand.
     Things,
+    /// With a tool in hand that paints.
+    Painting,
+    /// While a new result waits for a decision.
+    Staged,
 }
 
 impl When {
@@ -126,6 +130,16 @@ impl ActionDef {
 
     const fn things(mut self) -> Self {
         self.when = When::Things;
+        self
+    }
+
+    const fn painting(mut self) -> Self {
+        self.when = When::Painting;
+        self
+    }
+
+    const fn staged(mut self) -> Self {
+        self.when = When::Staged;
         self
     }
 

@@ -110,6 +110,30 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         "Shift+Period",
         || Command::Time(TimeCommand::Key(1)),
     ),
+    action(
+        Time,
+        "key_here",
+        "Keyframe of what is chosen here",
+        "Shift+K",
+        || Command::Time(TimeCommand::KeyHere),
+    ),
+    action(Time, "drop_key", "Take this keyframe away", "", || {
+        Command::Time(TimeCommand::DropKey)
+    }),
+    action(
+        Time,
+        "copy_to_next",
+        "Copy the place of what is chosen to the next frame",
+        "Alt+Right",
+        || Command::Time(TimeCommand::CopyToFrame(1)),
+    ),
+    action(
+        Time,
+        "copy_to_previous",
+        "Copy the place of what is chosen to the frame before",
+        "Alt+Left",
+        || Command::Time(TimeCommand::CopyToFrame(-1)),
+    ),
     action(Time, "time_start", "To the start", "", || {
         Command::Time(TimeCommand::ToStart)
     }),
@@ -194,6 +218,19 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Views, "workspace_trade", "Workspace: Trade", "Alt+6", || {
         Command::View(ViewCommand::Workspace(Workspace::Trade))
     }),
+    action(Views, "workspace_clip", "Workspace: Clip", "Alt+7", || {
+        Command::View(ViewCommand::Workspace(Workspace::Clip))
+    }),
+    action(
+        Views,
+        "clean",
+        "Nothing but the scene in the views",
+        "Backtick",
+        || Command::View(ViewCommand::ToggleClean),
+    ),
+    action(Views, "full_screen", "Full screen", "F11", || {
+        Command::View(ViewCommand::ToggleFullScreen)
+    }),
     action(
         Generation,
         "calibrate",
@@ -237,9 +274,10 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     action(Generation, "scenery", "Regenerate scenery", "", || {
         Command::Generation(GenerationCommand::DrawScenery)
     }),
-    action(Generation, "accept", "Accept the new result", "", || {
+    action(Generation, "accept", "Accept the new result", "Enter", || {
         Command::Generation(GenerationCommand::Decide(Verdict::Accept))
-    }),
+    })
+    .staged(),
     action(Generation, "decline", "Decline the new result", "", || {
         Command::Generation(GenerationCommand::Decide(Verdict::Decline))
     }),

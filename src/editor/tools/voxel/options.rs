@@ -1,9 +1,9 @@
 //! What can be set of the voxel tool, and done with chosen voxels.
 
+use crate::tools::paints::voxel_classes;
 use crate::tools::setting::{Control, Number, Setting};
 use crate::tools::{Hand, VoxelMode, VoxelVerb};
 use language::tf;
-use scene::Class;
 
 /// Everything that can be set of the tool.
 pub(super) fn options(hand: &Hand) -> Vec<Setting> {
@@ -64,7 +64,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
             "class",
             Control::Class {
                 chosen: hand.voxel_class,
-                classes: Class::ALL.into_iter().filter(|c| *c != Class::Free).collect(),
+                classes: voxel_classes().collect(),
                 verb: "Voxel",
             },
         ),
