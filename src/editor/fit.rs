@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::f64::consts::FRAC_PI_2;
 
-use glam::DVec2;
+use glam::{DVec2, Vec2Swizzles};
 
 use scene::raster::box_cells;
 use scene::{BoxId, Edit, Extent, Frame, SceneBox};
