@@ -97,7 +97,7 @@ fn edits(scene: &Scene, id: Option<BoxId>, points_m: &[DVec2]) -> Option<Vec<Edi
     let mut out = Vec::new();
     let end_s = scene.time_s() + length_m / mps;
     if clip.length_s == 0.0 {
-        let length_s = end_s.max(USUAL_LENGTH_S).min(scene::Clip::MAX_LENGTH_S).ceil();
+        let length_s = end_s.clamp(USUAL_LENGTH_S, scene::Clip::MAX_LENGTH_S).ceil();
         out.push(Edit::SetLength {
             length_s,
             rate_hz: None,
