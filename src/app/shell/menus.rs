@@ -126,7 +126,7 @@ fn edit_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
     ui.separator();
     let boxes = hand.selected.is_some();
     let tool = |command| Command::Tools(command);
-    let has_copied = !hand.clipboard.is_empty();
+    let has_copied = !hand.clipboard.boxes.is_empty() || !hand.things.clipboard.is_empty();
     on(item(ui, t("Cut"), "Ctrl+X", some), tool(ToolCommand::Cut));
     on(item(ui, t("Copy"), "Ctrl+C", some), tool(ToolCommand::Copy));
     on(

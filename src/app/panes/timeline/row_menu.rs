@@ -31,17 +31,6 @@ pub(super) fn entries(
         Some(id) => clip.moving(id, time_s),
         None => clip.ego_moving(time_s),
     };
-    let mut set = |label: &'static str, motion: Motion, [from_s, to_s]: [Option<f64>; 2]| {
-        commands.push(Command::Apply(
-            label,
-            vec![Edit::SetMotion {
-                id,
-                motion: Some(motion),
-                from_s,
-                to_s,
-            }],
-        ));
-    };
     ui.label(egui::RichText::new(title(scene, id)).color(theme::text_weak()));
     let steps = [
         ("Keyframe here", "Make keyframe", keyframes::key_here(scene, id)),
@@ -61,6 +50,17 @@ pub(super) fn entries(
         }
     }
     ui.separator();
+    let mut set = |label: &'static str, motion: Motion, [from_s, to_s]: [Option<f64>; 2]| {
+        commands.push(Command::Apply(
+            label,
+            vec![Edit::SetMotion {
+                id,
+                motion: Some(motion),
+                from_s,
+                to_s,
+            }],
+        ));
+    };
     if let Some(motion) = motion {
         let timed = !matches!(motion, Motion::Attached { .. });
         for (text, times) in [("Twice as fast", 2.0), ("Half as fast", 0.5)] {
