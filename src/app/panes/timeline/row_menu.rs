@@ -32,24 +32,7 @@ pub(super) fn entries(
         None => clip.ego_moving(time_s),
     };
     ui.label(egui::RichText::new(title(scene, id)).color(theme::text_weak()));
-    let steps = [
-        ("Keyframe here", "Make keyframe", keyframes::key_here(scene, id)),
-        (
-            "Take this keyframe away",
-            "Delete keyframe",
-            keyframes::drop_key(scene, id),
-        ),
-    ];
-    for (text, label, edits) in steps {
-        let button = ui.add_enabled(edits.is_ok(), egui::Button::new(t(text)));
-        if button.clicked()
-            && let Ok(edits) = edits
-        {
-            commands.push(Command::Apply(label, edits));
-            ui.close();
-        }
-    }
-    ui.separator();
+    keyframe_entries(ui, scene, id, commands);
     let mut set = |label: &'static str, motion: Motion, [from_s, to_s]: [Option<f64>; 2]| {
         commands.push(Command::Apply(
             label,
@@ -149,6 +132,28 @@ pub(super) fn entries(
             }
         }
     }
+}
+
+/// A keyframe at the moment that is shown comes, or goes.
+fn keyframe_entries(ui: &mut Ui, scene: &Scene, id: Option<BoxId>, commands: &mut Vec<Command>) {
+    let steps = [
+        ("Keyframe here", "Make keyframe", keyframes::key_here(scene, id)),
+        (
+            "Take this keyframe away",
+            "Delete keyframe",
+            keyframes::drop_key(scene, id),
+        ),
+    ];
+    for (text, label, edits) in steps {
+        let button = ui.add_enabled(edits.is_ok(), egui::Button::new(t(text)));
+        if button.clicked()
+            && let Ok(edits) = edits
+        {
+            commands.push(Command::Apply(label, edits));
+            ui.close();
+        }
+    }
+    ui.separator();
 }
 
 /// The ways to trim the span, s, in which a thing is there.
