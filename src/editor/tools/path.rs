@@ -21,7 +21,7 @@ pub const ID: ToolId = ToolId("path_tool");
 pub static DEF: ToolDef = ToolDef {
     id: ID,
     title: "Path",
-    key: "T",
+    key: "Shift+M",
     icon: "path",
     group: Group::Scene,
     is_brush: false,
@@ -29,7 +29,7 @@ pub static DEF: ToolDef = ToolDef {
     shortcuts: &[Shortcut {
         id: ID.0,
         title: "Path of the chosen object",
-        keys: "T",
+        keys: "Shift+M",
         when: When::Always,
         set: |hand| hand.tool = ID,
     }],
