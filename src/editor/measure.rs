@@ -1,6 +1,6 @@
-//! Distances and angles between points on the ground.
+//! Distances and angles between points: on the ground, or on whatever was met in space.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use scene::Frame;
 
@@ -9,24 +9,42 @@ use scene::Frame;
 pub struct Measure {
     /// In the order clicked.
     pub points_m: Vec<DVec2>,
+    /// How high each lies, m; 0 for what was clicked from above.
+    heights_m: Vec<f64>,
 }
 
 impl Measure {
     /// Takes a point; the fourth begins anew. Points that are not finite are not taken.
-    pub fn add(&mut self, p_m: DVec2) {
+    pub fn add(&mut self, p_m: DVec3) {
         if !p_m.is_finite() {
             return;
         }
         if self.points_m.len() >= 3 {
-            self.points_m.clear();
+            self.clear();
         }
-        self.points_m.push(p_m);
+        self.points_m.push(p_m.truncate());
+        self.heights_m.push(p_m.z);
+    }
+
+    /// Drops all points.
+    pub fn clear(&mut self) {
+        self.points_m.clear();
+        self.heights_m.clear();
+    }
+
+    /// The points, with `next_m` as one more unless there are three.
+    pub fn with(&self, next_m: Option<DVec3>) -> Vec<DVec3> {
+        let set = self
+            .points_m
+            .iter()
+            .zip(&self.heights_m)
+            .map(|(p, z)| p.extend(*z));
+        set.chain(next_m.filter(|_| self.points_m.len() < 3)).collect()
     }
 
     /// What there is to say about the points, with `next_m` as one more.
-    pub fn text(&self, next_m: Option<DVec2>) -> Option<String> {
-        let next_m = next_m.filter(|_| self.points_m.len() < 3);
-        let points: Vec<DVec2> = self.points_m.iter().copied().chain(next_m).collect();
+    pub fn text(&self, next_m: Option<DVec3>) -> Option<String> {
+        let points = self.with(next_m);
         let (first, last) = (points.first()?, points.last()?);
         if points.len() < 2 {
             return None;
@@ -39,10 +57,13 @@ impl Measure {
             let d = *last - *first;
             text += &format!(
                 "  ·  {:.1}°  ·  x {:.2}  y {:.2}",
-                d.to_angle().to_degrees() + 0.0,
+                d.truncate().to_angle().to_degrees() + 0.0,
                 d.x + 0.0,
                 d.y + 0.0
             );
+            if d.z != 0.0 {
+                text += &format!("  z {:.2}", d.z);
+            }
         } else {
             text += &format!(" = {:.2} m", lengths.iter().sum::<f64>());
             if let Some(angle_deg) = angle_deg(points[0], points[1], points[2]) {
@@ -54,9 +75,9 @@ impl Measure {
 }
 
 /// Angle at `corner` between the ways to `a` and to `b`, 0 to 180 degrees; `None` if one of them has no length.
-pub fn angle_deg(a: DVec2, corner: DVec2, b: DVec2) -> Option<f64> {
+pub fn angle_deg(a: DVec3, corner: DVec3, b: DVec3) -> Option<f64> {
     let (u, v) = ((a - corner).try_normalize()?, (b - corner).try_normalize()?);
-    Some(u.perp_dot(v).abs().atan2(u.dot(v)).to_degrees())
+    Some(u.cross(v).length().atan2(u.dot(v)).to_degrees())
 }
 
 /// The nearest corner or centre of a box's footprint within `reach_m`, else the point itself.
@@ -78,23 +99,28 @@ mod tests {
     #[test]
     fn two_points_say_a_distance_and_three_an_angle() {
         let mut m = Measure::default();
-        m.add(DVec2::new(0.0, 0.0));
-        m.add(DVec2::NAN);
+        m.add(DVec3::ZERO);
+        m.add(DVec3::NAN);
         assert_eq!(m.text(None), None);
         assert_eq!(
-            m.text(Some(DVec2::new(3.0, 4.0))).as_deref(),
+            m.text(Some(DVec3::new(3.0, 4.0, 0.0))).as_deref(),
             Some("5.00 m  ·  53.1°  ·  x 3.00  y 4.00")
         );
-        m.add(DVec2::new(3.0, 0.0));
-        m.add(DVec2::new(3.0, 2.0));
+        m.add(DVec3::new(3.0, 0.0, 0.0));
+        m.add(DVec3::new(3.0, 2.0, 0.0));
         assert_eq!(
-            m.text(Some(DVec2::ONE)).as_deref(),
+            m.text(Some(DVec3::ONE)).as_deref(),
             Some("3.00 m + 2.00 m = 5.00 m  ·  90.0°")
         );
-        m.add(DVec2::ONE);
+        m.add(DVec3::ONE);
         assert_eq!(m.points_m, [DVec2::ONE]);
-        assert_eq!(angle_deg(DVec2::ONE, DVec2::ONE, DVec2::X), None);
-        let straight = angle_deg(DVec2::new(-1.0, 0.0), DVec2::ZERO, DVec2::X).expect("two ways");
+        // From the street to the eaves of a house beside it.
+        assert_eq!(
+            m.text(Some(DVec3::new(4.0, 5.0, 13.0))).as_deref(),
+            Some("13.00 m  ·  53.1°  ·  x 3.00  y 4.00  z 12.00")
+        );
+        assert_eq!(angle_deg(DVec3::ONE, DVec3::ONE, DVec3::X), None);
+        let straight = angle_deg(DVec3::NEG_X, DVec3::ZERO, DVec3::X).expect("two ways");
         assert!((straight - 180.0).abs() < 1e-9);
     }
 }

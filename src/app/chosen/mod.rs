@@ -63,8 +63,11 @@ impl SceneloomApp {
                 self.state.tools.voxels.clear();
             }
             ToolCommand::ChooseOthers => {
-                let others = frame.boxes.keys().copied().filter(|id| !ids.contains(id));
-                let others: Vec<_> = others.collect();
+                let hidden = &self.document.scene().arranged.hidden.boxes;
+                let others = frame.boxes.keys().copied();
+                let others: Vec<_> = others
+                    .filter(|id| !ids.contains(id) && !hidden.contains(id))
+                    .collect();
                 self.state.choose(&others, Choose::Only);
             }
             ToolCommand::Delete if self.has_voxels() => {

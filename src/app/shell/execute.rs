@@ -48,7 +48,10 @@ impl SceneloomApp {
             Command::Tools(command) => self.tool_command(command, ctx),
             Command::Select(id) => self.state.choose(id.as_slice(), Choose::Only),
             Command::SelectNext(step) => {
-                let ids: Vec<_> = self.document.scene().frame().boxes.keys().copied().collect();
+                let scene = self.document.scene();
+                let hidden = &scene.arranged.hidden.boxes;
+                let seen = scene.frame().boxes.keys().filter(|id| !hidden.contains(id));
+                let ids: Vec<_> = seen.copied().collect();
                 let next = neighbour(&ids, self.state.selected, step);
                 self.state.choose(next.as_slice(), Choose::Only);
             }

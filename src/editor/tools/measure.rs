@@ -1,14 +1,16 @@
-//! The measure tool: points on the ground, the distances between them and the angle at the middle one.
+//! The measure tool: points on the ground or, in the 3D view, on what lies under the pointer; the distances between them and the
+//! angle at the middle one.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::measure::{Measure, snapped};
+use crate::pick;
 use scene::Frame;
 
 use super::setting::{Control, Setting};
 use super::{
     At, Context, Cursor, Event, Group, HANDLE_REACH, Hand, Hint, Key, Mark, Response, Role, Shortcut, Sight,
-    Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
+    Tool, ToolDef, ToolId, View, ViewKind, Wants, When, hint_of, point_of,
 };
 
 /// Its name.
@@ -39,55 +41,52 @@ pub struct Ruler {
     measure: Measure,
 }
 
-fn caught(frame: &Frame, at_m: DVec2, scale: f64) -> DVec2 {
-    snapped(frame, at_m, HANDLE_REACH / scale)
+/// The point under one of the screen: from above on the ground, caught by the boxes near to it; in space on what is met.
+fn point(frame: &Frame, view: &dyn View, at: DVec2) -> Option<DVec3> {
+    let ray = view.ray(at)?;
+    match view.kind() {
+        ViewKind::Bev => {
+            let at_m = ray.origin_in_ego.truncate();
+            Some(snapped(frame, at_m, HANDLE_REACH / view.scale()).extend(0.0))
+        }
+        ViewKind::Space => Some(point_of(&pick::pick(frame, &ray)?, &ray)),
+    }
 }
 
 impl Tool for Ruler {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match event {
-            Event::Press(pointer) if cx.from_above() => {
-                if let Some(at_m) = cx.ground_m(pointer.at) {
-                    self.measure.add(caught(cx.frame(), at_m, cx.view.scale()));
+            Event::Press(pointer) => {
+                if let Some(p_m) = point(cx.frame(), cx.view, pointer.at) {
+                    self.measure.add(p_m);
                 }
                 Response::none()
             }
             Event::Key(Key::Escape, ..) => {
-                self.measure.points_m.clear();
+                self.measure.clear();
                 Response::taken()
             }
             _ => Response::none(),
         }
     }
 
-    fn hint(&self, _: &Hand, view: Option<ViewKind>) -> Hint {
-        match view {
-            Some(ViewKind::Space) => hint_of(&["Measures in the bird's-eye view"]),
-            _ => hint_of(&["Click sets a point", "Esc clears"]),
-        }
+    fn hint(&self, _: &Hand, _: Option<ViewKind>) -> Hint {
+        hint_of(&["Click sets a point", "Esc clears"])
     }
 
-    fn cursor(&self, sight: &Sight<'_>) -> Cursor {
-        match sight.from_above() {
-            true => Cursor::Crosshair,
-            false => Cursor::Forbidden,
-        }
+    fn cursor(&self, _: &Sight<'_>) -> Cursor {
+        Cursor::Crosshair
     }
 
     fn overlay(&self, sight: &Sight<'_>) -> Vec<Mark> {
-        if !sight.from_above() {
-            return Vec::new();
-        }
-        let (frame, scale) = (sight.scene.frame(), sight.view.scale());
-        let next_m = sight.ground_m().map(|p| caught(frame, p, scale));
-        let open = self.measure.points_m.len() < 3;
-        let set = self.measure.points_m.iter().copied();
-        let points_m: Vec<DVec2> = set.chain(next_m.filter(|_| open)).collect();
-        let line: Vec<At> = points_m.iter().map(|p| (*p).into()).collect();
+        let under = sight.pointer.map(|p| p.at);
+        let next_m = under.and_then(|at| point(sight.scene.frame(), sight.view, at));
+        let points_m = self.measure.with(next_m);
+        let line: Vec<At> = points_m.iter().map(|p| At::Ego(*p)).collect();
         let mut out = vec![Mark::Line(line.clone(), Role::Measure)];
         for pair in points_m.windows(2) {
             let text = format!("{:.2} m", pair[0].distance(pair[1]));
-            out.push(Mark::Label(((pair[0] + pair[1]) / 2.0).into(), text));
+            out.push(Mark::Label(At::Ego((pair[0] + pair[1]) / 2.0), text));
         }
         out.extend(line.iter().map(|p| Mark::Dot(*p, Role::Measure)));
         if let (Some(text), Some(last)) = (self.measure.text(next_m), line.last()) {
@@ -100,7 +99,7 @@ impl Tool for Ruler {
         let mut out = vec![
             Setting::title("Measure"),
             Setting::text(
-                "Click points in the bird's-eye view: two give a distance, a third the angle. Box corners catch them, Esc clears.",
+                "Click points: two give a distance, a third the angle. From above box corners catch them, in the 3D view they lie on what is under the pointer. Esc clears.",
             ),
         ];
         let text = self.measure.text(None);
