@@ -33,19 +33,25 @@ pub enum ViewPreset {
     Top,
     /// From the front toward the ego vehicle, orthographic.
     Front,
+    /// From behind the ego vehicle, orthographic.
+    Back,
     /// From the ego vehicle's right side, orthographic.
     Side,
+    /// From its left side, orthographic.
+    Left,
     /// From where the driver sits, perspective.
     Ego,
 }
 
 impl ViewPreset {
     /// Every preset.
-    pub const ALL: [ViewPreset; 5] = [
+    pub const ALL: [ViewPreset; 7] = [
         ViewPreset::Perspective,
         ViewPreset::Top,
         ViewPreset::Front,
+        ViewPreset::Back,
         ViewPreset::Side,
+        ViewPreset::Left,
         ViewPreset::Ego,
     ];
 
@@ -55,7 +61,9 @@ impl ViewPreset {
             ViewPreset::Perspective => "perspective",
             ViewPreset::Top => "top",
             ViewPreset::Front => "front",
+            ViewPreset::Back => "back",
             ViewPreset::Side => "side",
+            ViewPreset::Left => "left",
             ViewPreset::Ego => "ego",
         }
     }
@@ -109,7 +117,9 @@ impl ViewCamera {
             ViewPreset::Perspective => base,
             ViewPreset::Top => flat(DVec3::ZERO, 0.0, -FRAC_PI_2, 84.0),
             ViewPreset::Front => flat(DVec3::new(0.0, 0.0, 1.5), PI, 0.0, 30.0),
+            ViewPreset::Back => flat(DVec3::new(0.0, 0.0, 1.5), 0.0, 0.0, 30.0),
             ViewPreset::Side => flat(DVec3::new(0.0, 0.0, 1.5), FRAC_PI_2, 0.0, 30.0),
+            ViewPreset::Left => flat(DVec3::new(0.0, 0.0, 1.5), -FRAC_PI_2, 0.0, 30.0),
             ViewPreset::Ego => Self {
                 target_m: DVec3::new(12.0, 0.0, 0.7),
                 distance_m: 11.0,

@@ -228,6 +228,7 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
             ViewPreset::Top => "7",
             ViewPreset::Front => "1",
             ViewPreset::Side => "3",
+            ViewPreset::Back | ViewPreset::Left => "",
             ViewPreset::Ego => "0",
         };
         on(

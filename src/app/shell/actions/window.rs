@@ -63,6 +63,12 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         Command::View(ViewCommand::Preset(ViewPreset::Side))
     })
     .over_3d(),
+    action(Views, "view_back", "3D view from the back", "", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Back))
+    }),
+    action(Views, "view_left", "3D view from the left", "", || {
+        Command::View(ViewCommand::Preset(ViewPreset::Left))
+    }),
     action(Views, "view_perspective", "3D view in perspective", "5", || {
         Command::View(ViewCommand::Preset(ViewPreset::Perspective))
     })
