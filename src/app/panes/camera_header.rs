@@ -17,6 +17,9 @@ const SENSORS_BUTTON: f32 = 84.0;
 /// Width that the number of LiDAR returns takes, points.
 const LIDAR_TEXT: f32 = 130.0;
 
+/// Width of the row of sources, points.
+const SOURCES: f32 = 270.0;
+
 /// Draws the row.
 pub fn header(
     ui: &mut Ui,
@@ -28,15 +31,20 @@ pub fn header(
     ui.horizontal(|ui| {
         let views = cameras::views();
         let choices: Vec<_> = views.iter().map(|v| (v.id, t(v.title), t(v.hint))).collect();
-        icons::segments(ui, &mut shown.view, &choices);
-        ui.add_space(8.0);
         let sources = cameras::sources_of(shown.view);
+        // Room is left for the sources beside them.
+        ui.scope(|ui| {
+            let beside = if sources.len() > 1 { SOURCES } else { 0.0 };
+            ui.set_max_width(ui.available_width() - beside);
+            icons::choice(ui, &mut shown.view, &choices, t("Cameras"));
+        });
+        ui.add_space(8.0);
         if sources.len() > 1 {
             let choices: Vec<_> = sources
                 .iter()
                 .map(|s| (s.id(), t(s.title()), t(s.hint())))
                 .collect();
-            icons::segments(ui, &mut shown.source, &choices);
+            icons::choice(ui, &mut shown.source, &choices, t("From"));
         }
         if shown.shown_source().needs().conditions {
             conditions(ui, input.scene, commands);

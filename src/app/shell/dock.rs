@@ -22,6 +22,9 @@ pub enum Split {
 /// How many times the width that its texts need a column of panels gets at most in a wide window.
 const WIDEST: f32 = 1.4;
 
+/// Share of a narrow window that columns of panels get together.
+const NARROW: f32 = 0.5;
+
 /// The panes of the window.
 #[derive(Clone, PartialEq)]
 pub struct Dock {
@@ -145,7 +148,7 @@ impl Dock {
     }
 
     /// Gives columns of panels beside the views the width that their texts need, and in a fresh dock not much more, once for each width of the window: what the
-    /// user drags afterwards stays. In a very narrow window they get a share of it as before.
+    /// user drags afterwards stays. In a narrow window they get half of it.
     pub fn fit(&mut self, width: f32) {
         if width == self.fitted || width <= 0.0 {
             return;
@@ -173,8 +176,13 @@ impl Dock {
                 _ => None,
             }
         };
-        let given: Vec<Option<f32>> = (0..children.len()).map(given).collect();
-        if all <= 0.0 || sides > 0.6 * width || given.iter().all(Option::is_none) {
+        let mut given: Vec<Option<f32>> = (0..children.len()).map(given).collect();
+        if sides > NARROW * width {
+            // Half of a narrow window is theirs; what does not fit into them is scrolled to.
+            let share = |needs: &f32| (*needs > 0.0).then_some(needs / sides * NARROW * width);
+            given = needed.iter().map(share).collect();
+        }
+        if all <= 0.0 || given.iter().all(Option::is_none) || given.iter().all(Option::is_some) {
             return;
         }
         // The others share the rest as they did.

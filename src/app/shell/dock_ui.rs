@@ -22,6 +22,9 @@ use widgets::theme;
 /// Height of a pane's header, points.
 pub const HEADER: f32 = 30.0;
 
+/// A panel that lacks less than this of its width is not scrolled, points.
+const NEARLY: f32 = 12.0;
+
 /// Width that controls get beside tabs, points.
 const BESIDE_TABS: f32 = 104.0;
 
@@ -129,7 +132,16 @@ impl Drawer<'_> {
             return;
         };
         let area = ui.available_rect_before_wrap();
-        pane.ui(ui, &mut self.cx, self.commands);
+        let needs = panes::info(id).map_or(0.0, |p| p.column_points);
+        if area.width() < needs - NEARLY {
+            let scroll = egui::ScrollArea::horizontal().id_salt(("narrow", id));
+            scroll.auto_shrink(false).show(ui, |ui| {
+                ui.set_width(needs);
+                pane.ui(ui, &mut self.cx, self.commands);
+            });
+        } else {
+            pane.ui(ui, &mut self.cx, self.commands);
+        }
         if self.cx.state.compare.holding_before && pane.shows_before() {
             tag(ui, area.left_top() + vec2(8.0, 8.0), t("before"), false);
         }
