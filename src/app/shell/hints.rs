@@ -41,18 +41,20 @@ mod tests {
                 state.tool = tool.id;
                 let text = hint(&state);
                 assert!((20..140).contains(&text.chars().count()), "{text}");
-                assert!(seen.insert(text), "two tools say the same");
+                assert!(seen.insert((pane, text)), "two tools say the same");
             }
         }
         state.tool = brush::ID;
         for (shape, ..) in PaintShape::ALL {
             state.tools.shape = shape;
-            assert!(seen.insert(hint(&state)) || shape == PaintShape::Stroke);
+            let text = (PaneId::VIEW3D, hint(&state));
+            assert!(seen.insert(text) || shape == PaintShape::Stroke);
         }
         state.tool = voxel::ID;
         for (mode, ..) in VoxelMode::ALL {
             state.tools.voxel_mode = mode;
-            assert!(seen.insert(hint(&state)) || mode == VoxelMode::Brush);
+            let text = (PaneId::VIEW3D, hint(&state));
+            assert!(seen.insert(text) || mode == VoxelMode::Brush);
         }
     }
 }
