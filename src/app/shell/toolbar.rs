@@ -134,7 +134,7 @@ impl Fold {
 }
 
 /// Room for the name of the scene, points.
-const ROOM_FOR_NAME: f32 = 130.0;
+const ROOM_FOR_NAME: f32 = 40.0;
 
 /// How wide the bar is at each step of folding, points, as far as it was drawn so. Names are longer in one language than in another.
 #[derive(Clone, Copy, Debug, Default)]
