@@ -133,9 +133,6 @@ impl Fold {
     ];
 }
 
-/// Room for the name of the scene, points.
-const ROOM_FOR_NAME: f32 = 40.0;
-
 /// How wide the bar is at each step of folding, points, as far as it was drawn so. Names are longer in one language than in another.
 #[derive(Clone, Copy, Debug, Default)]
 struct Needs([Option<f32>; Fold::ALL.len()]);
@@ -158,8 +155,7 @@ impl Needs {
 
     /// Notes how wide the bar was; it is drawn once more if that was too wide.
     fn learn(&mut self, ui: &Ui, fold: Fold, taken: f32, room: f32) {
-        let name = if fold < Fold::Tools { ROOM_FOR_NAME } else { 0.0 };
-        self.0[fold as usize] = Some(taken + name);
+        self.0[fold as usize] = Some(taken);
         let needs = *self;
         ui.data_mut(|d| d.insert_temp(Self::id(), needs));
         if self.fold(room) != fold {

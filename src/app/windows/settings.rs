@@ -36,40 +36,43 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
         return;
     }
     let mut open = true;
+    let most = ui.max_rect().height() - 4.0 * BARS;
     Window::new(t("Settings"))
         .id(egui::Id::unique("settings"))
         .open(&mut open)
         .resizable(false)
         .collapsible(false)
-        .vscroll(true)
-        .max_height(ui.max_rect().height() - 2.0 * BARS)
         .default_pos(ui.max_rect().center() - egui::vec2(WIDTH / 2.0, 240.0))
         .show(ui.ctx(), |ui| {
-            ui.set_width(WIDTH);
-            let Choices {
-                settings,
-                keymap,
-                guests,
-            } = choices;
-            section(ui, t("Looks"));
-            looks(ui, settings);
-            section(ui, t("Work"));
-            work(ui, settings, keymap, windows);
-            section(ui, t("First minutes"));
-            rows(ui, "first minutes", |ui| {
-                ui.label(t("At the start"));
-                ui.checkbox(&mut settings.start_screen, t("Show the start screen"));
-                ui.end_row();
-                ui.label(t("Tour"));
-                if ui.button(t("Begin the tour in three steps")).clicked() {
-                    commands.push(Command::BeginTour);
+            // In a low window its contents are scrolled.
+            let scroll = egui::ScrollArea::vertical().max_height(most);
+            scroll.show(ui, |ui| {
+                ui.set_width(WIDTH);
+                let Choices {
+                    settings,
+                    keymap,
+                    guests,
+                } = choices;
+                section(ui, t("Looks"));
+                looks(ui, settings);
+                section(ui, t("Work"));
+                work(ui, settings, keymap, windows);
+                section(ui, t("First minutes"));
+                rows(ui, "first minutes", |ui| {
+                    ui.label(t("At the start"));
+                    ui.checkbox(&mut settings.start_screen, t("Show the start screen"));
+                    ui.end_row();
+                    ui.label(t("Tour"));
+                    if ui.button(t("Begin the tour in three steps")).clicked() {
+                        commands.push(Command::BeginTour);
+                    }
+                    ui.end_row();
+                });
+                if guests.are_possible() {
+                    section(ui, t("Assistants"));
+                    assistants(ui, settings, guests);
                 }
-                ui.end_row();
             });
-            if guests.are_possible() {
-                section(ui, t("Assistants"));
-                assistants(ui, settings, guests);
-            }
         });
     windows.settings &= open;
 }
