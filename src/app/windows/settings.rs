@@ -45,7 +45,9 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
         .default_pos(ui.max_rect().center() - egui::vec2(WIDTH / 2.0, 240.0))
         .show(ui.ctx(), |ui| {
             // In a low window its contents are scrolled.
-            let scroll = egui::ScrollArea::vertical().max_height(most);
+            let scroll = egui::ScrollArea::vertical()
+                .max_height(most)
+                .min_scrolled_height(most);
             scroll.show(ui, |ui| {
                 ui.set_width(WIDTH);
                 let Choices {
