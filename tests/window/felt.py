@@ -11,6 +11,8 @@ import json, os, subprocess, sys, tempfile, time
 
 from window import PROMPT, SIZE, Window, map_point
 
+# Of the dialog of exports.
+EXPORT_ALL, EXPORT_FILES, CLOSE_EXPORT = (402, 505), (853, 613), (886, 144)
 ROAD_LEFT_M = 1.8  # of the road's line in this scene, from the ego vehicle
 
 
@@ -37,6 +39,14 @@ def drag_a_car(w):
     w.key("v")
     at = (14, -12)
     for to in [(20, -14), (12, -16), (25, -8), (14, -12)] * 2:
+        sweep(w, [map_point(*at), map_point(*to)])
+        at = to
+
+
+def drag_a_building(w):
+    w.click(map_point(-16, 24))
+    at = (-16, 24)
+    for to in [(-12, 26), (-18, 22), (-16, 24)]:
         sweep(w, [map_point(*at), map_point(*to)])
         at = to
 
@@ -104,6 +114,7 @@ def while_exporting(w):
 PHASES = {
     "paint": paint,
     "drag a car": drag_a_car,
+    "drag a building": drag_a_building,
     "drag a road": drag_a_road,
     "voxels": voxels,
     "undo and redo": undo,

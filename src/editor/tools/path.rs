@@ -161,7 +161,7 @@ impl Tool for Course {
     fn hint(&self, hand: &Hand, _: Option<ViewKind>) -> Hint {
         let first = match hand.selected {
             Some(_) => "Click: where the chosen object goes",
-            None => "Click: where we go; choose an object for its path",
+            None => "Click: where we go",
         };
         let rest = [
             "Enter or double-click ends",
