@@ -163,11 +163,7 @@ impl Tool for Course {
             Some(_) => "Click: where the chosen object goes",
             None => "Click: where we go",
         };
-        let rest = [
-            "Enter or double-click ends",
-            "Backspace takes a point back",
-            "Esc drops it",
-        ];
+        let rest = ["Enter or double-click ends", "Backspace takes a point back"];
         std::iter::once(first).chain(rest).map(Cow::Borrowed).collect()
     }
 
