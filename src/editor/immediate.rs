@@ -245,3 +245,57 @@ fn outside_m(extent: Extent, b: &SceneBox, x: usize, y: usize) -> f64 {
     let beyond = local.abs() - b.size_m.truncate() / 2.0;
     beyond.max(DVec2::ZERO).length()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ring by ring, cell by cell.
+    fn plainly(grid: &VoxelGrid, layout: &BevLayout, [x, y]: [usize; 2]) -> u8 {
+        let extent = layout.extent();
+        for reach in 1..=MAX_REACH {
+            let mut votes = [0usize; Class::COUNT];
+            let on_ring = |[i, j]: &[usize; 2]| i.abs_diff(x).max(j.abs_diff(y)) == reach;
+            for [i, j] in extent.all_columns().filter(on_ring) {
+                let label = grid.get(i, j, ground_bin(layout, i, j));
+                votes[usize::from(label)] += usize::from(is_ground(label));
+            }
+            let most = votes.iter().copied().max().unwrap_or(0);
+            if most > 0 {
+                return votes.iter().position(|v| *v == most).unwrap_or(0) as u8;
+            }
+        }
+        Class::Terrain.id()
+    }
+
+    /// Large holes at edges and corners, ground of several classes around them, and one column farther off than is looked.
+    #[test]
+    fn emptied_columns_get_the_ground_of_the_nearest_ring() {
+        let layout = BevLayout::default();
+        let extent = layout.extent();
+        let mut grid = VoxelGrid::new();
+        let classes = [Class::Sidewalk, Class::Terrain, Class::DriveableSurface];
+        for [x, y] in extent.all_columns() {
+            let class = classes[(x * 7 + y * 13 + x * y / 5) % 3];
+            grid.set(x, y, ground_bin(&layout, x, y), class.id());
+        }
+        let holes = [
+            [0, 9, 0, 30],
+            [60, 101, 40, 71],
+            [150, 200, 150, 200],
+            [20, 21, 120, 121],
+        ];
+        let emptied: Vec<[usize; 2]> = holes
+            .iter()
+            .flat_map(|[x0, x1, y0, y1]| (*x0..*x1).flat_map(move |x| (*y0..*y1).map(move |y| [x, y])))
+            .collect();
+        for [x, y] in &emptied {
+            grid.set(*x, *y, ground_bin(&layout, *x, *y), Class::FREE);
+        }
+        let around = Around::of(&grid, &layout, &emptied);
+        for at in emptied.iter().step_by(7) {
+            assert_eq!(around.ground(*at), plainly(&grid, &layout, *at), "{at:?}");
+        }
+        assert_eq!(around.ground([199, 199]), Class::Terrain.id(), "too far from any");
+    }
+}

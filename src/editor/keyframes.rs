@@ -1,6 +1,7 @@
 //! Keyframes as edits: one made where something is, one taken away, and a place copied to the frame after or before.
 
-use scene::{BoxId, Edit, Key, Motion, Moving, Scene, Scope};
+use crate::traffic::shown;
+use scene::{BoxId, Edit, Key, Motion, Scene, Scope};
 
 /// The keyframe of a thing (the ego vehicle if none) at the moment that is shown, where it is. Errors in one line, for a person.
 pub fn key_here(scene: &Scene, id: Option<BoxId>) -> Result<Vec<Edit>, &'static str> {
@@ -13,11 +14,7 @@ pub fn key_here(scene: &Scene, id: Option<BoxId>) -> Result<Vec<Edit>, &'static 
         Some(_) => return Err("It follows a path: keyframes are for what has none"),
         None => Vec::new(),
     };
-    let here = match id {
-        Some(id) => scene.frame().boxes.get(&id).map(Moving::from),
-        None => clip.ego_moving(now_s).or_else(|| Some(ego(scene))),
-    };
-    let here = here.ok_or("It is not there at this moment")?;
+    let here = shown(scene, id).ok_or("It is not there at this moment")?;
     let key = Key {
         time_s: now_s,
         at_m: here.at_m,
@@ -77,12 +74,6 @@ pub fn copy_to_frame(scene: &Scene, ids: &[BoxId], step: i32) -> Result<(f64, Ve
 /// Two moments that are the same frame, or nearer than frames are.
 fn near(a_s: f64, b_s: f64, scene: &Scene) -> bool {
     (a_s - b_s).abs() < 0.5 / scene.clip().rate_hz
-}
-
-fn ego(scene: &Scene) -> Moving {
-    let pose = scene.frame().world_from_ego;
-    let ahead = (pose.rotation * glam::DVec3::X).truncate();
-    Moving::still(pose.translation_m.truncate(), ahead.to_angle())
 }
 
 /// Without a keyframe it stands again.

@@ -133,7 +133,11 @@ impl SceneloomApp {
                 let edits: Vec<Edit> = ids.iter().filter_map(|id| fit(&frame, *id)).collect();
                 match edits.is_empty() && !ids.is_empty() {
                     true => self.note(t("It fits its voxels, or has too few of them")),
-                    false => self.apply_some("Fit to voxels", edits),
+                    false => {
+                        self.apply_some("Fit to voxels", edits);
+                        // What the source was inverted under is another box.
+                        self.generation.live.source_changed();
+                    }
                 }
             }
             ToolCommand::ToLane => self.apply_some("Snap to lane", arrange::to_lane(&frame, &ids)),

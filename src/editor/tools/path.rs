@@ -6,7 +6,9 @@ use glam::DVec2;
 
 use scene::clip::{Path, Speed};
 use scene::roads::curve;
-use scene::{BoxId, Edit, Motion, Moving, Scene, Template};
+use scene::{BoxId, Edit, Motion, Scene, Template};
+
+use crate::traffic::shown;
 
 use super::setting::Setting;
 use super::{
@@ -48,21 +50,9 @@ pub struct Course {
     points_m: Vec<DVec2>,
 }
 
-/// Where the object, or the ego vehicle, is at the moment shown.
-fn place(scene: &Scene, id: Option<BoxId>) -> Option<Moving> {
-    match id {
-        Some(id) => scene.frame().boxes.get(&id).map(Moving::from),
-        None => {
-            let pose = scene.frame().world_from_ego;
-            let ahead = (pose.rotation * glam::DVec3::X).truncate().to_angle();
-            Some(Moving::still(pose.translation_m.truncate(), ahead))
-        }
-    }
-}
-
 /// The path's line, m: a smooth one from where it is through the points.
 fn line(scene: &Scene, id: Option<BoxId>, points_m: &[DVec2]) -> Vec<DVec2> {
-    let Some(from) = place(scene, id) else {
+    let Some(from) = shown(scene, id) else {
         return Vec::new();
     };
     let behind = from.at_m - DVec2::from_angle(from.yaw_rad);
@@ -74,17 +64,11 @@ fn line(scene: &Scene, id: Option<BoxId>, points_m: &[DVec2]) -> Vec<DVec2> {
 
 /// Edits that let an object, or the ego vehicle, go through points (m) from the moment shown on. `None` if the path has no length.
 fn edits(scene: &Scene, id: Option<BoxId>, points_m: &[DVec2]) -> Option<Vec<Edit>> {
-    let from = place(scene, id)?;
+    let from = shown(scene, id)?;
     let points_m = line(scene, id, points_m);
     let length_m = curve::length_m(&points_m);
     let class = id.and_then(|id| scene.frame().boxes.get(&id)).map(|b| b.class);
-    let own_mps = match id {
-        Some(_) => from.velocity_mps.length(),
-        None => scene
-            .clip()
-            .ego_moving(scene.time_s())
-            .map_or(0.0, |m| m.velocity_mps.length()),
-    };
+    let own_mps = from.velocity_mps.length();
     let mps = if own_mps > STANDS_MPS {
         own_mps
     } else {

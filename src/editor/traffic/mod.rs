@@ -7,4 +7,4 @@ pub mod template;
 mod turning;
 
 pub use scene::clip::Template;
-pub use template::{Wish, motion_of};
+pub use template::{Wish, motion_of, shown};

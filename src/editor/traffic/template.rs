@@ -105,6 +105,17 @@ fn place(scene: &Scene, id: Option<BoxId>) -> Option<(Moving, f64)> {
     }
 }
 
+/// An object, or (`None`) the ego vehicle, as it is at the moment that is shown; `None` if it is not there.
+pub fn shown(scene: &Scene, id: Option<BoxId>) -> Option<Moving> {
+    match id {
+        Some(id) => scene.frame().boxes.get(&id).map(Moving::from),
+        None => scene
+            .clip()
+            .ego_moving(scene.time_s())
+            .or_else(|| Some(ego(scene))),
+    }
+}
+
 /// The ego vehicle at the moment that is shown.
 fn ego(scene: &Scene) -> Moving {
     let pose = scene.frame().world_from_ego;

@@ -102,3 +102,59 @@ fn votes(solid: &Solid, thin: bool, inside: impl Fn(usize) -> bool) -> u8 {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+
+    /// Columns are sampled once and levels once; here every sample of every voxel is asked.
+    #[test]
+    fn a_prism_fills_what_each_of_its_samples_says() {
+        let corners = |turn: f64, n: usize, far: f64, near: f64| -> Vec<DVec2> {
+            let corner = |k: usize| {
+                let angle = turn + std::f64::consts::TAU * k as f64 / n as f64;
+                DVec2::from_angle(angle) * if k % 2 == 0 { far } else { near }
+            };
+            (0..n).map(corner).collect()
+        };
+        let extent = Extent::WINDOW;
+        for (k, [bottom, top]) in [[-0.9, 3.1], [0.05, 0.17], [-3.0, 9.0], [1.0, 1.5]]
+            .into_iter()
+            .enumerate()
+        {
+            for (far, near) in [(7.3, 7.3), (6.0, 1.1), (0.5, 0.2)] {
+                let outline = corners(0.3 + k as f64, 8, far, near);
+                let prism = Solid::prism(Class::Manmade, &outline, bottom, top);
+                let thin = prism.reach().min_element() < Extent::VOXEL_M * 0.75;
+                let needed = if thin { 1 } else { NEEDED };
+                let mut filled = std::collections::BTreeMap::new();
+                fill(
+                    extent,
+                    &prism,
+                    |_, _| true,
+                    |x, y, z, n| drop(filled.insert([x, y, z], n)),
+                );
+                assert!(!filled.is_empty());
+                let mut found = 0;
+                for [x, y] in extent.all_columns() {
+                    for z in 0..Extent::NZ {
+                        let inside = |i: usize| {
+                            let f = |k: usize| (k as f64 + 0.5) / SAMPLES as f64;
+                            let within = DVec3::new(f(i % 3), f(i / 3 % 3), f(i / 9));
+                            let corner = DVec3::new(x as f64, y as f64, z as f64);
+                            prism.contains(extent.from_voxel_units(corner + within))
+                        };
+                        let n = votes(&prism, thin, inside);
+                        if n >= needed {
+                            found += 1;
+                            assert_eq!(filled.get(&[x, y, z]), Some(&n), "{x} {y} {z}");
+                        }
+                    }
+                }
+                assert_eq!(found, filled.len());
+            }
+        }
+    }
+}

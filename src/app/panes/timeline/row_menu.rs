@@ -7,6 +7,7 @@ use scene::{BoxId, Motion, Moving, Scene};
 use crate::command::Command;
 use crate::playback::{Copied, Playback};
 use crate::state::called;
+use editor::traffic::shown;
 use editor::{Edit, keyframes};
 use language::t;
 use widgets::theme;
@@ -87,7 +88,7 @@ pub(super) fn entries(
     let copied = playback
         .copied
         .clone()
-        .zip(place(now_s).or_else(|| standing(scene, id)));
+        .zip(place(now_s).or_else(|| shown(scene, id)));
     let hint = t("The same way from where this is at the moment that is shown");
     if ui
         .add_enabled(copied.is_some(), egui::Button::new(t("Paste motion")))
@@ -216,18 +217,6 @@ fn quicker(motion: &Motion, times: f64) -> Motion {
         only.mps = (only.mps * times).clamp(-most, most);
     }
     out
-}
-
-/// Where a thing without a motion stands.
-fn standing(scene: &Scene, id: Option<BoxId>) -> Option<Moving> {
-    match id {
-        Some(id) => scene.frame().boxes.get(&id).map(Moving::from),
-        None => {
-            let pose = scene.frame().world_from_ego;
-            let ahead = (pose.rotation * glam::DVec3::X).truncate();
-            Some(Moving::still(pose.translation_m.truncate(), ahead.to_angle()))
-        }
-    }
 }
 
 /// Other moving objects, the nearest first, that are not themselves attached to anything.
