@@ -225,6 +225,34 @@ mod tests {
     }
 
     #[test]
+    fn digits_and_x_paint_with_a_brush_in_hand_and_enter_accepts_what_waits() {
+        let mut state = UiState::default();
+        state.pointed.pane = Some(PaneId::VIEW3D);
+        let top = Command::View(ViewCommand::Preset(viewport::ViewPreset::Top));
+        assert_eq!(of(Key::Num7, Modifiers::NONE, &state, false), [top]);
+        state.tool = editor::tools::voxel::ID;
+        assert_eq!(
+            of(Key::Num7, Modifiers::NONE, &state, false),
+            [Command::PaintWith(6)]
+        );
+        assert_eq!(
+            of(Key::Num0, Modifiers::NONE, &state, false),
+            [Command::PaintWith(9)]
+        );
+        assert_eq!(
+            of(Key::X, Modifiers::NONE, &state, false),
+            [Command::PaintWithLast]
+        );
+        assert_eq!(of(Key::Enter, Modifiers::NONE, &state, false), []);
+        let hands = Hands {
+            staged: true,
+            ..Hands::default()
+        };
+        let accept = Command::Generation(GenerationCommand::Decide(crate::command::Verdict::Accept));
+        assert_eq!(with(Key::Enter, Modifiers::NONE, &state, hands), [accept]);
+    }
+
+    #[test]
     fn keys_wait_for_the_end_of_a_drag() {
         let mut state = UiState::default();
         state.choose(&[BoxId(3)], Choose::Only);

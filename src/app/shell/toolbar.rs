@@ -401,3 +401,33 @@ fn title(ui: &Ui, input: &ToolbarInput<'_>, left: f32, right: f32) {
         painter.circle_filled(drawn.right_center() + vec2(9.0, 1.0), 3.0, theme::warn());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bar_folds_no_more_than_it_must() {
+        let mut needs = Needs::default();
+        assert_eq!(needs.fold(300.0), Fold::Nothing, "nothing is known yet");
+        needs.0[0] = Some(1330.0);
+        assert_eq!(
+            (needs.fold(1400.0), needs.fold(1200.0)),
+            (Fold::Nothing, Fold::Things)
+        );
+        for (at, need) in [(1, 1210.0), (2, 930.0), (3, 700.0), (4, 560.0)] {
+            needs.0[at] = Some(need);
+        }
+        let folds = [1210.0, 1000.0, 800.0, 600.0, 300.0].map(|room| needs.fold(room));
+        assert_eq!(
+            folds,
+            [
+                Fold::Things,
+                Fold::Workspaces,
+                Fold::Tools,
+                Fold::Menus,
+                Fold::Menus
+            ]
+        );
+    }
+}
