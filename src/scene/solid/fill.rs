@@ -115,7 +115,7 @@ mod tests {
         let corners = |turn: f64, n: usize, far: f64, near: f64| -> Vec<DVec2> {
             let corner = |k: usize| {
                 let angle = turn + std::f64::consts::TAU * k as f64 / n as f64;
-                DVec2::from_angle(angle) * if k % 2 == 0 { far } else { near }
+                DVec2::from_angle(angle) * if k.is_multiple_of(2) { far } else { near }
             };
             (0..n).map(corner).collect()
         };
@@ -134,7 +134,9 @@ mod tests {
                     extent,
                     &prism,
                     |_, _| true,
-                    |x, y, z, n| drop(filled.insert([x, y, z], n)),
+                    |x, y, z, n| {
+                        filled.insert([x, y, z], n);
+                    },
                 );
                 assert!(!filled.is_empty());
                 let mut found = 0;
