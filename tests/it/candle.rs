@@ -10,6 +10,7 @@ use nets::layout::net::LayoutNet;
 use nets::lidar::LidarNet;
 use nets::lidar::field::{Field, Ray};
 use nets::lidar::update::Changed;
+use nets::picture::{self, Condition, Motion, PictureDit, PictureVae, RingSize};
 use nets::refiner::{Refiner, Rough};
 use nets::scenery::{self, SceneryCondition, SceneryNet};
 use nets::text::TextEncoder;
@@ -325,4 +326,57 @@ fn text_agrees_with_candle() {
     }
     let [a, b] = of("");
     assert!(a == b && a.iter().all(|v| *v == 0.0));
+}
+
+/// A frame of three cameras that also hears the frame before, and its pictures.
+#[test]
+fn pictures_agree() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("training/weights/pictures");
+    let [vae, dit] = picture::FILES.map(|name| std::fs::read(folder.join(name)).expect("weights"));
+    let parse = |bytes| WeightFile::parse("pictures", bytes).expect("a sound file");
+    let size = RingSize::new(3, [32, 48]).expect("a size");
+    let pixels = 3 * 32 * 48;
+    let condition = Condition {
+        size,
+        classes: (0..pixels).map(|i| (i / 7 % 20) as u8).collect(),
+        depth_m: (0..pixels).map(|i| (i % 97) as f32 * 0.5).collect(),
+        facings: (0..pixels).map(|i| (i / 5 % 17) as u8 | 0x80).collect(),
+        time: Some(1),
+        weather: None,
+        cameras: numbers(21, 7).as_chunks().0.to_vec(),
+    };
+    let motion = Motion {
+        focal_px: [30.0, 30.0],
+        center_px: [24.0, 16.0],
+        then_from_now: [[1.0, 0.0, 0.0, 0.1], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.5]],
+    };
+    let x = numbers(3 * 24 * 8, 8);
+    let depths = [&condition.depth_m[..]; 2];
+    let before = picture::warp(size, &numbers(3 * 24 * 8, 9), depths, &[motion; 3]).expect("finite");
+
+    let (ours, theirs) = (
+        PictureDit::new(parse(&dit)).expect("weights"),
+        PictureDit::on(candle(), parse(&dit)).expect("weights"),
+    );
+    let (told, told_too) = (
+        ours.tell(&condition).expect("a condition"),
+        theirs.tell(&condition).expect("a condition"),
+    );
+    agree(
+        &ours.v(&x, 500.0, &told, Some(&before)).expect("finite"),
+        &theirs.v(&x, 500.0, &told_too, Some(&before)).expect("finite"),
+        "v of pictures",
+    );
+    let (ours, theirs) = (
+        PictureVae::new(parse(&vae)).expect("weights"),
+        PictureVae::on(candle(), parse(&vae)).expect("weights"),
+    );
+    let drawn = ours.decode(&x, size.cells()).expect("finite");
+    agree(&drawn, &theirs.decode(&x, size.cells()).expect("finite"), "pictures");
+    let latents = ours.encode(&drawn, size.pixels()).expect("finite");
+    agree(
+        &latents,
+        &theirs.encode(&drawn, size.pixels()).expect("finite"),
+        "latents of pictures",
+    );
 }

@@ -1,5 +1,7 @@
 //! Why a network refuses its input.
 
+use diffusion::schedule::ScheduleError;
+use diffusion::solver::SolverError;
 use nn::ops::OpsError;
 use thiserror::Error;
 
@@ -41,6 +43,30 @@ pub enum ModelError {
     /// The backend could not compute.
     #[error(transparent)]
     Backend(#[from] OpsError),
+    /// A size, an id or an index that the network does not know.
+    #[error("{what} is {found}, expected {expected}")]
+    OutOfRange {
+        /// Which input.
+        what: &'static str,
+        /// What was given.
+        found: usize,
+        /// What may be given.
+        expected: &'static str,
+    },
+    /// A number of steps that the schedule does not have.
+    #[error(transparent)]
+    Schedule(#[from] ScheduleError),
+    /// The solver refuses a state.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// Whoever watched a run ended it. Not an error to show.
+    #[error("stopped after step {step} of {steps}")]
+    Stopped {
+        /// Steps done, from 1.
+        step: usize,
+        /// All steps.
+        steps: usize,
+    },
     /// A time outside the schedule.
     #[error("timestep is {0}, expected 0 to 999")]
     Timestep(f32),

@@ -9,6 +9,7 @@ use crate::kernels;
 use crate::layers::{Linear, NORM_EPS, Norm, ResBlock};
 use crate::map::Map;
 use crate::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use crate::ring::{RingBlock, RingBlockParts};
 use crate::rules::RuleBook;
 use crate::sparse::{Convolution, Residual};
 use crate::transformer::Block;
@@ -56,6 +57,7 @@ impl Ops for Cpu {
     type Room = Vec<f32>;
     type Messages = MessageParts<Linear>;
     type NodeBlock = NodeBlockParts<Linear>;
+    type RingBlock = RingBlock;
 
     fn upload(&self, map: Map) -> Result<Map, OpsError> {
         Ok(map)
@@ -111,6 +113,10 @@ impl Ops for Cpu {
 
     fn node_block_from(&self, parts: NodeBlockParts<Linear>) -> Result<NodeBlockParts<Linear>, OpsError> {
         Ok(parts)
+    }
+
+    fn ring_block_from(&self, parts: RingBlockParts<Linear, Norm>) -> Result<RingBlock, OpsError> {
+        Ok(RingBlock::new(parts))
     }
 
     fn apply(&self, linear: &Linear, x: &Map, piece: usize) -> Result<Map, OpsError> {
@@ -268,6 +274,11 @@ impl Ops for Cpu {
         let context = context.map_or(&[][..], |c| &c.data);
         graph::block(block, &mut x.data, &ada.data, context, &bias.data);
         Ok(x)
+    }
+
+    fn ring_block(&self, block: &RingBlock, mut maps: Vec<Map>, ada: &[Map]) -> Result<Vec<Map>, OpsError> {
+        block.apply(&mut maps, ada);
+        Ok(maps)
     }
 
     fn relu(&self, mut x: Map) -> Result<Map, OpsError> {

@@ -12,6 +12,7 @@ pub mod map;
 pub mod ops;
 pub mod packed_matrix;
 mod precision;
+pub mod ring;
 pub mod rules;
 pub mod sparse;
 pub mod transformer;

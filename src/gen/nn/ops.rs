@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::Precision;
 use crate::map::Map;
+use crate::ring::RingBlockParts;
 use crate::rules::RuleBook;
 use crate::weights::{WeightFile, WeightsError};
 
@@ -131,6 +132,8 @@ pub trait Ops: Send + Sync + Sized + 'static {
     type Messages: Send + Sync;
     /// A transformer block over the nodes of a graph, modulated by time.
     type NodeBlock: Send + Sync;
+    /// A transformer block over a ring of maps, modulated by time.
+    type RingBlock: Send + Sync;
 
     /// Values of the processor to the backend.
     fn upload(&self, map: Map) -> Result<Self::Tensor, OpsError>;
@@ -173,6 +176,11 @@ pub trait Ops: Send + Sync + Sized + 'static {
     fn messages_from(&self, parts: MessageParts<Self::Linear>) -> Result<Self::Messages, OpsError>;
     /// A transformer block over nodes.
     fn node_block_from(&self, parts: NodeBlockParts<Self::Linear>) -> Result<Self::NodeBlock, OpsError>;
+    /// A transformer block over a ring of maps.
+    fn ring_block_from(
+        &self,
+        parts: RingBlockParts<Self::Linear, Self::Norm>,
+    ) -> Result<Self::RingBlock, OpsError>;
 
     /// At every place; the processor works on `piece` places at a time.
     fn apply(&self, linear: &Self::Linear, x: &Self::Tensor, piece: usize) -> Result<Self::Tensor, OpsError>;
@@ -263,6 +271,15 @@ pub trait Ops: Send + Sync + Sized + 'static {
         context: Option<&Self::Tensor>,
         bias: &Self::Tensor,
     ) -> Result<Self::Tensor, OpsError>;
+
+    /// A transformer block over a ring of maps of one size: the map before one is on its left, the last one on the left of the
+    /// first. `ada` has one place of `6 width` for each of them, see [`RingBlockParts::offset`].
+    fn ring_block(
+        &self,
+        block: &Self::RingBlock,
+        maps: Vec<Self::Tensor>,
+        ada: &[Self::Tensor],
+    ) -> Result<Vec<Self::Tensor>, OpsError>;
 
     /// max(x, 0).
     fn relu(&self, x: Self::Tensor) -> Result<Self::Tensor, OpsError>;

@@ -1,4 +1,4 @@
-//! A block of a diffusion transformer over a square map of tokens (adaLN-Zero of Peebles and Xie, arXiv 2212.09748, with
+//! A block of a diffusion transformer over a map of tokens (adaLN-Zero of Peebles and Xie, arXiv 2212.09748, with
 //! a depthwise convolution over the values: LePE, arXiv 2107.00652), fused for the processor.
 
 use rayon::prelude::*;
@@ -21,10 +21,16 @@ enum AnyHead<'a> {
     Int8(Int8Head),
 }
 
-/// A block with its weights.
+/// A block with its weights, over a square map.
 pub struct Block {
     /// Time to shift, scale and gate of attention, then of the MLP.
     pub(crate) ada: Linear,
+    body: Body,
+    side: usize,
+}
+
+/// What a block does once it is told shifts, scales and gates; of a map of any shape.
+pub(crate) struct Body {
     qkv: Linear,
     proj: Linear,
     fc1: Linear,
@@ -37,7 +43,15 @@ pub struct Block {
 struct Local {
     weight: Vec<f32>, // [neighbour][width]
     bias: Vec<f32>,
-    side: usize,
+}
+
+/// Which tokens of a map are computed.
+#[derive(Clone, Copy)]
+pub(crate) struct Places<'a> {
+    /// Where they stand, row by row.
+    pub at: &'a [usize],
+    /// Rows and columns of the map.
+    pub shape: [usize; 2],
 }
 
 /// Tokens in a piece of work; depends on nothing but their number.
@@ -48,24 +62,14 @@ pub fn piece_of(tokens: usize) -> usize {
 impl Block {
     /// Of its parts.
     pub fn new(parts: BlockParts<Linear>) -> Self {
-        let BlockParts {
-            ada,
-            qkv,
-            proj,
-            fc1,
-            fc2,
-            local,
-            heads,
-            side,
-        } = parts;
         Self {
-            ada,
-            qkv,
-            proj,
-            fc1,
-            fc2,
-            local: local.map(|(weight, bias)| Local::new(&weight, bias, side)),
-            heads,
+            body: Body::new(
+                [parts.qkv, parts.proj, parts.fc1, parts.fc2],
+                parts.local,
+                parts.heads,
+            ),
+            ada: parts.ada,
+            side: parts.side,
         }
     }
 
@@ -80,21 +84,56 @@ impl Block {
         keys_values: &mut [f32],
         precision: Precision,
     ) {
+        let places = Places {
+            at: places,
+            shape: [self.side; 2],
+        };
+        let mlp = self.body.mlp(ada, precision);
+        self.body.attend(tokens, ada, places, keys_values, precision, mlp);
+    }
+}
+
+impl Body {
+    /// Of its parts, without a convolution if `local` is none.
+    pub(crate) fn new(
+        [qkv, proj, fc1, fc2]: [Linear; 4],
+        local: Option<(Vec<f32>, Vec<f32>)>,
+        heads: usize,
+    ) -> Self {
+        Self {
+            qkv,
+            proj,
+            fc1,
+            fc2,
+            local: local.map(|(weight, bias)| Local::new(&weight, bias)),
+            heads,
+        }
+    }
+
+    /// Attention of the block, see [`Block::apply`]; `then` is done with every piece of tokens.
+    pub(crate) fn attend(
+        &self,
+        tokens: &mut [f32],
+        ada: &[f32],
+        places: Places<'_>,
+        keys_values: &mut [f32],
+        precision: Precision,
+        then: impl Fn(&mut [f32]) + Sync,
+    ) {
         let width = ada.len() / 6;
         let part = |i: usize| &ada[i * width..][..width];
-        let scale = |i: usize| part(i).iter().map(|s| 1.0 + s).collect::<Vec<f32>>();
-        let (scale1, scale2) = (scale(1), scale(4));
-        let piece_tokens = piece_of(places.len());
+        let scale: Vec<f32> = part(1).iter().map(|s| 1.0 + s).collect();
+        let piece_tokens = piece_of(places.at.len());
 
-        let mut qkv = vec![0.0; places.len() * 3 * width];
+        let mut qkv = vec![0.0; places.at.len() * 3 * width];
         qkv.par_chunks_mut(piece_tokens * 3 * width)
             .zip(tokens.par_chunks(piece_tokens * width))
             .for_each(|(qkv, x)| {
                 let mut normed = vec![0.0; x.len()];
-                kernels::norm_rows(x, NORM_EPS, &scale1, part(0), &mut normed);
+                kernels::norm_rows(x, NORM_EPS, &scale, part(0), &mut normed);
                 self.qkv.rows_in(precision, &normed, qkv);
             });
-        for (row, place) in qkv.chunks_exact(3 * width).zip(places) {
+        for (row, place) in qkv.chunks_exact(3 * width).zip(places.at) {
             keys_values[place * 2 * width..][..2 * width].copy_from_slice(&row[width..]);
         }
         let keys_values = &*keys_values;
@@ -113,20 +152,15 @@ impl Block {
                 }
             })
             .collect();
-        let shrink = 1.0 / (head_width as f32).sqrt();
         tokens
             .par_chunks_mut(piece_tokens * width)
             .zip(qkv.par_chunks(piece_tokens * 3 * width))
             .enumerate()
             .for_each(|(piece, (x, qkv))| {
                 let mut attended = vec![0.0; x.len()];
-                let mut queries = Vec::with_capacity(x.len() / heads.len());
                 for (h, head) in heads.iter().enumerate() {
                     let at = h * head_width;
-                    queries.clear();
-                    for row in qkv.chunks_exact(3 * width) {
-                        queries.extend(row[at..][..head_width].iter().map(|q| q * shrink));
-                    }
+                    let queries = shrunk_queries(qkv, 3 * width, at, head_width);
                     match head {
                         AnyHead::F32(head) => head.attend(&queries, &mut attended[at..], width),
                         AnyHead::Int8(head) => head.attend(&queries, &mut attended[at..], width),
@@ -134,48 +168,68 @@ impl Block {
                 }
                 if let Some(local) = &self.local {
                     let rows = attended.chunks_exact_mut(width);
-                    for (row, place) in rows.zip(&places[piece * piece_tokens..]) {
-                        local.add_at(*place, keys_values, row);
+                    for (row, place) in rows.zip(&places.at[piece * piece_tokens..]) {
+                        local.add_at(*place, places.shape, keys_values, row);
                     }
                 }
                 let mut out = vec![0.0; x.len()];
                 self.proj.rows_in(precision, &attended, &mut out);
                 kernels::add_gated(x, part(2), &out);
-                kernels::norm_rows(x, NORM_EPS, &scale2, part(3), &mut attended);
-                let mut hidden = vec![0.0; 4 * x.len()];
-                self.fc1.rows_in(precision, &attended, &mut hidden);
-                match precision {
-                    Precision::F32 => kernels::gelu_all(&mut hidden),
-                    Precision::Int8 => kernels::gelu_all_roughly(&mut hidden),
-                }
-                self.fc2.rows_in(precision, &hidden, &mut out);
-                kernels::add_gated(x, part(5), &out);
+                then(x);
             });
     }
+
+    /// The MLP of the block, in place over some tokens.
+    pub(crate) fn mlp<'a>(&'a self, ada: &'a [f32], precision: Precision) -> impl Fn(&mut [f32]) + Sync + 'a {
+        let width = ada.len() / 6;
+        let part = move |i: usize| &ada[i * width..][..width];
+        let scale: Vec<f32> = part(4).iter().map(|s| 1.0 + s).collect();
+        move |x| {
+            let mut out = vec![0.0; x.len()];
+            kernels::norm_rows(x, NORM_EPS, &scale, part(3), &mut out);
+            let mut hidden = vec![0.0; 4 * x.len()];
+            self.fc1.rows_in(precision, &out, &mut hidden);
+            match precision {
+                Precision::F32 => kernels::gelu_all(&mut hidden),
+                Precision::Int8 => kernels::gelu_all_roughly(&mut hidden),
+            }
+            self.fc2.rows_in(precision, &hidden, &mut out);
+            kernels::add_gated(x, part(5), &out);
+        }
+    }
+}
+
+/// A head's queries, which start at `at` of every row of `stride` numbers, divided by the root of their width.
+pub(crate) fn shrunk_queries(rows: &[f32], stride: usize, at: usize, width: usize) -> Vec<f32> {
+    let shrink = 1.0 / (width as f32).sqrt();
+    let mut queries = Vec::with_capacity(rows.len() / stride * width);
+    for row in rows.chunks_exact(stride) {
+        queries.extend(row[at..][..width].iter().map(|q| q * shrink));
+    }
+    queries
 }
 
 impl Local {
     /// `weight` is `[width][3][3]`.
-    fn new(weight: &[f32], bias: Vec<f32>, side: usize) -> Self {
+    fn new(weight: &[f32], bias: Vec<f32>) -> Self {
         let width = bias.len();
         Self {
             weight: (0..NEAR * width)
                 .map(|i| weight[i % width * NEAR + i / width])
                 .collect(),
             bias,
-            side,
         }
     }
 
     /// Adds to `row` what the values around the token at `place` give; beyond the map there is nothing.
-    fn add_at(&self, place: usize, keys_values: &[f32], row: &mut [f32]) {
+    fn add_at(&self, place: usize, [rows, columns]: [usize; 2], keys_values: &[f32], row: &mut [f32]) {
         let width = row.len();
         row.iter_mut().zip(&self.bias).for_each(|(r, b)| *r += b);
-        let [x, y] = [place / self.side, place % self.side];
+        let [x, y] = [place / columns, place % columns];
         for (near, weight) in self.weight.chunks_exact(width).enumerate() {
             let (x, y) = (x + near / 3, y + near % 3); // one too far each
-            if (1..=self.side).contains(&x) && (1..=self.side).contains(&y) {
-                let token = (x - 1) * self.side + y - 1;
+            if (1..=rows).contains(&x) && (1..=columns).contains(&y) {
+                let token = (x - 1) * columns + y - 1;
                 let values = &keys_values[(2 * token + 1) * width..][..width];
                 for ((r, v), w) in row.iter_mut().zip(values).zip(weight) {
                     *r += v * w;

@@ -4,6 +4,7 @@
 
 mod block;
 mod graph;
+mod ring;
 mod sparse;
 
 use candle_core::{D, Device, Result as CandleResult, Tensor};
@@ -13,7 +14,9 @@ use graph::{Messages, NodeBlock};
 use nn::Precision;
 use nn::map::Map;
 use nn::ops::{BlockParts, Edge, MessageParts, NodeBlockParts, Ops, OpsError, Values};
+use nn::ring::RingBlockParts;
 use nn::rules::RuleBook;
+use ring::RingBlock;
 use sparse::Convolution;
 
 /// Epsilon of every norm, as on the processor.
@@ -173,6 +176,7 @@ impl Ops for Candle {
     type Room = ();
     type Messages = Messages;
     type NodeBlock = NodeBlock;
+    type RingBlock = RingBlock;
 
     fn upload(&self, map: Map) -> Result<CandleMap, OpsError> {
         let (rows, columns, width) = (map.rows, map.columns, map.width);
@@ -270,6 +274,19 @@ impl Ops for Candle {
 
     fn node_block_from(&self, parts: NodeBlockParts<Linear>) -> Result<NodeBlock, OpsError> {
         NodeBlock::new(parts, &self.0).map_err(refused)
+    }
+
+    fn ring_block_from(&self, parts: RingBlockParts<Linear, Norm>) -> Result<RingBlock, OpsError> {
+        RingBlock::new(parts, &self.0).map_err(refused)
+    }
+
+    fn ring_block(
+        &self,
+        block: &RingBlock,
+        maps: Vec<CandleMap>,
+        ada: &[CandleMap],
+    ) -> Result<Vec<CandleMap>, OpsError> {
+        block.forward(maps, ada).map_err(refused)
     }
 
     fn apply(&self, linear: &Linear, x: &CandleMap, _: usize) -> Result<CandleMap, OpsError> {

@@ -19,8 +19,9 @@ pub use condition::DitCondition;
 use condition::{CONDITION, NAMED};
 pub use config::DitConfig;
 pub use time::{OccDitTime, TimeConfig};
+pub(super) use tokens::positions;
 pub(super) use tokens::timestep_embedding;
-use tokens::{PATCH_CELLS, TOKENS_PER_SIDE, patch, positions};
+use tokens::{PATCH_CELLS, TOKENS_PER_SIDE, patch};
 pub use tokens::{TOKENS, tokens_of};
 
 /// What of a condition depends on neither state nor time, for some of the tokens. `T` is the backend's tensor.
@@ -130,7 +131,7 @@ impl<B: Ops> OccDit<B> {
             last: linear("final", width, PATCH_CELLS * CHANNELS)?,
             skip: linear("skip", width, 2 * CHANNELS)?,
             skip_given: linear("skip_given", width, 2 * CHANNELS)?,
-            positions: positions(TOKENS_PER_SIDE, TOKENS_PER_SIDE, width),
+            positions: positions([TOKENS_PER_SIDE; 2], width, 10000.0),
             config,
             ops,
         };

@@ -33,13 +33,13 @@ pub(super) fn patch(token: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Fixed positions, `[rows * columns][width]`: the first half of the channels encodes the column, the
-/// second half the row, each as [sin | cos] of pos / 10000^(i / (width / 4)).
-pub(super) fn positions(rows: usize, columns: usize, width: usize) -> Vec<f32> {
+/// second half the row, each as [sin | cos] of pos / base^(i / (width / 4)).
+pub(crate) fn positions([rows, columns]: [usize; 2], width: usize, base: f64) -> Vec<f32> {
     let quarter = width / 4;
     let mut out = Vec::with_capacity(rows * columns * width);
     for token in 0..rows * columns {
         for pos in [token % columns, token / columns] {
-            let angle = |i: usize| pos as f64 / 10000f64.powf(i as f64 / quarter as f64);
+            let angle = |i: usize| pos as f64 / base.powf(i as f64 / quarter as f64);
             out.extend((0..quarter).map(|i| angle(i).sin() as f32));
             out.extend((0..quarter).map(|i| angle(i).cos() as f32));
         }
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn embeddings_against_torch() {
         let golden = Golden::nn();
-        assert!(gap(&positions(3, 4, 16), &golden.f64("pos.grid")) < 2e-5);
+        assert!(gap(&positions([3, 4], 16, 10000.0), &golden.f64("pos.grid")) < 2e-5);
         let (first, second) = (linear(&golden, "time.fc1", 32), linear(&golden, "time.fc2", 16));
         let (mut sinusoid, mut mlp) = (Vec::new(), Vec::new());
         for t in golden.f32("time.t") {

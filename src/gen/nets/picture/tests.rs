@@ -1,0 +1,230 @@
+//! Against the numbers of the twin.
+
+mod refusals;
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use safetensors::{Dtype, SafeTensors};
+
+use super::*;
+
+const FOLDER: &str = "../../../training/weights/pictures";
+const PIXELS: [usize; 2] = [32, 64];
+const VIEWS: usize = 6;
+/// Largest difference, as a share of the largest number of the twin.
+const TOLERANCE: f64 = 1e-4;
+
+fn file(name: &str) -> Vec<u8> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(FOLDER).join(name);
+    std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+fn nets() -> PictureNets {
+    PictureNets::from_dir(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(FOLDER)).expect("weights")
+}
+
+/// Numbers from -1.75 to 1.75 as training/export.py makes them.
+fn uniform(count: usize, stream: u64) -> Vec<f32> {
+    let number = |i: u64| {
+        let h = (i * 2_654_435_761 + stream * 40_503 + 12_345) % (1 << 32);
+        let h = (h ^ (h >> 15)) * 2_246_822_519 % (1 << 32);
+        (h as f64 / 4_294_967_296.0 * 3.5 - 1.75) as f32
+    };
+    (0..count as u64).map(number).collect()
+}
+
+/// Expected outputs by name.
+struct Golden(Vec<u8>);
+
+impl Golden {
+    fn open() -> Self {
+        Self(file("golden.safetensors"))
+    }
+
+    fn f64(&self, name: &str) -> Vec<f64> {
+        let file = SafeTensors::deserialize(&self.0).expect("a safetensors file");
+        let tensor = file.tensor(name).expect("a tensor of the golden");
+        assert_eq!(tensor.dtype(), Dtype::F32, "{name}");
+        let (quads, _) = tensor.data().as_chunks::<4>();
+        quads.iter().map(|q| f64::from(f32::from_le_bytes(*q))).collect()
+    }
+
+    /// Prints the largest difference and fails if it is too large.
+    fn compare(&self, name: &str, found: &[f32]) {
+        let gap = crate::golden::gap(found, &self.f64(name));
+        println!("{name}: {gap:.1e} of the largest number");
+        assert!(gap <= TOLERANCE, "{name}: {gap}, expected at most {TOLERANCE}");
+    }
+}
+
+/// Inputs as `golden` of training/export_pictures.py makes them.
+fn condition(size: RingSize) -> Condition {
+    let count = size.views() * size.view_pixels();
+    let classes: Vec<u8> = (0..count).map(|i| (i * 7 / 13 % 20) as u8).collect();
+    let facing = |(i, class): (usize, &u8)| match class {
+        1..11 => (1 + i % 16 + if i % 5 == 0 { 128 } else { 0 }) as u8,
+        _ => 0,
+    };
+    let cameras = uniform(size.views() * CAMERA_NUMBERS, 2);
+    Condition {
+        size,
+        facings: classes.iter().enumerate().map(facing).collect(),
+        classes,
+        depth_m: (0..count).map(|i| (i * 11 % 997) as f32 * 0.05).collect(),
+        time: Some(2),
+        weather: Some(3),
+        cameras: cameras.as_chunks().0.to_vec(),
+    }
+}
+
+fn size() -> RingSize {
+    RingSize::new(VIEWS, PIXELS).expect("a size")
+}
+
+/// The camera stood 0.8 m behind and 0.1 m to the right.
+fn motion() -> Motion {
+    Motion {
+        focal_px: [40.0, 40.0],
+        center_px: [4.2 * 8.0, 1.9 * 8.0],
+        then_from_now: [[1.0, 0.0, 0.0, -0.1], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.8]],
+    }
+}
+
+fn before(size: RingSize, depth_m: &[f32]) -> Before {
+    let [_, width] = size.pixels();
+    let mirrored = depth_m.chunks_exact(width).flat_map(|row| row.iter().rev());
+    let mirrored: Vec<f32> = mirrored.copied().collect();
+    let latents = uniform(size.views() * size.view_cells() * 8, 4);
+    warp(size, &latents, [depth_m, &mirrored], &[motion(); VIEWS]).expect("finite inputs")
+}
+
+fn go_on(_: diffusion::solver::StepView<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+#[test]
+fn vae_against_the_twin() {
+    let (golden, nets, size) = (Golden::open(), nets(), size());
+    let pictures: Vec<f32> = uniform(VIEWS * size.view_pixels() * 3, 3)
+        .iter()
+        .map(|v| v / 1.75)
+        .collect();
+    golden.compare("latent", &nets.vae.encode(&pictures, PIXELS).expect("finite"));
+    let x = uniform(VIEWS * size.view_cells() * 8, 1);
+    golden.compare("picture", &nets.vae.decode(&x, size.cells()).expect("finite"));
+}
+
+#[test]
+fn transformer_against_the_twin() {
+    let (golden, dit, size) = (Golden::open(), nets().dit, size());
+    let condition = condition(size);
+    let told = dit.tell(&condition).expect("a condition");
+    let cells: Vec<f32> = told.cells.iter().flat_map(|map| map.data.clone()).collect();
+    golden.compare("told", &cells);
+    let before = before(size, &condition.depth_m);
+    golden.compare("before", before.numbers());
+    let seen = before.numbers().chunks_exact(35).filter(|c| c[34] == 1.0).count();
+    assert!(seen > 0 && seen < VIEWS * size.view_cells(), "{seen} cells seen");
+    let x = uniform(VIEWS * size.view_cells() * 8, 1);
+    for (name, before) in [("v_alone", None), ("v_after", Some(&before))] {
+        let each = [0.0, 437.5, 999.0].map(|t| dit.v(&x, t, &told, before).expect("finite"));
+        golden.compare(name, &each.concat());
+    }
+    let silent = dit.silent(&told).expect("finite");
+    golden.compare("v_silent", &dit.v(&x, 437.5, &silent, None).expect("finite"));
+
+    let mut sampling = Sampling {
+        told: &told,
+        silent: None,
+        before: Some(&before),
+        steps: 8,
+        guidance: 1.0,
+    };
+    golden.compare("sampled", &dit.sample(&x, &sampling, go_on).expect("finite"));
+    (sampling.steps, sampling.guidance) = (4, 2.0);
+    let mut seen = Vec::new();
+    let made = dit.sample(&x, &sampling, |view| {
+        seen.push(view.step);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(seen, [1, 2, 3, 4]);
+    let made = made.expect("finite");
+    golden.compare("sampled_guided", &made);
+    sampling.silent = Some(&silent);
+    assert_eq!(dit.sample(&x, &sampling, go_on).expect("finite"), made);
+    let stopped = dit.sample(&x, &sampling, |_| ControlFlow::Break(()));
+    assert_eq!(stopped, Err(ModelError::Stopped { step: 1, steps: 4 }));
+}
+
+/// The comparison can fail: views that are confused, or left and right exchanged, differ by more than it allows.
+#[test]
+fn neighbours_and_the_frame_before_are_heard() {
+    let (golden, dit, size) = (Golden::open(), nets().dit, size());
+    let mut told = dit.tell(&condition(size)).expect("a condition");
+    let x = uniform(VIEWS * size.view_cells() * 8, 1);
+    let gap = |told: &Told| {
+        let v = dit.v(&x, 437.5, told, None).expect("finite");
+        let all = golden.f64("v_alone");
+        crate::golden::gap(&v, &all[v.len()..2 * v.len()])
+    };
+    assert!(gap(&told) <= TOLERANCE);
+    let alone = golden.f64("v_alone");
+    let after = golden.f64("v_after");
+    let differing = alone.iter().zip(&after).filter(|(a, b)| a != b).count();
+    assert!(differing * 2 > alone.len(), "{differing}");
+    told.cells.swap(0, 3);
+    assert!(gap(&told) > 100.0 * TOLERANCE, "views are confused");
+    told.cells.swap(0, 3);
+    // Left and right changed places.
+    told.cells.reverse();
+    told.light.reverse();
+    let numbers = size.view_cells() * 8;
+    let reversed: Vec<f32> = x.chunks_exact(numbers).rev().flatten().copied().collect();
+    let v = dit.v(&reversed, 437.5, &told, None).expect("finite");
+    let v: Vec<f32> = v.chunks_exact(numbers).rev().flatten().copied().collect();
+    let all = golden.f64("v_alone");
+    let gap = crate::golden::gap(&v, &all[v.len()..2 * v.len()]);
+    assert!(gap > 10.0 * TOLERANCE, "left and right are the same: {gap}");
+}
+
+/// Seconds of a frame: run with `--ignored --nocapture`.
+#[test]
+#[ignore = "takes seconds; prints times"]
+fn seconds_of_a_frame() {
+    let start = Instant::now();
+    let nets = nets();
+    println!("load: {:.2} s", start.elapsed().as_secs_f64());
+    let size = RingSize::new(VIEWS, [144, 256]).expect("a size");
+    let condition = condition(size);
+    let before = before(size, &condition.depth_m);
+    let noise = uniform(VIEWS * size.view_cells() * 8, 1);
+    for round in 0..3 {
+        let timed =
+            |what: &str, start: Instant| println!("{round} {what}: {:.2} s", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let told = nets.dit.tell(&condition).expect("a condition");
+        timed("tell", start);
+        let start = Instant::now();
+        let v = nets.dit.v(&noise, 500.0, &told, Some(&before)).expect("finite");
+        timed("one call", start);
+        assert_eq!(v.len(), noise.len());
+        let start = Instant::now();
+        let sampling = Sampling {
+            told: &told,
+            silent: None,
+            before: Some(&before),
+            steps: 4,
+            guidance: 2.0,
+        };
+        let latents = nets.dit.sample(&noise, &sampling, go_on).expect("finite");
+        timed("4 steps with guidance 2", start);
+        let start = Instant::now();
+        let pictures = nets.vae.decode(&latents, size.cells()).expect("finite");
+        timed("decode", start);
+        let start = Instant::now();
+        nets.vae.encode(&pictures, size.pixels()).expect("finite");
+        timed("encode", start);
+    }
+}
