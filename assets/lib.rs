@@ -98,6 +98,10 @@ pub mod weights {
     pub static OCC_VAE: &[u8] = include_bytes!("weights/occ_vae.safetensors");
     /// `occ_vae_fine.safetensors`.
     pub static OCC_VAE_FINE: &[u8] = include_bytes!("weights/occ_vae_fine.safetensors");
+    /// `pictures_dit.safetensors`.
+    pub static PICTURES_DIT: &[u8] = include_bytes!("weights/pictures_dit.safetensors");
+    /// `pictures_vae.safetensors`.
+    pub static PICTURES_VAE: &[u8] = include_bytes!("weights/pictures_vae.safetensors");
     /// `reader.safetensors`.
     pub static READER: &[u8] = include_bytes!("weights/reader.safetensors");
     /// `refiner.safetensors`.

@@ -68,6 +68,8 @@ pub enum FileCommand {
     PlaceModel,
     /// Asks for a model and gives its shape to the chosen box.
     ShapeOfChosen,
+    /// Asks for a folder of weights that paint camera pictures.
+    PictureWeights,
     /// Asks for a file of sensors and takes them.
     ImportRig,
     /// Asks for a file and saves the sensors there.
@@ -91,6 +93,8 @@ pub enum ViewCommand {
     LookThrough(usize),
     /// Shows that in the cameras: classes, depth, pictures.
     Cameras(ViewId),
+    /// Ends the painting of learned pictures; they stay as they are by then.
+    StopPainting,
     /// Enlarges that camera, or shows the strip again.
     Inspect(Option<usize>),
     /// Keeps where the large views stand under a number.

@@ -1,8 +1,13 @@
 //! The thread that keeps LiDAR sweep and camera maps up to date with the scene shown. Newest scene
 //! wins; what is on screen stays until something newer is there.
 
+mod painting;
+#[cfg(test)]
+mod tests;
+
 use std::borrow::Cow;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use super::camera_views::LidarModel;
@@ -13,13 +18,16 @@ use job::product::{Ctx, Product, Worker};
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
 use sensors::appearance::Quality;
-use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions, SourceId};
+use sensors::cameras::{Card, Detail, Ready, RenderContext, RenderOptions, SourceId, learned};
 use sensors::caster::Caster;
 use sensors::learned::Drops;
 use sensors::learned_caster::{LearnedCaster, Sampled};
 use sensors::lidar::EgoBox;
 use sensors::rolling;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
+
+pub use painting::PaintSettings;
+use painting::{Painted, Painting};
 
 /// Rays whose samples are shown at most: more would cover the map.
 const SHOWN_RAYS: usize = 400;
@@ -29,6 +37,7 @@ struct Request {
     scene: Arc<Scene>,
     wanted: Wanted,
     preview: bool,
+    paint: Arc<PaintSettings>,
 }
 
 /// News from the thread.
@@ -37,6 +46,12 @@ enum News {
     Cameras(SceneRev, Wanted, Vec<CameraView>),
     /// Cameras of another source.
     Other(SceneRev, SourceId, Vec<CameraView>),
+    /// Steps done and all steps of pictures that are painted; none once they are.
+    Step(Option<(usize, usize)>),
+    /// Pictures on screen while others are still being painted.
+    Unfinished(SourceId, Vec<CameraView>),
+    /// Pictures that cannot be had, and why.
+    Problem(String),
     /// All of a scene was sensed, or a newer one waits.
     Ended,
     Failed(Panicked),
@@ -52,16 +67,24 @@ pub struct Sensing {
     others: Vec<(SceneRev, SourceId, Arc<Vec<CameraView>>)>,
     version: u64,
     problem: Option<String>,
+    paint: Arc<PaintSettings>,
+    step: Option<(usize, usize)>,
+    stop: Arc<AtomicBool>,
 }
 
 impl Sensing {
     /// Starts the thread `sensing`, which takes up a scene after a `grace`: where the processor draws, an edit is shown
     /// first. `wake` is called after each piece of news. Errors if the system gives no thread.
     pub fn spawn(grace: Duration, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let stops = stop.clone();
         let senses = move || Senses {
             grace,
             rested: false,
-            kept: Kept::default(),
+            kept: Kept {
+                stop: stops.clone(),
+                ..Kept::default()
+            },
         };
         Ok(Self {
             worker: Worker::start("sensing", senses, Arc::new(wake))?,
@@ -72,7 +95,28 @@ impl Sensing {
             others: Vec::new(),
             version: 0,
             problem: None,
+            paint: Arc::default(),
+            step: None,
+            stop,
         })
+    }
+
+    /// How learned pictures are painted from the next scene on; what is shown is painted anew if that changes.
+    pub fn paint_with(&mut self, settings: &PaintSettings) {
+        if *self.paint != *settings {
+            self.paint = Arc::new(settings.clone());
+            self.asked = None;
+        }
+    }
+
+    /// Steps done and all steps of the pictures that are being painted.
+    pub fn step(&self) -> Option<(usize, usize)> {
+        self.step
+    }
+
+    /// Ends the painting after its present step; the pictures stay as they are by then until something changes.
+    pub fn stop_painting(&self) {
+        self.stop.store(true, Ordering::Relaxed);
     }
 
     /// Asks for a scene, unless the same was asked for already. A preview has smaller pictures.
@@ -88,10 +132,12 @@ impl Sensing {
             Cow::Borrowed(_) => scene.clone(),
             Cow::Owned(placed) => Arc::new(placed),
         };
+        self.stop.store(false, Ordering::Relaxed);
         self.worker.submit(Request {
             scene,
             wanted,
             preview,
+            paint: self.paint.clone(),
         });
     }
 
@@ -113,7 +159,23 @@ impl Sensing {
                     self.others.push((rev, source, Arc::new(views)));
                     self.version += 1;
                 }
-                News::Ended => {}
+                News::Step(step) => self.step = step,
+                News::Unfinished(source, views) => {
+                    // A state that no scene has: they stay out of date.
+                    let (rev, views) = (SceneRev::fresh(), Arc::new(views));
+                    match self.asked.map(|(_, wanted, _)| wanted) {
+                        Some(wanted) if wanted.source == source => {
+                            self.cameras = Some((rev, wanted, views));
+                        }
+                        _ => {
+                            self.others.retain(|(_, of, _)| *of != source);
+                            self.others.push((rev, source, views));
+                        }
+                    }
+                    self.version += 1;
+                }
+                News::Problem(problem) => self.problem = Some(problem),
+                News::Ended => self.step = None,
                 News::Failed(panic) => self.problem = Some(panic.to_string()),
             }
         }
@@ -205,7 +267,10 @@ impl Product for Senses {
     }
 
     fn reset(&mut self) {
-        self.kept = Kept::default();
+        self.kept = Kept {
+            stop: self.kept.stop.clone(),
+            ..Kept::default()
+        };
     }
 
     fn given_up() -> News {
@@ -236,6 +301,9 @@ struct Kept {
     /// What is rendered of other sources: state, source, cameras.
     others: Vec<(SceneRev, SourceId, u32, Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
+    painting: Painting,
+    /// The user has enough of the painting.
+    stop: Arc<AtomicBool>,
     /// The graphics card, once views that it can draw were asked for.
     graphics: Option<Option<Graphics>>,
 }
@@ -311,8 +379,13 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         scene,
         wanted,
         preview,
+        ..
     } = request;
     let rig = &scene.rig;
+    if kept.painting.set(&request.paint) {
+        kept.views = kept.views.take().filter(|((_, (source, _)), _)| *source != learned::ID);
+        kept.others.retain(|(_, source, ..)| *source != learned::ID);
+    }
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     if kept.swept != Some(swept) {
         let sweep = kept.sweep(scene, wanted);
@@ -325,8 +398,18 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         kept.swept = Some(swept);
     }
     let key = (scene.rev, wanted.pictures());
-    let (mut ready, graphics) = (None, &mut kept.graphics);
     let source = wanted.camera_source();
+    if source.id() == learned::ID {
+        let shown = |camera| camera >= 32 || wanted.hidden >> camera & 1 == 0;
+        let known = kept.views.as_ref().filter(|(of, _)| *of == key);
+        let known = known.map(|(_, views)| views.clone());
+        if let Some(views) = known.or_else(|| paint(request, shown, kept, ctx)) {
+            kept.views = Some((key, views.clone()));
+            ctx.tell(News::Cameras(scene.rev, *wanted, views));
+        }
+        return other_sources(request, kept, ctx);
+    }
+    let (mut ready, graphics) = (None, &mut kept.graphics);
     // Errors are pictures that are too large for the bounds, which these sizes never are.
     let mut view = |camera: usize, size, quick| -> Option<CameraView> {
         let (ready, on_card) = ready.get_or_insert_with(|| {
@@ -394,17 +477,57 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     other_sources(request, kept, ctx);
 }
 
+/// Cameras as the networks paint them; none if that is not over yet. While the user drags nothing is painted.
+fn paint(
+    request: &Request,
+    shown: impl Fn(usize) -> bool,
+    kept: &mut Kept,
+    ctx: &Ctx<'_, News>,
+) -> Option<Vec<CameraView>> {
+    if request.preview {
+        return None;
+    }
+    let tell = |step, views| {
+        ctx.tell(News::Step(Some(step)));
+        if let Some(views) = views {
+            ctx.tell(News::Unfinished(learned::ID, views));
+        }
+    };
+    let stop = kept.stop.clone();
+    let stops = || ctx.should_stop() || stop.load(Ordering::Relaxed);
+    let painted = kept.painting.paint(&request.scene, shown, tell, stops);
+    ctx.tell(News::Step(None));
+    match painted {
+        Painted::Done(views) => Some(views),
+        Painted::Stopped => None,
+        Painted::Problem(problem) => {
+            ctx.tell(News::Problem(problem));
+            None
+        }
+    }
+}
+
 /// What panes of single cameras show of other sources than the strip.
 fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     let Request {
         scene,
         wanted,
         preview,
+        ..
     } = request;
     for (id, mask) in wanted.others.iter() {
         let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
         if let Some((.., views)) = kept.others.iter().find(is_known) {
             ctx.tell(News::Other(scene.rev, id, views.clone()));
+            continue;
+        }
+        if id == learned::ID {
+            let shown = |camera| camera < 32 && mask >> camera & 1 == 1;
+            if let Some(views) = paint(request, shown, kept, ctx) {
+                ctx.tell(News::Other(scene.rev, id, views.clone()));
+                kept.others.retain(|(_, of, ..)| *of != id);
+                kept.others.push((scene.rev, id, mask, views));
+            }
             continue;
         }
         let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::Shapes);
@@ -453,106 +576,5 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         ctx.tell(News::Other(scene.rev, id, views.clone()));
         kept.others.retain(|(_, of, ..)| *of != id);
         kept.others.push((scene.rev, id, mask, views));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::time::Instant;
-
-    use super::*;
-    use scene::{Frame, draft};
-    use sensors::cameras;
-    use world::World;
-
-    #[test]
-    fn the_newest_scene_is_sensed_in_the_end() {
-        let world = World::random(3);
-        let occupancy = draft::draft(&world.layout, world.boxes.values());
-        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
-        let mut scene = Scene::single("test", frame, Arc::default(), 3);
-        let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
-        for _ in 0..20 {
-            scene.rev = SceneRev::fresh();
-            sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
-        }
-        let start = Instant::now();
-        while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
-            assert!(start.elapsed() < Duration::from_secs(120), "no news");
-            std::thread::sleep(Duration::from_millis(5));
-            sensing.drain();
-        }
-        assert_eq!(sensing.cameras().map(|c| c.len()), Some(6));
-        assert!(sensing.lidar().is_some_and(|l| l.points.len() > 1000));
-        // Asked for already: nothing new comes.
-        let version = sensing.version();
-        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
-        std::thread::sleep(Duration::from_millis(50));
-        sensing.drain();
-        assert_eq!(sensing.version(), version);
-        // Pictures of another source of the same scene are news; hidden cameras are not rendered.
-        for source in cameras::all() {
-            let wanted = Wanted {
-                source: source.id(),
-                hidden: 0b101,
-                ..Wanted::default()
-            };
-            sensing.ask(&Arc::new(scene.clone()), wanted, true);
-            assert!(sensing.cameras_stale(scene.rev));
-            while sensing.cameras_stale(scene.rev) {
-                assert!(
-                    start.elapsed() < Duration::from_secs(120),
-                    "no news of {}",
-                    source.title()
-                );
-                std::thread::sleep(Duration::from_millis(5));
-                sensing.drain();
-            }
-            let views = sensing.cameras().expect("pictures");
-            assert_eq!(views.iter().map(|v| v.camera).collect::<Vec<_>>(), [1, 3, 4, 5]);
-            for (of_camera, view) in views
-                .iter()
-                .flat_map(|v| source.views().iter().map(move |s| (v, s)))
-            {
-                let ([w, h], rgba) = of_camera.picture.rgba(view.id, 12.0);
-                assert_eq!(rgba.len(), w * h * 4);
-                assert!(
-                    rgba.chunks(4).any(|c| c != &rgba[..4]),
-                    "{}: all of one colour",
-                    view.title
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
-        let world = World::random(3);
-        let occupancy = draft::draft(&world.layout, world.boxes.values());
-        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
-        let mut scene = Scene::single("test", frame, Arc::default(), 3);
-        let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
-        let patience = |start: Instant| assert!(start.elapsed() < Duration::from_secs(120), "no news");
-        job::guard::panic_next("sensing");
-        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
-        let start = Instant::now();
-        let problem = loop {
-            patience(start);
-            sensing.drain();
-            if let Some(problem) = sensing.take_problem() {
-                break problem;
-            }
-            std::thread::sleep(Duration::from_millis(5));
-        };
-        assert_eq!(problem, "sensing panicked: asked for by a test");
-        assert_eq!((sensing.take_problem(), sensing.version()), (None, 0));
-        scene.rev = SceneRev::fresh();
-        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
-        while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
-            patience(start);
-            std::thread::sleep(Duration::from_millis(5));
-            sensing.drain();
-        }
-        assert_eq!(sensing.take_problem(), None);
     }
 }

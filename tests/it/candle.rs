@@ -331,9 +331,7 @@ fn text_agrees_with_candle() {
 /// A frame of three cameras that also hears the frame before, and its pictures.
 #[test]
 fn pictures_agree() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("training/weights/pictures");
-    let [vae, dit] = picture::FILES.map(|name| std::fs::read(folder.join(name)).expect("weights"));
-    let parse = |bytes| WeightFile::parse("pictures", bytes).expect("a sound file");
+    let (vae, dit) = (assets::weights::PICTURES_VAE, assets::weights::PICTURES_DIT);
     let size = RingSize::new(3, [32, 48]).expect("a size");
     let pixels = 3 * 32 * 48;
     let condition = Condition {
@@ -355,8 +353,8 @@ fn pictures_agree() {
     let before = picture::warp(size, &numbers(3 * 24 * 8, 9), depths, &[motion; 3]).expect("finite");
 
     let (ours, theirs) = (
-        PictureDit::new(parse(&dit)).expect("weights"),
-        PictureDit::on(candle(), parse(&dit)).expect("weights"),
+        PictureDit::new(file(dit)).expect("weights"),
+        PictureDit::on(candle(), file(dit)).expect("weights"),
     );
     let (told, told_too) = (
         ours.tell(&condition).expect("a condition"),
@@ -368,8 +366,8 @@ fn pictures_agree() {
         "v of pictures",
     );
     let (ours, theirs) = (
-        PictureVae::new(parse(&vae)).expect("weights"),
-        PictureVae::on(candle(), parse(&vae)).expect("weights"),
+        PictureVae::new(file(vae)).expect("weights"),
+        PictureVae::on(candle(), file(vae)).expect("weights"),
     );
     let drawn = ours.decode(&x, size.cells()).expect("finite");
     agree(&drawn, &theirs.decode(&x, size.cells()).expect("finite"), "pictures");

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::camera_views::CamerasShown;
-use crate::command::{Command, Window};
+use crate::command::{Command, ViewCommand, Window};
 use language::{t, tf};
 use sensors::cameras::{self, Knob};
 use widgets::icons;
@@ -19,6 +19,22 @@ const LIDAR_TEXT: f32 = 130.0;
 
 /// Width of the row of sources, points.
 const SOURCES: f32 = 270.0;
+
+/// That newer pictures are on their way, and how far those are that are painted; a cross ends the painting.
+fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
+    let text = match input.step {
+        Some((step, steps)) => tf!("painting, {step} of {steps}", step = step, steps = steps),
+        None => t("updating").to_owned(),
+    };
+    ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
+    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+    if input.step.is_some() {
+        let stop = ui.small_button("✕").on_hover_text(t("Stop painting"));
+        if stop.accessible_name(t("Stop painting")).clicked() {
+            commands.push(Command::View(ViewCommand::StopPainting));
+        }
+    }
+}
 
 /// Draws the row.
 pub fn header(
@@ -61,12 +77,7 @@ pub fn header(
         }
         if stale {
             ui.add_space(4.0);
-            ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
-            ui.label(
-                egui::RichText::new(t("updating"))
-                    .small()
-                    .color(theme::text_weak()),
-            );
+            progress(ui, input, commands);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             // The menu has it too.

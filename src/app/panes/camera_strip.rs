@@ -49,6 +49,8 @@ pub struct CamerasInput<'a> {
     pub views: Option<&'a Arc<Vec<CameraView>>>,
     /// The pictures belong to an earlier state.
     pub stale: bool,
+    /// Steps done and all steps of pictures that are being painted.
+    pub step: Option<(usize, usize)>,
     /// Returns of the newest sweep.
     pub lidar_points: Option<usize>,
     /// What they show.
@@ -64,6 +66,7 @@ impl<'a> CamerasInput<'a> {
             scene,
             views: sensing.cameras(),
             stale: sensing.cameras_stale(rev),
+            step: sensing.step(),
             lidar_points: sensing.lidar().map(|l| l.points.len()),
             view: shown.view,
             plane_m: shown.plane_m,

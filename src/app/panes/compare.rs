@@ -13,7 +13,7 @@ use super::lidar::SweepPicture;
 use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
 use crate::canvas::Canvas;
-use crate::sensing::Sensing;
+use crate::sensing::{PaintSettings, Sensing};
 use crate::view3d::View3d;
 use language::{t, tf};
 use viewport::BrushCells;
@@ -122,6 +122,7 @@ impl Compare {
         before: Option<Arc<Scene>>,
         wanted: Wanted,
         senses: bool,
+        painting: &PaintSettings,
         wake: impl Fn() + Send + Sync + 'static,
     ) {
         self.before = before;
@@ -134,6 +135,7 @@ impl Compare {
             self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();
         }
         if let Some(sensing) = &mut self.sensing {
+            sensing.paint_with(painting);
             sensing.ask(scene, wanted, false);
             sensing.drain();
         }

@@ -71,6 +71,11 @@ impl SceneloomApp {
             FileCommand::NewFrom(name) => self.guarded(Next::NewFrom(name), ctx),
             FileCommand::PlaceModel => self.ask_model(false, ctx),
             FileCommand::ShapeOfChosen => self.ask_model(true, ctx),
+            FileCommand::PictureWeights => {
+                let kept = self.preferences.settings.painting.weights.clone();
+                let suggestion = kept.unwrap_or_else(|| self.suggested(""));
+                self.files.dialogs.ask(Purpose::PictureWeights, &suggestion, ctx);
+            }
             FileCommand::ImportRig => {
                 let suggestion = self.suggested("json");
                 self.files.dialogs.ask(Purpose::ImportRig, &suggestion, ctx);
@@ -176,6 +181,7 @@ impl SceneloomApp {
             Purpose::Clip => self.save_clip(path, ctx),
             Purpose::Model => self.read_model(path, false, ctx),
             Purpose::ModelShape => self.read_model(path, true, ctx),
+            Purpose::PictureWeights => self.preferences.settings.painting.weights = Some(path),
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
             Purpose::ExportFile | Purpose::ExportFolder => {

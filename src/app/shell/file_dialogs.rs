@@ -31,6 +31,8 @@ pub enum Purpose {
     ImportRig,
     /// Where to save the sensors.
     ExportRig,
+    /// Weights that paint camera pictures.
+    PictureWeights,
     /// The file that an export is to write.
     ExportFile,
     /// The folder that an export is to fill.
@@ -49,6 +51,7 @@ impl Purpose {
             Purpose::ModelShape => "Shape of the chosen box",
             Purpose::ImportRig => "Import sensors",
             Purpose::ExportRig => "Export sensors",
+            Purpose::PictureWeights => "Folder of picture weights",
             Purpose::ExportFile => "Export to file",
             Purpose::ExportFolder => "Export into folder",
         }
@@ -64,14 +67,18 @@ impl Purpose {
             Purpose::ModelShape => "Take shape",
             Purpose::ImportRig => "Import file",
             Purpose::ExportRig => "Export file",
-            Purpose::ExportFile | Purpose::ExportFolder => "Use path",
+            Purpose::PictureWeights | Purpose::ExportFile | Purpose::ExportFolder => "Use path",
         }
     }
 
     fn is_save(self) -> bool {
         !matches!(
             self,
-            Purpose::Open | Purpose::Model | Purpose::ModelShape | Purpose::ImportRig
+            Purpose::Open
+                | Purpose::Model
+                | Purpose::ModelShape
+                | Purpose::ImportRig
+                | Purpose::PictureWeights
         )
     }
 }
@@ -146,7 +153,7 @@ impl FileDialogs {
                 )
                 .add_filter(t("All files"), &["*"]),
             Purpose::ImportRig | Purpose::ExportRig => dialog.add_filter(t("Sensor rig"), &["json"]),
-            Purpose::ExportFile | Purpose::ExportFolder => dialog,
+            Purpose::PictureWeights | Purpose::ExportFile | Purpose::ExportFolder => dialog,
         };
         if let Some(folder) = suggestion.parent().filter(|p| p.is_dir()) {
             dialog = dialog.set_directory(folder);
@@ -159,7 +166,7 @@ impl FileDialogs {
         // The dialog is made here, on the main thread, as macOS wants it; waiting is done elsewhere.
         type Chosen = Option<rfd::FileHandle>;
         let chosen: std::pin::Pin<Box<dyn Future<Output = Chosen> + Send>> =
-            if purpose == Purpose::ExportFolder {
+            if matches!(purpose, Purpose::ExportFolder | Purpose::PictureWeights) {
                 Box::pin(dialog.pick_folder())
             } else if purpose.is_save() {
                 Box::pin(dialog.save_file())
@@ -287,6 +294,9 @@ fn field_ui(ui: &mut Ui, field: &mut Field) -> Choice {
 }
 
 fn problem(path: &Path, field: &mut Field) -> Option<String> {
+    if field.purpose == Purpose::PictureWeights {
+        return (!path.is_dir()).then(|| tf!("There is no folder {folder}", folder = path.display()));
+    }
     if !field.purpose.is_save() {
         return (!path.is_file()).then(|| tf!("There is no file {path}", path = path.display()));
     }
@@ -307,6 +317,7 @@ fn with_extension(path: PathBuf, purpose: Purpose) -> PathBuf {
         | Purpose::Model
         | Purpose::ModelShape
         | Purpose::ImportRig
+        | Purpose::PictureWeights
         | Purpose::ExportFile
         | Purpose::ExportFolder => return path,
         Purpose::ExportRig => "json",

@@ -8,6 +8,7 @@ use anyhow::Context;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
+use crate::sensing::PaintSettings;
 use super::bookmarks::Bookmark;
 use super::keymap::Chords;
 use super::workspace::Workspace;
@@ -51,6 +52,8 @@ pub struct Settings {
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Brushes that the user keeps.
     pub brushes: Vec<SavedBrush>,
+    /// How learned camera pictures are painted.
+    pub painting: PaintSettings,
     /// Memory that the history may take, MB.
     pub history_mb: u32,
     /// Let assistants on this machine drive the editor, if they show the token.
@@ -78,6 +81,7 @@ impl Default for Settings {
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
             brushes: Vec::new(),
+            painting: PaintSettings::default(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             assistants: false,
             recent: Vec::new(),

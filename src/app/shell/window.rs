@@ -210,6 +210,7 @@ impl SceneloomApp {
                 self.document.scene().rig.cameras.len(),
             ),
             senses,
+            &self.preferences.settings.painting,
             move || ctx.request_repaint(),
         );
     }

@@ -47,6 +47,9 @@ impl SceneloomApp {
             let wanted = Wanted::of(&self.state.cameras, &self.state.lidar, count);
             self.threads
                 .sensing
+                .paint_with(&self.preferences.settings.painting);
+            self.threads
+                .sensing
                 .ask(self.document.scene(), wanted, for_a_moment);
         }
         self.state.cameras.frame_ended();

@@ -2,7 +2,8 @@
 
 use egui::{Ui, Window};
 
-use crate::command::Command;
+use crate::command::{Command, FileCommand};
+use crate::sensing::PaintSettings;
 use crate::shell::guests::{Guests, OpenDoor};
 use crate::shell::keymap::{Chords, Keymap, PRESETS};
 use crate::shell::settings::Settings;
@@ -59,6 +60,8 @@ pub fn settings_ui(ui: &Ui, choices: Choices<'_>, windows: &mut OpenWindows, com
                 looks(ui, settings);
                 section(ui, t("Work"));
                 work(ui, settings, keymap, windows);
+                section(ui, t("Learned pictures"));
+                painting(ui, &mut settings.painting, commands);
                 section(ui, t("First minutes"));
                 rows(ui, "first minutes", |ui| {
                     ui.label(t("At the start"));
@@ -182,6 +185,52 @@ fn work(ui: &mut Ui, settings: &mut Settings, keymap: &mut Keymap, windows: &mut
         if ui.add_enabled(any, egui::Button::new(t("Forget them"))).clicked() {
             settings.recent.clear();
         }
+        ui.end_row();
+    });
+}
+
+/// Which weights paint camera pictures, and how.
+fn painting(ui: &mut Ui, painting: &mut PaintSettings, commands: &mut Vec<Command>) {
+    rows(ui, "painting", |ui| {
+        ui.label(t("Weights"));
+        ui.horizontal(|ui| {
+            let choose = ui.button(t("Choose folder…")).on_hover_text(t(
+                "A folder with vae.safetensors and dit.safetensors, as training/train_pictures.py leaves it",
+            ));
+            if choose.clicked() {
+                commands.push(Command::File(FileCommand::PictureWeights));
+            }
+            match &painting.weights {
+                None => {
+                    ui.label(t("those that came with Sceneloom"));
+                }
+                Some(folder) => {
+                    let drop = ui.small_button("✕").on_hover_text(t("Back to those that came with Sceneloom"));
+                    let drop = drop.accessible_name(t("Back to those that came with Sceneloom"));
+                    let full = folder.display().to_string();
+                    let name = folder.file_name().map_or(full.clone(), |n| n.to_string_lossy().into_owned());
+                    ui.add(egui::Label::new(name).truncate()).on_hover_text(full);
+                    if drop.clicked() {
+                        painting.weights = None;
+                    }
+                }
+            }
+        });
+        ui.end_row();
+        ui.label(t("Steps"));
+        let steps = egui::DragValue::new(&mut painting.steps).range(PaintSettings::STEPS).speed(0.1);
+        ui.add(steps)
+            .on_hover_text(t("From noise to a picture; more steps take longer"))
+            .accessible_name(t("Steps"));
+        ui.end_row();
+        ui.label(t("Guidance"));
+        let guidance = egui::DragValue::new(&mut painting.guidance)
+            .range(PaintSettings::GUIDANCE)
+            .speed(0.02)
+            .fixed_decimals(1);
+        ui.add(guidance)
+            .on_hover_text(t("How strictly the pictures obey the voxels"))
+            .accessible_name(t("Guidance"));
         ui.end_row();
     });
 }

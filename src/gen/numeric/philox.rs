@@ -17,6 +17,8 @@ pub enum Stream {
     Scenery = 3,
     /// Noise that fine latents are refined from.
     Refine = 4,
+    /// Noise that camera pictures are painted from.
+    Pictures = 5,
 }
 
 /// The ten-round Philox block function: four words from four counter words and two key words.

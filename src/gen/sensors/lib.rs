@@ -20,6 +20,7 @@ pub mod mpi;
 pub mod observed;
 pub mod order;
 pub mod own_body;
+pub mod painter;
 pub mod perspective;
 pub mod picture_hints;
 mod plots;

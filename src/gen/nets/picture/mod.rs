@@ -12,6 +12,7 @@ mod vae;
 mod warp;
 
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 
 use crate::ModelError;
 use nn::weights::{self, WeightFile, WeightsError};
@@ -23,7 +24,7 @@ pub use sample::Sampling;
 pub use vae::PictureVae;
 pub use warp::{Before, Motion, warp};
 
-/// File names of both networks in a folder of weights.
+/// File names of both networks in a folder of weights, as `training/train_pictures.py` leaves it.
 pub const FILES: [&str; 2] = ["vae.safetensors", "dit.safetensors"];
 /// Pixels of a latent cell along a side.
 pub const CELL: usize = 8;
@@ -108,6 +109,16 @@ pub struct PictureNets {
 }
 
 impl PictureNets {
+    /// The weights that ship with the program, learned from its own renderer; unpacked once.
+    pub fn bundled() -> Result<Arc<Self>, WeightsError> {
+        static NETS: OnceLock<Arc<PictureNets>> = OnceLock::new();
+        if let Some(nets) = NETS.get() {
+            return Ok(nets.clone());
+        }
+        let nets = Self::parse(assets::weights::PICTURES_VAE, assets::weights::PICTURES_DIT)?;
+        Ok(NETS.get_or_init(|| Arc::new(nets)).clone())
+    }
+
     /// `vae.safetensors` and `dit.safetensors` of a folder. Errors in one line if a file or a tensor is missing or of
     /// another shape, or if the two do not belong together.
     pub fn from_dir(folder: &Path) -> Result<Self, WeightsError> {

@@ -1,9 +1,11 @@
-//! From noise to latents in a few steps.
+//! From noise to latents in a few steps, and some of their cells again.
 
 use std::ops::ControlFlow;
 
 use super::{Before, PictureDit, Told};
 use crate::ModelError;
+use diffusion::inversion::Trajectory;
+use diffusion::replay;
 use diffusion::solver::{Branch, Denoiser, Guidance, Sampler, SolverKind, StepView};
 use nn::Ops;
 use nn::map::Map;
@@ -20,6 +22,16 @@ pub struct Sampling<'a, T = Map> {
     pub steps: usize,
     /// How far to go from the silent answer to the told one: 1 takes the told one, 2 was measured best.
     pub guidance: f64,
+}
+
+impl<T> Sampling<'_, T> {
+    fn sampler(&self) -> Result<Sampler, ModelError> {
+        let guidance = Guidance {
+            weight: self.guidance,
+            rescale: 0.0,
+        };
+        Ok(Sampler::standard(SolverKind::Ddim, self.steps, guidance)?)
+    }
 }
 
 /// The network as the solver sees it.
@@ -46,39 +58,70 @@ impl<B: Ops> Denoiser for Asked<'_, B> {
 
 impl<B: Ops> PictureDit<B> {
     /// From noise `[view][row][column][8]` of unit spread to latents of the same shape: DDIM without fresh noise, trailing steps.
-    /// `on_step` runs after each step and may stop the run, which then ends with [`ModelError::Stopped`]. Errors also if sizes do
-    /// not fit, a number is not finite, or there are no steps or too many.
+    /// The last state holds the latents. `on_step` runs after each step and may stop the run, which then ends with
+    /// [`ModelError::Stopped`]. Errors also if sizes do not fit, a number is not finite, or there are no steps or too many.
     pub fn sample(
         &self,
         noise: &[f32],
         sampling: &Sampling<'_, B::Tensor>,
         mut on_step: impl FnMut(StepView<'_>) -> ControlFlow<()>,
-    ) -> Result<Vec<f32>, ModelError> {
-        let guidance = Guidance {
-            weight: sampling.guidance,
-            rescale: 0.0,
-        };
-        let sampler =
-            Sampler::standard(SolverKind::Ddim, sampling.steps, guidance).map_err(ModelError::Schedule)?;
+    ) -> Result<Trajectory, ModelError> {
+        let sampler = sampling.sampler()?;
+        let start = noise.iter().map(|v| f64::from(*v)).collect();
+        let states = self.asked(sampling, |asked| {
+            sampler.sample(start, asked, |view| go_on(view, &mut on_step))
+        })?;
+        Ok(Trajectory {
+            levels: sampler.levels,
+            states,
+        })
+    }
+
+    /// The cells of a mask `[view][row][column]` anew, under what they are told now; the others stay as they were at every
+    /// step of `source`, to the bit. Otherwise as [`sample`](Self::sample); errors also if the steps of `source` are others.
+    pub fn resample(
+        &self,
+        source: &Trajectory,
+        mask: &[bool],
+        sampling: &Sampling<'_, B::Tensor>,
+        mut on_step: impl FnMut(StepView<'_>) -> ControlFlow<()>,
+    ) -> Result<Trajectory, ModelError> {
+        let (sampler, latent) = (sampling.sampler()?, self.config().latent);
+        let edited = self.asked(sampling, |asked| {
+            replay::edit_with_replay(&sampler, source, mask, latent, asked, |view| {
+                go_on(view, &mut on_step)
+            })
+        })?;
+        Ok(edited.trajectory)
+    }
+
+    /// Gives the network as the solver sees it to `run`.
+    fn asked<R>(
+        &self,
+        sampling: &Sampling<'_, B::Tensor>,
+        run: impl FnOnce(&mut Asked<'_, B>) -> Result<R, ModelError>,
+    ) -> Result<R, ModelError> {
         let made = match sampling.silent {
             None if sampling.guidance != 1.0 => Some(self.silent(sampling.told)?),
             _ => None,
         };
-        let mut asked = Asked {
+        run(&mut Asked {
             dit: self,
             told: sampling.told,
             silent: sampling.silent.or(made.as_ref()),
             before: sampling.before,
-        };
-        let start = noise.iter().map(|v| f64::from(*v)).collect();
-        let mut states = sampler.sample(start, &mut asked, |view| {
-            let (step, steps) = (view.step, view.steps);
-            match on_step(view) {
-                ControlFlow::Break(()) if step < steps => Err(ModelError::Stopped { step, steps }),
-                _ => Ok(()),
-            }
-        })?;
-        let last = states.pop().unwrap_or_default();
-        Ok(last.into_iter().map(|v| v as f32).collect())
+        })
+    }
+}
+
+/// Ends a run that its watcher stops, unless it is at its end.
+fn go_on(
+    view: StepView<'_>,
+    on_step: &mut impl FnMut(StepView<'_>) -> ControlFlow<()>,
+) -> Result<(), ModelError> {
+    let (step, steps) = (view.step, view.steps);
+    match on_step(view) {
+        ControlFlow::Break(()) if step < steps => Err(ModelError::Stopped { step, steps }),
+        _ => Ok(()),
     }
 }

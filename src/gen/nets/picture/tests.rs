@@ -10,19 +10,23 @@ use safetensors::{Dtype, SafeTensors};
 
 use super::*;
 
-const FOLDER: &str = "../../../training/weights/pictures";
+/// The numbers of the twin.
+const GOLDEN: &str = "../../../training/weights/pictures/golden.safetensors";
 const PIXELS: [usize; 2] = [32, 64];
 const VIEWS: usize = 6;
 /// Largest difference, as a share of the largest number of the twin.
 const TOLERANCE: f64 = 1e-4;
 
+/// The bytes of a shipped file.
 fn file(name: &str) -> Vec<u8> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(FOLDER).join(name);
-    std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    match name == FILES[0] {
+        true => assets::weights::PICTURES_VAE.to_vec(),
+        false => assets::weights::PICTURES_DIT.to_vec(),
+    }
 }
 
-fn nets() -> PictureNets {
-    PictureNets::from_dir(&PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(FOLDER)).expect("weights")
+fn nets() -> Arc<PictureNets> {
+    PictureNets::bundled().expect("the shipped weights")
 }
 
 /// Numbers from -1.75 to 1.75 as training/export.py makes them.
@@ -40,7 +44,8 @@ struct Golden(Vec<u8>);
 
 impl Golden {
     fn open() -> Self {
-        Self(file("golden.safetensors"))
+        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(GOLDEN);
+        Self(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
     }
 
     fn f64(&self, name: &str) -> Vec<f64> {
@@ -118,7 +123,8 @@ fn vae_against_the_twin() {
 
 #[test]
 fn transformer_against_the_twin() {
-    let (golden, dit, size) = (Golden::open(), nets().dit, size());
+    let (golden, nets, size) = (Golden::open(), nets(), size());
+    let dit = &nets.dit;
     let condition = condition(size);
     let told = dit.tell(&condition).expect("a condition");
     let cells: Vec<f32> = told.cells.iter().flat_map(|map| map.data.clone()).collect();
@@ -142,7 +148,8 @@ fn transformer_against_the_twin() {
         steps: 8,
         guidance: 1.0,
     };
-    golden.compare("sampled", &dit.sample(&x, &sampling, go_on).expect("finite"));
+    let made = dit.sample(&x, &sampling, go_on).expect("finite");
+    golden.compare("sampled", &made.latent_f32());
     (sampling.steps, sampling.guidance) = (4, 2.0);
     let mut seen = Vec::new();
     let made = dit.sample(&x, &sampling, |view| {
@@ -151,7 +158,7 @@ fn transformer_against_the_twin() {
     });
     assert_eq!(seen, [1, 2, 3, 4]);
     let made = made.expect("finite");
-    golden.compare("sampled_guided", &made);
+    golden.compare("sampled_guided", &made.latent_f32());
     sampling.silent = Some(&silent);
     assert_eq!(dit.sample(&x, &sampling, go_on).expect("finite"), made);
     let stopped = dit.sample(&x, &sampling, |_| ControlFlow::Break(()));
@@ -161,7 +168,8 @@ fn transformer_against_the_twin() {
 /// The comparison can fail: views that are confused, or left and right exchanged, differ by more than it allows.
 #[test]
 fn neighbours_and_the_frame_before_are_heard() {
-    let (golden, dit, size) = (Golden::open(), nets().dit, size());
+    let (golden, nets, size) = (Golden::open(), nets(), size());
+    let dit = &nets.dit;
     let mut told = dit.tell(&condition(size)).expect("a condition");
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
     let gap = |told: &Told| {

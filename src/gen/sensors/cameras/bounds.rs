@@ -38,6 +38,9 @@ pub enum CameraError {
         /// What they take.
         bytes: u64,
     },
+    /// A network could not be read, or refuses what it is told.
+    #[error("learned pictures: {0}")]
+    Network(String),
     /// Nobody waits for it any more.
     #[error("cancelled")]
     Cancelled,

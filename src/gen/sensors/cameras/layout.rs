@@ -1,7 +1,7 @@
 //! Boxes and lanes in perspective, hidden or not.
 
 use super::{
-    CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
     ViewId,
 };
 use crate::perspective;
@@ -58,9 +58,14 @@ impl CameraSource for LayoutMaps {
 struct Ready<'a>(&'a Frame);
 
 impl PreparedCameras for Ready<'_> {
-    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        _card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let ([width, height], boxes) = (options.size, self.0.boxes.values());
         let map = perspective::render(&self.0.layout, boxes, camera, width, height);
-        CameraPicture::Layout(map)
+        Ok(CameraPicture::Layout(map))
     }
 }

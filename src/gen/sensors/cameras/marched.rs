@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{CameraPicture, Card, PreparedCameras, RenderOptions};
+use super::{CameraError, CameraPicture, Card, PreparedCameras, RenderOptions};
 use crate::march::{GroundHeight, MarchOptions, MarchScene};
 use scene::{Camera, Frame};
 
@@ -30,8 +30,13 @@ pub fn march_scene(frame: &Frame, shapes: bool, seed: u64) -> MarchScene {
 pub(super) struct Ready(pub MarchScene);
 
 impl PreparedCameras for Ready {
-    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        _card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let [width, height] = options.size;
-        CameraPicture::Maps(self.0.render_maps(camera, width, height))
+        Ok(CameraPicture::Maps(self.0.render_maps(camera, width, height)))
     }
 }

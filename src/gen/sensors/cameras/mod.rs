@@ -4,6 +4,7 @@
 
 pub mod bounds;
 pub mod layout;
+pub mod learned;
 mod marched;
 pub mod normals;
 mod picture;
@@ -36,6 +37,7 @@ pub fn all() -> &'static [&'static dyn CameraSource] {
         &shapes::Shapes,
         &told::Told,
         &pictures::Pictures,
+        &learned::Learned,
         &planes::PlaneStacks,
         &layout::LayoutMaps,
         &normals::Normals,
@@ -205,8 +207,13 @@ pub trait PreparedCameras: Sync {
         false
     }
 
-    /// What a camera shows. Called by [`Ready::render`], which checks size and cancellation first.
-    fn draw(&self, camera: &Camera, options: &RenderOptions, card: Option<&mut dyn Card>) -> CameraPicture;
+    /// What a camera shows. Called by [`Ready::render`], which checks size and cancellation first. Errors if a network refuses.
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError>;
 }
 
 /// A source with a scene made ready: what renders.
@@ -229,7 +236,8 @@ impl<'a> Ready<'a> {
         self.scene.suits_card() && find().is_some_and(|card| self.scene.upload(card))
     }
 
-    /// What a camera shows. Errors if the picture is larger than [`bounds`] allow, or nobody waits for it any more.
+    /// What a camera shows. Errors if the picture is larger than [`bounds`] allow, nobody waits for it any more, or a network
+    /// refuses what it is told.
     pub fn render(
         &self,
         camera: &Camera,
@@ -240,7 +248,7 @@ impl<'a> Ready<'a> {
         if (context.cancelled)() {
             return Err(CameraError::Cancelled);
         }
-        Ok(self.scene.draw(camera, options, context.card))
+        self.scene.draw(camera, options, context.card)
     }
 
     /// How many cameras [`Self::render_all`] is best given at once, at least one.

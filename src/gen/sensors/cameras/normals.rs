@@ -7,7 +7,7 @@ use glam::{DQuat, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
     ViewId,
 };
 use crate::appearance::{Appearance, CameraImage};
@@ -82,7 +82,12 @@ fn color(ego_from_camera: DQuat, normal: Vec3) -> [u8; 3] {
 struct Ready(Appearance);
 
 impl PreparedCameras for Ready {
-    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        _card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let [width, height] = options.size;
         let rays = CameraRays::new(camera, width, height);
         let rotation = camera.ego_from_camera().rotation;
@@ -97,11 +102,11 @@ impl PreparedCameras for Ready {
                 }
             });
         }
-        CameraPicture::Picture(CameraImage {
+        Ok(CameraPicture::Picture(CameraImage {
             camera: camera.name.clone(),
             width: width as usize,
             height: height as usize,
             rgba,
-        })
+        }))
     }
 }

@@ -1,7 +1,7 @@
 //! What a camera would see, by day or night and in any weather: the analytic renderer.
 
 use super::{
-    CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
     ViewId,
 };
 use crate::appearance::Appearance;
@@ -71,10 +71,15 @@ impl PreparedCameras for Ready {
         card.set_appearance(&self.0)
     }
 
-    fn draw(&self, camera: &Camera, options: &RenderOptions, card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let ([width, height], quality) = (options.size, options.quality);
         let drawn = card.and_then(|c| c.picture(&self.0, camera, options.size, quality));
         let draw = || self.0.render(camera, width, height, quality);
-        CameraPicture::Picture(drawn.unwrap_or_else(draw))
+        Ok(CameraPicture::Picture(drawn.unwrap_or_else(draw)))
     }
 }

@@ -1,7 +1,7 @@
 //! Semantic multi-plane images.
 
 use super::{
-    CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras, RenderOptions, SourceId,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras, RenderOptions, SourceId,
     View, ViewId,
 };
 use crate::march::GroundHeight;
@@ -64,8 +64,13 @@ impl CameraSource for PlaneStacks {
 struct Ready(RenderIds);
 
 impl PreparedCameras for Ready {
-    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        _card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let [width, height] = options.size;
-        CameraPicture::Planes(mpi::render(&self.0, camera, width, height, Planes::default()))
+        Ok(CameraPicture::Planes(mpi::render(&self.0, camera, width, height, Planes::default())))
     }
 }

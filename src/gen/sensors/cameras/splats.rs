@@ -2,7 +2,7 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras, RenderOptions, SourceId,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras, RenderOptions, SourceId,
     View,
 };
 use crate::cloud::GaussianCloud;
@@ -76,10 +76,15 @@ impl PreparedCameras for Ready {
         card.set_cloud(&self.0)
     }
 
-    fn draw(&self, camera: &Camera, options: &RenderOptions, card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let [width, height] = options.size;
         let drawn = card.and_then(|c| c.maps(camera, options.size));
         let draw = || splat::render(&self.0, camera, width, height, &SplatOptions::default());
-        CameraPicture::Maps(drawn.unwrap_or_else(draw))
+        Ok(CameraPicture::Maps(drawn.unwrap_or_else(draw)))
     }
 }

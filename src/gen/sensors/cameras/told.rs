@@ -2,7 +2,7 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
 };
 use crate::appearance::Appearance;
 use scene::truth::{OUTSIDE, STOP_LINE};
@@ -62,11 +62,16 @@ struct Ready<'a> {
 }
 
 impl PreparedCameras for Ready<'_> {
-    fn draw(&self, camera: &Camera, options: &RenderOptions, _card: Option<&mut dyn Card>) -> CameraPicture {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        _card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
         let truth = self
             .appearance
             .truth(camera, options.size, &self.frame.boxes, None);
-        CameraPicture::Maps(maps(&truth))
+        Ok(CameraPicture::Maps(maps(&truth)))
     }
 }
 

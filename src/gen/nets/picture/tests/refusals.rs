@@ -86,13 +86,13 @@ fn row_62_weights() {
 /// Rows 37 and 44: depths that are none, negative, huge or no number; cameras that stand still, turn around or have no lens.
 #[test]
 fn rows_37_44_depths() {
-    let (dit, size) = (nets().dit, RingSize::new(2, [16, 32]).expect("a size"));
+    let (nets, size) = (nets(), RingSize::new(2, [16, 32]).expect("a size"));
     let cells = 2 * size.view_cells();
     let x = uniform(cells * 8, 5);
     for depth in [0.0f32, -0.0, -4.0, 1e-30, 1e-4, 0.3, 1e6, 9e29] {
         let mut condition = condition(size);
         condition.depth_m.fill(depth);
-        let told = dit.tell(&condition).expect("a depth");
+        let told = nets.dit.tell(&condition).expect("a depth");
         let here = &told.cells[0].data;
         assert!(here.iter().all(|v| v.is_finite()), "{depth}");
         let depths = [&condition.depth_m[..], &condition.depth_m];
@@ -112,14 +112,14 @@ fn rows_37_44_depths() {
             let near = depth > 0.0 && depth <= 0.1;
             let expected = (then_from_now == still && focal == 20.0 && !near) as usize * cells;
             assert_eq!(seen, expected, "{depth} {focal}");
-            dit.v(&x, 500.0, &told, Some(&before)).expect("finite");
+            nets.dit.v(&x, 500.0, &told, Some(&before)).expect("finite");
         }
     }
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30] {
         let mut condition = condition(size);
         condition.depth_m[70] = bad;
         let expected = |what: &str| format!("{what}: value 70 is {bad}, expected finite numbers below 1e30");
-        let error = dit.tell(&condition).expect_err("not finite").to_string();
+        let error = nets.dit.tell(&condition).expect_err("not finite").to_string();
         assert_eq!(error, expected("depth"));
         let depth_m = &condition.depth_m[..];
         let good = vec![1.0; depth_m.len()];

@@ -1,0 +1,101 @@
+//! The thread senses the newest scene, and goes on after a panic.
+
+use std::time::Instant;
+
+use super::*;
+use scene::{Frame, draft};
+use sensors::cameras;
+use world::World;
+
+#[test]
+fn the_newest_scene_is_sensed_in_the_end() {
+    let world = World::random(3);
+    let occupancy = draft::draft(&world.layout, world.boxes.values());
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let mut scene = Scene::single("test", frame, Arc::default(), 3);
+    let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+    for _ in 0..20 {
+        scene.rev = SceneRev::fresh();
+        sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    }
+    let start = Instant::now();
+    while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
+        assert!(start.elapsed() < Duration::from_secs(120), "no news");
+        std::thread::sleep(Duration::from_millis(5));
+        sensing.drain();
+    }
+    assert_eq!(sensing.cameras().map(|c| c.len()), Some(6));
+    assert!(sensing.lidar().is_some_and(|l| l.points.len() > 1000));
+    // Asked for already: nothing new comes.
+    let version = sensing.version();
+    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    std::thread::sleep(Duration::from_millis(50));
+    sensing.drain();
+    assert_eq!(sensing.version(), version);
+    // Pictures of another source of the same scene are news; hidden cameras are not rendered.
+    for source in cameras::all() {
+        let wanted = Wanted {
+            source: source.id(),
+            hidden: 0b101,
+            ..Wanted::default()
+        };
+        // Nothing is painted while the user drags.
+        let preview = source.id() != learned::ID;
+        sensing.ask(&Arc::new(scene.clone()), wanted, preview);
+        assert!(sensing.cameras_stale(scene.rev));
+        while sensing.cameras_stale(scene.rev) {
+            assert!(
+                start.elapsed() < Duration::from_secs(120),
+                "no news of {}",
+                source.title()
+            );
+            std::thread::sleep(Duration::from_millis(5));
+            sensing.drain();
+        }
+        let views = sensing.cameras().expect("pictures");
+        assert_eq!(views.iter().map(|v| v.camera).collect::<Vec<_>>(), [1, 3, 4, 5]);
+        for (of_camera, view) in views
+            .iter()
+            .flat_map(|v| source.views().iter().map(move |s| (v, s)))
+        {
+            let ([w, h], rgba) = of_camera.picture.rgba(view.id, 12.0);
+            assert_eq!(rgba.len(), w * h * 4);
+            assert!(
+                rgba.chunks(4).any(|c| c != &rgba[..4]),
+                "{}: all of one colour",
+                view.title
+            );
+        }
+    }
+}
+
+#[test]
+fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
+    let world = World::random(3);
+    let occupancy = draft::draft(&world.layout, world.boxes.values());
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let mut scene = Scene::single("test", frame, Arc::default(), 3);
+    let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+    let patience = |start: Instant| assert!(start.elapsed() < Duration::from_secs(120), "no news");
+    job::guard::panic_next("sensing");
+    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    let start = Instant::now();
+    let problem = loop {
+        patience(start);
+        sensing.drain();
+        if let Some(problem) = sensing.take_problem() {
+            break problem;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    assert_eq!(problem, "sensing panicked: asked for by a test");
+    assert_eq!((sensing.take_problem(), sensing.version()), (None, 0));
+    scene.rev = SceneRev::fresh();
+    sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
+    while sensing.cameras_stale(scene.rev) || sensing.lidar_stale(scene.rev) {
+        patience(start);
+        std::thread::sleep(Duration::from_millis(5));
+        sensing.drain();
+    }
+    assert_eq!(sensing.take_problem(), None);
+}

@@ -1,0 +1,130 @@
+//! Pictures by the picture networks, which learned from the program's own renderer.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use image::RgbaImage;
+use image::imageops::{FilterType, resize};
+
+use super::{
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
+    SourceId, View, ViewId,
+};
+use crate::appearance::CameraImage;
+use crate::painter::{PaintOptions, Painter};
+use nets::picture::PictureNets;
+use scene::{Camera, SensorRig};
+
+/// What it shows.
+pub const VIEW: View = View::new(
+    ViewId::new("learned"),
+    "Learned",
+    "what the picture network makes of the voxels",
+);
+
+/// Name of the source.
+pub const ID: SourceId = SourceId::new("learned");
+
+/// The source.
+pub struct Learned;
+
+impl CameraSource for Learned {
+    fn id(&self) -> SourceId {
+        ID
+    }
+
+    fn title(&self) -> &'static str {
+        "Learned"
+    }
+
+    fn hint(&self) -> &'static str {
+        "drawn by a network that learned from the pictures; six cameras of 256 x 144 at once"
+    }
+
+    fn views(&self) -> &'static [View] {
+        &[VIEW]
+    }
+
+    fn needs(&self) -> Needs {
+        Needs {
+            occupancy: true,
+            layout: true,
+            boxes: true,
+            conditions: true,
+            ..Needs::default()
+        }
+    }
+
+    fn report_key(&self) -> &'static str {
+        "learned"
+    }
+
+    fn bytes_per_pixel(&self) -> u64 {
+        64
+    }
+
+    fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {
+        Box::new(Ready {
+            input: *input,
+            images: painted(input),
+        })
+    }
+}
+
+struct Ready<'a> {
+    input: CameraInput<'a>,
+    /// In the order of the rig.
+    images: Result<Vec<Arc<CameraImage>>, CameraError>,
+}
+
+fn painted(input: &CameraInput<'_>) -> Result<Vec<Arc<CameraImage>>, CameraError> {
+    let nets = PictureNets::bundled().map_err(|e| CameraError::Network(e.to_string()))?;
+    let mut painter = Painter::new(nets, PaintOptions::default());
+    painter.paint(input, |_| ControlFlow::Continue(()))
+}
+
+impl PreparedCameras for Ready<'_> {
+    fn draw(
+        &self,
+        camera: &Camera,
+        options: &RenderOptions,
+        _card: Option<&mut dyn Card>,
+    ) -> Result<CameraPicture, CameraError> {
+        let place = self.input.rig.cameras.iter().position(|c| c == camera);
+        let image = match place {
+            Some(place) => self.images.clone()?.get(place).cloned(),
+            // A camera that is not of the rig stands alone.
+            None => {
+                let rig = SensorRig {
+                    cameras: vec![camera.clone()],
+                    ..self.input.rig.clone()
+                };
+                let alone = CameraInput {
+                    rig: &rig,
+                    ..self.input
+                };
+                painted(&alone)?.pop()
+            }
+        };
+        let image = image.ok_or_else(|| CameraError::Network("no picture was painted".into()))?;
+        Ok(CameraPicture::Picture(sized(&image, options.size)))
+    }
+}
+
+/// A picture at another size, smoothly.
+fn sized(image: &CameraImage, [width, height]: [u32; 2]) -> CameraImage {
+    let [w, h] = [image.width as u32, image.height as u32];
+    let source = RgbaImage::from_raw(w, h, image.rgba.clone()).unwrap_or_default();
+    let empty = width == 0 || height == 0 || source.is_empty();
+    let rgba = match () {
+        () if [width, height] == [w, h] => source,
+        () if empty => RgbaImage::new(width, height),
+        () => resize(&source, width, height, FilterType::CatmullRom),
+    };
+    CameraImage {
+        camera: image.camera.clone(),
+        width: width as usize,
+        height: height as usize,
+        rgba: rgba.into_raw(),
+    }
+}

@@ -1,0 +1,74 @@
+//! Where pictures change when a scene does.
+
+use super::seen::Seen;
+use nets::picture::{CELL, RingSize};
+
+/// The renderer's colour must differ by more than this, of 255, for a pixel to be painted because of its light alone.
+const LIGHT: u8 = 5;
+/// New paint fades into what was there within so many pixels around what changed.
+pub const RIM_PX: usize = 4;
+
+/// Of each view, the pixels that show something else: another class, depth or heading, or another light on it, such as the
+/// shadow of what was added or taken away.
+pub(super) fn changed(then: &Seen, now: &Seen, views: usize) -> Vec<Vec<bool>> {
+    let of_view = |view: usize| {
+        let ((a, old), (b, new)) = (then.pixels(view), now.pixels(view));
+        let told = |i: usize| {
+            a.class[i] != b.class[i] || a.depth_m[i] != b.depth_m[i] || a.facing[i] != b.facing[i]
+        };
+        let lit = |i: usize| old[i].iter().zip(new[i]).any(|(a, b)| a.abs_diff(b) > LIGHT);
+        (0..new.len()).map(|i| told(i) || lit(i)).collect()
+    };
+    (0..views).map(of_view).collect()
+}
+
+/// Latent cells of pixels that changed, and their neighbours, `[view][row][column]`.
+pub(super) fn cells(changed: &[Vec<bool>], size: RingSize) -> Vec<bool> {
+    let [rows, columns] = size.cells();
+    let width = columns * CELL;
+    let mut out = vec![false; size.views() * rows * columns];
+    for (view, pixels) in changed.iter().enumerate() {
+        for (at, _) in pixels.iter().enumerate().filter(|(_, c)| **c) {
+            let [row, column] = [at / width / CELL, at % width / CELL];
+            for r in row.saturating_sub(1)..(row + 2).min(rows) {
+                for c in column.saturating_sub(1)..(column + 2).min(columns) {
+                    out[(view * rows + r) * columns + c] = true;
+                }
+            }
+        }
+    }
+    out
+}
+
+/// How much of each pixel is new: 1 where it changed, less around it, 0 from [`RIM_PX`] pixels on.
+pub(super) fn shares(changed: &[bool], width: usize) -> Vec<f32> {
+    let mut shares: Vec<f32> = changed.iter().map(|c| f32::from(u8::from(*c))).collect();
+    let height = changed.len() / width.max(1);
+    for ring in 1..RIM_PX {
+        let share = 1.0 - ring as f32 / RIM_PX as f32;
+        let before = shares.clone();
+        for y in 0..height {
+            for x in 0..width {
+                let near = |(x, y): (usize, usize)| before[y * width + x] > share;
+                let rows = y.saturating_sub(1)..(y + 2).min(height);
+                let mut around = rows.flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| (x, y)));
+                let at = &mut shares[y * width + x];
+                if *at == 0.0 && around.any(near) {
+                    *at = share;
+                }
+            }
+        }
+    }
+    shares
+}
+
+/// New colours where they are new, old ones elsewhere; 4 bytes a pixel.
+pub(super) fn blend(old: &[u8], new: &mut [u8], shares: &[f32]) {
+    let pixels = old.chunks_exact(4).zip(new.chunks_exact_mut(4)).zip(shares);
+    for ((old, new), share) in pixels {
+        for (old, new) in old.iter().zip(new) {
+            let (a, b) = (f32::from(*old), f32::from(*new));
+            *new = (a + (b - a) * share).round() as u8;
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Camera pictures by the picture networks: all cameras of a rig at once, and after an edit only what it changed.
+
+mod mask;
+mod ring;
+mod seen;
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use crate::appearance::CameraImage;
+use crate::cameras::{CameraError, CameraInput};
+use diffusion::inversion::Trajectory;
+use nets::ModelError;
+use nets::picture::{self, Before, PictureNets, RingSize, Sampling};
+use numeric::philox::{Stream, normal_field};
+use ring::Ring;
+use seen::Seen;
+
+/// Pictures of so many states are kept: what was painted before is there again at once.
+const KEPT: usize = 6;
+
+/// How pictures are painted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaintOptions {
+    /// Steps from noise to a picture, 1 to 1000.
+    pub steps: usize,
+    /// How much more than in training the pictures obey the voxels; 1 is as in training.
+    pub guidance: f64,
+}
+
+impl Default for PaintOptions {
+    /// What was measured best: `training/weights/pictures/CARD.md`.
+    fn default() -> Self {
+        Self {
+            steps: 4,
+            guidance: 2.0,
+        }
+    }
+}
+
+/// How far a painting has come.
+#[derive(Debug)]
+pub struct Progress<'a> {
+    /// Steps done.
+    pub step: usize,
+    /// All steps.
+    pub steps: usize,
+    /// Index in the rig of a camera of which there is news, and its picture as it looks by now.
+    pub news: Option<(usize, &'a CameraImage)>,
+}
+
+/// Paints, and remembers what it painted last.
+pub struct Painter {
+    nets: Arc<PictureNets>,
+    options: PaintOptions,
+    /// The newest last.
+    kept: VecDeque<Painted>,
+}
+
+/// Pictures of one state.
+struct Painted {
+    seen: Seen,
+    trajectory: Trajectory,
+    /// In the ring's order.
+    images: Vec<Arc<CameraImage>>,
+}
+
+impl Painter {
+    /// With these networks.
+    pub fn new(nets: Arc<PictureNets>, options: PaintOptions) -> Self {
+        Self {
+            nets,
+            options,
+            kept: VecDeque::new(),
+        }
+    }
+
+    /// Pictures of all cameras of the rig, in its order, each of some 256x144 px. What was painted before is given again. Where
+    /// only the scene differs from what was painted before, only pixels that show the difference are painted, and a rim of
+    /// [`mask::RIM_PX`] around them; all others stay as they were, to the bit. `watch` hears of every step and may stop the
+    /// painting. Errors if it did, if there are more than 64 cameras, or if the networks refuse what they are told.
+    pub fn paint(
+        &mut self,
+        input: &CameraInput<'_>,
+        mut watch: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Vec<Arc<CameraImage>>, CameraError> {
+        let Some(ring) = Ring::of(&input.rig.cameras)? else {
+            return Ok(Vec::new());
+        };
+        let seen = Seen::of(input, &ring);
+        if let Some(at) = self.kept.iter().position(|p| p.seen == seen)
+            && let Some(painted) = self.kept.remove(at)
+        {
+            let images = ring.in_rig_order(&painted.images);
+            self.kept.push_back(painted);
+            return Ok(images);
+        }
+        let painted = self.painted(seen, &ring, &mut watch)?;
+        let images = ring.in_rig_order(&painted.images);
+        if self.kept.len() >= KEPT {
+            self.kept.pop_front();
+        }
+        self.kept.push_back(painted);
+        Ok(images)
+    }
+
+    fn painted(
+        &self,
+        seen: Seen,
+        ring: &Ring,
+        watch: &mut impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Painted, CameraError> {
+        let source = self.kept.iter().rfind(|p| p.seen.differs_in_scene_alone(&seen));
+        let changed = source.map(|source| mask::changed(&source.seen, &seen, ring.size.views()));
+        let brush = Brush {
+            nets: &self.nets,
+            size: ring.size,
+            base: source.map(|s| &s.images[..]).zip(changed.as_deref()),
+        };
+        let order = ring.order(&brush);
+        let condition = seen.condition(ring.size);
+        let told = self.nets.dit.tell(&condition).map_err(network)?;
+        let before = match source {
+            None => self.before(&seen, ring.size)?,
+            Some(_) => None,
+        };
+        let sampling = Sampling {
+            told: &told,
+            silent: None,
+            before: before.as_ref(),
+            steps: self.options.steps,
+            guidance: self.options.guidance,
+        };
+        let on_step = |view: diffusion::solver::StepView<'_>| {
+            let (step, steps) = (view.step, view.steps);
+            let clean = || view.clean_estimate().iter().map(|v| *v as f32).collect::<Vec<_>>();
+            // The last step is followed by the pictures themselves.
+            let preview = order.first().filter(|_| step < steps);
+            let image = preview.and_then(|first| brush.image(*first, &clean(), &seen).ok());
+            watch(Progress {
+                step,
+                steps,
+                news: preview.map(|first| ring.camera(*first)).zip(image.as_ref()),
+            })
+        };
+        let trajectory = match (source, &changed) {
+            (Some(source), Some(changed)) => {
+                let cells = mask::cells(changed, ring.size);
+                self.nets
+                    .dit
+                    .resample(&source.trajectory, &cells, &sampling, on_step)
+            }
+            _ => {
+                let noise = noise(seen.seed(), ring.size, self.nets.dit.config().latent);
+                self.nets.dit.sample(&noise, &sampling, on_step)
+            }
+        };
+        let trajectory = trajectory.map_err(network)?;
+        let latents = trajectory.latent_f32();
+        let mut images: Vec<Option<Arc<CameraImage>>> = vec![None; ring.size.views()];
+        if let Some((first, rest)) = order.split_first() {
+            let image = brush.image(*first, &latents, &seen)?;
+            let steps = self.options.steps;
+            let _ = watch(Progress {
+                step: steps,
+                steps,
+                news: Some((ring.camera(*first), &image)),
+            });
+            images[*first] = Some(Arc::new(image));
+            let others: Result<Vec<_>, _> = rest
+                .par_iter()
+                .map(|view| Ok((*view, brush.image(*view, &latents, &seen)?)))
+                .collect();
+            for (view, image) in others? {
+                images[view] = Some(Arc::new(image));
+            }
+        }
+        let kept = |view: usize| source.map(|s| s.images[view].clone());
+        let images = images.into_iter().enumerate();
+        Ok(Painted {
+            images: images.filter_map(|(view, image)| image.or_else(|| kept(view))).collect(),
+            trajectory,
+            seen,
+        })
+    }
+
+    /// The newest frame that was painted, if these cameras stood near by then, as their cells see it.
+    fn before(&self, seen: &Seen, size: RingSize) -> Result<Option<Before>, CameraError> {
+        let near = self.kept.iter().rev().find_map(|p| Some((p, seen.motion_since(&p.seen, size)?)));
+        let Some((painted, motions)) = near else {
+            return Ok(None);
+        };
+        let depths = [&seen.depth_m()[..], &painted.seen.depth_m()];
+        let before = picture::warp(size, &painted.trajectory.latent_f32(), depths, &motions);
+        before.map(Some).map_err(network)
+    }
+}
+
+/// From latents to pictures.
+struct Brush<'a> {
+    nets: &'a PictureNets,
+    size: RingSize,
+    /// The pictures that are painted over, and which of their pixels show something else now.
+    base: Option<(&'a [Arc<CameraImage>], &'a [Vec<bool>])>,
+}
+
+impl Brush<'_> {
+    /// True if a view is to be painted at all.
+    fn touches(&self, view: usize) -> bool {
+        self.base.is_none_or(|(_, changed)| changed[view].contains(&true))
+    }
+
+    /// The picture of a view of the ring, of the latents of all.
+    fn image(&self, view: usize, latents: &[f32], seen: &Seen) -> Result<CameraImage, CameraError> {
+        let numbers = latents.len() / self.size.views();
+        let latents = &latents[view * numbers..][..numbers];
+        let colors = self.nets.vae.decode(latents, self.size.cells()).map_err(network)?;
+        let [height, width] = self.size.pixels();
+        let byte = |v: f32| ((v + 1.0) * 127.5).round().clamp(0.0, 255.0) as u8;
+        let mut image = CameraImage {
+            camera: seen.camera_name(view).to_owned(),
+            width,
+            height,
+            rgba: colors
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .flat_map(|[r, g, b]| [byte(*r), byte(*g), byte(*b), 255])
+                .collect(),
+        };
+        if let Some((before, changed)) = self.base {
+            let shares = mask::shares(&changed[view], width);
+            mask::blend(&before[view].rgba, &mut image.rgba, &shares);
+        }
+        Ok(image)
+    }
+}
+
+/// Noise that belongs to the seed and to the places of the ring.
+fn noise(seed: u64, size: RingSize, latent: usize) -> Vec<f32> {
+    let [rows, columns] = size.cells();
+    let field = normal_field(seed, Stream::Pictures, size.views() * rows * columns, latent);
+    field.into_iter().map(|v| v as f32).collect()
+}
+
+fn network(error: ModelError) -> CameraError {
+    match error {
+        ModelError::Stopped { .. } => CameraError::Cancelled,
+        error => CameraError::Network(error.to_string()),
+    }
+}

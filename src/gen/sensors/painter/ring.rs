@@ -1,0 +1,84 @@
+//! The cameras of a rig as a ring: each one's neighbour on the right follows it.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{Brush, network};
+use crate::appearance::CameraImage;
+use crate::cameras::CameraError;
+use nets::picture::RingSize;
+use scene::Camera;
+
+/// Pixels of a picture that the networks learned, about.
+const PIXELS: f64 = 256.0 * 144.0;
+/// Sides are multiples of this, px.
+const UNIT_PX: usize = 16;
+/// Shortest and longest side, px.
+const SIDE_PX: [usize; 2] = [64, 512];
+
+/// A rig's cameras in the order in which they stand around the vehicle, clockwise from above.
+pub(super) struct Ring {
+    /// How many, and the size of their pictures.
+    pub size: RingSize,
+    /// Of each place in the ring, the index in the rig.
+    cameras: Vec<usize>,
+    /// Place of the camera that is painted first.
+    first: usize,
+}
+
+impl Ring {
+    /// None without cameras. Errors if there are more than 64.
+    pub fn of(cameras: &[Camera]) -> Result<Option<Self>, CameraError> {
+        let Some(camera) = cameras.first() else {
+            return Ok(None);
+        };
+        let mut order: Vec<usize> = (0..cameras.len()).collect();
+        let clockwise = |i: &usize| {
+            let ahead = cameras[*i].ego_from_camera().rotation * DVec3::Z;
+            -ahead.y.atan2(ahead.x)
+        };
+        order.sort_by(|a, b| clockwise(a).total_cmp(&clockwise(b)));
+        let front = |i: &usize| cameras[*i].name.ends_with("FRONT");
+        Ok(Some(Self {
+            size: RingSize::new(cameras.len(), pixels(camera)).map_err(network)?,
+            first: order.iter().position(front).unwrap_or(0),
+            cameras: order,
+        }))
+    }
+
+    /// Index in the rig of the camera at a place.
+    pub fn camera(&self, place: usize) -> usize {
+        self.cameras[place]
+    }
+
+    /// Places that a brush touches, that of the front camera first.
+    pub fn order(&self, brush: &Brush<'_>) -> Vec<usize> {
+        let views = self.size.views();
+        let places = (0..views).map(|i| (self.first + i) % views);
+        places.filter(|place| brush.touches(*place)).collect()
+    }
+
+    /// Pictures in the ring's order, in that of the rig.
+    pub fn in_rig_order(&self, images: &[Arc<CameraImage>]) -> Vec<Arc<CameraImage>> {
+        let mut sorted: Vec<_> = self.cameras.iter().zip(images).collect();
+        sorted.sort_by_key(|(camera, _)| **camera);
+        sorted.into_iter().map(|(_, image)| image.clone()).collect()
+    }
+
+    /// The cameras in the ring's order.
+    pub fn sorted<'a>(&self, cameras: &'a [Camera]) -> Vec<&'a Camera> {
+        self.cameras.iter().map(|i| &cameras[*i]).collect()
+    }
+}
+
+/// Height and width at which pictures of a camera are painted, px: as many pixels as the networks learned, in the
+/// camera's shape.
+fn pixels(camera: &Camera) -> [usize; 2] {
+    let aspect = f64::from(camera.width.max(1)) / f64::from(camera.height.max(1));
+    let side = |px: f64| {
+        let units = (px / UNIT_PX as f64).round() as usize;
+        (units * UNIT_PX).clamp(SIDE_PX[0], SIDE_PX[1])
+    };
+    [side((PIXELS / aspect).sqrt()), side((PIXELS * aspect).sqrt())]
+}

@@ -1,0 +1,216 @@
+//! Edits change only what they touch; what was painted is found again; odd rigs are painted or refused in one line.
+
+use super::*;
+use crate::cameras::Detail;
+use mask::RIM_PX;
+use scene::{Background, BoxId, Camera, Conditions, Frame, Lens, Pose, SensorRig, TimeOfDay, Weather};
+use world::World;
+use world::voxelize::{Vertical, complete};
+
+fn frame(world: &World) -> Frame {
+    Frame::new(
+        world.layout.clone(),
+        world.boxes.clone(),
+        complete(world, Vertical::Occ3d),
+    )
+}
+
+fn painter() -> Painter {
+    let nets = PictureNets::bundled().expect("the shipped weights");
+    let options = PaintOptions {
+        steps: 2,
+        ..PaintOptions::default()
+    };
+    Painter::new(nets, options)
+}
+
+fn input<'a>(frame: &'a Frame, rig: &'a SensorRig, background: &'a Background) -> CameraInput<'a> {
+    CameraInput {
+        frame,
+        rig,
+        background,
+        conditions: Conditions::usual(TimeOfDay::Day, Weather::Clear, 3),
+        detail: Detail::Full,
+    }
+}
+
+fn go_on(_: Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// A world, the same without one of its cars that a camera sees, and that car.
+fn with_and_without_a_car() -> (Frame, Frame, BoxId) {
+    let mut world = World::random(3);
+    let with = frame(&world);
+    let near = |b: &&scene::SceneBox| {
+        let away_m = b.center_m.truncate().length();
+        b.class == scene::Class::Car && (6.0..25.0).contains(&away_m)
+    };
+    let id = world.boxes.values().find(near).expect("a car near by").id;
+    world.boxes.remove(&id);
+    (with, frame(&world), id)
+}
+
+#[test]
+fn an_edit_changes_what_it_touches_and_nothing_else() {
+    let (with, without, id) = with_and_without_a_car();
+    let (rig, background) = (SensorRig::default(), Background::default());
+    let (before, after) = (input(&with, &rig, &background), input(&without, &rig, &background));
+    let mut painter = painter();
+    let old = painter.paint(&before, go_on).expect("pictures");
+    let mut news = Vec::new();
+    let new = painter.paint(&after, |progress| {
+        news.push((progress.step, progress.news.map(|(camera, _)| camera)));
+        ControlFlow::Continue(())
+    });
+    let new = new.expect("pictures");
+
+    let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
+    let (then, now) = (Seen::of(&before, &ring), Seen::of(&after, &ring));
+    let changed = mask::changed(&then, &now, ring.size.views());
+    let [_, width] = ring.size.pixels();
+    let (mut painted, mut touched_views) = (0, 0);
+    for (place, changed) in changed.iter().enumerate() {
+        let camera = ring.camera(place);
+        let (old, new) = (&old[camera], &new[camera]);
+        assert_eq!(old.camera, rig.cameras[camera].name);
+        let touched = changed.contains(&true);
+        touched_views += usize::from(touched);
+        // A view without changes is the very same picture.
+        assert_eq!(touched, !Arc::ptr_eq(old, new), "{}", old.camera);
+        let near = |at: usize| {
+            let (x, y) = ((at % width) as i64, (at / width) as i64);
+            let mut all = changed.iter().enumerate().filter(|(_, c)| **c);
+            all.any(|(i, _)| {
+                let (u, v) = ((i % width) as i64, (i / width) as i64);
+                (u - x).abs().max((v - y).abs()) < RIM_PX as i64
+            })
+        };
+        let pixels = old.rgba.chunks_exact(4).zip(new.rgba.chunks_exact(4)).enumerate();
+        for (at, _) in pixels.filter(|(_, (a, b))| a != b) {
+            painted += 1;
+            assert!(near(at), "pixel {at} of {} changed", old.camera);
+        }
+    }
+    let all = ring.size.views() * changed[0].len();
+    assert!(painted > 50 && painted < all / 4, "{painted} of {all} pixels painted");
+    assert!((1..6).contains(&touched_views), "box {id:?} is in {touched_views} views");
+    // News of a camera that is touched, with every step, and once more when the picture is there.
+    assert_eq!(news.iter().map(|(step, _)| *step).collect::<Vec<_>>(), [1, 2, 2]);
+    assert!(news[0].1.is_some() && news[2].1 == news[0].1);
+
+    // Undone, the pictures are those of before; they were kept.
+    let again = painter.paint(&before, |_| panic!("painted again")).expect("pictures");
+    assert!(again.iter().zip(&old).all(|(a, b)| Arc::ptr_eq(a, b)));
+    // Another painter makes the same ones.
+    let other = self::painter().paint(&before, go_on).expect("pictures");
+    assert!(other.iter().zip(&old).all(|(a, b)| a == b));
+}
+
+#[test]
+fn a_stopped_painting_leaves_nothing_behind() {
+    let frame = frame(&World::random(3));
+    let (rig, background) = (SensorRig::default(), Background::default());
+    let input = input(&frame, &rig, &background);
+    let mut painter = painter();
+    let stopped = painter.paint(&input, |_| ControlFlow::Break(()));
+    assert_eq!(stopped, Err(CameraError::Cancelled));
+    assert!(painter.kept.is_empty());
+    assert_eq!(painter.paint(&input, go_on).expect("pictures").len(), 6);
+}
+
+/// Other light, or another place far away, is another picture; a step ahead goes on from the last one.
+#[test]
+fn a_drive_goes_on_from_the_frame_before() {
+    let frame = frame(&World::random(3));
+    let (rig, background) = (SensorRig::default(), Background::default());
+    let here = input(&frame, &rig, &background);
+    let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
+    let seen = |input: &CameraInput<'_>| Seen::of(input, &ring);
+    let then = seen(&here);
+    let moved = |ahead_m: f64, turn_rad: f64| rig.placed(&Pose::planar(ahead_m, 0.0, turn_rad));
+    let known = |ahead_m: f64, turn_rad: f64| {
+        let rig = moved(ahead_m, turn_rad);
+        seen(&input(&frame, &rig, &background)).motion_since(&then, ring.size).is_some()
+    };
+    assert!(known(1.0, 0.1) && !known(9.0, 0.0) && !known(0.5, 1.0));
+    let rig_ahead = moved(1.0, 0.0);
+    let ahead = input(&frame, &rig_ahead, &background);
+    let motions = seen(&ahead).motion_since(&then, ring.size).expect("near");
+    // What is 10 m before the front camera now was 11 m before it then.
+    let front = (0..6).find(|place| rig.cameras[ring.camera(*place)].name == "CAM_FRONT");
+    let [_, _, z] = motions[front.expect("a front camera")].then_from_now;
+    assert!((z[2] * 10.0 + z[3] - 11.0).abs() < 0.01, "{z:?}");
+    let night = CameraInput {
+        conditions: Conditions::usual(TimeOfDay::Night, Weather::Clear, 3),
+        ..ahead
+    };
+    assert!(seen(&night).motion_since(&then, ring.size).is_none());
+
+    let mut painter = painter();
+    let first = painter.paint(&here, go_on).expect("pictures");
+    let next = painter.paint(&ahead, go_on).expect("pictures");
+    let alone = self::painter().paint(&ahead, go_on).expect("pictures");
+    assert!(next != alone && next != first);
+    let dark = painter.paint(&night, go_on).expect("pictures");
+    let light = |images: &[Arc<CameraImage>]| {
+        let bytes = images.iter().flat_map(|i| &i.rgba);
+        bytes.map(|b| u64::from(*b)).sum::<u64>()
+    };
+    assert!(light(&dark) < light(&next) * 9 / 10, "night is dark");
+}
+
+#[test]
+fn odd_rigs_are_painted_or_refused() {
+    let frame = frame(&World::random(3));
+    let background = Background::default();
+    let paint = |cameras: Vec<Camera>| {
+        let rig = SensorRig {
+            cameras,
+            ..SensorRig::default()
+        };
+        painter().paint(&input(&frame, &rig, &background), go_on)
+    };
+    assert_eq!(paint(Vec::new()), Ok(Vec::new()));
+    let mut tall = Camera::new("TALL", 40.0);
+    (tall.width, tall.height) = (100, 1600);
+    let mut fish = Camera::new("FISH", 150.0);
+    fish.lens = Lens::Fisheye {
+        k: [0.0; 4],
+        max_angle_deg: 100.0,
+    };
+    for camera in [tall, fish] {
+        let images = paint(vec![camera]).expect("a picture");
+        assert_eq!(images[0].rgba.len(), images[0].width * images[0].height * 4);
+    }
+    let many = (0..65).map(|i| Camera::new(&format!("C{i}"), 60.0)).collect();
+    let error = paint(many).expect_err("too many").to_string();
+    assert_eq!(error, "learned pictures: number of cameras is 65, expected 1 to 64");
+}
+
+#[test]
+fn the_ring_runs_clockwise_and_begins_in_front() {
+    let rig = SensorRig::default();
+    let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
+    assert_eq!(ring.size.pixels(), [144, 256]);
+    let names: Vec<&str> = (0..6).map(|p| &rig.cameras[ring.camera(p)].name[4..]).collect();
+    let front = names.iter().position(|n| *n == "FRONT").expect("a front camera");
+    let around: Vec<&str> = (0..6).map(|i| names[(front + i) % 6]).collect();
+    assert_eq!(
+        around,
+        ["FRONT", "FRONT_RIGHT", "BACK_RIGHT", "BACK", "BACK_LEFT", "FRONT_LEFT"]
+    );
+}
+
+#[test]
+fn new_paint_fades_out() {
+    let mut changed = vec![false; 15 * 15];
+    changed[7 * 15 + 7] = true;
+    let shares = mask::shares(&changed, 15);
+    let row: Vec<f32> = shares[7 * 15 + 7..8 * 15].to_vec();
+    assert_eq!(row, [1.0, 0.75, 0.5, 0.25, 0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(shares[4 * 15 + 4], 0.25);
+    let mut new = vec![200; 15 * 15 * 4];
+    mask::blend(&vec![100; 15 * 15 * 4], &mut new, &shares);
+    assert_eq!([new[(7 * 15 + 7) * 4], new[(7 * 15 + 9) * 4], new[0]], [200, 150, 100]);
+}
