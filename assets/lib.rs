@@ -100,6 +100,8 @@ pub mod weights {
     pub static OCC_VAE_FINE: &[u8] = include_bytes!("weights/occ_vae_fine.safetensors");
     /// `pictures_dit.safetensors`.
     pub static PICTURES_DIT: &[u8] = include_bytes!("weights/pictures_dit.safetensors");
+    /// `pictures_segmenter.safetensors`.
+    pub static PICTURES_SEGMENTER: &[u8] = include_bytes!("weights/pictures_segmenter.safetensors");
     /// `pictures_vae.safetensors`.
     pub static PICTURES_VAE: &[u8] = include_bytes!("weights/pictures_vae.safetensors");
     /// `reader.safetensors`.

@@ -1,4 +1,5 @@
-"""What train_pictures.py left in a folder -> weights/pictures: f16 weights, log, figures, sheets, and the golden of a parity test.
+"""What train_pictures.py left in a folder -> the shipped f16 weights in assets/weights, and in weights/pictures
+the log, figures, sheets, and the golden of a parity test.
 
 python export_pictures.py RUNS/pictures
 The golden is computed from the f16 values, in f32, as the Rust program will compute: a ring of six pictures of 64x32 px.
@@ -15,11 +16,13 @@ from safetensors.torch import load_file, save_file
 from export import uniform
 from models.picture_dit import PictureDit, PictureDitConfig, cell_depth, warp
 from models.picture_vae import CELL, load_picture_vae
+from models.segmenter import Segmenter, SegmenterConfig
 from schedule import ddim_sample
 
 OUT = Path(__file__).resolve().parent / "weights" / "pictures"
+SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights"
 WIDTH, HEIGHT, VIEWS = 64, 32, 6
-KEPT = ("vae.safetensors", "dit.safetensors", "segmenter.safetensors", "log.jsonl", "figures.json", "sheet_0.jpg", "sheet_1.jpg", "sheet_2.jpg")
+KEPT = ("log.jsonl", "figures.json", "sheet_0.jpg", "sheet_1.jpg", "sheet_2.jpg")
 
 
 def load_dit(path):
@@ -28,6 +31,14 @@ def load_dit(path):
     dit = PictureDit(PictureDitConfig(**config))
     dit.load_state_dict({k: v.float() for k, v in load_file(path).items()})
     return dit.eval().requires_grad_(False)
+
+
+def load_segmenter(path):
+    with safe_open(path, "pt") as f:
+        config = json.loads(f.metadata()["config"])
+    net = Segmenter(SegmenterConfig(**config))
+    net.load_state_dict({k: v.float() for k, v in load_file(path).items()})
+    return net.eval().requires_grad_(False)
 
 
 @torch.no_grad()
@@ -62,6 +73,7 @@ def golden(folder):
         "latent": vae.encode(pictures.permute(0, 3, 1, 2)), "picture": vae.decode(x[0]).permute(0, 2, 3, 1), "told": told[0].permute(0, 2, 3, 1),
         "before": before, "v_alone": torch.stack([v(t, None) for t in (0.0, 437.5, 999.0)]), "v_after": torch.stack([v(t, before) for t in (0.0, 437.5, 999.0)]),
         "v_silent": dit(x, torch.tensor([437.5]), silent, None),
+        "segmented": load_segmenter(folder / "segmenter.safetensors")(pictures[:1].permute(0, 3, 1, 2)).permute(0, 2, 3, 1),
         "sampled": ddim_sample(lambda y, t: dit(y, t, told, before), x, 8), "sampled_guided": ddim_sample(guided, x, 4),
     }
 
@@ -70,7 +82,9 @@ def main(folder):
     OUT.mkdir(parents=True, exist_ok=True)
     for name in KEPT:
         shutil.copy(folder / name, OUT / name)
-    save_file({k: v.contiguous() for k, v in golden(OUT).items()}, OUT / "golden.safetensors")
+    for name in ("vae", "dit", "segmenter"):
+        shutil.copy(folder / f"{name}.safetensors", SHIPPED / f"pictures_{name}.safetensors")
+    save_file({k: v.contiguous() for k, v in golden(folder).items()}, OUT / "golden.safetensors")
     for path in OUT.iterdir():
         path.chmod(0o644)
     print({p.name: p.stat().st_size for p in OUT.iterdir()})

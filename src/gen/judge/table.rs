@@ -230,6 +230,29 @@ pub static SUITES: [Suite; 10] = [
         run: |options, progress| options.gaussians(progress),
     },
     Suite {
+        name: "pictures",
+        title: "Learned pictures: agreement, likeness over time, edits",
+        figures: &[
+            ("pixels that a segmenter says rightly, rendered", "/agreement/rendered"),
+            ("the same, learned", "/agreement/learned"),
+            ("difference from the moment before, 0 to 1, rendered", "/over_time/rendered"),
+            (
+                "the same, learned, told the frame before",
+                "/over_time/after_the_frame_before",
+            ),
+            ("the same, learned, each frame alone", "/over_time/alone"),
+            ("difference between cameras, rendered", "/between_cameras/rendered"),
+            ("the same, learned", "/between_cameras/learned"),
+            ("share of pixels painted when a car goes", "/edit/painted_share"),
+            ("pixels changed elsewhere", "/edit/pixels_changed_elsewhere"),
+            ("time of six pictures, s (median)", "/six_pictures_s_median"),
+            ("time after the edit, s (median)", "/edit/s_median"),
+        ],
+        quick: |options| options.frames = 3,
+        table: None,
+        run: |options, progress| options.pictures(progress),
+    },
+    Suite {
         name: "layout",
         title: "Sentences become scenes and edits",
         figures: &[

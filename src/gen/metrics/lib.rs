@@ -12,6 +12,7 @@ pub mod local;
 pub mod logistic;
 pub mod maps;
 pub mod occupancy;
+pub mod pictures;
 pub mod placement;
 #[cfg(test)]
 mod reference;

@@ -21,6 +21,7 @@ pub mod observed;
 pub mod order;
 pub mod own_body;
 pub mod painter;
+pub mod perceived;
 pub mod perspective;
 pub mod picture_hints;
 mod plots;

@@ -7,6 +7,7 @@ pub mod generation;
 pub mod layout;
 pub mod lidar;
 pub mod map;
+pub mod pictures;
 pub mod splat;
 pub mod vae;
 pub mod world;

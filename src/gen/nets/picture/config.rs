@@ -49,6 +49,23 @@ pub struct PictureDitConfig {
     before: bool,
 }
 
+/// Sizes of the segmenter.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PictureSegmenterConfig {
+    /// Channels at 2, 4 and 8 px.
+    pub widths: [usize; 3],
+    /// Kernels of the blocks at 2, 4 and 8 px on the way down.
+    pub kernels: [Vec<usize>; 3],
+}
+
+impl PictureSegmenterConfig {
+    pub(super) fn check(&self) -> Result<(), String> {
+        widths("widths", &self.widths)?;
+        kernels(self.kernels.iter().flatten())
+    }
+}
+
 impl PictureVaeConfig {
     pub(super) fn check(&self) -> Result<(), String> {
         widths("latent", &[self.latent])?;

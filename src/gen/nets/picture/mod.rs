@@ -6,6 +6,7 @@ mod condition;
 mod config;
 mod dit;
 mod sample;
+mod segmenter;
 #[cfg(test)]
 mod tests;
 mod vae;
@@ -18,9 +19,10 @@ use crate::ModelError;
 use nn::weights::{self, WeightFile, WeightsError};
 
 pub use condition::{CAMERA_NUMBERS, Condition, EDGE, TIMES, Told, WEATHERS};
-pub use config::{PictureDitConfig, PictureVaeConfig};
+pub use config::{PictureDitConfig, PictureSegmenterConfig, PictureVaeConfig};
 pub use dit::PictureDit;
 pub use sample::Sampling;
+pub use segmenter::{PictureSegmenter, SHOWN};
 pub use vae::PictureVae;
 pub use warp::{Before, Motion, warp};
 
@@ -55,16 +57,8 @@ impl RingSize {
                 expected: "1 to 64",
             });
         }
-        for (what, found) in [("picture height", height), ("picture width", width)] {
-            if !(1..=MOST_PX).contains(&found) || !found.is_multiple_of(CELL * TOKEN) {
-                let expected = "a multiple of 16 px up to 8192";
-                return Err(ModelError::OutOfRange {
-                    what,
-                    found,
-                    expected,
-                });
-            }
-        }
+        let expected = "a multiple of 16 px up to 8192";
+        check_sides([height, width], CELL * TOKEN, expected)?;
         Ok(Self {
             views,
             rows: height / CELL,
@@ -148,6 +142,24 @@ impl PictureNets {
             hashes,
         })
     }
+}
+
+/// Fails unless both sides of a picture, px, are multiples of `unit` up to 8192.
+fn check_sides(
+    [height, width]: [usize; 2],
+    unit: usize,
+    expected: &'static str,
+) -> Result<(), ModelError> {
+    for (what, found) in [("picture height", height), ("picture width", width)] {
+        if !(1..=MOST_PX).contains(&found) || !found.is_multiple_of(unit) {
+            return Err(ModelError::OutOfRange {
+                what,
+                found,
+                expected,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Fails unless the metadata of a file call it this kind of network.

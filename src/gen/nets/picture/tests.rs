@@ -119,6 +119,13 @@ fn vae_against_the_twin() {
     golden.compare("latent", &nets.vae.encode(&pictures, PIXELS).expect("finite"));
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
     golden.compare("picture", &nets.vae.decode(&x, size.cells()).expect("finite"));
+    let segmenter = PictureSegmenter::bundled().expect("the shipped weights");
+    let first = &pictures[..size.view_pixels() * 3];
+    let logits = segmenter.logits(first, PIXELS).expect("finite");
+    golden.compare("segmented", &logits);
+    let classes = segmenter.classes(first, PIXELS).expect("finite");
+    let [class, pixel] = [classes[77], 77];
+    assert!((0..SHOWN).all(|c| logits[pixel * SHOWN + c] <= logits[pixel * SHOWN + usize::from(class)]));
 }
 
 #[test]

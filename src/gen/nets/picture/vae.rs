@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::{CELL, PictureVaeConfig, check_kind};
+use super::{CELL, PictureVaeConfig, check_kind, check_sides};
 use crate::encoder::{Level, PIECE, levels, steps};
 use crate::{ModelError, check_finite, check_length};
 use nn::map::Map;
@@ -99,16 +99,7 @@ impl<B: Ops> PictureVae<B> {
     /// unit spread over the training set. Height and width are multiples of 8 px. Errors if the sizes do not fit or a number
     /// is not finite.
     pub fn encode(&self, pictures: &[f32], [height, width]: [usize; 2]) -> Result<Vec<f32>, ModelError> {
-        for (what, found) in [("picture height", height), ("picture width", width)] {
-            if found == 0 || !found.is_multiple_of(CELL) {
-                let expected = "a multiple of 8 px";
-                return Err(ModelError::OutOfRange {
-                    what,
-                    found,
-                    expected,
-                });
-            }
-        }
+        check_sides([height, width], CELL, "a multiple of 8 px up to 8192")?;
         let size = height * width * COLOURS;
         check_length("pictures", pictures.len(), whole(pictures.len(), size))?;
         check_finite("picture", pictures)?;

@@ -7,6 +7,7 @@ pub mod layout;
 pub mod learned;
 mod marched;
 pub mod normals;
+pub mod perceived;
 mod picture;
 pub mod pictures;
 pub mod planes;
@@ -38,6 +39,7 @@ pub fn all() -> &'static [&'static dyn CameraSource] {
         &told::Told,
         &pictures::Pictures,
         &learned::Learned,
+        &perceived::PerceivedClasses,
         &planes::PlaneStacks,
         &layout::LayoutMaps,
         &normals::Normals,

@@ -19,6 +19,7 @@ use nets::ModelError;
 use nets::picture::{self, Before, PictureNets, RingSize, Sampling};
 use numeric::philox::{Stream, normal_field};
 use ring::Ring;
+pub use ring::native_px;
 use seen::Seen;
 
 /// Pictures of so many states are kept: what was painted before is there again at once.
@@ -71,6 +72,9 @@ struct Painted {
 }
 
 impl Painter {
+    /// Pixels so far from what changed stay as they were, to the bit.
+    pub const RIM_PX: usize = mask::RIM_PX;
+
     /// With these networks.
     pub fn new(nets: Arc<PictureNets>, options: PaintOptions) -> Self {
         Self {
@@ -82,7 +86,7 @@ impl Painter {
 
     /// Pictures of all cameras of the rig, in its order, each of some 256x144 px. What was painted before is given again. Where
     /// only the scene differs from what was painted before, only pixels that show the difference are painted, and a rim of
-    /// [`mask::RIM_PX`] around them; all others stay as they were, to the bit. `watch` hears of every step and may stop the
+    /// [`Painter::RIM_PX`] around them; all others stay as they were, to the bit. `watch` hears of every step and may stop the
     /// painting. Errors if it did, if there are more than 64 cameras, or if the networks refuse what they are told.
     pub fn paint(
         &mut self,

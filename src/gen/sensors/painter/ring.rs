@@ -41,7 +41,7 @@ impl Ring {
         order.sort_by(|a, b| clockwise(a).total_cmp(&clockwise(b)));
         let front = |i: &usize| cameras[*i].name.ends_with("FRONT");
         Ok(Some(Self {
-            size: RingSize::new(cameras.len(), pixels(camera)).map_err(network)?,
+            size: RingSize::new(cameras.len(), native_px(camera)).map_err(network)?,
             first: order.iter().position(front).unwrap_or(0),
             cameras: order,
         }))
@@ -72,9 +72,9 @@ impl Ring {
     }
 }
 
-/// Height and width at which pictures of a camera are painted, px: as many pixels as the networks learned, in the
+/// Height and width of pictures of a camera as the picture networks take them, px: as many pixels as they learned, in the
 /// camera's shape.
-fn pixels(camera: &Camera) -> [usize; 2] {
+pub fn native_px(camera: &Camera) -> [usize; 2] {
     let aspect = f64::from(camera.width.max(1)) / f64::from(camera.height.max(1));
     let side = |px: f64| {
         let units = (px / UNIT_PX as f64).round() as usize;

@@ -1,0 +1,276 @@
+//! `eval pictures`: learned pictures of held-out worlds. Does a segmenter see in them what they should show, do they stay the
+//! same from moment to moment and from camera to camera, what does an edit change, and how long does it take.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::Context;
+use serde_json::json;
+
+use crate::Progress;
+use crate::held_out::TEST_SEED;
+use crate::suite::{Found, Options, with_interval};
+use dataset::world_of;
+use metrics::pictures::{Difference, Taken};
+use metrics::stats::mean_ci95;
+use nets::picture::{PictureNets, PictureSegmenter};
+use numeric::quantile::median;
+use scene::truth::OUTSIDE;
+use scene::{
+    Background, Camera, Class, Conditions, Frame, Pose, SceneBox, SensorRig, TimeOfDay, TruthPixel, Weather,
+};
+use sensors::appearance::{Appearance, CameraImage, Quality};
+use sensors::cameras::{CameraInput, Detail};
+use sensors::painter::{PaintOptions, Painter, native_px};
+use world::World;
+use world::voxelize::{Vertical, complete};
+
+/// How far the vehicle drives from one moment to the next, m.
+const AHEAD_M: f64 = 1.0;
+/// A car so near is taken away, m.
+const NEAR_M: std::ops::Range<f64> = 5.0..30.0;
+/// Share of the renderer's own agreement that is wanted.
+const AGREEMENT: f64 = 0.85;
+/// Longest time for six pictures that is wanted, s.
+const LONGEST_S: f64 = 3.0;
+
+/// Figures, one value per world.
+#[derive(Default)]
+struct Figures {
+    rendered: Vec<f64>,
+    learned: Vec<f64>,
+    after: Vec<f64>,
+    alone: Vec<f64>,
+    rendered_after: Vec<f64>,
+    gain: Vec<f64>,
+    sides: Vec<f64>,
+    rendered_sides: Vec<f64>,
+    painted_share: Vec<f64>,
+    elsewhere_px: usize,
+    first_s: Vec<f64>,
+    edit_s: Vec<f64>,
+}
+
+/// What the renderer makes of the cameras of a rig: pictures and truths, and the cameras at that size.
+struct Rendered {
+    cameras: Vec<Camera>,
+    images: Vec<CameraImage>,
+    pixels: Vec<Vec<TruthPixel>>,
+    depths: Vec<Vec<f32>>,
+}
+
+impl Rendered {
+    fn of(input: &CameraInput<'_>) -> Self {
+        let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
+        let mut out = Self {
+            cameras: Vec::new(),
+            images: Vec::new(),
+            pixels: Vec::new(),
+            depths: Vec::new(),
+        };
+        for camera in &input.rig.cameras {
+            let [height, width] = native_px(camera).map(|n| n as u32);
+            let boxes = &input.frame.boxes;
+            let (image, truth) =
+                appearance.render_truth(camera, [width, height], Quality::Preview, boxes, None);
+            out.cameras.push(camera.resized(width, height));
+            out.images.push(image);
+            out.depths.push(truth.plane(|p| p.depth_m));
+            out.pixels.push(truth.pixels);
+        }
+        out
+    }
+
+    fn taken<'a>(&'a self, i: usize, image: &'a CameraImage) -> Taken<'a> {
+        Taken {
+            camera: &self.cameras[i],
+            image,
+            depth_m: &self.depths[i],
+        }
+    }
+
+    /// How far pictures are from those of another moment.
+    fn since(&self, then: &Self, [now, before]: [&[&CameraImage]; 2]) -> f64 {
+        let mut apart = Difference::default();
+        for (i, (now, before)) in now.iter().zip(before).enumerate() {
+            apart.add(&self.taken(i, now), &then.taken(i, before));
+        }
+        apart.mean()
+    }
+
+    /// How far pictures of different cameras are apart.
+    fn between(&self, images: &[&CameraImage]) -> f64 {
+        let mut apart = Difference::default();
+        for i in 0..images.len() {
+            for j in (0..images.len()).filter(|j| *j != i) {
+                apart.add(&self.taken(i, images[i]), &self.taken(j, images[j]));
+            }
+        }
+        apart.mean()
+    }
+}
+
+/// Share of the pixels that the segmenter says rightly.
+fn agreement(net: &PictureSegmenter, rendered: &Rendered, images: &[&CameraImage]) -> anyhow::Result<f64> {
+    let (mut right, mut all) = (0, 0);
+    for (image, truth) in images.iter().zip(&rendered.pixels) {
+        let colors = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
+        let colors: Vec<f32> = colors.map(|c| f32::from(c) / 127.5 - 1.0).collect();
+        let classes = net.classes(&colors, [image.height, image.width])?;
+        for (pixel, class) in truth.iter().zip(classes).filter(|(p, _)| p.class != OUTSIDE) {
+            all += 1;
+            right += usize::from(pixel.class == class);
+        }
+    }
+    Ok(f64::from(right) / f64::from(all.max(1)))
+}
+
+fn frame_of(world: &World) -> Frame {
+    let grid = complete(world, Vertical::Occ3d);
+    Frame::new(world.layout.clone(), world.boxes.clone(), grid)
+}
+
+/// Pixels of pictures that differ: those that show what an edit changed, or lie around it, and others; and how many there are.
+fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]; 2]) -> [usize; 3] {
+    let [mut touched, mut elsewhere, mut all] = [0; 3];
+    for (i, (old, new)) in old.iter().zip(new).enumerate() {
+        let (width, height) = (old.width as i64, old.height as i64);
+        let differs = |x: i64, y: i64| {
+            let at = (y * width + x) as usize;
+            let [a, b] = [before, after].map(|r| (&r.pixels[i][at], &r.images[i].rgba[at * 4..at * 4 + 3]));
+            // The renderer rounds, and darkens far shadows by less than can be seen.
+            a.0.class != b.0.class || a.0.depth_m != b.0.depth_m || a.1 != b.1
+        };
+        for (at, (a, b)) in old.rgba.chunks_exact(4).zip(new.rgba.chunks_exact(4)).enumerate() {
+            all += 1;
+            if a == b {
+                continue;
+            }
+            let (x, y) = (at as i64 % width, at as i64 / width);
+            // The rim of the painter, and one pixel because voxels are not as sharp as the shapes that are rendered.
+            let rim = Painter::RIM_PX as i64 + 1;
+            let near = (-rim..=rim).any(|dy| {
+                (-rim..=rim).any(|dx| {
+                    let (x, y) = (x + dx, y + dy);
+                    (0..width).contains(&x) && (0..height).contains(&y) && differs(x, y)
+                })
+            });
+            match near {
+                true => touched += 1,
+                false => elsewhere += 1,
+            }
+        }
+    }
+    [touched, elsewhere, all]
+}
+
+fn go_on(_: sensors::painter::Progress<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn refs(images: &[Arc<CameraImage>]) -> Vec<&CameraImage> {
+    images.iter().map(|i| &**i).collect()
+}
+
+impl Figures {
+    fn add(&mut self, index: u64, nets: &Arc<PictureNets>, segmenter: &PictureSegmenter) -> anyhow::Result<()> {
+        let (mut world, seed) = world_of(TEST_SEED, index, |_| None);
+        let (frame, rig, background) = (frame_of(&world), SensorRig::default(), Background::default());
+        let time = TimeOfDay::ALL[index as usize % TimeOfDay::ALL.len()];
+        let weather = Weather::ALL[index as usize / 2 % Weather::ALL.len()];
+        let input = CameraInput {
+            frame: &frame,
+            rig: &rig,
+            background: &background,
+            conditions: Conditions::usual(time, weather, seed),
+            detail: Detail::Full,
+        };
+        let painter = || Painter::new(nets.clone(), PaintOptions::default());
+        let mut memory = painter();
+        let start = Instant::now();
+        let first = memory.paint(&input, go_on)?;
+        self.first_s.push(start.elapsed().as_secs_f64());
+        let rendered = Rendered::of(&input);
+        let renders: Vec<&CameraImage> = rendered.images.iter().collect();
+        self.rendered.push(agreement(segmenter, &rendered, &renders)?);
+        self.learned.push(agreement(segmenter, &rendered, &refs(&first))?);
+        self.sides.push(rendered.between(&refs(&first)));
+        self.rendered_sides.push(rendered.between(&renders));
+
+        let rig_ahead = rig.placed(&Pose::planar(AHEAD_M, 0.0, 0.0));
+        let ahead = CameraInput {
+            rig: &rig_ahead,
+            ..input
+        };
+        let now = Rendered::of(&ahead);
+        let (next, alone) = (memory.paint(&ahead, go_on)?, painter().paint(&ahead, go_on)?);
+        let since = |images: &[Arc<CameraImage>]| now.since(&rendered, [&refs(images), &refs(&first)]);
+        let (after, without) = (since(&next), since(&alone));
+        self.after.push(after);
+        self.alone.push(without);
+        self.gain.push(without - after);
+        let renders_now: Vec<&CameraImage> = now.images.iter().collect();
+        self.rendered_after.push(now.since(&rendered, [&renders_now, &renders]));
+
+        let is_near = |b: &&SceneBox| {
+            let away_m = b.center_m.truncate().length();
+            b.class == Class::Car && NEAR_M.contains(&away_m)
+        };
+        let Some(id) = world.boxes.values().find(is_near).map(|b| b.id) else {
+            return Ok(());
+        };
+        world.boxes.remove(&id);
+        let without_car = frame_of(&world);
+        let edited = CameraInput {
+            frame: &without_car,
+            ..input
+        };
+        let start = Instant::now();
+        let painted = memory.paint(&edited, go_on)?;
+        self.edit_s.push(start.elapsed().as_secs_f64());
+        let [touched, elsewhere, all] = changes(&rendered, &Rendered::of(&edited), [&first, &painted]);
+        self.painted_share.push(touched as f64 / all.max(1) as f64);
+        self.elsewhere_px += elsewhere;
+        Ok(())
+    }
+}
+
+impl Options {
+    /// Agreement, likeness over time and between cameras, edits and times.
+    pub(crate) fn pictures(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
+        let nets = PictureNets::bundled().context("the shipped picture networks")?;
+        let segmenter = PictureSegmenter::bundled().context("the shipped segmenter")?;
+        let mut found = Figures::default();
+        for i in 0..self.frames {
+            progress.at("pictures", i, self.frames);
+            found.add(i as u64, &nets, &segmenter)?;
+        }
+        let mean = |values: &[f64]| mean_ci95(values).0;
+        let share = mean(&found.learned) / mean(&found.rendered);
+        let (gain, half) = mean_ci95(&found.gain);
+        let report = json!({
+            "agreement": { "rendered": with_interval(&found.rendered), "learned": with_interval(&found.learned), "share": share },
+            "over_time": {
+                "rendered": with_interval(&found.rendered_after),
+                "after_the_frame_before": with_interval(&found.after),
+                "alone": with_interval(&found.alone),
+                "gain": with_interval(&found.gain),
+            },
+            "between_cameras": { "rendered": with_interval(&found.rendered_sides), "learned": with_interval(&found.sides) },
+            "edit": {
+                "painted_share": with_interval(&found.painted_share),
+                "pixels_changed_elsewhere": found.elsewhere_px,
+                "s_median": median(&found.edit_s),
+            },
+            "six_pictures_s_median": median(&found.first_s),
+        });
+        let bars = vec![
+            ("agreement as a share of the renderer's", share, AGREEMENT),
+            ("gain by the frame before, beyond its interval", gain - half, 0.0),
+            ("longest time wanted / time of six pictures", LONGEST_S / median(&found.first_s), 1.0),
+            ("pixels changed elsewhere, negative", -(found.elsewhere_px as f64), 0.0),
+        ];
+        Ok((report, bars))
+    }
+}

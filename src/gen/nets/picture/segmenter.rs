@@ -1,0 +1,124 @@
+//! A small network that says what each pixel of a picture shows. Twin of `training/models/segmenter.py`.
+
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+
+use super::{CELL, PictureSegmenterConfig, check_kind, check_sides};
+use crate::encoder::{Level, PIECE, levels, steps};
+use crate::{ModelError, check_finite, check_length};
+use nn::map::Map;
+use nn::weights::{WeightFile, WeightsError};
+use nn::{Cpu, Ops};
+
+/// Red, green, blue.
+const COLOURS: usize = 3;
+/// Numbers of the folded square of 2x2 px that the first layer sees.
+const SQUARE: usize = 4 * COLOURS;
+/// What a pixel may show: the classes of `scene::truth`, 0 for sky.
+pub const SHOWN: usize = 22;
+
+/// The network with its weights, on a backend.
+pub struct PictureSegmenter<B: Ops = Cpu> {
+    ops: B,
+    stem: B::Linear,
+    enter: Vec<Level<B>>, // finest first
+    down: Vec<B::Linear>,
+    leave: Vec<Level<B>>, // coarsest first
+    up: Vec<B::Linear>,
+    norm: B::Norm,
+    head: B::Linear,
+}
+
+impl PictureSegmenter {
+    /// The weights that ship with the program, learned from its own renderer; unpacked once.
+    pub fn bundled() -> Result<Arc<Self>, WeightsError> {
+        static NET: OnceLock<Arc<PictureSegmenter>> = OnceLock::new();
+        if let Some(net) = NET.get() {
+            return Ok(net.clone());
+        }
+        let file = WeightFile::parse(
+            "pictures_segmenter.safetensors",
+            assets::weights::PICTURES_SEGMENTER,
+        )?;
+        let net = Self::on(Cpu, file)?;
+        Ok(NET.get_or_init(|| Arc::new(net)).clone())
+    }
+}
+
+impl<B: Ops> PictureSegmenter<B> {
+    /// Takes all tensors of a file; refuses one that is missing, misshapen, not finite or unknown.
+    pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
+        check_kind(&file, "picture_segmenter")?;
+        let config: PictureSegmenterConfig = file.config("config")?;
+        config
+            .check()
+            .map_err(|reason| file.config_error("config", reason))?;
+        let [fine, middle, coarse] = config.widths;
+        let (w, point) = (&mut file, &[1, 1]);
+        let net = Self {
+            stem: ops.linear(w, "stem", [SQUARE, fine], point)?,
+            enter: levels(&ops, w, "enter", &config.widths, &config.kernels)?,
+            down: steps(&ops, w, "down", vec![[4 * fine, middle], [4 * middle, coarse]])?,
+            leave: levels(&ops, w, "leave", &[middle, fine], &[vec![3], vec![3]])?,
+            up: steps(&ops, w, "up", vec![[coarse, 4 * middle], [middle, 4 * fine]])?,
+            norm: ops.load_norm(w, "norm", fine)?,
+            head: ops.linear(w, "head", [fine, 4 * SHOWN], point)?,
+            ops,
+        };
+        file.finish()?;
+        Ok(net)
+    }
+
+    /// Of pictures `[n][height][width][3]`, sRGB from -1 to 1, how likely each pixel shows each class, as logits
+    /// `[n][height][width][22]`. Height and width are multiples of 8 px. Errors if the sizes do not fit or a number is not
+    /// finite.
+    pub fn logits(&self, pictures: &[f32], sides @ [height, width]: [usize; 2]) -> Result<Vec<f32>, ModelError> {
+        check_sides(sides, CELL, "a multiple of 8 px up to 8192")?;
+        let size = height * width * COLOURS;
+        check_length("pictures", pictures.len(), pictures.len().next_multiple_of(size).max(size))?;
+        check_finite("picture", pictures)?;
+        let each = pictures.par_chunks(size).map(|picture| {
+            let logits = self.of_one(Map {
+                data: picture.to_vec(),
+                rows: height,
+                columns: width,
+                width: COLOURS,
+            })?;
+            check_finite("logits", &logits)?;
+            Ok(logits)
+        });
+        Ok(each.collect::<Result<Vec<_>, ModelError>>()?.concat())
+    }
+
+    /// The likeliest class of each pixel, `[n][height][width]`; errors as [`logits`](Self::logits).
+    pub fn classes(&self, pictures: &[f32], sides: [usize; 2]) -> Result<Vec<u8>, ModelError> {
+        let logits = self.logits(pictures, sides)?;
+        let likeliest = |pixel: &[f32]| {
+            let best = pixel.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+            best.map_or(0, |(class, _)| class as u8)
+        };
+        Ok(logits.chunks_exact(SHOWN).map(likeliest).collect())
+    }
+
+    fn of_one(&self, picture: Map) -> Result<Vec<f32>, ModelError> {
+        let ops = &self.ops;
+        let squares = ops.fold(&ops.upload(picture)?)?;
+        let mut seen = vec![self.enter[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?];
+        for (i, down) in self.down.iter().enumerate() {
+            let map = ops.apply(down, &ops.fold(&seen[i])?, PIECE)?;
+            seen.push(self.enter[i + 1].apply(ops, map)?);
+        }
+        let mut kept = seen.into_iter().rev();
+        // There is always a coarsest level.
+        let Some(mut map) = kept.next() else {
+            return Ok(Vec::new());
+        };
+        for ((up, level), before) in self.up.iter().zip(&self.leave).zip(kept) {
+            let wide = ops.unfold(&ops.apply(up, &map, PIECE)?)?;
+            map = level.apply(ops, ops.add(wide, &before)?)?;
+        }
+        let logits = ops.apply(&self.head, &ops.norm(&self.norm, map)?, PIECE)?;
+        Ok(ops.download(ops.unfold(&logits)?)?.data)
+    }
+}
