@@ -6,7 +6,7 @@ use job::pipeline::OccPipeline;
 use nets::OccModels;
 
 /// All suites, in the order of `eval all`.
-pub static SUITES: [Suite; 10] = [
+pub static SUITES: [Suite; 11] = [
     Suite {
         name: "world",
         title: "Procedural worlds beside what is known of real drives",

@@ -113,7 +113,7 @@ impl Rendered {
 
 /// Share of the pixels that the segmenter says rightly.
 fn agreement(net: &PictureSegmenter, rendered: &Rendered, images: &[&CameraImage]) -> anyhow::Result<f64> {
-    let (mut right, mut all) = (0, 0);
+    let (mut right, mut all) = (0usize, 0usize);
     for (image, truth) in images.iter().zip(&rendered.pixels) {
         let colors = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
         let colors: Vec<f32> = colors.map(|c| f32::from(c) / 127.5 - 1.0).collect();
@@ -123,7 +123,7 @@ fn agreement(net: &PictureSegmenter, rendered: &Rendered, images: &[&CameraImage
             right += usize::from(pixel.class == class);
         }
     }
-    Ok(f64::from(right) / f64::from(all.max(1)))
+    Ok(right as f64 / all.max(1) as f64)
 }
 
 fn frame_of(world: &World) -> Frame {
