@@ -117,8 +117,8 @@ fn moment(
     }
 }
 
-/// Two poses on a lane, not far from the middle of the map, where nothing is in the vehicle's way.
-fn poses(frame: &Frame, draw: &mut Draw) -> [Pose; MOMENTS] {
+/// Two poses on a lane, not far from the middle of the map, where nothing is in the vehicle's way: where pictures are taken.
+pub fn poses(frame: &Frame, draw: &mut Draw) -> [Pose; MOMENTS] {
     let wanted = DVec2::new(draw.unit() - 0.5, draw.unit() - 0.5) * (2.0 * AROUND_M);
     let way_m = WAY_M[0] + (WAY_M[1] - WAY_M[0]) * draw.unit();
     let layout = &frame.layout;

@@ -11,6 +11,7 @@ use serde_json::json;
 use crate::Progress;
 use crate::held_out::TEST_SEED;
 use crate::suite::{Found, Options, with_interval};
+use dataset::picture_pairs::poses;
 use dataset::world_of;
 use metrics::pictures::{Difference, Taken};
 use metrics::stats::mean_ci95;
@@ -18,16 +19,16 @@ use nets::picture::{PictureNets, PictureSegmenter};
 use numeric::quantile::median;
 use scene::truth::OUTSIDE;
 use scene::{
-    Background, Camera, Class, Conditions, Frame, Pose, SceneBox, SensorRig, TimeOfDay, TruthPixel, Weather,
+    Background, Camera, Class, Conditions, Frame, SceneBox, SensorRig, TimeOfDay, TruthPixel, Weather,
 };
 use sensors::appearance::{Appearance, CameraImage, Quality};
 use sensors::cameras::{CameraInput, Detail};
 use sensors::painter::{PaintOptions, Painter, native_px};
+use sensors::picture_hints::{HintedFrame, PictureHints};
 use world::World;
+use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
-/// How far the vehicle drives from one moment to the next, m.
-const AHEAD_M: f64 = 1.0;
 /// A car so near is taken away, m.
 const NEAR_M: std::ops::Range<f64> = 5.0..30.0;
 /// Share of the renderer's own agreement that is wanted.
@@ -58,6 +59,7 @@ struct Rendered {
     images: Vec<CameraImage>,
     pixels: Vec<Vec<TruthPixel>>,
     depths: Vec<Vec<f32>>,
+    hints: Vec<PictureHints>,
 }
 
 impl Rendered {
@@ -68,7 +70,9 @@ impl Rendered {
             images: Vec::new(),
             pixels: Vec::new(),
             depths: Vec::new(),
+            hints: Vec::new(),
         };
+        let teller = HintedFrame::new(input.frame);
         for camera in &input.rig.cameras {
             let [height, width] = native_px(camera).map(|n| n as u32);
             let boxes = &input.frame.boxes;
@@ -76,6 +80,7 @@ impl Rendered {
                 appearance.render_truth(camera, [width, height], Quality::Preview, boxes, None);
             out.cameras.push(camera.resized(width, height));
             out.images.push(image);
+            out.hints.push(teller.of(camera, [width, height]));
             out.depths.push(truth.plane(|p| p.depth_m));
             out.pixels.push(truth.pixels);
         }
@@ -138,9 +143,12 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
         let (width, height) = (old.width as i64, old.height as i64);
         let differs = |x: i64, y: i64| {
             let at = (y * width + x) as usize;
-            let [a, b] = [before, after].map(|r| (&r.pixels[i][at], &r.images[i].rgba[at * 4..at * 4 + 3]));
-            // The renderer rounds, and darkens far shadows by less than can be seen.
-            a.0.class != b.0.class || a.0.depth_m != b.0.depth_m || a.1 != b.1
+            let shown = |r: &Rendered| {
+                let (pixel, hints) = (&r.pixels[i][at], &r.hints[i]);
+                let light = [0, 1, 2].map(|c| r.images[i].rgba[at * 4 + c]);
+                (pixel.class, pixel.depth_m, hints.class[at], hints.depth_m[at], light)
+            };
+            shown(before) != shown(after)
         };
         for (at, (a, b)) in old.rgba.chunks_exact(4).zip(new.rgba.chunks_exact(4)).enumerate() {
             all += 1;
@@ -148,7 +156,7 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
                 continue;
             }
             let (x, y) = (at as i64 % width, at as i64 / width);
-            // The rim of the painter, and one pixel because voxels are not as sharp as the shapes that are rendered.
+            // The rim of the painter, and one pixel because it looks for shadows in squares of two.
             let rim = Painter::RIM_PX as i64 + 1;
             let near = (-rim..=rim).any(|dy| {
                 (-rim..=rim).any(|dx| {
@@ -176,7 +184,9 @@ fn refs(images: &[Arc<CameraImage>]) -> Vec<&CameraImage> {
 impl Figures {
     fn add(&mut self, index: u64, nets: &Arc<PictureNets>, segmenter: &PictureSegmenter) -> anyhow::Result<()> {
         let (mut world, seed) = world_of(TEST_SEED, index, |_| None);
-        let (frame, rig, background) = (frame_of(&world), SensorRig::default(), Background::default());
+        let (frame, background) = (frame_of(&world), Background::default());
+        let places = poses(&frame, &mut Draw::new(seed, "learned pictures"));
+        let [rig, rig_ahead] = places.map(|pose| SensorRig::default().placed(&pose));
         let time = TimeOfDay::ALL[index as usize % TimeOfDay::ALL.len()];
         let weather = Weather::ALL[index as usize / 2 % Weather::ALL.len()];
         let input = CameraInput {
@@ -198,7 +208,6 @@ impl Figures {
         self.sides.push(rendered.between(&refs(&first)));
         self.rendered_sides.push(rendered.between(&renders));
 
-        let rig_ahead = rig.placed(&Pose::planar(AHEAD_M, 0.0, 0.0));
         let ahead = CameraInput {
             rig: &rig_ahead,
             ..input
@@ -214,7 +223,7 @@ impl Figures {
         self.rendered_after.push(now.since(&rendered, [&renders_now, &renders]));
 
         let is_near = |b: &&SceneBox| {
-            let away_m = b.center_m.truncate().length();
+            let away_m = (b.center_m - rig.vehicle.translation_m).truncate().length();
             b.class == Class::Car && NEAR_M.contains(&away_m)
         };
         let Some(id) = world.boxes.values().find(is_near).map(|b| b.id) else {

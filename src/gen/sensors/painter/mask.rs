@@ -1,6 +1,6 @@
 //! Where pictures change when a scene does.
 
-use super::seen::Seen;
+use super::seen::{HALF, Seen};
 use nets::picture::{CELL, RingSize};
 
 /// The renderer's colour must differ by more than this, of 255, for a pixel to be painted because of its light alone.
@@ -10,16 +10,20 @@ pub const RIM_PX: usize = 4;
 
 /// Of each view, the pixels that show something else: another class, depth or heading, or another light on it, such as the
 /// shadow of what was added or taken away.
-pub(super) fn changed(then: &Seen, now: &Seen, views: usize) -> Vec<Vec<bool>> {
+pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>> {
+    let [height, width] = size.pixels();
     let of_view = |view: usize| {
         let ((a, old), (b, new)) = (then.pixels(view), now.pixels(view));
         let told = |i: usize| {
             a.class[i] != b.class[i] || a.depth_m[i] != b.depth_m[i] || a.facing[i] != b.facing[i]
         };
-        let lit = |i: usize| old[i].iter().zip(new[i]).any(|(a, b)| a.abs_diff(b) > LIGHT);
-        (0..new.len()).map(|i| told(i) || lit(i)).collect()
+        let lit = |i: usize| {
+            let at = i / width / HALF * (width / HALF) + i % width / HALF;
+            old[at].iter().zip(new[at]).any(|(a, b)| a.abs_diff(b) > LIGHT)
+        };
+        (0..height * width).map(|i| told(i) || lit(i)).collect()
     };
-    (0..views).map(of_view).collect()
+    (0..size.views()).map(of_view).collect()
 }
 
 /// Latent cells of pixels that changed, and their neighbours, `[view][row][column]`.

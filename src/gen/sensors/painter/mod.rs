@@ -120,7 +120,7 @@ impl Painter {
         watch: &mut impl FnMut(Progress<'_>) -> ControlFlow<()>,
     ) -> Result<Painted, CameraError> {
         let source = self.kept.iter().rfind(|p| p.seen.differs_in_scene_alone(&seen));
-        let changed = source.map(|source| mask::changed(&source.seen, &seen, ring.size.views()));
+        let changed = source.map(|source| mask::changed(&source.seen, &seen, ring.size));
         let brush = Brush {
             nets: &self.nets,
             size: ring.size,

@@ -67,7 +67,7 @@ fn an_edit_changes_what_it_touches_and_nothing_else() {
 
     let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
     let (then, now) = (Seen::of(&before, &ring), Seen::of(&after, &ring));
-    let changed = mask::changed(&then, &now, ring.size.views());
+    let changed = mask::changed(&then, &now, ring.size);
     let [_, width] = ring.size.pixels();
     let (mut painted, mut touched_views) = (0, 0);
     for (place, changed) in changed.iter().enumerate() {
@@ -213,4 +213,28 @@ fn new_paint_fades_out() {
     let mut new = vec![200; 15 * 15 * 4];
     mask::blend(&vec![100; 15 * 15 * 4], &mut new, &shares);
     assert_eq!([new[(7 * 15 + 7) * 4], new[(7 * 15 + 9) * 4], new[0]], [200, 150, 100]);
+}
+
+/// Seconds of a painting: run with `--ignored --nocapture`.
+#[test]
+#[ignore = "takes seconds; prints times"]
+fn seconds_of_a_painting() {
+    let (with, without, _) = with_and_without_a_car();
+    let (rig, background) = (SensorRig::default(), Background::default());
+    let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
+    let nets = PictureNets::bundled().expect("the shipped weights");
+    for _ in 0..3 {
+        let timed = |what: &str, start: std::time::Instant| {
+            println!("{what}: {:.2} s", start.elapsed().as_secs_f64());
+            std::time::Instant::now()
+        };
+        let start = std::time::Instant::now();
+        drop(Seen::of(&input(&with, &rig, &background), &ring));
+        let start = timed("look", start);
+        let mut painter = Painter::new(nets.clone(), PaintOptions::default());
+        painter.paint(&input(&with, &rig, &background), go_on).expect("pictures");
+        let start = timed("look and paint all", start);
+        painter.paint(&input(&without, &rig, &background), go_on).expect("pictures");
+        timed("look and paint an edit", start);
+    }
 }
