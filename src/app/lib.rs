@@ -22,6 +22,7 @@ mod map_edges;
 mod marks;
 pub mod paint;
 pub mod panes;
+mod perceiving;
 pub mod picture;
 mod pipeline;
 pub mod playback;

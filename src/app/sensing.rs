@@ -48,8 +48,8 @@ enum News {
     Other(SceneRev, SourceId, Vec<CameraView>),
     /// Steps done and all steps of pictures that are painted; none once they are.
     Step(Option<(usize, usize)>),
-    /// Pictures on screen while others are still being painted.
-    Unfinished(SourceId, Vec<CameraView>),
+    /// How a picture that is still being painted looks by now.
+    Unfinished(SourceId, CameraView),
     /// Pictures that cannot be had, and why.
     Problem(String),
     /// All of a scene was sensed, or a newer one waits.
@@ -160,16 +160,19 @@ impl Sensing {
                     self.version += 1;
                 }
                 News::Step(step) => self.step = step,
-                News::Unfinished(source, views) => {
-                    // A state that no scene has: they stay out of date.
-                    let (rev, views) = (SceneRev::fresh(), Arc::new(views));
+                News::Unfinished(source, view) => {
+                    // The others are shown as they were until their turn comes. A state that no scene has: they stay out of date.
+                    let rev = SceneRev::fresh();
                     match self.asked.map(|(_, wanted, _)| wanted) {
                         Some(wanted) if wanted.source == source => {
-                            self.cameras = Some((rev, wanted, views));
+                            let views = painting::with(self.cameras().map(|v| &v[..]), view);
+                            self.cameras = Some((rev, wanted, Arc::new(views)));
                         }
                         _ => {
-                            self.others.retain(|(_, of, _)| *of != source);
-                            self.others.push((rev, source, views));
+                            let shown = self.others.iter().position(|(_, of, _)| *of == source);
+                            let shown = shown.map(|at| self.others.swap_remove(at).2);
+                            let views = painting::with(shown.as_ref().map(|v| &v[..]), view);
+                            self.others.push((rev, source, Arc::new(views)));
                         }
                     }
                     self.version += 1;
@@ -487,10 +490,10 @@ fn paint(
     if request.preview {
         return None;
     }
-    let tell = |step, views| {
+    let tell = |step, view| {
         ctx.tell(News::Step(Some(step)));
-        if let Some(views) = views {
-            ctx.tell(News::Unfinished(learned::ID, views));
+        if let Some(view) = view {
+            ctx.tell(News::Unfinished(learned::ID, view));
         }
     };
     let stop = kept.stop.clone();

@@ -19,6 +19,7 @@ mod import;
 mod mcp;
 mod new;
 pub(crate) mod output;
+mod perceive;
 mod place;
 mod progress;
 mod prompt;
@@ -80,6 +81,8 @@ enum Command {
     Clip(clip::ClipCommand),
     /// The quality checks; exit 1 if one of severity error fires.
     Check(check::Check),
+    /// What a small camera network sees of a scene and what it misses; and a change after which it misses an object.
+    Perceive(perceive::Perceive),
     /// Many variants of a scene by a plan: resumable, in shards, with an index.
     Batch(batch::Batch),
     /// What differs between two scenes.
@@ -155,6 +158,7 @@ pub fn main() -> ExitCode {
         Some(Command::Batch(c)) => c.run(),
         Some(Command::Diff(c)) => c.run(),
         Some(Command::Place(c)) => c.run(),
+        Some(Command::Perceive(c)) => c.run(),
         Some(Command::Versions(c)) => c.run(),
         Some(Command::Export(c)) => c.run(),
         Some(Command::Dataset(c)) => c.run(),

@@ -20,7 +20,7 @@ const LIDAR_TEXT: f32 = 130.0;
 /// Width of the row of sources, points.
 const SOURCES: f32 = 270.0;
 
-/// That newer pictures are on their way, and how far those are that are painted; a cross ends the painting.
+/// That newer pictures are on their way, and how far those are that are painted, which can be stopped.
 fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
     let text = match input.step {
         Some((step, steps)) => tf!("painting, {step} of {steps}", step = step, steps = steps),
@@ -29,8 +29,9 @@ fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) 
     ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
     ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
     if input.step.is_some() {
-        let stop = ui.small_button("✕").on_hover_text(t("Stop painting"));
-        if stop.accessible_name(t("Stop painting")).clicked() {
+        let stop = ui.small_button(t("Stop"));
+        let hint = t("The pictures stay as they are by now until something changes");
+        if stop.on_hover_text(hint).clicked() {
             commands.push(Command::View(ViewCommand::StopPainting));
         }
     }

@@ -26,6 +26,7 @@ mod motion_menu;
 mod object_order;
 pub mod objects;
 pub mod pane;
+mod perception;
 pub mod pointed;
 pub mod prompt;
 mod saved_brushes;
@@ -62,6 +63,7 @@ pub fn all() -> Vec<Box<dyn Pane>> {
         Box::new(history::History),
         Box::new(trade::Trade),
         Box::new(checks::Checks),
+        Box::new(perception::Perception::default()),
         Box::new(statistics::Statistics::default()),
         Box::new(timeline::Timeline::default()),
     ];

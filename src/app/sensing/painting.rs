@@ -60,8 +60,6 @@ impl PaintSettings {
 pub(super) struct Painting {
     settings: Arc<PaintSettings>,
     painter: Option<Painter>,
-    /// What is on screen, of every camera of which there ever was a picture.
-    shown: Vec<CameraView>,
 }
 
 /// What comes of a painting.
@@ -85,13 +83,13 @@ impl Painting {
         other
     }
 
-    /// Paints the cameras of a scene. `tell` hears of every step, and of all pictures on screen whenever one of them is new;
-    /// `stops` is asked after every step.
+    /// Paints the cameras of a scene. `tell` hears of every step, and how a picture looks by then; `stops` is asked after every
+    /// step.
     pub fn paint(
         &mut self,
         scene: &Scene,
         wanted: impl Fn(usize) -> bool,
-        mut tell: impl FnMut((usize, usize), Option<Vec<CameraView>>),
+        mut tell: impl FnMut((usize, usize), Option<CameraView>),
         stops: impl Fn() -> bool,
     ) -> Painted {
         if self.painter.is_none() {
@@ -107,16 +105,10 @@ impl Painting {
         let Some(painter) = &mut self.painter else {
             return Painted::Stopped;
         };
-        let shown = &mut self.shown;
-        shown.retain(|view| scene.rig.cameras.len() > view.camera && wanted(view.camera));
         let painted = painter.paint(&camera_input(scene, Detail::Live), |progress| {
             let Progress { step, steps, news } = progress;
             let news = news.filter(|(camera, _)| wanted(*camera));
-            let views = news.map(|(camera, image)| {
-                put(shown, view(camera, image));
-                shown.clone()
-            });
-            tell((step, steps), views);
+            tell((step, steps), news.map(|(camera, image)| view(camera, image)));
             match stops() {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
@@ -125,8 +117,7 @@ impl Painting {
         match painted {
             Ok(images) => {
                 let images = images.iter().enumerate().filter(|(camera, _)| wanted(*camera));
-                self.shown = images.map(|(camera, image)| view(camera, image)).collect();
-                Painted::Done(self.shown.clone())
+                Painted::Done(images.map(|(camera, image)| view(camera, image)).collect())
             }
             Err(CameraError::Cancelled) => Painted::Stopped,
             Err(error) => Painted::Problem(error.to_string()),
@@ -138,10 +129,12 @@ fn view(camera: usize, image: &CameraImage) -> CameraView {
     CameraView::new(camera, CameraPicture::Picture(image.clone())).colored(&learned::Learned)
 }
 
-/// Puts a picture in the place of the last one of its camera; the order stays that of the rig.
-fn put(views: &mut Vec<CameraView>, view: CameraView) {
+/// Pictures with that of one camera exchanged; the order stays that of the rig.
+pub(super) fn with(views: Option<&[CameraView]>, view: CameraView) -> Vec<CameraView> {
+    let mut views = views.map(<[_]>::to_vec).unwrap_or_default();
     match views.binary_search_by_key(&view.camera, |v| v.camera) {
         Ok(at) => views[at] = view,
         Err(at) => views.insert(at, view),
     }
+    views
 }

@@ -200,23 +200,21 @@ fn painting(ui: &mut Ui, painting: &mut PaintSettings, commands: &mut Vec<Comman
             if choose.clicked() {
                 commands.push(Command::File(FileCommand::PictureWeights));
             }
-            match &painting.weights {
-                None => {
-                    ui.label(t("those that came with Sceneloom"));
-                }
-                Some(folder) => {
-                    let drop = ui.small_button("✕").on_hover_text(t("Back to those that came with Sceneloom"));
-                    let drop = drop.accessible_name(t("Back to those that came with Sceneloom"));
-                    let full = folder.display().to_string();
-                    let name = folder.file_name().map_or(full.clone(), |n| n.to_string_lossy().into_owned());
-                    ui.add(egui::Label::new(name).truncate()).on_hover_text(full);
-                    if drop.clicked() {
-                        painting.weights = None;
-                    }
-                }
+            let own = painting.weights.is_some();
+            let shipped = ui.add_enabled(own, egui::Button::new(t("Those of Sceneloom")));
+            if shipped
+                .on_hover_text(t("Back to the weights that came with the program"))
+                .clicked()
+            {
+                painting.weights = None;
             }
         });
         ui.end_row();
+        if let Some(folder) = &painting.weights {
+            ui.label("");
+            ui.add(egui::Label::new(folder.display().to_string()).truncate());
+            ui.end_row();
+        }
         ui.label(t("Steps"));
         let steps = egui::DragValue::new(&mut painting.steps).range(PaintSettings::STEPS).speed(0.1);
         ui.add(steps)

@@ -2,6 +2,7 @@
 //! judge use it.
 
 pub mod again;
+pub mod corner_case;
 pub mod drives;
 pub mod large;
 pub mod memory;

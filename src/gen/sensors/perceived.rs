@@ -1,18 +1,20 @@
 //! What a small network makes out in the pictures of the program's own renderer, beside what they show: things that it
 //! misses, and things that it sees where there are none.
 
+use std::collections::BTreeMap;
+
 use crate::appearance::{Appearance, CameraImage, Quality};
 use crate::cameras::CameraError;
 use crate::painter::native_px;
 use nets::picture::PictureSegmenter;
 use scene::truth::{self, OUTSIDE, TruthClass};
-use scene::{BoxId, Camera, CameraTruth, Frame};
-use std::collections::BTreeMap;
+use rayon::prelude::*;
+use scene::{BoxId, Camera, CameraTruth, Conditions, Frame, SensorRig};
 
 /// A box of fewer pixels is too small to be missed.
-const LEAST_PX: usize = 24;
+pub const LEAST_PX: usize = 24;
 /// A box of which less than this share is taken for a thing is missed.
-const MISSED_BELOW: f64 = 0.25;
+pub const MISSED_BELOW: f64 = 0.25;
 /// Share of the class's colour in the picture.
 const TINT: f32 = 0.55;
 /// Colour of missed pixels.
@@ -30,15 +32,22 @@ pub struct Perceived {
     pub classes: Vec<TruthClass>,
 }
 
-/// A box that the network misses.
+/// A box in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Missed {
+pub struct SeenThing {
     /// The box.
     pub id: BoxId,
     /// Pixels that show it.
     pub visible_px: usize,
-    /// Share of them that is taken for a thing.
+    /// Share of them that the network takes for a thing.
     pub share: f64,
+}
+
+impl SeenThing {
+    /// True if it is plain to see and the network takes it for no thing.
+    pub fn is_missed(&self) -> bool {
+        self.visible_px >= LEAST_PX && self.share < MISSED_BELOW
+    }
 }
 
 impl Perceived {
@@ -59,8 +68,8 @@ impl Perceived {
         })
     }
 
-    /// Boxes that are plainly visible and that the network takes for something that is no thing, the largest first.
-    pub fn missed(&self) -> Vec<Missed> {
+    /// Boxes in the picture, the largest first.
+    pub fn boxes(&self) -> Vec<SeenThing> {
         let mut seen: BTreeMap<u32, [usize; 2]> = BTreeMap::new();
         for (pixel, class) in self.truth.pixels.iter().zip(&self.classes) {
             if pixel.instance != 0 && is_thing(pixel.class) {
@@ -69,17 +78,35 @@ impl Perceived {
                 *found += usize::from(is_thing(*class));
             }
         }
-        let missed = seen.into_iter().filter_map(|(id, [visible_px, found])| {
-            let share = found as f64 / visible_px as f64;
-            (visible_px >= LEAST_PX && share < MISSED_BELOW).then_some(Missed {
-                id: BoxId(id),
-                visible_px,
-                share,
-            })
-        });
-        let mut missed: Vec<Missed> = missed.collect();
-        missed.sort_by_key(|m| std::cmp::Reverse(m.visible_px));
-        missed
+        let thing = |(id, [visible_px, found]): (u32, [usize; 2])| SeenThing {
+            id: BoxId(id),
+            visible_px,
+            share: found as f64 / visible_px as f64,
+        };
+        let mut boxes: Vec<SeenThing> = seen.into_iter().map(thing).collect();
+        boxes.sort_by_key(|b| std::cmp::Reverse(b.visible_px));
+        boxes
+    }
+
+    /// Boxes that are plain to see and that the network takes for no thing, the largest first.
+    pub fn missed(&self) -> Vec<SeenThing> {
+        let mut boxes = self.boxes();
+        boxes.retain(SeenThing::is_missed);
+        boxes
+    }
+
+    /// Pixels of a box, and the share of them that the network takes for a thing; none if the picture does not show it.
+    pub fn seen(&self, id: BoxId) -> Option<(usize, f64)> {
+        let boxes = self.boxes().into_iter();
+        boxes.filter(|b| b.id == id).map(|b| (b.visible_px, b.share)).next()
+    }
+
+    /// Pixels that the network takes for a thing where there is none.
+    pub fn ghost_px(&self) -> usize {
+        let pairs = self.truth.pixels.iter().zip(&self.classes);
+        pairs
+            .filter(|(p, class)| p.class != OUTSIDE && !is_thing(p.class) && is_thing(**class))
+            .count()
     }
 
     /// Share of the pixels whose class the network says rightly; 1 where the lens sees nothing.
@@ -120,6 +147,53 @@ impl Perceived {
     }
 }
 
+/// What the network makes of all cameras of a rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Boxes that are plain to see in a camera, those that are missed in all of them first, then the largest first.
+    pub boxes: Vec<SeenByRig>,
+    /// Of each camera, pixels that are taken for a thing where there is none.
+    pub ghost_px: Vec<usize>,
+    /// Share of all pixels whose class the network says rightly.
+    pub right: f64,
+}
+
+/// A box as the cameras of a rig see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenByRig {
+    /// Index of the camera that shows most of it.
+    pub camera: usize,
+    /// The box, its pixels there, and the largest share of its pixels that is taken for a thing in a camera where it is
+    /// plain to see.
+    pub thing: SeenThing,
+}
+
+/// Looks at the pictures of all cameras. The rig stands in the frame of the boxes. Errors if the network cannot be read.
+pub fn report(frame: &Frame, rig: &SensorRig, conditions: &Conditions) -> Result<Report, CameraError> {
+    let appearance = Appearance::new(frame, rig, conditions);
+    let look = |camera: &Camera| Perceived::of(&appearance, frame, camera);
+    let all: Result<Vec<Perceived>, CameraError> = rig.cameras.par_iter().map(look).collect();
+    let all = all?;
+    let mut boxes: BTreeMap<BoxId, SeenByRig> = BTreeMap::new();
+    for (camera, seen) in all.iter().enumerate() {
+        for thing in seen.boxes().into_iter().filter(|t| t.visible_px >= LEAST_PX) {
+            let kept = boxes.entry(thing.id).or_insert(SeenByRig { camera, thing });
+            let share = kept.thing.share.max(thing.share);
+            if thing.visible_px > kept.thing.visible_px {
+                *kept = SeenByRig { camera, thing };
+            }
+            kept.thing.share = share;
+        }
+    }
+    let mut boxes: Vec<SeenByRig> = boxes.into_values().collect();
+    boxes.sort_by_key(|b| (!b.thing.is_missed(), std::cmp::Reverse(b.thing.visible_px)));
+    Ok(Report {
+        boxes,
+        ghost_px: all.iter().map(Perceived::ghost_px).collect(),
+        right: all.iter().map(Perceived::right).sum::<f64>() / all.len().max(1) as f64,
+    })
+}
+
 /// Classes of boxes: barrier to truck.
 fn is_thing(class: TruthClass) -> bool {
     (1..=10).contains(&class)
@@ -128,7 +202,6 @@ fn is_thing(class: TruthClass) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{Conditions, SensorRig};
     use world::World;
     use world::voxelize::{Vertical, complete};
 

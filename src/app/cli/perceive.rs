@@ -1,0 +1,139 @@
+//! `sceneloom perceive`: what a small camera network sees of a scene; and a search for a change after which it misses an object.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use anyhow::{Context, anyhow};
+use serde_json::json;
+
+use super::progress::Progress;
+use super::{Common, Moment, Outcome, output};
+use app::open;
+use authoring::corner_case::{self, Vary};
+use editor::Document;
+use formats::loom;
+use scene::{BoxId, Scene};
+use sensors::perceived;
+
+/// Arguments.
+#[derive(clap::Args)]
+pub struct Perceive {
+    /// Scene to look at.
+    scene: PathBuf,
+    /// Number of the box that is to be missed.
+    #[arg(long = "box", value_name = "ID", requires = "vary")]
+    of: Option<u32>,
+    /// What is varied until the box is missed.
+    #[arg(long, requires = "of")]
+    vary: Option<Vary>,
+    /// Scene to write in which it is missed.
+    #[arg(short, long, value_name = "S.loom", requires = "vary")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    moment: Moment,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Perceive {
+    pub(super) fn run(self) -> Outcome {
+        let scene = self.moment.of(open::scene(&self.scene)?)?;
+        match (self.of, self.vary) {
+            (Some(id), Some(vary)) => self.search(&scene, BoxId(id), vary),
+            _ => self.look(&scene),
+        }
+    }
+
+    fn look(&self, scene: &Scene) -> Outcome {
+        let placed = scene.with_rig_in_world();
+        let found = perceived::report(placed.frame(), &placed.rig, &placed.conditions)?;
+        let name = |camera: usize| &placed.rig.cameras[camera].name;
+        let boxes = found.boxes.iter().map(|b| {
+            json!({
+                "box": b.thing.id.0,
+                "class": placed.frame().boxes.get(&b.thing.id).map(|b| b.class.name()),
+                "camera": name(b.camera),
+                "visible_px": b.thing.visible_px,
+                "share_seen": round(b.thing.share),
+                "missed": b.thing.is_missed(),
+            })
+        });
+        let ghosts = found.ghost_px.iter().enumerate().map(|(i, px)| (name(i).clone(), json!(px)));
+        let report = json!({
+            "boxes": boxes.collect::<Vec<_>>(),
+            "ghost_px": ghosts.collect::<serde_json::Map<_, _>>(),
+            "pixels_right": round(found.right),
+        });
+        output::report(&self.common, &report, || {
+            let line = |b: &perceived::SeenByRig| {
+                let missed = if b.thing.is_missed() { "missed" } else { "seen" };
+                let class = placed.frame().boxes.get(&b.thing.id).map_or("box", |b| b.class.name());
+                format!(
+                    "{missed}: {class} #{} in {}, {} px, {:.0} % of them taken for a thing",
+                    b.thing.id.0,
+                    name(b.camera),
+                    b.thing.visible_px,
+                    b.thing.share * 100.0
+                )
+            };
+            let mut lines: Vec<String> = found.boxes.iter().map(line).collect();
+            lines.push(format!("classes right: {:.1} % of the pixels", found.right * 100.0));
+            lines.join("\n")
+        });
+        Ok(())
+    }
+
+    fn search(&self, scene: &Scene, id: BoxId, vary: Vary) -> Outcome {
+        let progress = Progress::new(&self.common);
+        let search = corner_case::search(scene, id, vary, |_, [k, most]| {
+            progress.at("search", k, most);
+            ControlFlow::Continue(())
+        })?;
+        progress.done();
+        let last = search.tried.last().context("nothing was tried")?;
+        let edits = search.found.as_ref();
+        if let (Some(path), Some(edits)) = (&self.output, edits) {
+            let mut document = Document::new(scene.clone());
+            document.apply_all("Corner case", edits)?;
+            loom::save(path, document.scene())?;
+        }
+        let tried = search.tried.iter().map(|t| {
+            json!({ "what": t.change.to_string(), "visible_px": t.sight.visible_px, "share_seen": round(t.sight.share) })
+        });
+        let report = json!({
+            "box": id.0,
+            "missed": edits.is_some(),
+            "at": last.change.to_string(),
+            "edits": edits,
+            "tried": tried.collect::<Vec<_>>(),
+            "file": self.output.as_ref().filter(|_| edits.is_some()),
+        });
+        output::report(&self.common, &report, || {
+            let lines = search.tried.iter().map(|t| {
+                format!(
+                    "{}: {} px, {:.0} % of them taken for a thing",
+                    t.change,
+                    t.sight.visible_px,
+                    t.sight.share * 100.0
+                )
+            });
+            let mut lines: Vec<String> = lines.collect();
+            lines.push(match edits {
+                Some(_) => format!("box {} is missed: {}", id.0, last.change),
+                None => format!("box {} is never missed while it is plain to see", id.0),
+            });
+            lines.join("\n")
+        });
+        match edits {
+            Some(_) => Ok(()),
+            None if self.output.is_some() => {
+                Err(anyhow!("box {} is never missed: no scene was written", id.0).into())
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+fn round(v: f64) -> f64 {
+    (v * 1000.0).round() / 1000.0
+}

@@ -1,0 +1,188 @@
+//! What a camera network sees of the scene, and searches for what it misses: on a thread of its own.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use authoring::corner_case::{self, Change, Search, Tried, Vary};
+use job::guard::Panicked;
+use job::product::{Ctx, Product, Wake, Worker};
+use scene::{BoxId, Scene, SceneRev};
+use sensors::perceived::{self, Report};
+
+/// What is asked for.
+enum Request {
+    Look(Arc<Scene>),
+    Search(Arc<Scene>, BoxId, Vary),
+}
+
+enum News {
+    Looked(SceneRev, Report),
+    Tried(Tried, [usize; 2]),
+    Searched(Found),
+    Failed(String),
+    GivenUp,
+}
+
+/// A search that is over.
+#[derive(Debug)]
+pub struct Found {
+    /// The state that was varied.
+    pub of: SceneRev,
+    /// The box that was to be missed.
+    pub id: BoxId,
+    /// What was varied.
+    pub vary: Vary,
+    /// What came of it.
+    pub search: Search,
+}
+
+struct Perceiver;
+
+impl Product for Perceiver {
+    type Request = Request;
+    type Update = News;
+
+    fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
+        match request {
+            Request::Look(scene) => {
+                let placed = scene.with_rig_in_world();
+                match perceived::report(placed.frame(), &placed.rig, &placed.conditions) {
+                    Ok(report) => News::Looked(scene.rev, report),
+                    Err(error) => News::Failed(error.to_string()),
+                }
+            }
+            Request::Search(scene, id, vary) => {
+                let watch = |tried: &Tried, at| {
+                    ctx.tell(News::Tried(*tried, at));
+                    match ctx.should_stop() {
+                        true => ControlFlow::Break(()),
+                        false => ControlFlow::Continue(()),
+                    }
+                };
+                match corner_case::search(scene, *id, *vary, watch) {
+                    Ok(search) => News::Searched(Found {
+                        of: scene.rev,
+                        id: *id,
+                        vary: *vary,
+                        search,
+                    }),
+                    Err(error) => News::Failed(format!("{error:#}")),
+                }
+            }
+        }
+    }
+
+    fn reset(&mut self) {}
+
+    fn given_up() -> News {
+        News::GivenUp
+    }
+
+    fn panicked(panic: Panicked) -> News {
+        News::Failed(panic.to_string())
+    }
+
+    fn is_terminal(news: &News) -> bool {
+        !matches!(news, News::Tried(..))
+    }
+}
+
+/// The newest of what the network sees, and the thread that asks it.
+pub struct Perceiving {
+    worker: Worker<Request, News>,
+    asked: Option<SceneRev>,
+    /// What it sees, and of which state.
+    pub seen: Option<(SceneRev, Report)>,
+    /// A search that runs: what was tried last, its number and how many there are at most.
+    pub searching: Option<(Change, [usize; 2])>,
+    /// The last search.
+    pub found: Option<Found>,
+    /// Why there is no news.
+    pub problem: Option<String>,
+}
+
+impl Perceiving {
+    /// Starts the thread `perception`; `wake` is called when there is news. Errors if the system gives no thread.
+    pub fn spawn(wake: Wake) -> std::io::Result<Self> {
+        Ok(Self {
+            worker: Worker::start("perception", || Perceiver, wake)?,
+            asked: None,
+            seen: None,
+            searching: None,
+            found: None,
+            problem: None,
+        })
+    }
+
+    /// Takes in what has arrived, and has a scene looked at that was not yet, unless a search runs.
+    pub fn update(&mut self, scene: &Arc<Scene>) {
+        for news in self.worker.updates().try_iter().map(|event| event.update) {
+            match news {
+                News::Looked(rev, report) => (self.seen, self.problem) = (Some((rev, report)), None),
+                News::Tried(tried, at) => self.searching = Some((tried.change, at)),
+                News::Searched(found) => (self.searching, self.found) = (None, Some(found)),
+                News::Failed(problem) => (self.searching, self.problem) = (None, Some(problem)),
+                News::GivenUp => self.searching = None,
+            }
+        }
+        if self.searching.is_none() && self.asked != Some(scene.rev) {
+            self.asked = Some(scene.rev);
+            self.worker.submit(Request::Look(scene.clone()));
+        }
+    }
+
+    /// Searches for a change of a scene after which a box is missed.
+    pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary) {
+        self.found = None;
+        self.searching = Some((Change::None, [0, 1]));
+        self.worker
+            .submit(Request::Search(scene.clone(), id, vary));
+    }
+
+    /// Ends a search after what it tries now.
+    pub fn stop(&mut self) {
+        self.worker.cancel();
+    }
+
+    /// True if what is seen is of another state.
+    pub fn is_stale(&self, rev: SceneRev) -> bool {
+        self.seen.as_ref().is_none_or(|(of, _)| *of != rev)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use super::*;
+    use crate::open;
+
+    fn wait(perceiving: &mut Perceiving, scene: &Arc<Scene>, until: impl Fn(&Perceiving) -> bool) {
+        let start = Instant::now();
+        while !until(perceiving) {
+            assert!(start.elapsed() < Duration::from_secs(120), "no news");
+            std::thread::sleep(Duration::from_millis(5));
+            perceiving.update(scene);
+        }
+    }
+
+    #[test]
+    fn a_scene_is_looked_at_and_searched() {
+        let scene = Arc::new(open::from_template("t-junction", 1).expect("a template"));
+        let mut perceiving = Perceiving::spawn(Arc::new(|| {})).expect("a thread");
+        assert!(perceiving.is_stale(scene.rev));
+        wait(&mut perceiving, &scene, |p| !p.is_stale(scene.rev));
+        let (_, report) = perceiving.seen.as_ref().expect("a report");
+        assert!(!report.boxes.is_empty() && report.right > 0.5);
+        let id = report.boxes.last().expect("a box").thing.id;
+        perceiving.search(&scene, id, Vary::Time);
+        wait(&mut perceiving, &scene, |p| p.found.is_some());
+        let found = perceiving.found.take().expect("a search");
+        assert_eq!((found.id, found.of), (id, scene.rev));
+        assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
+        // A box that is not there is told, and the thread goes on.
+        perceiving.search(&scene, BoxId(9999), Vary::Fog);
+        wait(&mut perceiving, &scene, |p| p.problem.is_some());
+        assert_eq!(perceiving.problem.as_deref(), Some("there is no box 9999"));
+    }
+}

@@ -1,0 +1,316 @@
+//! A corner case: one change of a scene, varied step by step until a camera network misses an object.
+
+use std::ops::ControlFlow;
+
+use anyhow::{Context, Result};
+use glam::{DVec2, DVec3};
+
+use editor::{Document, Edit};
+use scene::{BoxId, Camera, Conditions, Scene, SceneBox, TimeOfDay, Weather};
+use sensors::appearance::Appearance;
+use sensors::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
+
+/// Distance of one step, m, and how many there are.
+const AWAY_M: (f64, usize) = (1.0, 40);
+/// Shift of one step, m, and how far it goes to either side.
+const ASIDE_M: (f64, f64) = (0.5, 8.0);
+/// Visibility falls to this share at each step, down to this, m.
+const FOG: (f64, f64) = (0.8, 8.0);
+/// Where fog begins, m.
+const CLEAR_M: f64 = 250.0;
+/// Cameras that see the object at its edge look this much farther, rad.
+const MARGIN_RAD: f64 = 0.2;
+
+/// What is varied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Vary {
+    /// The object goes away from the ego vehicle, metre by metre.
+    Distance,
+    /// The object goes to one side or the other, by half metres.
+    Offset,
+    /// Fog comes, thicker and thicker.
+    Fog,
+    /// The time of day.
+    Time,
+    /// The weather.
+    Weather,
+}
+
+impl Vary {
+    /// All of them.
+    pub const ALL: [Vary; 5] = [
+        Vary::Distance,
+        Vary::Offset,
+        Vary::Fog,
+        Vary::Time,
+        Vary::Weather,
+    ];
+
+    /// What it varies, for a person.
+    pub fn title(self) -> &'static str {
+        match self {
+            Vary::Distance => "Distance",
+            Vary::Offset => "Offset",
+            Vary::Fog => "Fog",
+            Vary::Time => "Time of day",
+            Vary::Weather => "Weather",
+        }
+    }
+}
+
+/// How well cameras see an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// Pixels that show it in the camera that shows most of it.
+    pub visible_px: usize,
+    /// Share of them that the network takes for a thing, in the camera where that is most.
+    pub share: f64,
+}
+
+impl Sight {
+    /// True if it is plain to see and the network misses it in every camera.
+    pub fn is_missed(&self) -> bool {
+        self.visible_px >= LEAST_PX && self.share < MISSED_BELOW
+    }
+}
+
+/// How a variation differs from the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// It does not.
+    None,
+    /// The object is so far from the ego vehicle, m.
+    Away(f64),
+    /// The object is so far to the left, m; to the right if negative.
+    Aside(f64),
+    /// One sees so far, m.
+    Visibility(f64),
+    /// It is another time of day.
+    Time(TimeOfDay),
+    /// It is another weather.
+    Weather(Weather),
+}
+
+impl std::fmt::Display for Change {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Change::None => write!(f, "as it is"),
+            Change::Away(m) => write!(f, "{m:.1} m away"),
+            Change::Aside(m) if *m < 0.0 => write!(f, "{:.1} m to the right", -m),
+            Change::Aside(m) => write!(f, "{m:.1} m to the left"),
+            Change::Visibility(m) => write!(f, "visibility {m:.0} m"),
+            Change::Time(time) => write!(f, "{}", time.name()),
+            Change::Weather(weather) => write!(f, "{}", weather.name()),
+        }
+    }
+}
+
+/// One variation that was tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Tried {
+    /// How it differs from the scene.
+    pub change: Change,
+    /// How the object is seen then.
+    pub sight: Sight,
+}
+
+/// What a search found.
+#[derive(Debug)]
+pub struct Search {
+    /// Everything that was tried, in order; the first is the scene as it is.
+    pub tried: Vec<Tried>,
+    /// The last one misses the object: the edits that lead there, none for the scene as it is.
+    pub found: Option<Vec<Edit>>,
+}
+
+/// Varies a scene until no camera's network sees a box that is plain to see. `watch` hears of each try and how many there
+/// are at most, and may end the search. Errors if there is no such box, or an edit or the network fails.
+pub fn search(
+    scene: &Scene,
+    id: BoxId,
+    vary: Vary,
+    mut watch: impl FnMut(&Tried, [usize; 2]) -> ControlFlow<()>,
+) -> Result<Search> {
+    let b = scene.frame().boxes.get(&id);
+    let b = b.with_context(|| format!("there is no box {}", id.0))?;
+    let steps = steps(scene, b, vary);
+    let most = steps.len() + 1;
+    let mut out = Search {
+        tried: Vec::new(),
+        found: None,
+    };
+    let as_it_is = std::iter::once((Change::None, Vec::new()));
+    for (change, edits) in as_it_is.chain(steps) {
+        let mut document = Document::new(scene.clone());
+        // A place where the box cannot stand is left out.
+        if document.apply_all("vary", &edits).is_err() {
+            continue;
+        }
+        let tried = Tried {
+            change,
+            sight: sight(document.scene(), id)?,
+        };
+        let (missed, ends) = (
+            tried.sight.is_missed(),
+            watch(&tried, [out.tried.len() + 1, most]).is_break(),
+        );
+        out.tried.push(tried);
+        if missed {
+            out.found = Some(edits);
+        }
+        if missed || ends {
+            break;
+        }
+    }
+    Ok(out)
+}
+
+/// How the cameras of a scene's rig see a box.
+pub fn sight(scene: &Scene, id: BoxId) -> Result<Sight> {
+    let placed = scene.with_rig_in_world();
+    let (frame, rig) = (placed.frame(), &placed.rig);
+    let mut best = Sight {
+        visible_px: 0,
+        share: 0.0,
+    };
+    let Some(b) = frame.boxes.get(&id) else {
+        return Ok(best);
+    };
+    let appearance = Appearance::new(frame, rig, &placed.conditions);
+    for camera in rig.cameras.iter().filter(|c| may_see(c, b)) {
+        let seen = Perceived::of(&appearance, frame, camera)?;
+        if let Some((visible_px, share)) = seen.seen(id) {
+            best.visible_px = best.visible_px.max(visible_px);
+            if visible_px >= LEAST_PX {
+                best.share = best.share.max(share);
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// False if a box lies well outside a camera's picture.
+fn may_see(camera: &Camera, b: &SceneBox) -> bool {
+    let p = camera.ego_from_camera().inverse().apply(b.center_m);
+    let half_rad = (camera.fov_deg() / 2.0).to_radians() + MARGIN_RAD;
+    let reach_rad = (b.size_m.length() / 2.0).atan2(p.length());
+    p.angle_between(DVec3::Z) < half_rad + reach_rad
+}
+
+/// The variations, mildest first, and the edits that lead there.
+fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
+    let ego = scene.frame().world_from_ego.translation_m.truncate();
+    let off = b.center_m.truncate() - ego;
+    let ahead = off.try_normalize().unwrap_or(DVec2::X);
+    let moved = |by: DVec2| {
+        vec![Edit::MoveBox {
+            id: b.id,
+            center_m: Some(b.center_m + by.extend(0.0)),
+            yaw_deg: None,
+            size_m: None,
+        }]
+    };
+    let lit = |conditions: Conditions| vec![Edit::SetConditions { conditions }];
+    let now = scene.conditions;
+    match vary {
+        Vary::Distance => (1..=AWAY_M.1)
+            .map(|k| {
+                let by_m = AWAY_M.0 * k as f64;
+                (Change::Away(off.length() + by_m), moved(ahead * by_m))
+            })
+            .collect(),
+        Vary::Offset => (1..=(ASIDE_M.1 / ASIDE_M.0) as usize)
+            .flat_map(|k| [1.0, -1.0].map(|side| side * ASIDE_M.0 * k as f64))
+            .map(|by_m| (Change::Aside(by_m), moved(ahead.perp() * by_m)))
+            .collect(),
+        Vary::Fog => {
+            let start = now.visibility_m.min(CLEAR_M);
+            let thinner = std::iter::successors(Some(start), |m| Some(m * FOG.0));
+            let all = thinner.take_while(|m| *m >= FOG.1);
+            all.map(|visibility_m| {
+                let conditions = Conditions {
+                    visibility_m,
+                    ..now.under(Weather::Fog)
+                };
+                (Change::Visibility(visibility_m), lit(conditions))
+            })
+            .collect()
+        }
+        Vary::Time => TimeOfDay::ALL
+            .into_iter()
+            .filter(|time| *time != now.time)
+            .map(|time| (Change::Time(time), lit(now.at(time))))
+            .collect(),
+        Vary::Weather => Weather::ALL
+            .into_iter()
+            .filter(|weather| *weather != now.weather)
+            .map(|weather| (Change::Weather(weather), lit(now.under(weather))))
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::open;
+
+    /// A box that a camera sees plainly, the nearest one.
+    fn seen_box(scene: &Scene) -> BoxId {
+        let near = |b: &&SceneBox| b.center_m.truncate().length();
+        let mut boxes: Vec<&SceneBox> = scene.frame().boxes.values().collect();
+        boxes.sort_by(|a, b| near(a).total_cmp(&near(b)));
+        let seen = boxes.into_iter().find(|b| {
+            let sight = sight(scene, b.id).expect("the shipped network");
+            sight.visible_px > 200 && !sight.is_missed()
+        });
+        seen.expect("a box that is seen").id
+    }
+
+    #[test]
+    fn a_search_ends_where_the_object_is_missed() {
+        let scene = open::from_template("t-junction", 1).expect("a template");
+        let id = seen_box(&scene);
+        let mut heard = 0;
+        let found = search(&scene, id, Vary::Fog, |tried, [k, most]| {
+            heard += 1;
+            assert!(k == heard && k <= most && (k == 1) == (tried.change == Change::None));
+            ControlFlow::Continue(())
+        });
+        let found = found.expect("the shipped network");
+        let (last, before) = found.tried.split_last().expect("tries");
+        assert!(before.iter().all(|t| !t.sight.is_missed()));
+        assert_eq!(found.found.is_some(), last.sight.is_missed());
+        // In the thickest fog nothing is seen.
+        let edits = found.found.expect("fog hides everything in the end");
+        let mut document = Document::new(scene.clone());
+        document.apply_all("vary", &edits).expect("edits of the search");
+        assert_eq!(sight(document.scene(), id).expect("a sight"), last.sight);
+        // It can be ended, and a box that is not there is named.
+        let ended = search(&scene, id, Vary::Offset, |_, _| ControlFlow::Break(()));
+        let ended = ended.expect("the shipped network");
+        assert!(ended.tried.len() == 1 && ended.found.is_none());
+        let error = search(&scene, BoxId(9999), Vary::Time, |_, _| ControlFlow::Continue(()));
+        assert_eq!(error.expect_err("no box").to_string(), "there is no box 9999");
+    }
+
+    #[test]
+    fn steps_are_mildest_first_and_go_where_they_say() {
+        let scene = open::from_template("t-junction", 1).expect("a template");
+        let b = scene.frame().boxes.values().next().expect("a box");
+        let ego = scene.frame().world_from_ego.translation_m;
+        let away: Vec<f64> = steps(&scene, b, Vary::Distance)
+            .into_iter()
+            .map(|(_, edits)| match &edits[..] {
+                [Edit::MoveBox { center_m: Some(p), .. }] => (*p - ego).truncate().length(),
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(away.len(), AWAY_M.1);
+        assert!(away.is_sorted() && away[0] > (b.center_m - ego).truncate().length());
+        assert_eq!(steps(&scene, b, Vary::Time).len(), 3);
+        assert_eq!(steps(&scene, b, Vary::Weather).len(), Weather::ALL.len() - 1);
+        assert!(steps(&scene, b, Vary::Offset)[1].0.to_string() == "0.5 m to the right");
+        let fog = steps(&scene, b, Vary::Fog);
+        assert!(fog.len() > 10 && fog[0].0.to_string() == "visibility 250 m");
+    }
+}
