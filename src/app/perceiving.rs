@@ -30,8 +30,6 @@ pub struct Found {
     pub of: SceneRev,
     /// The box that was to be missed.
     pub id: BoxId,
-    /// What was varied.
-    pub vary: Vary,
     /// What came of it.
     pub search: Search,
 }
@@ -63,7 +61,6 @@ impl Product for Perceiver {
                     Ok(search) => News::Searched(Found {
                         of: scene.rev,
                         id: *id,
-                        vary: *vary,
                         search,
                     }),
                     Err(error) => News::Failed(format!("{error:#}")),

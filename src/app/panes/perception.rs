@@ -10,7 +10,7 @@ use editor::Document;
 use language::{t, tf};
 use scene::{BoxId, Scene};
 use sensors::cameras::perceived;
-use sensors::perceived::{Report, SeenByRig};
+use sensors::perceived::SeenByRig;
 use widgets::icons::{Icon, section};
 use widgets::theme;
 
@@ -20,6 +20,8 @@ use crate::camera_views::camera_label;
 use crate::command::{Command, ViewCommand};
 use crate::perceiving::{Found, Perceiving};
 
+/// From this width on there are columns, points.
+const WIDE: f32 = 560.0;
 /// Fewer pixels of things where there are none are not worth a line.
 const LEAST_GHOST_PX: usize = 20;
 
@@ -52,11 +54,29 @@ impl Pane for Perception {
     }
 
     fn place(&self) -> Place {
-        Place::Column
+        Place::BelowViews
     }
 
-    fn column_points(&self) -> f32 {
-        266.0
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        let Some(perceiving) = &self.perceiving else {
+            return;
+        };
+        if let Some(problem) = &perceiving.problem {
+            ui.colored_label(ui.visuals().error_fg_color, problem);
+        }
+        if let Some((_, report)) = &perceiving.seen {
+            let percent = format!("{:.1}", report.right * 100.0);
+            let text = tf!("Classes right: {percent} % of the pixels", percent = percent);
+            let what = t("A small camera network that learned from the pictures looks at all cameras.");
+            ui.label(RichText::new(text).small().color(theme::text_weak()))
+                .on_hover_text(what);
+        }
+        if perceiving.is_stale(cx.document.scene().rev) {
+            ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
+        }
+        if ui.button(t("Show what it sees in the cameras")).clicked() {
+            commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
+        }
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
@@ -72,58 +92,52 @@ impl Pane for Perception {
             perceiving.update(cx.document.scene());
         }
         let vary = &mut self.vary;
+        let wide = ui.available_width() > WIDE;
         theme::panel_frame().show(ui, |ui| {
             let area = egui::ScrollArea::vertical().id_salt("perception").auto_shrink(false);
             area.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 3.0;
-                let text = t("A small camera network that learned from the pictures looks at all cameras.");
-                ui.label(RichText::new(text).small().color(theme::text_weak()));
-                if ui.link(t("Show what it sees in the cameras")).clicked() {
-                    commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
+                if !wide {
+                    report_ui(ui, perceiving, cx, [true, true], commands);
+                    search_ui(ui, perceiving, vary, cx, commands);
+                    return;
                 }
-                if let Some(problem) = &perceiving.problem {
-                    ui.colored_label(ui.visuals().error_fg_color, problem);
-                }
-                let stale = perceiving.is_stale(cx.document.scene().rev);
-                match &perceiving.seen {
-                    Some((_, report)) => report_ui(ui, report, cx, stale, commands),
-                    None => drop(ui.spinner()),
-                }
-                section(ui, t("Corner case"));
-                search_ui(ui, perceiving, vary, cx, commands);
+                ui.columns(3, |columns| {
+                    report_ui(&mut columns[0], perceiving, cx, [true, false], commands);
+                    report_ui(&mut columns[1], perceiving, cx, [false, true], commands);
+                    search_ui(&mut columns[2], perceiving, vary, cx, commands);
+                });
             });
         });
     }
 }
 
-/// What is missed, what is seen, and things where there are none.
+/// What is missed and things where there are none, or what is seen, or both.
 fn report_ui(
     ui: &mut Ui,
-    report: &Report,
+    perceiving: &Perceiving,
     cx: &PaneContext<'_>,
-    stale: bool,
+    [wrong, right]: [bool; 2],
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
-        ui.label(tf!(
-            "Classes right: {percent} % of the pixels",
-            percent = format!("{:.1}", report.right * 100.0)
-        ));
-        if stale {
-            ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
+    let report = perceiving.seen.as_ref().map(|(_, report)| report);
+    let boxes = report.map_or(&[][..], |report| &report.boxes);
+    let missed = boxes.iter().take_while(|b| b.thing.is_missed()).count();
+    let (missed, seen) = boxes.split_at(missed);
+    for (title, boxes, shown) in [(t("Missed"), missed, wrong), (t("Seen"), seen, right)] {
+        if !shown {
+            continue;
         }
-    });
-    let missed = report.boxes.iter().take_while(|b| b.thing.is_missed()).count();
-    let (missed, seen) = report.boxes.split_at(missed);
-    for (title, boxes) in [(t("Missed"), missed), (t("Seen"), seen)] {
         section(ui, title);
-        if boxes.is_empty() {
-            ui.label(RichText::new(t("none")).color(theme::text_weak()));
-        }
-        for b in boxes {
-            row(ui, b, cx, commands);
+        match (report, boxes) {
+            (None, _) => drop(ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()))),
+            (_, []) => drop(ui.label(RichText::new(t("none")).color(theme::text_weak()))),
+            (_, boxes) => boxes.iter().for_each(|b| row(ui, b, cx, commands)),
         }
     }
+    let Some(report) = report.filter(|_| wrong) else {
+        return;
+    };
     let ghosts: Vec<(usize, usize)> = report.ghost_px.iter().copied().enumerate().collect();
     let ghosts: Vec<_> = ghosts.into_iter().filter(|(_, px)| *px >= LEAST_GHOST_PX).collect();
     if ghosts.is_empty() {
@@ -177,6 +191,7 @@ fn search_ui(
     cx: &mut PaneContext<'_>,
     commands: &mut Vec<Command>,
 ) {
+    section(ui, t("Corner case"));
     if let Some((change, [k, most])) = perceiving.searching {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(12.0));

@@ -158,7 +158,9 @@ pub fn search(
         if missed {
             out.found = Some(edits);
         }
-        if missed || ends {
+        // What is too small to be missed becomes no larger farther away.
+        let gone = vary == Vary::Distance && tried.sight.visible_px < LEAST_PX;
+        if missed || ends || gone {
             break;
         }
     }

@@ -278,7 +278,7 @@ impl Options {
             ("agreement as a share of the renderer's", share, AGREEMENT),
             ("gain by the frame before, beyond its interval", gain - half, 0.0),
             ("longest time wanted / time of six pictures", LONGEST_S / median(&found.first_s), 1.0),
-            ("pixels changed elsewhere, negative", -(found.elsewhere_px as f64), 0.0),
+            ("pixels changed elsewhere, negative", 0.0 - found.elsewhere_px as f64, 0.0),
         ];
         Ok((report, bars))
     }
