@@ -1,13 +1,17 @@
 //! A clip as moving pictures: the 3D view, the bird's-eye view or the cameras, frame by frame.
 
+use std::ops::ControlFlow;
+
 use anyhow::{Context, bail};
 
 use formats::video::{VideoKind, VideoWriter};
+use nets::picture::PictureNets;
 use scene::Scene;
 use sensors::appearance::Quality;
 use sensors::cameras::{
-    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds,
+    self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, learned,
 };
+use sensors::painter::{PaintOptions, Painter};
 use viewport::ViewCamera;
 
 use crate::camera_views::camera_input;
@@ -123,7 +127,7 @@ enum Drawer {
         size: [u32; 2],
     },
     Bev,
-    Cameras(ClipOptions),
+    Cameras(ClipOptions, Option<Painter>),
 }
 
 /// Pixels of a cell from above: the whole map about so high.
@@ -153,7 +157,11 @@ impl Drawer {
                     cameras::source_of(*view, *source).bytes_per_pixel(),
                     0,
                 )?;
-                Self::Cameras(options.clone())
+                // Painted pictures go on from those of the frame before.
+                let paints = cameras::source_of(*view, *source).id() == learned::ID;
+                let painter = paints.then(PictureNets::bundled).transpose()?;
+                let painter = painter.map(|nets| Painter::new(nets, PaintOptions::default()));
+                Self::Cameras(options.clone(), painter)
             }
         })
     }
@@ -189,16 +197,29 @@ impl Drawer {
                 let scale = (BEV_PIXELS / extent.nx().max(extent.ny())).clamp(1, 8);
                 Ok(picture::layout_top(scene.frame(), scale))
             }
-            Self::Cameras(options) => pictures(scene, options),
+            Self::Cameras(options, painter) => pictures(scene, options, painter.as_mut()),
         }
     }
 }
 
-fn pictures(scene: &Scene, options: &ClipOptions) -> anyhow::Result<Picture> {
+fn pictures(scene: &Scene, options: &ClipOptions, painter: Option<&mut Painter>) -> anyhow::Result<Picture> {
     let ClipView::Cameras { view, source, camera } = &options.view else {
         bail!("no view of cameras");
     };
     let scene = scene.with_rig_in_world();
+    if let Some(painter) = painter {
+        let painted = painter.paint(&camera_input(&scene, Detail::Full), |_| ControlFlow::Continue(()))?;
+        let shown = painted.iter().enumerate().filter(|(i, _)| camera.is_none_or(|c| c == *i));
+        let row = shown.map(|(_, image)| {
+            let image = learned::sized(image, options.size);
+            Picture {
+                width: image.width,
+                height: image.height,
+                rgba: image.rgba,
+            }
+        });
+        return sheet(row.collect());
+    }
     let source = cameras::source_of(*view, *source);
     let ready = Ready::new(source, &camera_input(&scene, Detail::Full));
     let render = RenderOptions {
@@ -215,6 +236,11 @@ fn pictures(scene: &Scene, options: &ClipOptions) -> anyhow::Result<Picture> {
         let ([width, height], rgba) = picture.rgba(*view, 0.0);
         row.push(Picture { width, height, rgba });
     }
+    sheet(row)
+}
+
+/// One picture, or all of them in two rows.
+fn sheet(mut row: Vec<Picture>) -> anyhow::Result<Picture> {
     match row.len() {
         1 => row.pop().context("a picture"),
         n => {
@@ -255,7 +281,12 @@ mod tests {
             source: cameras::shapes::ID,
             camera: Some(1),
         };
-        for view in [ClipView::Bev, camera] {
+        let learned = ClipView::Cameras {
+            view: learned::VIEW.id,
+            source: learned::ID,
+            camera: None,
+        };
+        for view in [ClipView::Bev, camera, learned] {
             let seen = std::cell::RefCell::new(Vec::new());
             let go_on = |done, all| {
                 seen.borrow_mut().push((done, all));

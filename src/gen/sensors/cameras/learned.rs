@@ -112,7 +112,7 @@ impl PreparedCameras for Ready<'_> {
 }
 
 /// A picture at another size, smoothly.
-pub(super) fn sized(image: &CameraImage, [width, height]: [u32; 2]) -> CameraImage {
+pub fn sized(image: &CameraImage, [width, height]: [u32; 2]) -> CameraImage {
     let [w, h] = [image.width as u32, image.height as u32];
     let source = RgbaImage::from_raw(w, h, image.rgba.clone()).unwrap_or_default();
     let empty = width == 0 || height == 0 || source.is_empty();
