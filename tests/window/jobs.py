@@ -50,18 +50,48 @@ def compare(w):
 
 def triage(w):
     w.click((1545, 936))
+    w.wait()
+    w.click(FIX_ALL)
 
 
 def export_with_calibration(w):
     w.key("ctrl+e")
+    w.click(EXPORT_ALL)
+    w.click(EXPORT_FILES)
+
+
+def restore_from_a_picture(w):
+    w.key("ctrl+o")
+    w.key("ctrl+a")
+    w.type(w.file("street.png"))
+    w.key("Return")
+
+
+def learned_pictures(w):
+    w.palette("Cameras: Learned")
+
+
+def find_a_corner_case(w):
+    w.palette("Perception")
+    w.wait()
+    w.click(FIRST_SEEN)
+    w.click(SEARCH)
 
 
 def picture_beside_classes(w):
     w.palette("Camera: Front")
 
 
+FIX_ALL = (1280, 642)
+# Of the dialog of exports.
+EXPORT_ALL, EXPORT_FILES = (402, 505), (853, 613)
+# Of the pane of perception.
+FIRST_SEEN, SEARCH = (660, 666), (1130, 666)
 # Where the line of the road lies in the scene of the jobs, m left of the ego vehicle.
 ROAD_LEFT_M = 1.8
+CARS_IN_THE_AIR = [
+    {"add_box": {"class": "car", "center_m": [-36 + k % 10 * 8, -30 + k // 10 * 20, 1.9], "size_m": [4.5, 1.9, 1.6], "yaw_deg": 0}} for k in range(40)
+]
 JOBS = {
     "paint a lane": paint_a_lane,
     "reshape a road": reshape_a_road,
@@ -69,8 +99,11 @@ JOBS = {
     "place and turn a car": place_and_turn_a_car,
     "a night scene by words": night_by_words,
     "compare with before": compare,
-    "look at the findings": triage,
-    "open the export": export_with_calibration,
+    "repair 40 findings": triage,
+    "export with calibration": export_with_calibration,
+    "restore from a picture": restore_from_a_picture,
+    "pictures by the network": learned_pictures,
+    "find a corner case": find_a_corner_case,
     "a camera's picture beside the classes": picture_beside_classes,
 }
 
@@ -83,12 +116,22 @@ def main():
     screen = "%dx%dx24" % SIZE
     server = subprocess.Popen(["Xvfb", display, "-screen", "0", screen], stderr=subprocess.DEVNULL)
     time.sleep(1)
-    scene = os.path.join(tempfile.mkdtemp(), "street.loom")
-    subprocess.run([program, "new", "--template", "t-junction", "--seed", "1", "-o", scene], check=True, capture_output=True)
+    folder = tempfile.mkdtemp()
+    scene, faulty = os.path.join(folder, "street.loom"), os.path.join(folder, "faulty.loom")
+
+    def run(*arguments):
+        subprocess.run([program, *arguments], check=True, capture_output=True)
+
+    run("new", "--template", "t-junction", "--seed", "1", "-o", scene)
+    run("shot", scene, "-o", os.path.join(folder, "street.png"))
+    with open(os.path.join(folder, "edits.json"), "w") as file:
+        json.dump(CARS_IN_THE_AIR, file)
+    run("edit", scene, "--edits", os.path.join(folder, "edits.json"), "-o", faulty)
     rows = []
     try:
         for name in chosen:
-            window = Window(program, scene, display)
+            window = Window(program, faulty if JOBS[name] is triage else scene, display)
+            window.scenes = folder
             file = name.replace(" ", "_").replace("'", "")
             window.picture(os.path.join(out, file + "_before.png"))
             start, window.steps = time.time(), 0

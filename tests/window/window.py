@@ -101,6 +101,10 @@ class Window:
         self.type(words)
         self.key("Return")
 
+    def file(self, name):
+        """A file beside the scene."""
+        return os.path.join(self.scenes, name)
+
     def close(self):
         self.process.terminate()
         try:

@@ -183,7 +183,7 @@ const CHECKS: [(&str, Check); 18] = [
 pub fn title(check: &str) -> &str {
     match check {
         unsound::NAME => "Numbers that cannot be",
-        out_of_range::NAME => "Beyond the map",
+        out_of_range::NAME => "Off the ground or beyond the map",
         overlapping_boxes::NAME => "Boxes overlap",
         box_without_occupancy::NAME => "Boxes without voxels",
         occupancy_without_box::NAME => "Voxels without a box",
