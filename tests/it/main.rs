@@ -18,6 +18,7 @@ mod map;
 mod opendrive;
 mod parity;
 mod peak_memory;
+mod perceive;
 mod pipeline;
 mod project;
 mod prompt;

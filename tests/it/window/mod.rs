@@ -11,6 +11,7 @@ mod files;
 mod guests;
 mod objects;
 mod overdraw;
+mod perception;
 mod recovery;
 mod sensors;
 mod shell;

@@ -1,0 +1,58 @@
+//! What a camera network sees, in the window: the list, a search, a corner case taken and one kept.
+
+use app::command::{Command, ViewCommand};
+use app::panes::id::PaneId;
+use egui_kittest::kittest::{NodeT, Queryable};
+use scene::{BoxId, Weather};
+
+use super::bench::Bench;
+
+fn command(bench: &mut Bench, command: Command) {
+    let ctx = bench.harness.ctx.clone();
+    bench.app().execute(command, &ctx);
+    bench.steps(3);
+}
+
+fn shows(bench: &Bench, label: &str) -> bool {
+    bench.harness.query_by_label_contains(label).is_some()
+}
+
+/// The rows of boxes, as they are labelled.
+fn rows(bench: &Bench) -> Vec<String> {
+    let rows = bench.harness.query_all_by_label_contains("Car #7");
+    rows.filter_map(|node| node.accesskit_node().label()).collect()
+}
+
+#[test]
+fn a_box_is_listed_and_a_change_is_found_after_which_it_is_missed() {
+    let mut bench = Bench::new();
+    bench.off();
+    command(&mut bench, Command::View(ViewCommand::ShowPane(PaneId::named("perception"))));
+    bench.wait_until("what the network sees", |b| !rows(b).is_empty());
+    assert!(shows(&bench, "Choose a box, and a change of the scene is searched after which the network misses it."));
+    let row = rows(&bench).remove(0);
+    assert!(row.contains("Front") && row.ends_with('%'), "{row}");
+    bench.click(&row);
+    assert_eq!(bench.app().state.selected, Some(BoxId(7)));
+
+    // In fog it vanishes in the end.
+    bench.click("Distance");
+    bench.click("Fog");
+    bench.click("Search");
+    bench.wait_until("the end of the search", |b| {
+        b.harness.query_by_label_contains("Missed: visibility").is_some()
+    });
+    let before = bench.app().document.scene().content();
+    bench.click("Keep as a version");
+    assert_eq!(bench.app().document.scene().content(), before, "the scene stays");
+    let versions = bench.app().generation.versions.list();
+    assert!(versions.iter().any(|v| v.label == "Corner case" && v.note.starts_with("#7: visibility")));
+    bench.click("Take it");
+    assert_eq!(bench.app().document.scene().conditions.weather, Weather::Fog);
+    assert_eq!(bench.history().last().map(String::as_str), Some("Corner case"));
+    // What was searched for another state cannot be taken again.
+    assert!(shows(&bench, "the scene has changed since"));
+    bench.wait_until("what it sees in fog", |b| {
+        rows(b).iter().any(|now| *now != row) && !shows(b, &row)
+    });
+}
