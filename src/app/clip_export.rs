@@ -209,7 +209,10 @@ fn pictures(scene: &Scene, options: &ClipOptions, painter: Option<&mut Painter>)
     let scene = scene.with_rig_in_world();
     if let Some(painter) = painter {
         let painted = painter.paint(&camera_input(&scene, Detail::Full), |_| ControlFlow::Continue(()))?;
-        let shown = painted.iter().enumerate().filter(|(i, _)| camera.is_none_or(|c| c == *i));
+        let shown = painted
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| camera.is_none_or(|c| c == *i));
         let row = shown.map(|(_, image)| {
             let image = learned::sized(image, options.size);
             Picture {

@@ -132,8 +132,7 @@ impl Perceiving {
     pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary) {
         self.found = None;
         self.searching = Some((Change::None, [0, 1]));
-        self.worker
-            .submit(Request::Search(scene.clone(), id, vary));
+        self.worker.submit(Request::Search(scene.clone(), id, vary));
     }
 
     /// Ends a search after what it tries now.

@@ -386,7 +386,10 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     } = request;
     let rig = &scene.rig;
     if kept.painting.set(&request.paint) {
-        kept.views = kept.views.take().filter(|((_, (source, _)), _)| *source != learned::ID);
+        kept.views = kept
+            .views
+            .take()
+            .filter(|((_, (source, _)), _)| *source != learned::ID);
         kept.others.retain(|(_, source, ..)| *source != learned::ID);
     }
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);

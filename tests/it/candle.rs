@@ -370,7 +370,11 @@ fn pictures_agree() {
         PictureVae::on(candle(), file(vae)).expect("weights"),
     );
     let drawn = ours.decode(&x, size.cells()).expect("finite");
-    agree(&drawn, &theirs.decode(&x, size.cells()).expect("finite"), "pictures");
+    agree(
+        &drawn,
+        &theirs.decode(&x, size.cells()).expect("finite"),
+        "pictures",
+    );
     let latents = ours.encode(&drawn, size.pixels()).expect("finite");
     agree(
         &latents,

@@ -28,21 +28,38 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
     assert!(seen["pixels_right"].as_f64() > Some(0.85), "{seen}");
     assert_eq!(seen["ghost_px"].as_object().map(|o| o.len()), Some(6));
     let boxes = seen["boxes"].as_array().expect("a list");
-    let plain = boxes.iter().find(|b| b["missed"] == false).expect("a box that is seen");
+    let plain = boxes
+        .iter()
+        .find(|b| b["missed"] == false)
+        .expect("a box that is seen");
     let id = plain["box"].to_string();
 
     let found = json(&["perceive", &scene, "--box", &id, "--vary", "fog", "-o", &out]);
-    assert_eq!((&found["missed"], &found["file"]), (&Value::Bool(true), &Value::from(&*out)));
-    assert!(found["at"].as_str().is_some_and(|at| at.starts_with("visibility")), "{found}");
+    assert_eq!(
+        (&found["missed"], &found["file"]),
+        (&Value::Bool(true), &Value::from(&*out))
+    );
+    assert!(
+        found["at"]
+            .as_str()
+            .is_some_and(|at| at.starts_with("visibility")),
+        "{found}"
+    );
     let again = json(&["perceive", &out]);
     let of = |report: &Value| {
         let boxes = report["boxes"].as_array().expect("a list").clone();
-        boxes.into_iter().find(|b| b["box"].to_string() == id).expect("the box")
+        boxes
+            .into_iter()
+            .find(|b| b["box"].to_string() == id)
+            .expect("the box")
     };
     assert_eq!(of(&again)["missed"], true, "{again}");
 
     for (args, needle) in [
-        (vec!["perceive", &scene, "--box", "9999", "--vary", "fog"], "there is no box 9999"),
+        (
+            vec!["perceive", &scene, "--box", "9999", "--vary", "fog"],
+            "there is no box 9999",
+        ),
         (vec!["perceive", &scene, "--box", "1"], "--vary"),
         (vec!["perceive", &scene, "--box", "1", "--vary", "mood"], "mood"),
         (vec!["perceive", &scene, "-o", &out], "--vary"),
@@ -64,12 +81,23 @@ fn learned_pictures_are_written() {
     json(&["new", "--template", "straight", "--seed", "2", "-o", &scene]);
     let bytes = ["a", "b"].map(|folder| {
         let out = path(folder);
-        json(&["render", &scene, "--what", "learned,perceived", "--size", "320x180", "-o", &out]);
+        json(&[
+            "render",
+            &scene,
+            "--what",
+            "learned,perceived",
+            "--size",
+            "320x180",
+            "-o",
+            &out,
+        ]);
         let read = |name: &str| std::fs::read(dir.path().join(folder).join(name)).expect(name);
         [read("CAM_FRONT_learned.png"), read("CAM_BACK_perceived.png")]
     });
     assert_eq!(bytes[0], bytes[1]);
-    let image = image::load_from_memory(&bytes[0][0]).expect("a picture").to_rgb8();
+    let image = image::load_from_memory(&bytes[0][0])
+        .expect("a picture")
+        .to_rgb8();
     assert_eq!(image.dimensions(), (320, 180));
     let colors: std::collections::BTreeSet<_> = image.pixels().map(|p| p.0).collect();
     assert!(colors.len() > 1000, "{} colours", colors.len());

@@ -58,7 +58,11 @@ impl Perceive {
                 "missed": b.thing.is_missed(),
             })
         });
-        let ghosts = found.ghost_px.iter().enumerate().map(|(i, px)| (name(i).clone(), json!(px)));
+        let ghosts = found
+            .ghost_px
+            .iter()
+            .enumerate()
+            .map(|(i, px)| (name(i).clone(), json!(px)));
         let report = json!({
             "boxes": boxes.collect::<Vec<_>>(),
             "ghost_px": ghosts.collect::<serde_json::Map<_, _>>(),
@@ -67,7 +71,11 @@ impl Perceive {
         output::report(&self.common, &report, || {
             let line = |b: &perceived::SeenByRig| {
                 let missed = if b.thing.is_missed() { "missed" } else { "seen" };
-                let class = placed.frame().boxes.get(&b.thing.id).map_or("box", |b| b.class.name());
+                let class = placed
+                    .frame()
+                    .boxes
+                    .get(&b.thing.id)
+                    .map_or("box", |b| b.class.name());
                 format!(
                     "{missed}: {class} #{} in {}, {} px, {:.0} % of them taken for a thing",
                     b.thing.id.0,
@@ -77,7 +85,10 @@ impl Perceive {
                 )
             };
             let mut lines: Vec<String> = found.boxes.iter().map(line).collect();
-            lines.push(format!("classes right: {:.1} % of the pixels", found.right * 100.0));
+            lines.push(format!(
+                "classes right: {:.1} % of the pixels",
+                found.right * 100.0
+            ));
             lines.join("\n")
         });
         Ok(())

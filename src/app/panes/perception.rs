@@ -94,7 +94,9 @@ impl Pane for Perception {
         let vary = &mut self.vary;
         let wide = ui.available_width() > WIDE;
         theme::panel_frame().show(ui, |ui| {
-            let area = egui::ScrollArea::vertical().id_salt("perception").auto_shrink(false);
+            let area = egui::ScrollArea::vertical()
+                .id_salt("perception")
+                .auto_shrink(false);
             area.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 3.0;
                 if !wide {
@@ -139,7 +141,10 @@ fn report_ui(
         return;
     };
     let ghosts: Vec<(usize, usize)> = report.ghost_px.iter().copied().enumerate().collect();
-    let ghosts: Vec<_> = ghosts.into_iter().filter(|(_, px)| *px >= LEAST_GHOST_PX).collect();
+    let ghosts: Vec<_> = ghosts
+        .into_iter()
+        .filter(|(_, px)| *px >= LEAST_GHOST_PX)
+        .collect();
     if ghosts.is_empty() {
         return;
     }
@@ -202,9 +207,13 @@ fn search_ui(
         });
         return;
     }
-    let chosen = cx.state.selected.and_then(|id| cx.document.scene().frame().boxes.get(&id));
+    let chosen = cx
+        .state
+        .selected
+        .and_then(|id| cx.document.scene().frame().boxes.get(&id));
     let Some(b) = chosen else {
-        let text = t("Choose a box, and a change of the scene is searched after which the network misses it.");
+        let text =
+            t("Choose a box, and a change of the scene is searched after which the network misses it.");
         ui.label(RichText::new(text).color(theme::text_weak()));
         return;
     };
@@ -256,7 +265,11 @@ fn found_ui(ui: &mut Ui, found: &Found, cx: &mut PaneContext<'_>, commands: &mut
     let current = cx.document.scene().rev == found.of;
     ui.add_enabled_ui(current, |ui| {
         ui.horizontal(|ui| {
-            if ui.button(t("Take it")).on_hover_text(t("Changes the scene so")).clicked() {
+            if ui
+                .button(t("Take it"))
+                .on_hover_text(t("Changes the scene so"))
+                .clicked()
+            {
                 commands.push(Command::Apply("Corner case", edits.clone()));
             }
             let keep = ui.button(t("Keep as a version"));
@@ -270,7 +283,11 @@ fn found_ui(ui: &mut Ui, found: &Found, cx: &mut PaneContext<'_>, commands: &mut
         });
     });
     if !current {
-        ui.label(RichText::new(t("the scene has changed since")).small().color(theme::text_weak()));
+        ui.label(
+            RichText::new(t("the scene has changed since"))
+                .small()
+                .color(theme::text_weak()),
+        );
     }
 }
 

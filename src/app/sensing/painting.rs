@@ -45,7 +45,9 @@ impl PaintSettings {
     /// With numbers that a painter takes, whatever a file of settings said.
     fn options(&self) -> PaintOptions {
         let guidance = match self.guidance.is_finite() {
-            true => self.guidance.clamp(*Self::GUIDANCE.start(), *Self::GUIDANCE.end()),
+            true => self
+                .guidance
+                .clamp(*Self::GUIDANCE.start(), *Self::GUIDANCE.end()),
             false => PaintOptions::default().guidance,
         };
         PaintOptions {

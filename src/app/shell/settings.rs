@@ -8,11 +8,11 @@ use anyhow::Context;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use crate::sensing::PaintSettings;
 use super::bookmarks::Bookmark;
 use super::keymap::Chords;
 use super::workspace::Workspace;
 use crate::panes::id::PaneId;
+use crate::sensing::PaintSettings;
 use editor::Document;
 use editor::tools::saved::SavedBrush;
 use scene::classes::Palette;

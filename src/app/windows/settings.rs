@@ -216,7 +216,9 @@ fn painting(ui: &mut Ui, painting: &mut PaintSettings, commands: &mut Vec<Comman
             ui.end_row();
         }
         ui.label(t("Steps"));
-        let steps = egui::DragValue::new(&mut painting.steps).range(PaintSettings::STEPS).speed(0.1);
+        let steps = egui::DragValue::new(&mut painting.steps)
+            .range(PaintSettings::STEPS)
+            .speed(0.1);
         ui.add(steps)
             .on_hover_text(t("From noise to a picture; more steps take longer"))
             .accessible_name(t("Steps"));

@@ -38,13 +38,7 @@ pub enum Vary {
 
 impl Vary {
     /// All of them.
-    pub const ALL: [Vary; 5] = [
-        Vary::Distance,
-        Vary::Offset,
-        Vary::Fog,
-        Vary::Time,
-        Vary::Weather,
-    ];
+    pub const ALL: [Vary; 5] = [Vary::Distance, Vary::Offset, Vary::Fog, Vary::Time, Vary::Weather];
 
     /// What it varies, for a person.
     pub fn title(self) -> &'static str {
@@ -303,7 +297,11 @@ mod tests {
         let away: Vec<f64> = steps(&scene, b, Vary::Distance)
             .into_iter()
             .map(|(_, edits)| match &edits[..] {
-                [Edit::MoveBox { center_m: Some(p), .. }] => (*p - ego).truncate().length(),
+                [
+                    Edit::MoveBox {
+                        center_m: Some(p), ..
+                    },
+                ] => (*p - ego).truncate().length(),
                 other => panic!("{other:?}"),
             })
             .collect();

@@ -233,15 +233,24 @@ pub static SUITES: [Suite; 11] = [
         name: "pictures",
         title: "Learned pictures: agreement, likeness over time, edits",
         figures: &[
-            ("pixels that a segmenter says rightly, rendered", "/agreement/rendered"),
+            (
+                "pixels that a segmenter says rightly, rendered",
+                "/agreement/rendered",
+            ),
             ("the same, learned", "/agreement/learned"),
-            ("difference from the moment before, 0 to 1, rendered", "/over_time/rendered"),
+            (
+                "difference from the moment before, 0 to 1, rendered",
+                "/over_time/rendered",
+            ),
             (
                 "the same, learned, told the frame before",
                 "/over_time/after_the_frame_before",
             ),
             ("the same, learned, each frame alone", "/over_time/alone"),
-            ("difference between cameras, rendered", "/between_cameras/rendered"),
+            (
+                "difference between cameras, rendered",
+                "/between_cameras/rendered",
+            ),
             ("the same, learned", "/between_cameras/learned"),
             ("share of pixels painted when a car goes", "/edit/painted_share"),
             ("pixels changed elsewhere", "/edit/pixels_changed_elsewhere"),

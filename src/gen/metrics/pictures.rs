@@ -80,7 +80,10 @@ impl Taken<'_> {
         if (seen_m / p.z - 1.0).abs() > SAME_DEPTH {
             return None;
         }
-        let (x, y) = ((u as usize).min(width.saturating_sub(2)), (v as usize).min(height.saturating_sub(2)));
+        let (x, y) = (
+            (u as usize).min(width.saturating_sub(2)),
+            (v as usize).min(height.saturating_sub(2)),
+        );
         let (s, t) = (u - x as f64, v - y as f64);
         let pixel = |dx: usize, dy: usize, c: usize| {
             let at = ((y + dy).min(height - 1) * width + (x + dx).min(width - 1)) * 4 + c;

@@ -7,8 +7,8 @@ use crate::appearance::{Appearance, CameraImage, Quality};
 use crate::cameras::CameraError;
 use crate::painter::native_px;
 use nets::picture::PictureSegmenter;
-use scene::truth::{self, OUTSIDE, TruthClass};
 use rayon::prelude::*;
+use scene::truth::{self, OUTSIDE, TruthClass};
 use scene::{BoxId, Camera, CameraTruth, Conditions, Frame, SensorRig};
 
 /// A box of fewer pixels is too small to be missed.
@@ -98,7 +98,10 @@ impl Perceived {
     /// Pixels of a box, and the share of them that the network takes for a thing; none if the picture does not show it.
     pub fn seen(&self, id: BoxId) -> Option<(usize, f64)> {
         let boxes = self.boxes().into_iter();
-        boxes.filter(|b| b.id == id).map(|b| (b.visible_px, b.share)).next()
+        boxes
+            .filter(|b| b.id == id)
+            .map(|b| (b.visible_px, b.share))
+            .next()
     }
 
     /// Pixels that the network takes for a thing where there is none.
@@ -126,7 +129,11 @@ impl Perceived {
     pub fn shown(&self) -> CameraImage {
         let mut image = self.image.clone();
         let width = image.width.max(1);
-        let pixels = image.rgba.chunks_exact_mut(4).zip(&self.truth.pixels).zip(&self.classes);
+        let pixels = image
+            .rgba
+            .chunks_exact_mut(4)
+            .zip(&self.truth.pixels)
+            .zip(&self.classes);
         for (at, ((out, truth), class)) in pixels.enumerate() {
             if truth.class == OUTSIDE {
                 continue;
@@ -219,13 +226,23 @@ mod tests {
         for mut seen in all {
             assert_eq!(seen.shown().rgba.len(), seen.image.rgba.len());
             // A network that says sky everywhere misses every box that is large enough.
-            let boxes = seen.truth.boxes.iter().filter(|b| b.visible_px as usize >= LEAST_PX).count();
+            let boxes = seen
+                .truth
+                .boxes
+                .iter()
+                .filter(|b| b.visible_px as usize >= LEAST_PX)
+                .count();
             assert!(seen.missed().len() <= boxes);
             seen.classes.fill(truth::SKY);
             let missed = seen.missed();
             assert_eq!(missed.len(), boxes, "{}", seen.image.camera);
             assert!(missed.is_sorted_by(|a, b| a.visible_px >= b.visible_px));
-            let red = seen.shown().rgba.chunks_exact(4).filter(|p| p[..3] == MISSED).count();
+            let red = seen
+                .shown()
+                .rgba
+                .chunks_exact(4)
+                .filter(|p| p[..3] == MISSED)
+                .count();
             let pixels: usize = missed.iter().map(|m| m.visible_px).sum();
             assert!(red * 3 > pixels, "{red} of {pixels}");
         }

@@ -27,9 +27,15 @@ fn rows(bench: &Bench) -> Vec<String> {
 fn a_box_is_listed_and_a_change_is_found_after_which_it_is_missed() {
     let mut bench = Bench::new();
     bench.off();
-    command(&mut bench, Command::View(ViewCommand::ShowPane(PaneId::named("perception"))));
+    command(
+        &mut bench,
+        Command::View(ViewCommand::ShowPane(PaneId::named("perception"))),
+    );
     bench.wait_until("what the network sees", |b| !rows(b).is_empty());
-    assert!(shows(&bench, "Choose a box, and a change of the scene is searched after which the network misses it."));
+    assert!(shows(
+        &bench,
+        "Choose a box, and a change of the scene is searched after which the network misses it."
+    ));
     let row = rows(&bench).remove(0);
     assert!(row.contains("Front") && row.ends_with('%'), "{row}");
     bench.click(&row);
@@ -46,7 +52,11 @@ fn a_box_is_listed_and_a_change_is_found_after_which_it_is_missed() {
     bench.click("Keep as a version");
     assert_eq!(bench.app().document.scene().content(), before, "the scene stays");
     let versions = bench.app().generation.versions.list();
-    assert!(versions.iter().any(|v| v.label == "Corner case" && v.note.starts_with("#7: visibility")));
+    assert!(
+        versions
+            .iter()
+            .any(|v| v.label == "Corner case" && v.note.starts_with("#7: visibility"))
+    );
     bench.click("Take it");
     assert_eq!(bench.app().document.scene().conditions.weather, Weather::Fog);
     assert_eq!(bench.history().last().map(String::as_str), Some("Corner case"));

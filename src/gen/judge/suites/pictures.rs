@@ -146,7 +146,13 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
             let shown = |r: &Rendered| {
                 let (pixel, hints) = (&r.pixels[i][at], &r.hints[i]);
                 let light = [0, 1, 2].map(|c| r.images[i].rgba[at * 4 + c]);
-                (pixel.class, pixel.depth_m, hints.class[at], hints.depth_m[at], light)
+                (
+                    pixel.class,
+                    pixel.depth_m,
+                    hints.class[at],
+                    hints.depth_m[at],
+                    light,
+                )
             };
             shown(before) != shown(after)
         };
@@ -182,7 +188,12 @@ fn refs(images: &[Arc<CameraImage>]) -> Vec<&CameraImage> {
 }
 
 impl Figures {
-    fn add(&mut self, index: u64, nets: &Arc<PictureNets>, segmenter: &PictureSegmenter) -> anyhow::Result<()> {
+    fn add(
+        &mut self,
+        index: u64,
+        nets: &Arc<PictureNets>,
+        segmenter: &PictureSegmenter,
+    ) -> anyhow::Result<()> {
         let (mut world, seed) = world_of(TEST_SEED, index, |_| None);
         let (frame, background) = (frame_of(&world), Background::default());
         let places = poses(&frame, &mut Draw::new(seed, "learned pictures"));
@@ -220,7 +231,8 @@ impl Figures {
         self.alone.push(without);
         self.gain.push(without - after);
         let renders_now: Vec<&CameraImage> = now.images.iter().collect();
-        self.rendered_after.push(now.since(&rendered, [&renders_now, &renders]));
+        self.rendered_after
+            .push(now.since(&rendered, [&renders_now, &renders]));
 
         let is_near = |b: &&SceneBox| {
             let away_m = (b.center_m - rig.vehicle.translation_m).truncate().length();
@@ -277,8 +289,16 @@ impl Options {
         let bars = vec![
             ("agreement as a share of the renderer's", share, AGREEMENT),
             ("gain by the frame before, beyond its interval", gain - half, 0.0),
-            ("longest time wanted / time of six pictures", LONGEST_S / median(&found.first_s), 1.0),
-            ("pixels changed elsewhere, negative", 0.0 - found.elsewhere_px as f64, 0.0),
+            (
+                "longest time wanted / time of six pictures",
+                LONGEST_S / median(&found.first_s),
+                1.0,
+            ),
+            (
+                "pixels changed elsewhere, negative",
+                0.0 - found.elsewhere_px as f64,
+                0.0,
+            ),
         ];
         Ok((report, bars))
     }

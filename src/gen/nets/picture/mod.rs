@@ -145,11 +145,7 @@ impl PictureNets {
 }
 
 /// Fails unless both sides of a picture, px, are multiples of `unit` up to 8192.
-fn check_sides(
-    [height, width]: [usize; 2],
-    unit: usize,
-    expected: &'static str,
-) -> Result<(), ModelError> {
+fn check_sides([height, width]: [usize; 2], unit: usize, expected: &'static str) -> Result<(), ModelError> {
     for (what, found) in [("picture height", height), ("picture width", width)] {
         if !(1..=MOST_PX).contains(&found) || !found.is_multiple_of(unit) {
             return Err(ModelError::OutOfRange {

@@ -73,10 +73,18 @@ impl<B: Ops> PictureSegmenter<B> {
     /// Of pictures `[n][height][width][3]`, sRGB from -1 to 1, how likely each pixel shows each class, as logits
     /// `[n][height][width][22]`. Height and width are multiples of 8 px. Errors if the sizes do not fit or a number is not
     /// finite.
-    pub fn logits(&self, pictures: &[f32], sides @ [height, width]: [usize; 2]) -> Result<Vec<f32>, ModelError> {
+    pub fn logits(
+        &self,
+        pictures: &[f32],
+        sides @ [height, width]: [usize; 2],
+    ) -> Result<Vec<f32>, ModelError> {
         check_sides(sides, CELL, "a multiple of 8 px up to 8192")?;
         let size = height * width * COLOURS;
-        check_length("pictures", pictures.len(), pictures.len().next_multiple_of(size).max(size))?;
+        check_length(
+            "pictures",
+            pictures.len(),
+            pictures.len().next_multiple_of(size).max(size),
+        )?;
         check_finite("picture", pictures)?;
         let each = pictures.par_chunks(size).map(|picture| {
             let logits = self.of_one(Map {

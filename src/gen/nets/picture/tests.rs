@@ -124,8 +124,8 @@ fn vae_against_the_twin() {
     let logits = segmenter.logits(first, PIXELS).expect("finite");
     golden.compare("segmented", &logits);
     let classes = segmenter.classes(first, PIXELS).expect("finite");
-    let [class, pixel] = [classes[77], 77];
-    assert!((0..SHOWN).all(|c| logits[pixel * SHOWN + c] <= logits[pixel * SHOWN + usize::from(class)]));
+    let of_pixel = &logits[77 * SHOWN..78 * SHOWN];
+    assert!(of_pixel.iter().all(|l| *l <= of_pixel[usize::from(classes[77])]));
 }
 
 #[test]
@@ -170,6 +170,46 @@ fn transformer_against_the_twin() {
     assert_eq!(dit.sample(&x, &sampling, go_on).expect("finite"), made);
     let stopped = dit.sample(&x, &sampling, |_| ControlFlow::Break(()));
     assert_eq!(stopped, Err(ModelError::Stopped { step: 1, steps: 4 }));
+}
+
+/// What is not painted again stays at every step, to the bit; the same again is the same again.
+#[test]
+fn some_cells_are_painted_again() {
+    let (nets, size) = (nets(), size());
+    let (mut condition, dit) = (condition(size), &nets.dit);
+    let x = uniform(VIEWS * size.view_cells() * 8, 1);
+    let told = dit.tell(&condition).expect("a condition");
+    let sampling = |told| Sampling {
+        told,
+        silent: None,
+        before: None,
+        steps: 2,
+        guidance: 2.0,
+    };
+    let first = dit.sample(&x, &sampling(&told), go_on).expect("finite");
+    let mask: Vec<bool> = (0..VIEWS * size.view_cells()).map(|i| i % 5 == 0).collect();
+    let again = dit
+        .resample(&first, &mask, &sampling(&told), go_on)
+        .expect("finite");
+    assert!(again == first, "nothing else was told");
+    condition.classes.iter_mut().for_each(|c| *c = (*c + 1) % 20);
+    let other = dit.tell(&condition).expect("a condition");
+    let changed = dit
+        .resample(&first, &mask, &sampling(&other), go_on)
+        .expect("finite");
+    for (old, new) in first.states.iter().zip(&changed.states).skip(1) {
+        for (cell, (old, new)) in old.chunks(8).zip(new.chunks(8)).enumerate() {
+            assert_eq!(old == new, !mask[cell], "cell {cell}");
+        }
+    }
+    let stopped = dit.resample(&first, &mask, &sampling(&other), |_| ControlFlow::Break(()));
+    assert_eq!(stopped, Err(ModelError::Stopped { step: 1, steps: 2 }));
+    let mut more = sampling(&other);
+    more.steps = 3;
+    assert!(
+        dit.resample(&first, &mask, &more, go_on).is_err(),
+        "steps of another run"
+    );
 }
 
 /// The comparison can fail: views that are confused, or left and right exchanged, differ by more than it allows.

@@ -1,8 +1,8 @@
 //! Boxes and lanes in perspective, hidden or not.
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
-    ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
+    SourceId, View, ViewId,
 };
 use crate::perspective;
 use scene::{Camera, Frame};

@@ -7,8 +7,8 @@ use glam::{DQuat, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
-    ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
+    SourceId, View, ViewId,
 };
 use crate::appearance::{Appearance, CameraImage};
 use crate::rays::CameraRays;

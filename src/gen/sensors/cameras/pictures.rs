@@ -1,8 +1,8 @@
 //! What a camera would see, by day or night and in any weather: the analytic renderer.
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
-    ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
+    SourceId, View, ViewId,
 };
 use crate::appearance::Appearance;
 use scene::Camera;

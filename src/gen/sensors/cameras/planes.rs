@@ -1,8 +1,8 @@
 //! Semantic multi-plane images.
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras, RenderOptions, SourceId,
-    View, ViewId,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras, RenderOptions,
+    SourceId, View, ViewId,
 };
 use crate::march::GroundHeight;
 use crate::mpi::{self, RenderIds};
@@ -71,6 +71,12 @@ impl PreparedCameras for Ready {
         _card: Option<&mut dyn Card>,
     ) -> Result<CameraPicture, CameraError> {
         let [width, height] = options.size;
-        Ok(CameraPicture::Planes(mpi::render(&self.0, camera, width, height, Planes::default())))
+        Ok(CameraPicture::Planes(mpi::render(
+            &self.0,
+            camera,
+            width,
+            height,
+            Planes::default(),
+        )))
     }
 }

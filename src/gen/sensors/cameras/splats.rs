@@ -2,8 +2,8 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras, RenderOptions, SourceId,
-    View,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras,
+    RenderOptions, SourceId, View,
 };
 use crate::cloud::GaussianCloud;
 use crate::march::GroundHeight;

@@ -2,7 +2,8 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions, SourceId, View,
+    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
+    SourceId, View,
 };
 use crate::appearance::Appearance;
 use scene::truth::{OUTSIDE, STOP_LINE};

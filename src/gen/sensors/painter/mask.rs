@@ -14,9 +14,8 @@ pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>>
     let [height, width] = size.pixels();
     let of_view = |view: usize| {
         let ((a, old), (b, new)) = (then.pixels(view), now.pixels(view));
-        let told = |i: usize| {
-            a.class[i] != b.class[i] || a.depth_m[i] != b.depth_m[i] || a.facing[i] != b.facing[i]
-        };
+        let told =
+            |i: usize| a.class[i] != b.class[i] || a.depth_m[i] != b.depth_m[i] || a.facing[i] != b.facing[i];
         let lit = |i: usize| {
             let at = i / width / HALF * (width / HALF) + i % width / HALF;
             old[at].iter().zip(new[at]).any(|(a, b)| a.abs_diff(b) > LIGHT)
@@ -55,7 +54,8 @@ pub(super) fn shares(changed: &[bool], width: usize) -> Vec<f32> {
             for x in 0..width {
                 let near = |(x, y): (usize, usize)| before[y * width + x] > share;
                 let rows = y.saturating_sub(1)..(y + 2).min(height);
-                let mut around = rows.flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| (x, y)));
+                let mut around =
+                    rows.flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| (x, y)));
                 let at = &mut shares[y * width + x];
                 if *at == 0.0 && around.any(near) {
                     *at = share;

@@ -142,7 +142,12 @@ impl Painter {
         };
         let on_step = |view: diffusion::solver::StepView<'_>| {
             let (step, steps) = (view.step, view.steps);
-            let clean = || view.clean_estimate().iter().map(|v| *v as f32).collect::<Vec<_>>();
+            let clean = || {
+                view.clean_estimate()
+                    .iter()
+                    .map(|v| *v as f32)
+                    .collect::<Vec<_>>()
+            };
             // The last step is followed by the pictures themselves.
             let preview = order.first().filter(|_| step < steps);
             let image = preview.and_then(|first| brush.image(*first, &clean(), &seen).ok());
@@ -187,7 +192,9 @@ impl Painter {
         let kept = |view: usize| source.map(|s| s.images[view].clone());
         let images = images.into_iter().enumerate();
         Ok(Painted {
-            images: images.filter_map(|(view, image)| image.or_else(|| kept(view))).collect(),
+            images: images
+                .filter_map(|(view, image)| image.or_else(|| kept(view)))
+                .collect(),
             trajectory,
             seen,
         })
@@ -195,7 +202,11 @@ impl Painter {
 
     /// The newest frame that was painted, if these cameras stood near by then, as their cells see it.
     fn before(&self, seen: &Seen, size: RingSize) -> Result<Option<Before>, CameraError> {
-        let near = self.kept.iter().rev().find_map(|p| Some((p, seen.motion_since(&p.seen, size)?)));
+        let near = self
+            .kept
+            .iter()
+            .rev()
+            .find_map(|p| Some((p, seen.motion_since(&p.seen, size)?)));
         let Some((painted, motions)) = near else {
             return Ok(None);
         };
@@ -223,7 +234,11 @@ impl Brush<'_> {
     fn image(&self, view: usize, latents: &[f32], seen: &Seen) -> Result<CameraImage, CameraError> {
         let numbers = latents.len() / self.size.views();
         let latents = &latents[view * numbers..][..numbers];
-        let colors = self.nets.vae.decode(latents, self.size.cells()).map_err(network)?;
+        let colors = self
+            .nets
+            .vae
+            .decode(latents, self.size.cells())
+            .map_err(network)?;
         let [height, width] = self.size.pixels();
         let byte = |v: f32| ((v + 1.0) * 127.5).round().clamp(0.0, 255.0) as u8;
         let mut image = CameraImage {

@@ -81,14 +81,19 @@ impl Seen {
 
     /// Depths of all pixels, `[view][height][width]`, m; 0 where there is nothing.
     pub fn depth_m(&self) -> Vec<f32> {
-        self.views.iter().flat_map(|v| v.hints.depth_m.iter().copied()).collect()
+        self.views
+            .iter()
+            .flat_map(|v| v.hints.depth_m.iter().copied())
+            .collect()
     }
 
     /// What the transformer hears.
     pub fn condition(&self, size: RingSize) -> Condition {
         let bytes = |of: fn(&PictureHints) -> &[u8]| {
             let views = self.views.iter();
-            views.flat_map(|v| of(&v.hints).iter().copied()).collect::<Vec<u8>>()
+            views
+                .flat_map(|v| of(&v.hints).iter().copied())
+                .collect::<Vec<u8>>()
         };
         let to_light = light_direction(&self.conditions).as_dvec3();
         let numbers = |camera: &Camera| -> [f32; CAMERA_NUMBERS] {

@@ -55,7 +55,10 @@ fn with_and_without_a_car() -> (Frame, Frame, BoxId) {
 fn an_edit_changes_what_it_touches_and_nothing_else() {
     let (with, without, id) = with_and_without_a_car();
     let (rig, background) = (SensorRig::default(), Background::default());
-    let (before, after) = (input(&with, &rig, &background), input(&without, &rig, &background));
+    let (before, after) = (
+        input(&with, &rig, &background),
+        input(&without, &rig, &background),
+    );
     let mut painter = painter();
     let old = painter.paint(&before, go_on).expect("pictures");
     let mut news = Vec::new();
@@ -93,14 +96,22 @@ fn an_edit_changes_what_it_touches_and_nothing_else() {
         }
     }
     let all = ring.size.views() * changed[0].len();
-    assert!(painted > 50 && painted < all / 4, "{painted} of {all} pixels painted");
-    assert!((1..6).contains(&touched_views), "box {id:?} is in {touched_views} views");
+    assert!(
+        painted > 50 && painted < all / 4,
+        "{painted} of {all} pixels painted"
+    );
+    assert!(
+        (1..6).contains(&touched_views),
+        "box {id:?} is in {touched_views} views"
+    );
     // News of a camera that is touched, with every step, and once more when the picture is there.
     assert_eq!(news.iter().map(|(step, _)| *step).collect::<Vec<_>>(), [1, 2, 2]);
     assert!(news[0].1.is_some() && news[2].1 == news[0].1);
 
     // Undone, the pictures are those of before; they were kept.
-    let again = painter.paint(&before, |_| panic!("painted again")).expect("pictures");
+    let again = painter
+        .paint(&before, |_| panic!("painted again"))
+        .expect("pictures");
     assert!(again.iter().zip(&old).all(|(a, b)| Arc::ptr_eq(a, b)));
     // Another painter makes the same ones.
     let other = self::painter().paint(&before, go_on).expect("pictures");
@@ -131,7 +142,9 @@ fn a_drive_goes_on_from_the_frame_before() {
     let moved = |ahead_m: f64, turn_rad: f64| rig.placed(&Pose::planar(ahead_m, 0.0, turn_rad));
     let known = |ahead_m: f64, turn_rad: f64| {
         let rig = moved(ahead_m, turn_rad);
-        seen(&input(&frame, &rig, &background)).motion_since(&then, ring.size).is_some()
+        seen(&input(&frame, &rig, &background))
+            .motion_since(&then, ring.size)
+            .is_some()
     };
     assert!(known(1.0, 0.1) && !known(9.0, 0.0) && !known(0.5, 1.0));
     let rig_ahead = moved(1.0, 0.0);
@@ -185,7 +198,10 @@ fn odd_rigs_are_painted_or_refused() {
     }
     let many = (0..65).map(|i| Camera::new(&format!("C{i}"), 60.0)).collect();
     let error = paint(many).expect_err("too many").to_string();
-    assert_eq!(error, "learned pictures: number of cameras is 65, expected 1 to 64");
+    assert_eq!(
+        error,
+        "learned pictures: number of cameras is 65, expected 1 to 64"
+    );
 }
 
 #[test]
@@ -198,7 +214,14 @@ fn the_ring_runs_clockwise_and_begins_in_front() {
     let around: Vec<&str> = (0..6).map(|i| names[(front + i) % 6]).collect();
     assert_eq!(
         around,
-        ["FRONT", "FRONT_RIGHT", "BACK_RIGHT", "BACK", "BACK_LEFT", "FRONT_LEFT"]
+        [
+            "FRONT",
+            "FRONT_RIGHT",
+            "BACK_RIGHT",
+            "BACK",
+            "BACK_LEFT",
+            "FRONT_LEFT"
+        ]
     );
 }
 
@@ -212,7 +235,10 @@ fn new_paint_fades_out() {
     assert_eq!(shares[4 * 15 + 4], 0.25);
     let mut new = vec![200; 15 * 15 * 4];
     mask::blend(&vec![100; 15 * 15 * 4], &mut new, &shares);
-    assert_eq!([new[(7 * 15 + 7) * 4], new[(7 * 15 + 9) * 4], new[0]], [200, 150, 100]);
+    assert_eq!(
+        [new[(7 * 15 + 7) * 4], new[(7 * 15 + 9) * 4], new[0]],
+        [200, 150, 100]
+    );
 }
 
 /// Seconds of a painting: run with `--ignored --nocapture`.
@@ -232,9 +258,13 @@ fn seconds_of_a_painting() {
         drop(Seen::of(&input(&with, &rig, &background), &ring));
         let start = timed("look", start);
         let mut painter = Painter::new(nets.clone(), PaintOptions::default());
-        painter.paint(&input(&with, &rig, &background), go_on).expect("pictures");
+        painter
+            .paint(&input(&with, &rig, &background), go_on)
+            .expect("pictures");
         let start = timed("look and paint all", start);
-        painter.paint(&input(&without, &rig, &background), go_on).expect("pictures");
+        painter
+            .paint(&input(&without, &rig, &background), go_on)
+            .expect("pictures");
         timed("look and paint an edit", start);
     }
 }
