@@ -10,6 +10,7 @@ use language::t;
 use scene::Scene;
 use sensors::cameras::{self, CameraInput, CameraSource, Detail, SourceId, ViewId};
 use sensors::march::MarchScene;
+use sensors::painter::PaintInput;
 use viewport::LidarColorMode;
 use widgets::theme;
 
@@ -224,6 +225,15 @@ pub fn camera_input(scene: &Scene, detail: Detail) -> CameraInput<'_> {
         background: &scene.background,
         conditions: scene.conditions,
         detail,
+    }
+}
+
+/// The current frame as the picture networks take it.
+pub fn paint_input(scene: &Scene) -> PaintInput<'_> {
+    PaintInput {
+        frame: scene.frame(),
+        rig: &scene.rig,
+        conditions: scene.conditions,
     }
 }
 

@@ -14,7 +14,7 @@ use sensors::cameras::{
 use sensors::painter::{PaintOptions, Painter};
 use viewport::ViewCamera;
 
-use crate::camera_views::camera_input;
+use crate::camera_views::{camera_input, paint_input};
 use crate::picture::{self, Picture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// What is shown.
@@ -208,7 +208,7 @@ fn pictures(scene: &Scene, options: &ClipOptions, painter: Option<&mut Painter>)
     };
     let scene = scene.with_rig_in_world();
     if let Some(painter) = painter {
-        let painted = painter.paint(&camera_input(&scene, Detail::Full), |_| ControlFlow::Continue(()))?;
+        let painted = painter.paint(&paint_input(&scene), |_| ControlFlow::Continue(()))?;
         let shown = painted
             .iter()
             .enumerate()

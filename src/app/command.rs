@@ -95,6 +95,8 @@ pub enum ViewCommand {
     Cameras(ViewId),
     /// Ends the painting of learned pictures; they stay as they are by then.
     StopPainting,
+    /// Paints them after all.
+    PaintAgain,
     /// Enlarges that camera, or shows the strip again.
     Inspect(Option<usize>),
     /// Keeps where the large views stand under a number.

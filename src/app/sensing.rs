@@ -14,7 +14,8 @@ use super::camera_views::LidarModel;
 use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Wanted, camera_input};
 use super::graphics::Graphics;
 use job::guard::Panicked;
-use job::product::{Ctx, Product, Worker};
+use job::product::{Ctx, Product, Wake, Worker};
+use language::tf;
 use nets::lidar::LidarNet;
 use scene::{LidarSweep, Scene, SceneRev, SensorRig};
 use sensors::appearance::Quality;
@@ -27,7 +28,7 @@ use sensors::rolling;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
 pub use painting::PaintSettings;
-use painting::{Painted, Painting};
+use painting::Painting;
 
 /// Rays whose samples are shown at most: more would cover the map.
 const SHOWN_RAYS: usize = 400;
@@ -37,7 +38,6 @@ struct Request {
     scene: Arc<Scene>,
     wanted: Wanted,
     preview: bool,
-    paint: Arc<PaintSettings>,
 }
 
 /// News from the thread.
@@ -46,12 +46,6 @@ enum News {
     Cameras(SceneRev, Wanted, Vec<CameraView>),
     /// Cameras of another source.
     Other(SceneRev, SourceId, Vec<CameraView>),
-    /// Steps done and all steps of pictures that are painted; none once they are.
-    Step(Option<(usize, usize)>),
-    /// How a picture that is still being painted looks by now.
-    Unfinished(SourceId, CameraView),
-    /// Pictures that cannot be had, and why.
-    Problem(String),
     /// All of a scene was sensed, or a newer one waits.
     Ended,
     Failed(Panicked),
@@ -67,27 +61,36 @@ pub struct Sensing {
     others: Vec<(SceneRev, SourceId, Arc<Vec<CameraView>>)>,
     version: u64,
     problem: Option<String>,
+    painting: Worker<painting::Request, painting::News>,
     paint: Arc<PaintSettings>,
+    /// The learned pictures of all cameras, and of which state.
+    painted: Option<(SceneRev, Arc<Vec<CameraView>>)>,
     step: Option<(usize, usize)>,
     stop: Arc<AtomicBool>,
+    /// The painting was stopped, or failed, and nothing has changed since.
+    stopped: bool,
+}
+
+impl Drop for Sensing {
+    fn drop(&mut self) {
+        self.stop_painting();
+    }
 }
 
 impl Sensing {
     /// Starts the thread `sensing`, which takes up a scene after a `grace`: where the processor draws, an edit is shown
     /// first. `wake` is called after each piece of news. Errors if the system gives no thread.
     pub fn spawn(grace: Duration, wake: impl Fn() + Send + Sync + 'static) -> std::io::Result<Self> {
-        let stop = Arc::new(AtomicBool::new(false));
-        let stops = stop.clone();
         let senses = move || Senses {
             grace,
             rested: false,
-            kept: Kept {
-                stop: stops.clone(),
-                ..Kept::default()
-            },
+            kept: Kept::default(),
         };
+        let stop = Arc::new(AtomicBool::new(false));
+        let (stops, wake): (_, Wake) = (stop.clone(), Arc::new(wake));
         Ok(Self {
-            worker: Worker::start("sensing", senses, Arc::new(wake))?,
+            painting: Worker::start("painting", move || Painting::new(stops), wake.clone())?,
+            worker: Worker::start("sensing", senses, wake)?,
             asked: None,
             lidar: None,
             sampled: None,
@@ -96,8 +99,10 @@ impl Sensing {
             version: 0,
             problem: None,
             paint: Arc::default(),
+            painted: None,
             step: None,
             stop,
+            stopped: false,
         })
     }
 
@@ -119,6 +124,16 @@ impl Sensing {
         self.stop.store(true, Ordering::Relaxed);
     }
 
+    /// True if the painting was stopped, or failed, and nothing has changed since.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Paints after all.
+    pub fn paint_again(&mut self) {
+        self.asked = None;
+    }
+
     /// Asks for a scene, unless the same was asked for already. A preview has smaller pictures.
     pub fn ask(&mut self, scene: &Arc<Scene>, wanted: Wanted, preview: bool) {
         let known = |(rev, was, was_preview): (SceneRev, Wanted, bool)| {
@@ -132,17 +147,81 @@ impl Sensing {
             Cow::Borrowed(_) => scene.clone(),
             Cow::Owned(placed) => Arc::new(placed),
         };
-        self.stop.store(false, Ordering::Relaxed);
+        let mut sources = wanted.others.iter().map(|(source, _)| source);
+        if wanted.source == learned::ID || sources.any(|source| source == learned::ID) {
+            self.paint(scene.clone(), wanted, preview);
+        }
         self.worker.submit(Request {
             scene,
             wanted,
             preview,
-            paint: self.paint.clone(),
         });
+    }
+
+    fn paint(&mut self, scene: Arc<Scene>, wanted: Wanted, moving: bool) {
+        self.stop.store(false, Ordering::Relaxed);
+        self.stopped = false;
+        // What is there already is shown at once; whether it is out of date shows by its state.
+        if let Some((rev, views)) = self.painted.clone() {
+            self.show_painted(rev, &views, Some(wanted));
+        }
+        self.painting.submit(painting::Request {
+            scene,
+            settings: self.paint.clone(),
+            moving,
+        });
+    }
+
+    /// Shows learned pictures where the strip or panes want them.
+    fn show_painted(&mut self, rev: SceneRev, views: &Arc<Vec<CameraView>>, wanted: Option<Wanted>) {
+        self.version += 1;
+        match wanted {
+            Some(wanted) if wanted.source == learned::ID => {
+                let shown = |v: &&CameraView| v.camera >= 32 || wanted.hidden >> v.camera & 1 == 0;
+                let shown = views.iter().filter(shown).cloned().collect();
+                self.cameras = Some((rev, wanted, Arc::new(shown)));
+            }
+            _ => {
+                self.others.retain(|(_, of, _)| *of != learned::ID);
+                self.others.push((rev, learned::ID, views.clone()));
+            }
+        }
+    }
+
+    fn drain_painting(&mut self) {
+        let news: Vec<_> = self.painting.updates().try_iter().collect();
+        for news in news.into_iter().map(|event| event.update) {
+            let wanted = self.asked.map(|(_, wanted, _)| wanted);
+            match news {
+                painting::News::Step(step, view) => {
+                    self.step = Some(step);
+                    // A state that no scene has: the pictures stay out of date while one of them changes.
+                    let shown = self.painted.as_ref().map(|(_, views)| views);
+                    if let Some(view) = view {
+                        let shown = shown.or(self.cameras()).map_or(&[][..], |views| views);
+                        let views = Arc::new(painting::with(shown, view));
+                        self.show_painted(SceneRev::fresh(), &views, wanted);
+                    }
+                }
+                painting::News::Painted(rev, views) => {
+                    self.step = None;
+                    let views = Arc::new(views);
+                    self.painted = Some((rev, views.clone()));
+                    self.show_painted(rev, &views, wanted);
+                }
+                painting::News::Stopped => (self.step, self.stopped) = (None, true),
+                painting::News::GivenUp => self.step = None,
+                painting::News::Problem(problem) => {
+                    (self.step, self.stopped) = (None, true);
+                    self.problem = Some(tf!("No learned pictures: {problem}", problem = problem));
+                }
+            }
+        }
     }
 
     /// Takes in what has arrived.
     pub fn drain(&mut self) {
+        self.drain_painting();
         for news in self.worker.updates().try_iter().map(|event| event.update) {
             match news {
                 News::Lidar(rev, sweep, sampled) => {
@@ -159,27 +238,11 @@ impl Sensing {
                     self.others.push((rev, source, Arc::new(views)));
                     self.version += 1;
                 }
-                News::Step(step) => self.step = step,
-                News::Unfinished(source, view) => {
-                    // The others are shown as they were until their turn comes. A state that no scene has: they stay out of date.
-                    let rev = SceneRev::fresh();
-                    match self.asked.map(|(_, wanted, _)| wanted) {
-                        Some(wanted) if wanted.source == source => {
-                            let views = painting::with(self.cameras().map(|v| &v[..]), view);
-                            self.cameras = Some((rev, wanted, Arc::new(views)));
-                        }
-                        _ => {
-                            let shown = self.others.iter().position(|(_, of, _)| *of == source);
-                            let shown = shown.map(|at| self.others.swap_remove(at).2);
-                            let views = painting::with(shown.as_ref().map(|v| &v[..]), view);
-                            self.others.push((rev, source, Arc::new(views)));
-                        }
-                    }
-                    self.version += 1;
+                News::Ended => {}
+                News::Failed(panic) => {
+                    let problem = tf!("The sensors show an older scene: {problem}", problem = panic);
+                    self.problem = Some(problem);
                 }
-                News::Problem(problem) => self.problem = Some(problem),
-                News::Ended => self.step = None,
-                News::Failed(panic) => self.problem = Some(panic.to_string()),
             }
         }
     }
@@ -270,10 +333,7 @@ impl Product for Senses {
     }
 
     fn reset(&mut self) {
-        self.kept = Kept {
-            stop: self.kept.stop.clone(),
-            ..Kept::default()
-        };
+        self.kept = Kept::default();
     }
 
     fn given_up() -> News {
@@ -304,9 +364,6 @@ struct Kept {
     /// What is rendered of other sources: state, source, cameras.
     others: Vec<(SceneRev, SourceId, u32, Vec<CameraView>)>,
     swept: Option<(SceneRev, LidarModel, bool)>,
-    painting: Painting,
-    /// The user has enough of the painting.
-    stop: Arc<AtomicBool>,
     /// The graphics card, once views that it can draw were asked for.
     graphics: Option<Option<Graphics>>,
 }
@@ -382,16 +439,8 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         scene,
         wanted,
         preview,
-        ..
     } = request;
     let rig = &scene.rig;
-    if kept.painting.set(&request.paint) {
-        kept.views = kept
-            .views
-            .take()
-            .filter(|((_, (source, _)), _)| *source != learned::ID);
-        kept.others.retain(|(_, source, ..)| *source != learned::ID);
-    }
     let swept = (scene.rev, wanted.lidar, wanted.lost_echoes);
     if kept.swept != Some(swept) {
         let sweep = kept.sweep(scene, wanted);
@@ -405,14 +454,8 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     }
     let key = (scene.rev, wanted.pictures());
     let source = wanted.camera_source();
+    // Those are painted on a thread of their own.
     if source.id() == learned::ID {
-        let shown = |camera| camera >= 32 || wanted.hidden >> camera & 1 == 0;
-        let known = kept.views.as_ref().filter(|(of, _)| *of == key);
-        let known = known.map(|(_, views)| views.clone());
-        if let Some(views) = known.or_else(|| paint(request, shown, kept, ctx)) {
-            kept.views = Some((key, views.clone()));
-            ctx.tell(News::Cameras(scene.rev, *wanted, views));
-        }
         return other_sources(request, kept, ctx);
     }
     let (mut ready, graphics) = (None, &mut kept.graphics);
@@ -483,57 +526,17 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     other_sources(request, kept, ctx);
 }
 
-/// Cameras as the networks paint them; none if that is not over yet. While the user drags nothing is painted.
-fn paint(
-    request: &Request,
-    shown: impl Fn(usize) -> bool,
-    kept: &mut Kept,
-    ctx: &Ctx<'_, News>,
-) -> Option<Vec<CameraView>> {
-    if request.preview {
-        return None;
-    }
-    let tell = |step, view| {
-        ctx.tell(News::Step(Some(step)));
-        if let Some(view) = view {
-            ctx.tell(News::Unfinished(learned::ID, view));
-        }
-    };
-    let stop = kept.stop.clone();
-    let stops = || ctx.should_stop() || stop.load(Ordering::Relaxed);
-    let painted = kept.painting.paint(&request.scene, shown, tell, stops);
-    ctx.tell(News::Step(None));
-    match painted {
-        Painted::Done(views) => Some(views),
-        Painted::Stopped => None,
-        Painted::Problem(problem) => {
-            ctx.tell(News::Problem(problem));
-            None
-        }
-    }
-}
-
 /// What panes of single cameras show of other sources than the strip.
 fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
     let Request {
         scene,
         wanted,
         preview,
-        ..
     } = request;
-    for (id, mask) in wanted.others.iter() {
+    for (id, mask) in wanted.others.iter().filter(|(id, _)| *id != learned::ID) {
         let is_known = |o: &&(SceneRev, SourceId, u32, _)| (o.0, o.1, o.2) == (scene.rev, id, mask);
         if let Some((.., views)) = kept.others.iter().find(is_known) {
             ctx.tell(News::Other(scene.rev, id, views.clone()));
-            continue;
-        }
-        if id == learned::ID {
-            let shown = |camera| camera < 32 && mask >> camera & 1 == 1;
-            if let Some(views) = paint(request, shown, kept, ctx) {
-                ctx.tell(News::Other(scene.rev, id, views.clone()));
-                kept.others.retain(|(_, of, ..)| *of != id);
-                kept.others.push((scene.rev, id, mask, views));
-            }
             continue;
         }
         let source = sensors::cameras::source(id).unwrap_or(&sensors::cameras::shapes::Shapes);

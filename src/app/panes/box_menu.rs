@@ -143,7 +143,7 @@ fn of_box(ui: &mut Ui, scene: &Scene, state: &UiState, b: &SceneBox, commands: &
         return;
     }
     ui.separator();
-    ui.menu_button(t("Let it move"), |ui| {
+    widgets::menu::with_fields(ui, t("Let it move"), |ui| {
         ui.set_min_width(220.0);
         motions(ui, scene, (Some(b.id), Some(b.class)), commands);
     });

@@ -122,8 +122,7 @@ impl Pane for Camera {
             .accessible_name(t("Camera picture"));
         let source = cameras::source_of(view, cx.state.cameras.source);
         if source.needs().conditions {
-            ui.menu_button(t("Light…"), |ui| conditions(ui, cx.scene, commands))
-                .response
+            widgets::menu::with_fields(ui, t("Light…"), |ui| conditions(ui, cx.scene, commands))
                 .on_hover_text(t("Time of day and weather of the scene"));
         }
     }

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::camera_views::CamerasShown;
 use crate::command::{Command, ViewCommand, Window};
 use language::{t, tf};
-use sensors::cameras::{self, Knob};
+use sensors::cameras::{self, Knob, learned};
 use widgets::icons;
 use widgets::theme;
 
@@ -17,18 +17,29 @@ const SENSORS_BUTTON: f32 = 84.0;
 /// Width that the number of LiDAR returns takes, points.
 const LIDAR_TEXT: f32 = 130.0;
 
-/// Width of the row of sources, points.
+/// Width of the row of sources, and of the list that takes its place, points.
 const SOURCES: f32 = 270.0;
+const FOLDED: f32 = 130.0;
 
 /// That newer pictures are on their way, and how far those are that are painted, which can be stopped.
-fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
-    let text = match input.step {
+pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
+    let weak = |text: String| egui::RichText::new(text).small().color(theme::text_weak());
+    let paints = input.view == learned::VIEW.id;
+    if paints && input.stopped {
+        ui.label(weak(t("stopped").to_owned()));
+        if ui.small_button(t("Go on")).clicked() {
+            commands.push(Command::View(ViewCommand::PaintAgain));
+        }
+        return;
+    }
+    let step = input.step.filter(|_| paints);
+    let text = match step {
         Some((step, steps)) => tf!("painting, {step} of {steps}", step = step, steps = steps),
         None => t("updating").to_owned(),
     };
     ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
-    ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
-    if input.step.is_some() {
+    ui.label(weak(text));
+    if step.is_some() {
         let stop = ui.small_button(t("Stop"));
         let hint = t("The pictures stay as they are by now until something changes");
         if stop.on_hover_text(hint).clicked() {
@@ -51,7 +62,12 @@ pub fn header(
         let sources = cameras::sources_of(shown.view);
         // Room is left for the sources beside them.
         ui.scope(|ui| {
-            let beside = if sources.len() > 1 { SOURCES } else { 0.0 };
+            let all = icons::segments_width(ui, &choices) + SOURCES;
+            let beside = match sources.len() {
+                ..=1 => 0.0,
+                _ if ui.available_width() >= all => SOURCES,
+                _ => FOLDED,
+            };
             ui.set_max_width(ui.available_width() - beside);
             icons::choice(ui, &mut shown.view, &choices, t("Cameras"));
         });

@@ -4,8 +4,9 @@ use egui::{Color32, Rect, Ui, pos2, vec2};
 
 use language::t;
 use scene::Class;
-use sensors::cameras::{CameraPicture, DEPTH_M, ViewId};
+use sensors::cameras::{CameraPicture, DEPTH_M, ViewId, perceived};
 use sensors::color::ramp;
+use sensors::perceived::{GHOST, MISSED};
 use widgets::theme;
 
 /// Classes that are named at most.
@@ -18,6 +19,11 @@ pub(super) fn draw(ui: &Ui, over: Rect, picture: &CameraPicture, view: ViewId) {
     match picture {
         CameraPicture::Maps(_) if view == ViewId::DEPTH => depths(ui, over),
         CameraPicture::Maps(maps) => classes(ui, over, &shown(&maps.semantic)),
+        CameraPicture::Picture(_) if view == perceived::VIEW.id => {
+            let rows = [(MISSED, "missed"), (GHOST, "a thing where there is none")];
+            let rows = rows.map(|([r, g, b], what)| (Color32::from_rgb(r, g, b), t(what).to_owned()));
+            named(ui, over, rows.into());
+        }
         _ => {}
     }
 }
@@ -35,16 +41,21 @@ fn shown(labels: &[u8]) -> Vec<Class> {
 }
 
 fn classes(ui: &Ui, over: Rect, classes: &[Class]) {
+    let rows = classes
+        .iter()
+        .map(|c| (theme::class_color(*c), t(&c.label()).to_owned()));
+    named(ui, over, rows.collect());
+}
+
+/// Colours and what they mean.
+fn named(ui: &Ui, over: Rect, rows: Vec<(Color32, String)>) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter_at(over);
-    let rows: Vec<_> = classes
-        .iter()
-        .map(|c| {
-            (
-                theme::class_color(*c),
-                painter.layout_no_wrap(theme::sentence(t(&c.label())), font.clone(), theme::ON_CANVAS),
-            )
-        })
+    let layout =
+        |text: String| painter.layout_no_wrap(theme::sentence(&text), font.clone(), theme::ON_CANVAS);
+    let rows: Vec<_> = rows
+        .into_iter()
+        .map(|(color, text)| (color, layout(text)))
         .collect();
     let width = rows.iter().map(|r| r.1.size().x).fold(0.0, f32::max) + 28.0;
     let line = font.size + 4.0;

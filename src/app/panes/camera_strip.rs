@@ -51,6 +51,8 @@ pub struct CamerasInput<'a> {
     pub stale: bool,
     /// Steps done and all steps of pictures that are being painted.
     pub step: Option<(usize, usize)>,
+    /// That painting was stopped, or failed.
+    pub stopped: bool,
     /// Returns of the newest sweep.
     pub lidar_points: Option<usize>,
     /// What they show.
@@ -67,6 +69,7 @@ impl<'a> CamerasInput<'a> {
             views: sensing.cameras(),
             stale: sensing.cameras_stale(rev),
             step: sensing.step(),
+            stopped: sensing.is_stopped(),
             lidar_points: sensing.lidar().map(|l| l.points.len()),
             view: shown.view,
             plane_m: shown.plane_m,

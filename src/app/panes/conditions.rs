@@ -35,8 +35,7 @@ pub fn conditions(ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
     if (time, weather) != (now.time, now.weather) {
         commands.push(becomes(scene, time, weather));
     }
-    ui.menu_button(t("Air and sun…"), |ui| air_and_sun(ui, now, commands))
-        .response
+    widgets::menu::with_fields(ui, t("Air and sun…"), |ui| air_and_sun(ui, now, commands))
         .on_hover_text(t("Wet ground, visibility, sun and seed of the pictures"));
 }
 

@@ -161,7 +161,7 @@ pub(super) fn group_ui(
 
 /// What a right click on a group offers.
 fn menu(row: &egui::Response, group: &Group, commands: &mut Vec<Command>) {
-    row.context_menu(|ui| {
+    widgets::menu::on_right_click(row, |ui| {
         let memory = row.id.with("name of the group");
         let mut text: String = ui
             .data(|d| d.get_temp(memory))

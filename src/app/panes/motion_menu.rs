@@ -20,13 +20,11 @@ pub(super) fn menu(ui: &mut Ui, scene: &Scene, state: &UiState, commands: &mut V
         Some(b) => tf!("Motion of {object} {number}", object = called(b), number = b.id.0),
         None => t("Motion of the ego vehicle").to_owned(),
     };
-    let button = ui.menu_button(format!("{title}…"), |ui| {
+    let button = widgets::menu::with_fields(ui, format!("{title}…"), |ui| {
         ui.set_min_width(240.0);
         motions(ui, scene, (id, chosen.map(|b| b.class)), commands);
     });
-    button
-        .response
-        .on_hover_text(t("How it moves from now on; choose an object for its motion"));
+    button.on_hover_text(t("How it moves from now on; choose an object for its motion"));
 }
 
 /// The ways to move that a box, or (`None`) the ego vehicle, can be given.

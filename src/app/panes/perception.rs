@@ -10,7 +10,7 @@ use editor::Document;
 use language::{t, tf};
 use scene::{BoxId, Scene};
 use sensors::cameras::perceived;
-use sensors::perceived::SeenByRig;
+use sensors::perceived::{LEAST_PX, SeenByRig};
 use widgets::icons::{Icon, section};
 use widgets::theme;
 
@@ -227,7 +227,8 @@ fn search_ui(
                 }
             })
             .response
-            .on_hover_text(t("What is changed step by step until the box is missed"));
+            .on_hover_text(t("What is changed step by step until the box is missed"))
+            .accessible_name(t("Vary"));
         if ui.button(t("Search")).clicked() {
             perceiving.search(cx.document.scene(), b.id, *vary);
         }
@@ -243,6 +244,14 @@ fn found_ui(ui: &mut Ui, found: &Found, cx: &mut PaneContext<'_>, commands: &mut
     let Some(last) = found.search.tried.last() else {
         return;
     };
+    if found.search.tried.len() == 1 && last.sight.visible_px < LEAST_PX {
+        ui.label(tf!(
+            "Too small to be judged: {n} pixels, at least {least} are needed",
+            n = last.sight.visible_px,
+            least = LEAST_PX
+        ));
+        return;
+    }
     let percent = format!("{:.0}", last.sight.share * 100.0);
     let Some(edits) = &found.search.found else {
         ui.label(tf!(

@@ -75,7 +75,7 @@ pub(super) fn saved_brushes_ui(ui: &mut Ui, hand: &mut Hand, saved: &mut Vec<Sav
             if button.clicked() {
                 hand.take_brush(&brush.held);
             }
-            button.context_menu(|ui| {
+            widgets::menu::on_right_click(&button, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(t("Name"));
                     let field = egui::TextEdit::singleline(&mut brush.name).char_limit(LONGEST);

@@ -1,17 +1,20 @@
-//! Pictures by the picture networks for the window: which weights, how far the painting is, and the painter itself.
+//! Pictures by the picture networks for the window: which weights, and the thread that paints.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};
 
-use crate::camera_views::{CameraView, camera_input};
+use crate::camera_views::{CameraView, paint_input};
+use job::guard::Panicked;
+use job::product::{Ctx, Product};
 use nets::picture::PictureNets;
-use scene::Scene;
+use scene::{Scene, SceneRev};
 use sensors::appearance::CameraImage;
-use sensors::cameras::{CameraError, CameraPicture, Detail, learned};
-use sensors::painter::{PaintOptions, Painter, Progress};
+use sensors::cameras::{CameraPicture, learned};
+use sensors::painter::{PaintError, PaintOptions, Painter, Progress};
 
 /// How the user wants learned pictures to be painted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,73 +60,117 @@ impl PaintSettings {
     }
 }
 
-/// The painter, with what it was made for.
-#[derive(Default)]
+/// A scene to paint.
+pub(super) struct Request {
+    /// The scene, its rig in the world.
+    pub scene: Arc<Scene>,
+    /// How.
+    pub settings: Arc<PaintSettings>,
+    /// The scene still changes. Such a painting goes on when a newer scene comes: giving way would leave the strip without
+    /// any news for as long as the user drags.
+    pub moving: bool,
+}
+
+/// News from the thread.
+pub(super) enum News {
+    /// Steps done and all steps, and how a picture looks by now.
+    Step((usize, usize), Option<CameraView>),
+    /// The pictures of all cameras.
+    Painted(SceneRev, Vec<CameraView>),
+    /// The user stopped it.
+    Stopped,
+    /// There are none; why.
+    Problem(String),
+    /// A newer scene waits.
+    GivenUp,
+}
+
+/// Paints scenes, with what its painter was made for.
 pub(super) struct Painting {
     settings: Arc<PaintSettings>,
     painter: Option<Painter>,
-}
-
-/// What comes of a painting.
-pub(super) enum Painted {
-    /// The pictures of all cameras that are wanted.
-    Done(Vec<CameraView>),
-    /// It was stopped.
-    Stopped,
-    /// There is none; why.
-    Problem(String),
+    /// The user has enough of it.
+    stop: Arc<AtomicBool>,
 }
 
 impl Painting {
-    /// True if other settings than before are to be used from now on.
-    pub fn set(&mut self, settings: &Arc<PaintSettings>) -> bool {
-        let other = *self.settings != **settings;
-        if other {
+    /// Ends its present painting when `stop` is set.
+    pub fn new(stop: Arc<AtomicBool>) -> Self {
+        Self {
+            settings: Arc::default(),
+            painter: None,
+            stop,
+        }
+    }
+
+    fn painter(&mut self, settings: &Arc<PaintSettings>) -> Result<&mut Painter, String> {
+        if *self.settings != **settings {
             self.settings = settings.clone();
             self.painter = None;
         }
-        other
-    }
-
-    /// Paints the cameras of a scene. `tell` hears of every step, and how a picture looks by then; `stops` is asked after every
-    /// step.
-    pub fn paint(
-        &mut self,
-        scene: &Scene,
-        wanted: impl Fn(usize) -> bool,
-        mut tell: impl FnMut((usize, usize), Option<CameraView>),
-        stops: impl Fn() -> bool,
-    ) -> Painted {
-        if self.painter.is_none() {
-            let nets = match &self.settings.weights {
-                None => PictureNets::bundled(),
-                Some(folder) => PictureNets::from_dir(folder).map(Arc::new),
-            };
-            match nets {
-                Ok(nets) => self.painter = Some(Painter::new(nets, self.settings.options())),
-                Err(error) => return Painted::Problem(error.to_string()),
+        let painter = match self.painter.take() {
+            Some(painter) => painter,
+            None => {
+                let nets = match &settings.weights {
+                    None => PictureNets::bundled(),
+                    Some(folder) => PictureNets::from_dir(folder).map(Arc::new),
+                };
+                Painter::new(nets.map_err(|e| e.to_string())?, settings.options())
             }
-        }
-        let Some(painter) = &mut self.painter else {
-            return Painted::Stopped;
         };
-        let painted = painter.paint(&camera_input(scene, Detail::Live), |progress| {
+        Ok(self.painter.insert(painter))
+    }
+}
+
+impl Product for Painting {
+    type Request = Request;
+    type Update = News;
+
+    fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
+        let stop = self.stop.clone();
+        let painter = match self.painter(&request.settings) {
+            Ok(painter) => painter,
+            Err(problem) => return News::Problem(problem),
+        };
+        let painted = painter.paint(&paint_input(&request.scene), |progress| {
             let Progress { step, steps, news } = progress;
-            let news = news.filter(|(camera, _)| wanted(*camera));
-            tell((step, steps), news.map(|(camera, image)| view(camera, image)));
-            match stops() {
+            ctx.tell(News::Step(
+                (step, steps),
+                news.map(|(camera, image)| view(camera, image)),
+            ));
+            match stop.load(Ordering::Relaxed) || (ctx.should_stop() && !request.moving) {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             }
         });
         match painted {
             Ok(images) => {
-                let images = images.iter().enumerate().filter(|(camera, _)| wanted(*camera));
-                Painted::Done(images.map(|(camera, image)| view(camera, image)).collect())
+                let views = images
+                    .iter()
+                    .enumerate()
+                    .map(|(camera, image)| view(camera, image));
+                News::Painted(request.scene.rev, views.collect())
             }
-            Err(CameraError::Cancelled) => Painted::Stopped,
-            Err(error) => Painted::Problem(error.to_string()),
+            Err(PaintError::Stopped) if stop.load(Ordering::Relaxed) => News::Stopped,
+            Err(PaintError::Stopped) => News::GivenUp,
+            Err(error) => News::Problem(error.to_string()),
         }
+    }
+
+    fn reset(&mut self) {
+        self.painter = None;
+    }
+
+    fn given_up() -> News {
+        News::GivenUp
+    }
+
+    fn panicked(panic: Panicked) -> News {
+        News::Problem(panic.to_string())
+    }
+
+    fn is_terminal(news: &News) -> bool {
+        !matches!(news, News::Step(..))
     }
 }
 
@@ -132,8 +179,8 @@ fn view(camera: usize, image: &CameraImage) -> CameraView {
 }
 
 /// Pictures with that of one camera exchanged; the order stays that of the rig.
-pub(super) fn with(views: Option<&[CameraView]>, view: CameraView) -> Vec<CameraView> {
-    let mut views = views.map(<[_]>::to_vec).unwrap_or_default();
+pub(super) fn with(views: &[CameraView], view: CameraView) -> Vec<CameraView> {
+    let mut views = views.to_vec();
     match views.binary_search_by_key(&view.camera, |v| v.camera) {
         Ok(at) => views[at] = view,
         Err(at) => views.insert(at, view),

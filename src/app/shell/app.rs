@@ -269,10 +269,7 @@ impl SceneloomApp {
     pub fn update(&mut self, ctx: &egui::Context) {
         self.threads.sensing.drain();
         if let Some(problem) = self.threads.sensing.take_problem() {
-            self.fail(tf!(
-                "The sensors show an older scene: {problem}",
-                problem = problem
-            ));
+            self.fail(problem);
         }
         self.generation.tuning.update();
         if self.document.history_limit() != self.preferences.settings.history_bytes() {

@@ -73,7 +73,9 @@ impl SceneloomApp {
             FileCommand::ShapeOfChosen => self.ask_model(true, ctx),
             FileCommand::PictureWeights => {
                 let kept = self.preferences.settings.painting.weights.clone();
-                let suggestion = kept.unwrap_or_else(|| self.suggested(""));
+                let folder = self.suggested("loom");
+                let folder = folder.parent().unwrap_or(Path::new("")).to_owned();
+                let suggestion = kept.unwrap_or(folder);
                 self.files.dialogs.ask(Purpose::PictureWeights, &suggestion, ctx);
             }
             FileCommand::ImportRig => {

@@ -52,6 +52,7 @@ impl SceneloomApp {
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
             ViewCommand::LookThrough(index) => self.look_through(index),
             ViewCommand::Cameras(view) => self.state.cameras.view = view,
+            ViewCommand::PaintAgain => self.threads.sensing.paint_again(),
             ViewCommand::StopPainting => self.threads.sensing.stop_painting(),
             ViewCommand::Inspect(camera) => self.state.cameras.enlarged = camera,
             ViewCommand::SwapPanes => self.views.dock.swap(PaneId::BEV, PaneId::VIEW3D),

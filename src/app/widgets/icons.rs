@@ -114,15 +114,7 @@ pub fn choice<T: Copy + PartialEq>(
     choices: &[(T, &str, &str)],
     label: &str,
 ) -> bool {
-    let font = egui::TextStyle::Button.resolve(ui.style());
-    let width = |name: &str| {
-        let galley = ui
-            .painter()
-            .layout_no_wrap(name.to_owned(), font.clone(), theme::text());
-        galley.size().x + 18.0
-    };
-    let wanted: f32 = choices.iter().map(|(_, name, _)| width(name)).sum::<f32>() + 4.0;
-    if ui.available_width() >= wanted {
+    if ui.available_width() >= segments_width(ui, choices) {
         return segments(ui, chosen, choices);
     }
     let before = *chosen;
@@ -138,6 +130,18 @@ pub fn choice<T: Copy + PartialEq>(
         .response
         .accessible_name(label);
     *chosen != before
+}
+
+/// Width that choices side by side take, points.
+pub fn segments_width<T>(ui: &Ui, choices: &[(T, &str, &str)]) -> f32 {
+    let font = egui::TextStyle::Button.resolve(ui.style());
+    let width = |name: &str| {
+        let galley = ui
+            .painter()
+            .layout_no_wrap(name.to_owned(), font.clone(), theme::text());
+        galley.size().x + 18.0
+    };
+    choices.iter().map(|(_, name, _)| width(name)).sum::<f32>() + 4.0
 }
 
 /// Choices side by side, one of them chosen; true if it changed.

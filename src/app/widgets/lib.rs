@@ -7,6 +7,7 @@ pub mod hint;
 mod icon;
 mod icon_shapes;
 pub mod icons;
+pub mod menu;
 pub mod software_ui;
 pub mod theme;
 pub mod thumbnail;

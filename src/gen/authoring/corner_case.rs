@@ -153,7 +153,9 @@ pub fn search(
             out.found = Some(edits);
         }
         // What is too small to be missed becomes no larger farther away.
-        let gone = vary == Vary::Distance && tried.sight.visible_px < LEAST_PX;
+        // What is too small to be judged as it is needs no search.
+        let small = tried.sight.visible_px < LEAST_PX;
+        let gone = small && (vary == Vary::Distance || out.tried.len() == 1);
         if missed || ends || gone {
             break;
         }

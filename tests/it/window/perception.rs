@@ -2,6 +2,7 @@
 
 use app::command::{Command, ViewCommand};
 use app::panes::id::PaneId;
+use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use scene::{BoxId, Weather};
 
@@ -42,7 +43,9 @@ fn a_box_is_listed_and_a_change_is_found_after_which_it_is_missed() {
     assert_eq!(bench.app().state.selected, Some(BoxId(7)));
 
     // In fog it vanishes in the end.
-    bench.click("Distance");
+    let vary = bench.harness.get_by_role_and_label(Role::ComboBox, "Vary");
+    vary.click();
+    bench.steps(3);
     bench.click("Fog");
     bench.click("Search");
     bench.wait_until("the end of the search", |b| {

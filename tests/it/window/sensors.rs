@@ -6,7 +6,7 @@ use editor::Edit;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use scene::SensorRig;
-use sensors::cameras::{self, ViewId, layout, normals, pictures, planes};
+use sensors::cameras::{self, ViewId, layout, learned, normals, perceived, pictures, planes};
 
 use super::bench::Bench;
 
@@ -39,7 +39,10 @@ fn the_strip_shows_what_is_asked_for() {
             CameraPicture::Maps(_) => [ViewId::SEMANTIC, ViewId::DEPTH].contains(&view.id),
             CameraPicture::Planes(_) => view.id == planes::VIEW.id,
             CameraPicture::Layout(_) => view.id == layout::VIEW.id,
-            CameraPicture::Picture(_) => [pictures::VIEW.id, normals::VIEW.id].contains(&view.id),
+            CameraPicture::Picture(_) => {
+                let all = [&pictures::VIEW, &normals::VIEW, &learned::VIEW, &perceived::VIEW];
+                all.iter().any(|v| v.id == view.id)
+            }
         };
         assert!(views.iter().all(|v| fits(&v.picture)), "{name}");
     }

@@ -18,12 +18,9 @@ use metrics::stats::mean_ci95;
 use nets::picture::{PictureNets, PictureSegmenter};
 use numeric::quantile::median;
 use scene::truth::OUTSIDE;
-use scene::{
-    Background, Camera, Class, Conditions, Frame, SceneBox, SensorRig, TimeOfDay, TruthPixel, Weather,
-};
+use scene::{Camera, Class, Conditions, Frame, SceneBox, SensorRig, TimeOfDay, TruthPixel, Weather};
 use sensors::appearance::{Appearance, CameraImage, Quality};
-use sensors::cameras::{CameraInput, Detail};
-use sensors::painter::{PaintOptions, Painter, native_px};
+use sensors::painter::{PaintInput, PaintOptions, Painter, native_px};
 use sensors::picture_hints::{HintedFrame, PictureHints};
 use world::World;
 use world::draw::Draw;
@@ -63,7 +60,7 @@ struct Rendered {
 }
 
 impl Rendered {
-    fn of(input: &CameraInput<'_>) -> Self {
+    fn of(input: &PaintInput<'_>) -> Self {
         let appearance = Appearance::new(input.frame, input.rig, &input.conditions);
         let mut out = Self {
             cameras: Vec::new(),
@@ -195,17 +192,15 @@ impl Figures {
         segmenter: &PictureSegmenter,
     ) -> anyhow::Result<()> {
         let (mut world, seed) = world_of(TEST_SEED, index, |_| None);
-        let (frame, background) = (frame_of(&world), Background::default());
+        let frame = frame_of(&world);
         let places = poses(&frame, &mut Draw::new(seed, "learned pictures"));
         let [rig, rig_ahead] = places.map(|pose| SensorRig::default().placed(&pose));
         let time = TimeOfDay::ALL[index as usize % TimeOfDay::ALL.len()];
         let weather = Weather::ALL[index as usize / 2 % Weather::ALL.len()];
-        let input = CameraInput {
+        let input = PaintInput {
             frame: &frame,
             rig: &rig,
-            background: &background,
             conditions: Conditions::usual(time, weather, seed),
-            detail: Detail::Full,
         };
         let painter = || Painter::new(nets.clone(), PaintOptions::default());
         let mut memory = painter();
@@ -219,7 +214,7 @@ impl Figures {
         self.sides.push(rendered.between(&refs(&first)));
         self.rendered_sides.push(rendered.between(&renders));
 
-        let ahead = CameraInput {
+        let ahead = PaintInput {
             rig: &rig_ahead,
             ..input
         };
@@ -243,7 +238,7 @@ impl Figures {
         };
         world.boxes.remove(&id);
         let without_car = frame_of(&world);
-        let edited = CameraInput {
+        let edited = PaintInput {
             frame: &without_car,
             ..input
         };

@@ -276,7 +276,10 @@ fn seconds_of_a_frame() {
         let latents = nets.dit.sample(&noise, &sampling, go_on).expect("finite");
         timed("4 steps with guidance 2", start);
         let start = Instant::now();
-        let pictures = nets.vae.decode(&latents.latent_f32(), size.cells()).expect("finite");
+        let pictures = nets
+            .vae
+            .decode(&latents.latent_f32(), size.cells())
+            .expect("finite");
         timed("decode", start);
         let start = Instant::now();
         nets.vae.encode(&pictures, size.pixels()).expect("finite");

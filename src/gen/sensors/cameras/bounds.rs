@@ -39,7 +39,7 @@ pub enum CameraError {
         bytes: u64,
     },
     /// A network could not be read, or refuses what it is told.
-    #[error("learned pictures: {0}")]
+    #[error("picture networks: {0}")]
     Network(String),
     /// Nobody waits for it any more.
     #[error("cancelled")]

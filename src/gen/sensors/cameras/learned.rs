@@ -11,7 +11,7 @@ use super::{
     SourceId, View, ViewId,
 };
 use crate::appearance::CameraImage;
-use crate::painter::{PaintOptions, Painter};
+use crate::painter::{PaintError, PaintInput, PaintOptions, Painter};
 use nets::picture::PictureNets;
 use scene::{Camera, SensorRig};
 
@@ -78,9 +78,23 @@ struct Ready<'a> {
 }
 
 fn painted(input: &CameraInput<'_>) -> Result<Vec<Arc<CameraImage>>, CameraError> {
-    let nets = PictureNets::bundled().map_err(|e| CameraError::Network(e.to_string()))?;
+    let nets = PictureNets::bundled().map_err(|e| PaintError::Network(e.to_string()))?;
     let mut painter = Painter::new(nets, PaintOptions::default());
-    painter.paint(input, |_| ControlFlow::Continue(()))
+    let input = PaintInput {
+        frame: input.frame,
+        rig: input.rig,
+        conditions: input.conditions,
+    };
+    Ok(painter.paint(&input, |_| ControlFlow::Continue(()))?)
+}
+
+impl From<PaintError> for CameraError {
+    fn from(error: PaintError) -> Self {
+        match error {
+            PaintError::Network(problem) => Self::Network(problem),
+            PaintError::Stopped => Self::Cancelled,
+        }
+    }
 }
 
 impl PreparedCameras for Ready<'_> {

@@ -3,10 +3,14 @@
 use super::seen::{HALF, Seen};
 use nets::picture::{CELL, RingSize};
 
+/// So many cells around that of a pixel that changed are painted.
+const AROUND: usize = RIM_PX.div_ceil(CELL);
 /// The renderer's colour must differ by more than this, of 255, for a pixel to be painted because of its light alone.
 const LIGHT: u8 = 5;
-/// New paint fades into what was there within so many pixels around what changed.
-pub const RIM_PX: usize = 4;
+/// Pixels so far from what changed are new too: the network paints things a little wider than their voxels.
+const WIDER_PX: usize = 6;
+/// New paint has faded into what was there so many pixels around what changed.
+pub const RIM_PX: usize = 10;
 
 /// Of each view, the pixels that show something else: another class, depth or heading, or another light on it, such as the
 /// shadow of what was added or taken away.
@@ -25,7 +29,7 @@ pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>>
     (0..size.views()).map(of_view).collect()
 }
 
-/// Latent cells of pixels that changed, and their neighbours, `[view][row][column]`.
+/// Latent cells that pixels around what changed hear, `[view][row][column]`.
 pub(super) fn cells(changed: &[Vec<bool>], size: RingSize) -> Vec<bool> {
     let [rows, columns] = size.cells();
     let width = columns * CELL;
@@ -33,8 +37,8 @@ pub(super) fn cells(changed: &[Vec<bool>], size: RingSize) -> Vec<bool> {
     for (view, pixels) in changed.iter().enumerate() {
         for (at, _) in pixels.iter().enumerate().filter(|(_, c)| **c) {
             let [row, column] = [at / width / CELL, at % width / CELL];
-            for r in row.saturating_sub(1)..(row + 2).min(rows) {
-                for c in column.saturating_sub(1)..(column + 2).min(columns) {
+            for r in row.saturating_sub(AROUND)..(row + AROUND + 1).min(rows) {
+                for c in column.saturating_sub(AROUND)..(column + AROUND + 1).min(columns) {
                     out[(view * rows + r) * columns + c] = true;
                 }
             }
@@ -43,16 +47,17 @@ pub(super) fn cells(changed: &[Vec<bool>], size: RingSize) -> Vec<bool> {
     out
 }
 
-/// How much of each pixel is new: 1 where it changed, less around it, 0 from [`RIM_PX`] pixels on.
+/// How much of each pixel is new: 1 within [`WIDER_PX`] pixels of what changed, then less, 0 from [`RIM_PX`] pixels on.
 pub(super) fn shares(changed: &[bool], width: usize) -> Vec<f32> {
     let mut shares: Vec<f32> = changed.iter().map(|c| f32::from(u8::from(*c))).collect();
     let height = changed.len() / width.max(1);
     for ring in 1..RIM_PX {
-        let share = 1.0 - ring as f32 / RIM_PX as f32;
+        let over = ring.saturating_sub(WIDER_PX) as f32;
+        let share = 1.0 - over / (RIM_PX - WIDER_PX) as f32;
         let before = shares.clone();
         for y in 0..height {
             for x in 0..width {
-                let near = |(x, y): (usize, usize)| before[y * width + x] > share;
+                let near = |(x, y): (usize, usize)| before[y * width + x] >= share;
                 let rows = y.saturating_sub(1)..(y + 2).min(height);
                 let mut around =
                     rows.flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| (x, y)));

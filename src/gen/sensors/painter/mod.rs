@@ -13,13 +13,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::appearance::CameraImage;
-use crate::cameras::{CameraError, CameraInput};
 use diffusion::inversion::Trajectory;
 use nets::ModelError;
 use nets::picture::{self, Before, PictureNets, RingSize, Sampling};
 use numeric::philox::{Stream, normal_field};
 use ring::Ring;
 pub use ring::native_px;
+use scene::{Conditions, Frame, SensorRig};
 use seen::Seen;
 
 /// Pictures of so many states are kept: what was painted before is there again at once.
@@ -42,6 +42,28 @@ impl Default for PaintOptions {
             guidance: 2.0,
         }
     }
+}
+
+/// What pictures are painted of.
+#[derive(Clone, Copy, Debug)]
+pub struct PaintInput<'a> {
+    /// Occupancy, layout and boxes.
+    pub frame: &'a Frame,
+    /// The cameras.
+    pub rig: &'a SensorRig,
+    /// Time and weather, and the seed that noise is drawn from.
+    pub conditions: Conditions,
+}
+
+/// Why the picture networks gave nothing.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PaintError {
+    /// They could not be read, or refuse what they are told.
+    #[error("picture networks: {0}")]
+    Network(String),
+    /// Whoever watched ended it.
+    #[error("stopped")]
+    Stopped,
 }
 
 /// How far a painting has come.
@@ -90,9 +112,9 @@ impl Painter {
     /// painting. Errors if it did, if there are more than 64 cameras, or if the networks refuse what they are told.
     pub fn paint(
         &mut self,
-        input: &CameraInput<'_>,
+        input: &PaintInput<'_>,
         mut watch: impl FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Vec<Arc<CameraImage>>, CameraError> {
+    ) -> Result<Vec<Arc<CameraImage>>, PaintError> {
         let Some(ring) = Ring::of(&input.rig.cameras)? else {
             return Ok(Vec::new());
         };
@@ -118,7 +140,7 @@ impl Painter {
         seen: Seen,
         ring: &Ring,
         watch: &mut impl FnMut(Progress<'_>) -> ControlFlow<()>,
-    ) -> Result<Painted, CameraError> {
+    ) -> Result<Painted, PaintError> {
         let source = self.kept.iter().rfind(|p| p.seen.differs_in_scene_alone(&seen));
         let changed = source.map(|source| mask::changed(&source.seen, &seen, ring.size));
         let brush = Brush {
@@ -201,7 +223,7 @@ impl Painter {
     }
 
     /// The newest frame that was painted, if these cameras stood near by then, as their cells see it.
-    fn before(&self, seen: &Seen, size: RingSize) -> Result<Option<Before>, CameraError> {
+    fn before(&self, seen: &Seen, size: RingSize) -> Result<Option<Before>, PaintError> {
         let near = self
             .kept
             .iter()
@@ -231,7 +253,7 @@ impl Brush<'_> {
     }
 
     /// The picture of a view of the ring, of the latents of all.
-    fn image(&self, view: usize, latents: &[f32], seen: &Seen) -> Result<CameraImage, CameraError> {
+    fn image(&self, view: usize, latents: &[f32], seen: &Seen) -> Result<CameraImage, PaintError> {
         let numbers = latents.len() / self.size.views();
         let latents = &latents[view * numbers..][..numbers];
         let colors = self
@@ -267,9 +289,9 @@ fn noise(seed: u64, size: RingSize, latent: usize) -> Vec<f32> {
     field.into_iter().map(|v| v as f32).collect()
 }
 
-fn network(error: ModelError) -> CameraError {
+fn network(error: ModelError) -> PaintError {
     match error {
-        ModelError::Stopped { .. } => CameraError::Cancelled,
-        error => CameraError::Network(error.to_string()),
+        ModelError::Stopped { .. } => PaintError::Stopped,
+        error => PaintError::Network(error.to_string()),
     }
 }

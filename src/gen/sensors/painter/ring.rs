@@ -4,9 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Brush, network};
+use super::{Brush, PaintError, network};
 use crate::appearance::CameraImage;
-use crate::cameras::CameraError;
 use nets::picture::RingSize;
 use scene::Camera;
 
@@ -29,7 +28,7 @@ pub(super) struct Ring {
 
 impl Ring {
     /// None without cameras. Errors if there are more than 64.
-    pub fn of(cameras: &[Camera]) -> Result<Option<Self>, CameraError> {
+    pub fn of(cameras: &[Camera]) -> Result<Option<Self>, PaintError> {
         let Some(camera) = cameras.first() else {
             return Ok(None);
         };

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::PaintInput;
 use super::ring::Ring;
 use crate::appearance::{Appearance, Quality, light_direction};
-use crate::cameras::CameraInput;
 use crate::picture_hints::{HintedFrame, PictureHints};
 use nets::picture::{CAMERA_NUMBERS, Condition, Motion, RingSize};
 use scene::{Camera, Conditions, Pose, TimeOfDay, Weather};
@@ -35,7 +35,7 @@ struct View {
 
 impl Seen {
     /// Looks at a scene.
-    pub fn of(input: &CameraInput<'_>, ring: &Ring) -> Self {
+    pub fn of(input: &PaintInput<'_>, ring: &Ring) -> Self {
         let [height, width] = ring.size.pixels().map(|n| n as u32);
         let cameras = ring.sorted(&input.rig.cameras);
         let (teller, appearance) = rayon::join(

@@ -142,7 +142,10 @@ fn misplaced(source: &'static dyn CameraSource) -> Option<String> {
     let body = corners([-0.45, -0.42, -0.2], [0.45, 0.42, -0.02]);
     let row = |z: f64| pixel(of_car([0.0, 0.0, z])).y;
     let (mask, tells_front) = seen(source);
-    let only_above = matches!(source.views()[0].id.name(), "appearance" | "normals");
+    let only_above = matches!(
+        source.views()[0].id.name(),
+        "appearance" | "normals" | "perceived"
+    );
     let (mut body_seen, mut body_all, mut outside, mut total) = (0, 0, 0, 0);
     let (mut top_columns, mut top_count) = (0.0, 0);
     for (i, seen) in mask.iter().enumerate() {
@@ -175,6 +178,8 @@ fn misplaced(source: &'static dyn CameraSource) -> Option<String> {
 
 #[test]
 fn every_source_shows_a_turned_car_where_its_corners_are() {
-    let wrong: Vec<String> = all().iter().filter_map(|s| misplaced(*s)).collect();
+    // Painted alone, a picture is another everywhere; where an edit is painted is tested with the painter.
+    let exact = all().iter().filter(|s| s.id() != learned::ID);
+    let wrong: Vec<String> = exact.filter_map(|s| misplaced(*s)).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
