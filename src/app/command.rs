@@ -93,6 +93,8 @@ pub enum ViewCommand {
     LookThrough(usize),
     /// Shows that in the cameras: classes, depth, pictures.
     Cameras(ViewId),
+    /// Shows pictures in the cameras, unless they show light and weather already.
+    ShowLight,
     /// Ends the painting of learned pictures; they stay as they are by then.
     StopPainting,
     /// Paints them after all.

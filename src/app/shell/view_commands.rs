@@ -10,6 +10,7 @@ use crate::panes::id::PaneId;
 use crate::tools::ToolId;
 use editor::tools::{brush, region, select, voxel};
 use language::t;
+use sensors::cameras::pictures;
 
 impl SceneloomApp {
     /// Carries out one of them.
@@ -52,6 +53,11 @@ impl SceneloomApp {
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
             ViewCommand::LookThrough(index) => self.look_through(index),
             ViewCommand::Cameras(view) => self.state.cameras.view = view,
+            ViewCommand::ShowLight => {
+                if !self.state.cameras.shown_source().needs().conditions {
+                    self.state.cameras.view = pictures::VIEW.id;
+                }
+            }
             ViewCommand::PaintAgain => self.threads.sensing.paint_again(),
             ViewCommand::StopPainting => self.threads.sensing.stop_painting(),
             ViewCommand::Inspect(camera) => self.state.cameras.enlarged = camera,

@@ -89,10 +89,7 @@ pub(super) fn items(known: &Known<'_>) -> Vec<Item> {
             right: right.to_owned(),
             does: Does::Commands(match right {
                 // Light and air are seen in pictures.
-                CONDITIONS => vec![
-                    command,
-                    Command::View(ViewCommand::Cameras(cameras::pictures::VIEW.id)),
-                ],
+                CONDITIONS => vec![command, Command::View(ViewCommand::ShowLight)],
                 _ => vec![command],
             }),
         });
