@@ -88,7 +88,10 @@ fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
         }
         std::thread::sleep(Duration::from_millis(5));
     };
-    assert_eq!(problem, "sensing panicked: asked for by a test");
+    assert_eq!(
+        problem,
+        "The sensors show an older scene: sensing panicked: asked for by a test"
+    );
     assert_eq!((sensing.take_problem(), sensing.version()), (None, 0));
     scene.rev = SceneRev::fresh();
     sensing.ask(&Arc::new(scene.clone()), Wanted::default(), true);
@@ -98,4 +101,57 @@ fn a_panic_is_told_once_and_the_next_scene_is_sensed() {
         sensing.drain();
     }
     assert_eq!(sensing.take_problem(), None);
+}
+
+/// Painted pictures come step by step; one that is stopped says so, and goes on when asked.
+#[test]
+fn a_painting_is_told_step_by_step_and_can_be_stopped() {
+    let world = World::random(3);
+    let occupancy = draft::draft(&world.layout, world.boxes.values());
+    let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
+    let scene = Arc::new(Scene::single("test", frame, Arc::default(), 3));
+    let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
+    sensing.paint_with(&PaintSettings {
+        steps: 30,
+        ..PaintSettings::default()
+    });
+    let wanted = Wanted {
+        source: learned::ID,
+        ..Wanted::default()
+    };
+    let wait = |sensing: &mut Sensing, until: &dyn Fn(&Sensing) -> bool| {
+        let start = Instant::now();
+        while !until(sensing) {
+            assert!(start.elapsed() < Duration::from_secs(120), "no news");
+            sensing.ask(&scene, wanted, false);
+            std::thread::sleep(Duration::from_millis(2));
+            sensing.drain();
+        }
+    };
+    wait(&mut sensing, &|s| {
+        s.step().is_some_and(|(step, steps)| step >= 1 && steps == 30)
+    });
+    assert!(sensing.cameras_stale(scene.rev));
+    sensing.stop_painting();
+    wait(&mut sensing, &|s| s.is_stopped());
+    assert!(sensing.step().is_none() && sensing.cameras_stale(scene.rev));
+    // Fewer steps are asked for: it paints again, to the end.
+    sensing.paint_with(&PaintSettings {
+        steps: 1,
+        ..PaintSettings::default()
+    });
+    wait(&mut sensing, &|s| !s.cameras_stale(scene.rev));
+    assert_eq!(sensing.cameras().map(|c| c.len()), Some(6));
+    assert!(!sensing.is_stopped());
+    // A folder without weights is one line.
+    sensing.paint_with(&PaintSettings {
+        weights: Some("nowhere".into()),
+        ..PaintSettings::default()
+    });
+    wait(&mut sensing, &|s| s.is_stopped());
+    let problem = sensing.take_problem().expect("a problem");
+    assert!(
+        problem.starts_with("No learned pictures: nowhere") && problem.lines().count() == 1,
+        "{problem}"
+    );
 }

@@ -148,6 +148,7 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
                     pixel.depth_m,
                     hints.class[at],
                     hints.depth_m[at],
+                    hints.facing[at],
                     light,
                 )
             };
