@@ -32,7 +32,8 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
         .iter()
         .find(|b| b["missed"] == false)
         .expect("a box that is seen");
-    let id = plain["box"].to_string();
+    let number = plain["box"].clone();
+    let id = number.to_string();
 
     let found = json(&["perceive", &scene, "--box", &id, "--vary", "fog", "-o", &out]);
     assert_eq!(
@@ -48,10 +49,7 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
     let again = json(&["perceive", &out]);
     let of = |report: &Value| {
         let boxes = report["boxes"].as_array().expect("a list").clone();
-        boxes
-            .into_iter()
-            .find(|b| b["box"].to_string() == id)
-            .expect("the box")
+        boxes.into_iter().find(|b| b["box"] == number).expect("the box")
     };
     assert_eq!(of(&again)["missed"], true, "{again}");
 

@@ -142,7 +142,7 @@ impl Perceived {
                 (false, true) => Some(GHOST),
                 _ => None,
             };
-            let marked = wrong.filter(|_| (at % width + at / width) % 2 == 0);
+            let marked = wrong.filter(|_| (at % width + at / width).is_multiple_of(2));
             let color = marked.unwrap_or_else(|| truth::color(*class));
             let share = if marked.is_some() { 1.0 } else { TINT };
             for (out, color) in out.iter_mut().zip(color) {

@@ -146,7 +146,10 @@ impl Painter {
         let brush = Brush {
             nets: &self.nets,
             size: ring.size,
-            base: source.map(|s| &s.images[..]).zip(changed.as_deref()),
+            base: source.zip(changed.as_deref()).map(|(source, changed)| Base {
+                images: &source.images,
+                changed,
+            }),
         };
         let order = ring.order(&brush);
         let condition = seen.condition(ring.size);
@@ -242,14 +245,22 @@ impl Painter {
 struct Brush<'a> {
     nets: &'a PictureNets,
     size: RingSize,
-    /// The pictures that are painted over, and which of their pixels show something else now.
-    base: Option<(&'a [Arc<CameraImage>], &'a [Vec<bool>])>,
+    /// None if all is painted.
+    base: Option<Base<'a>>,
+}
+
+/// Pictures that are painted over.
+#[derive(Clone, Copy)]
+struct Base<'a> {
+    images: &'a [Arc<CameraImage>],
+    /// Of each view, the pixels that show something else now.
+    changed: &'a [Vec<bool>],
 }
 
 impl Brush<'_> {
     /// True if a view is to be painted at all.
     fn touches(&self, view: usize) -> bool {
-        self.base.is_none_or(|(_, changed)| changed[view].contains(&true))
+        self.base.is_none_or(|base| base.changed[view].contains(&true))
     }
 
     /// The picture of a view of the ring, of the latents of all.
@@ -274,9 +285,9 @@ impl Brush<'_> {
                 .flat_map(|[r, g, b]| [byte(*r), byte(*g), byte(*b), 255])
                 .collect(),
         };
-        if let Some((before, changed)) = self.base {
-            let shares = mask::shares(&changed[view], width);
-            mask::blend(&before[view].rgba, &mut image.rgba, &shares);
+        if let Some(base) = self.base {
+            let shares = mask::shares(&base.changed[view], width);
+            mask::blend(&base.images[view].rgba, &mut image.rgba, &shares);
         }
         Ok(image)
     }
