@@ -237,21 +237,24 @@ pub static SUITES: [Suite; 11] = [
                 "pixels that a segmenter says rightly, rendered",
                 "/agreement/rendered",
             ),
-            ("the same, learned", "/agreement/learned"),
+            ("pixels that it says rightly, learned", "/agreement/learned"),
             (
                 "difference from the moment before, 0 to 1, rendered",
                 "/over_time/rendered",
             ),
             (
-                "the same, learned, told the frame before",
+                "difference from the moment before, learned, told it",
                 "/over_time/after_the_frame_before",
             ),
-            ("the same, learned, each frame alone", "/over_time/alone"),
+            (
+                "difference from the moment before, learned, each alone",
+                "/over_time/alone",
+            ),
             (
                 "difference between cameras, rendered",
                 "/between_cameras/rendered",
             ),
-            ("the same, learned", "/between_cameras/learned"),
+            ("difference between cameras, learned", "/between_cameras/learned"),
             ("share of pixels painted when a car goes", "/edit/painted_share"),
             ("pixels changed elsewhere", "/edit/pixels_changed_elsewhere"),
             ("time of six pictures, s (median)", "/six_pictures_s_median"),
