@@ -311,7 +311,7 @@ class Calls:
     def render(
         self,
         *,
-        what: Sequence[Literal['semantic', 'depth', 'appearance', 'mpi', 'perspective', 'normals', 'truth', 'lidar', 'bev', 'view']],
+        what: Sequence[Literal['semantic', 'depth', 'appearance', 'learned', 'perceived', 'mpi', 'perspective', 'normals', 'truth', 'lidar', 'bev', 'view']],
         cameras: Sequence[str] | None = None,
         folder: str | None = None,
         learned_lidar: bool | None = None,
