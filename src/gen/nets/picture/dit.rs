@@ -99,7 +99,7 @@ impl<B: Ops> PictureDit<B> {
     }
 
     /// v for the noisy latents `x`, `[view][row][column][8]`, at training step `t` (0 to 999, fractions allowed). `told` is what
-    /// [`tell`](Self::tell) made, `before` what [`warp`](super::warp) made of the frame before, if there is one. Errors if the
+    /// [`tell`](Self::tell) made, `before` what [`warp`](super::warp()) made of the frame before, if there is one. Errors if the
     /// sizes do not fit or a number is not finite.
     pub fn v(
         &self,
