@@ -9,11 +9,7 @@ that shows it, *frame* the work of the main thread for a frame.
 """
 import json, os, subprocess, sys, tempfile, time
 
-from window import PROMPT, SIZE, Window, map_point
-
-# Of the dialog of exports.
-EXPORT_ALL, EXPORT_FILES, CLOSE_EXPORT = (402, 505), (853, 613), (886, 144)
-ROAD_LEFT_M = 1.8  # of the road's line in this scene, from the ego vehicle
+from window import CLOSE_EXPORT, EXPORT_ALL, EXPORT_FILES, PROMPT, ROAD_LEFT_M, SIZE, Window, map_point
 
 
 def sweep(w, points, seconds=0.6):

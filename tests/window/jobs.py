@@ -9,7 +9,7 @@ each job, and jobs.json. The window has 1600 x 950 points, so that places are th
 """
 import json, os, subprocess, sys, tempfile, time
 
-from window import PROMPT, SIZE, Window, map_point
+from window import EXPORT_ALL, EXPORT_FILES, PROMPT, ROAD_LEFT_M, SIZE, Window, map_point
 
 
 def paint_a_lane(w):
@@ -83,12 +83,8 @@ def picture_beside_classes(w):
 
 
 FIX_ALL = (1280, 642)
-# Of the dialog of exports.
-EXPORT_ALL, EXPORT_FILES = (402, 505), (853, 613)
 # Of the pane of perception.
 FIRST_SEEN, SEARCH = (660, 666), (1130, 666)
-# Where the line of the road lies in the scene of the jobs, m left of the ego vehicle.
-ROAD_LEFT_M = 1.8
 CARS_IN_THE_AIR = [
     {"add_box": {"class": "car", "center_m": [-36 + k % 10 * 8, -30 + k // 10 * 20, 1.9], "size_m": [4.5, 1.9, 1.6], "yaw_deg": 0}} for k in range(40)
 ]

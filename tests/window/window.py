@@ -7,6 +7,10 @@ STABLE_S = 2.0
 BEV = (508, 418)  # the ego vehicle from above, in a fresh window
 SCALE = 6.53      # points per metre there
 PROMPT = (1460, 520)
+# Of the dialog of exports.
+EXPORT_ALL, EXPORT_FILES, CLOSE_EXPORT = (402, 505), (853, 613), (886, 144)
+# The line of the road of template t-junction, seed 1, m left of the ego vehicle.
+ROAD_LEFT_M = 1.8
 
 
 def map_point(ahead_m, left_m):
