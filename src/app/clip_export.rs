@@ -160,7 +160,8 @@ impl Drawer {
                 // Painted pictures go on from those of the frame before.
                 let paints = cameras::source_of(*view, *source).id() == learned::ID;
                 let painter = paints.then(PictureNets::bundled).transpose()?;
-                let painter = painter.map(|nets| Painter::new(nets, PaintOptions::default()));
+                let painter =
+                    painter.map(|nets| Painter::new(nets, PaintOptions::default()).without_previews());
                 Self::Cameras(options.clone(), painter)
             }
         })

@@ -113,14 +113,13 @@ impl Perceived {
 
     /// Share of the pixels whose class the network says rightly; 1 where the lens sees nothing.
     pub fn right(&self) -> f64 {
-        let pairs = || self.truth.pixels.iter().zip(&self.classes);
-        let valid = pairs().filter(|(p, _)| p.class != OUTSIDE);
-        let all = valid.clone().count().max(1);
-        let right = valid.filter(|(p, class)| p.class == **class).count();
-        if right == 0 && pairs().all(|(p, _)| p.class == OUTSIDE) {
-            return 1.0;
+        let pairs = self.truth.pixels.iter().zip(&self.classes);
+        let valid = pairs.filter(|(p, _)| p.class != OUTSIDE);
+        let all = valid.clone().count();
+        match all {
+            0 => 1.0,
+            _ => valid.filter(|(p, class)| p.class == **class).count() as f64 / all as f64,
         }
-        right as f64 / all as f64
     }
 
     /// The picture in the colours of the classes that the network sees. Where it misses a thing every other pixel is red, where

@@ -79,7 +79,7 @@ struct Ready<'a> {
 
 fn painted(input: &CameraInput<'_>) -> Result<Vec<Arc<CameraImage>>, CameraError> {
     let nets = PictureNets::bundled().map_err(|e| PaintError::Network(e.to_string()))?;
-    let mut painter = Painter::new(nets, PaintOptions::default());
+    let mut painter = Painter::new(nets, PaintOptions::default()).without_previews();
     let input = PaintInput {
         frame: input.frame,
         rig: input.rig,

@@ -81,6 +81,8 @@ pub struct Progress<'a> {
 pub struct Painter {
     nets: Arc<PictureNets>,
     options: PaintOptions,
+    /// Pictures are made of the steps too.
+    previews: bool,
     /// The newest last.
     kept: VecDeque<Painted>,
 }
@@ -102,7 +104,17 @@ impl Painter {
         Self {
             nets,
             options,
+            previews: true,
             kept: VecDeque::new(),
+        }
+    }
+
+    /// For files, where nobody looks at the steps: no picture is made of them, which saves a decoding each.
+    #[must_use]
+    pub fn without_previews(self) -> Self {
+        Self {
+            previews: false,
+            ..self
         }
     }
 
@@ -174,7 +186,7 @@ impl Painter {
                     .collect::<Vec<_>>()
             };
             // The last step is followed by the pictures themselves.
-            let preview = order.first().filter(|_| step < steps);
+            let preview = order.first().filter(|_| self.previews && step < steps);
             let image = preview.and_then(|first| brush.image(*first, &clean(), &seen).ok());
             watch(Progress {
                 step,
