@@ -32,6 +32,8 @@ pub struct Found {
     pub id: BoxId,
     /// What came of it.
     pub search: Search,
+    /// The user kept it as a version.
+    pub kept: bool,
 }
 
 struct Perceiver;
@@ -62,6 +64,7 @@ impl Product for Perceiver {
                         of: scene.rev,
                         id: *id,
                         search,
+                        kept: false,
                     }),
                     Err(error) => News::Failed(format!("{error:#}")),
                 }

@@ -43,6 +43,14 @@ impl Picture {
         }
     }
 
+    /// Fills a column of a grid that is seen from above, ahead up, `scale` pixels a column.
+    pub fn fill_column(&mut self, extent: Extent, [x, y]: [usize; 2], scale: usize, color: [u8; 3]) {
+        let (left, top) = ((extent.ny() - 1 - y) * scale, (extent.nx() - 1 - x) * scale);
+        for i in 0..scale * scale {
+            self.set(left + i % scale, top + i / scale, color);
+        }
+    }
+
     /// Copies another picture in at (x, y); what does not fit is cut.
     pub fn put(&mut self, other: &Picture, x: usize, y: usize) {
         for row in 0..other.height.min(self.height.saturating_sub(y)) {
@@ -74,14 +82,9 @@ impl Picture {
 
 /// Fills grid cells seen from above: ego x is up, ego y is left.
 fn top_view(extent: Extent, scale: usize, cell: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
-    let [nx, ny] = [extent.nx(), extent.ny()];
-    let mut out = Picture::filled(ny * scale, nx * scale, [0; 3]);
+    let mut out = Picture::filled(extent.ny() * scale, extent.nx() * scale, [0; 3]);
     for [x, y] in extent.all_columns() {
-        let color = cell(x, y);
-        let (left, top) = ((ny - 1 - y) * scale, (nx - 1 - x) * scale);
-        for i in 0..scale * scale {
-            out.set(left + i % scale, top + i / scale, color);
-        }
+        out.fill_column(extent, [x, y], scale, cell(x, y));
     }
     out
 }

@@ -10,7 +10,7 @@ use sensors::cameras::{DEPTH_M, ViewId};
 use sensors::color::ramp;
 use widgets::{fonts, theme};
 
-use super::{BEHIND, CaptureOptions, Subject};
+use super::{BEHIND, above, CaptureOptions, Subject};
 use crate::paint;
 use crate::picture::Picture;
 
@@ -55,12 +55,11 @@ pub(super) fn name(picture: &mut Picture, name: &str) {
     }
 }
 
-/// The picture with its legend below.
-pub(super) fn under(picture: Picture, scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
-    let width = picture.width as f32;
+/// The legend of a picture so many pixels wide; a map has so many pixels per metre.
+pub(super) fn below(width: usize, per_m: Option<f32>, scene: &Scene, options: &CaptureOptions) -> Picture {
+    let width = width as f32;
     let depths = options.subject == Subject::Cameras && options.view == ViewId::DEPTH;
     let entries = entries(scene, options);
-    let per_m = metres(&picture, scene, options.subject);
     let mut height = LINE + 2.0 * EDGE;
     // Once to see how high it is, once to draw it.
     let mut below = drawn([width, height], |_| {});
@@ -83,20 +82,7 @@ pub(super) fn under(picture: Picture, scene: &Scene, options: &CaptureOptions) -
             height = at.y + LINE + EDGE;
         });
     }
-    let mut out = Picture::filled(picture.width, picture.height + below.height, BEHIND);
-    out.put(&picture, 0, 0);
-    out.put(&below, 0, picture.height);
-    Ok(out)
-}
-
-/// Pixels per metre of a map; none for what is seen in perspective.
-fn metres(picture: &Picture, scene: &Scene, subject: Subject) -> Option<f32> {
-    let extent = scene.frame().extent();
-    let across_m = (extent.max_m() - extent.min_m()).y as f32;
-    match subject {
-        Subject::View | Subject::Cameras => None,
-        _ => Some(picture.width as f32 / across_m),
-    }
+    below
 }
 
 /// What the colours of a picture mean.
@@ -117,7 +103,10 @@ fn entries(scene: &Scene, options: &CaptureOptions) -> Vec<Entry> {
                 .filter_map(|b| Class::OBJECTS.iter().position(|c| *c == b.class))
                 .collect();
             let boxes = classes.into_iter().map(|i| of_class(Class::OBJECTS[i]));
-            layers.chain(boxes).collect()
+            let ego = (theme::rgb(above::EGO_COLOR), theme::sentence(t("the ego vehicle")));
+            let beside = above::sceneries(scene).into_iter();
+            let beside = beside.map(|c| (theme::rgb(above::scenery_color(c)), theme::sentence(t(&c.label()))));
+            std::iter::once(ego).chain(layers).chain(boxes).chain(beside).collect()
         }
         _ => {
             let grid = &frame.occupancy;

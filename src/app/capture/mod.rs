@@ -1,6 +1,7 @@
 //! Pictures of a scene for people, of any size: the 3D view, the map, voxels, all cameras on one sheet, LiDAR; with names, legend
 //! and scale. And the 3D view turned once around what it looks at.
 
+mod above;
 mod legend;
 
 use anyhow::{Context, bail};
@@ -10,7 +11,6 @@ use formats::video::{VideoKind, VideoWriter};
 use scene::{Camera, Scene};
 use sensors::appearance::Quality;
 use sensors::cameras::{self, Detail, Ready, RenderOptions, SourceId, ViewId, bounds};
-use sensors::rolling;
 
 use crate::camera_views::{camera_input, camera_label};
 use crate::picture::{self, Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
@@ -79,15 +79,51 @@ const MARGIN: usize = 6;
 
 /// Takes a picture. Errors in one line: of a size that does not fit into memory, or where the 3D view finds no adapter.
 pub fn capture(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
-    let picture = match options.subject {
-        Subject::View => View3d::new()?.shot(scene, &options.shot)?,
-        Subject::Cameras => sheet(scene, options)?,
-        subject => from_above(scene, subject, options)?,
-    };
-    match options.legend && !(options.subject == Subject::View && options.shot.transparent) {
-        true => legend::under(picture, scene, options),
-        false => Ok(picture),
+    const BYTES_PER_PIXEL: u64 = 16;
+    let legend = options.legend && !(options.subject == Subject::View && options.shot.transparent);
+    if options.subject == Subject::Cameras {
+        let sheet = sheet(scene, options)?;
+        let below = legend.then(|| legend::below(sheet.width, None, scene, options));
+        return Ok(stacked(sheet, below));
     }
+    bounds::check(options.shot.size, BYTES_PER_PIXEL, 0)?;
+    let [width, height] = options.shot.size;
+    let below = legend.then(|| below(scene, options));
+    // The legend is within the size that was asked for, where there is room for it.
+    let left = height.saturating_sub(below.as_ref().map_or(0, |b| b.height as u32));
+    let size = [width, if left < height / 2 { height } else { left }];
+    let picture = match options.subject {
+        Subject::View => {
+            let mut shot = options.shot.clone();
+            shot.size = size;
+            View3d::new()?.shot(scene, &shot)?
+        }
+        subject => above::picture(scene, subject, size)?,
+    };
+    Ok(stacked(picture, below))
+}
+
+/// The legend below a picture of the size that is asked for. How long a metre is follows from the height that is left for the
+/// picture, and that from the lines of the legend: these hardly ever change by it.
+fn below(scene: &Scene, options: &CaptureOptions) -> Picture {
+    let [width, height] = options.shot.size;
+    let drawn = |left: u32| {
+        let per_m = (options.subject != Subject::View).then(|| above::per_m(scene, [width, left]) as f32);
+        legend::below(width as usize, per_m, scene, options)
+    };
+    let lines = drawn(height).height as u32;
+    let left = height.saturating_sub(lines);
+    drawn(if left < height / 2 { height } else { left })
+}
+
+fn stacked(picture: Picture, below: Option<Picture>) -> Picture {
+    let Some(below) = below else {
+        return picture;
+    };
+    let mut out = Picture::filled(picture.width, picture.height + below.height, BEHIND);
+    out.put(&picture, 0, 0);
+    out.put(&below, 0, picture.height);
+    out
 }
 
 /// The bytes of a PNG that also tells how the picture came to be, and holds the scene.
@@ -98,36 +134,6 @@ pub fn to_png(scene: &Scene, picture: &Picture) -> anyhow::Result<Vec<u8>> {
     Recipe::of(scene)
         .in_png(true, encode)
         .context("encode the picture")
-}
-
-/// A map that fills the frame: its cells are drawn at a whole number of pixels, then made smaller.
-fn from_above(scene: &Scene, subject: Subject, options: &CaptureOptions) -> anyhow::Result<Picture> {
-    const BYTES_PER_PIXEL: u64 = 16;
-    bounds::check(options.shot.size, BYTES_PER_PIXEL, 0)?;
-    let scene = &*scene.with_rig_in_world();
-    let frame = scene.frame();
-    let extent = frame.extent();
-    // From above, ahead is up.
-    let [width, height] = options.shot.size.map(f64::from);
-    let wanted = (width / extent.ny() as f64).min(height / extent.nx() as f64);
-    let scale = wanted.ceil().max(1.0) as usize;
-    let drawn = match subject {
-        Subject::Occupancy => picture::occupancy_top(&frame.occupancy, scale),
-        Subject::Lidar => picture::lidar_top(extent, &rolling::exact(scene), scale),
-        _ => picture::layout_top(frame, scale),
-    };
-    let size = [extent.ny(), extent.nx()].map(|n| ((n as f64 * wanted) as u32).max(1));
-    if size == [drawn.width as u32, drawn.height as u32] {
-        return Ok(drawn);
-    }
-    let whole = image::RgbaImage::from_raw(drawn.width as u32, drawn.height as u32, drawn.rgba);
-    let whole = whole.context("a picture has four bytes per pixel")?;
-    let small = image::imageops::resize(&whole, size[0], size[1], image::imageops::FilterType::Triangle);
-    Ok(Picture {
-        width: size[0] as usize,
-        height: size[1] as usize,
-        rgba: small.into_raw(),
-    })
 }
 
 /// All cameras of the rig, three in a row.
@@ -245,21 +251,39 @@ mod tests {
     }
 
     #[test]
-    fn maps_fill_the_frame_and_a_legend_lies_below() {
+    fn maps_have_the_size_that_is_asked_for_and_the_legend_is_within_it() {
         let scene = open::from_template("straight", 3).expect("a template");
         for subject in [Subject::Map, Subject::Occupancy, Subject::Lidar] {
-            let mut bare = options(subject);
-            bare.legend = false;
-            let picture = capture(&scene, &bare).expect("small");
-            assert_eq!([picture.width, picture.height], [300, 300]);
-            let with = capture(&scene, &options(subject)).expect("small");
-            assert_eq!(with.width, 300);
-            assert!(with.height > 300, "{subject:?}: {}", with.height);
-            assert_eq!(with.rgba[..300 * 300 * 4], picture.rgba[..], "{subject:?}");
+            let mut asked = options(subject);
+            asked.shot.size = [500, 400];
+            let with = capture(&scene, &asked).expect("small");
+            assert_eq!([with.width, with.height], [500, 400], "{subject:?}");
             // Letters are there, and all is opaque.
-            let below = &with.rgba[300 * 300 * 4..];
-            assert!(below.chunks_exact(4).any(|p| p[0] > 150) && below.chunks_exact(4).all(|p| p[3] == 255));
+            let last = &with.rgba[360 * 500 * 4..];
+            assert!(last.chunks_exact(4).any(|p| p[0] > 150) && last.chunks_exact(4).all(|p| p[3] == 255));
+            asked.legend = false;
+            let bare = capture(&scene, &asked).expect("small");
+            assert_eq!([bare.width, bare.height], [500, 400]);
+            // The map is square, and stands in the middle.
+            let color = |x: usize| bare.rgba[(200 * 500 + x) * 4..][..3].to_vec();
+            assert!(color(20) == BEHIND && color(480) == BEHIND && color(250) != BEHIND);
         }
+        // What is too low for a legend becomes higher by it.
+        let mut low = options(Subject::Map);
+        low.shot.size = [300, 30];
+        assert!(capture(&scene, &low).expect("small").height > 30);
+    }
+
+    #[test]
+    fn a_map_shows_the_ego_vehicle_and_what_stands_beside_the_road() {
+        let scene = open::from_template("straight", 3).expect("a template");
+        let mut asked = options(Subject::Map);
+        (asked.shot.size, asked.legend) = ([800, 800], false);
+        let map = capture(&scene, &asked).expect("small");
+        let has = |wanted: [u8; 3]| map.rgba.chunks_exact(4).any(|p| p[..3] == wanted);
+        assert_eq!(map.rgba[(400 * 800 + 400) * 4..][..3], [235, 238, 242]);
+        let tree = scene::Class::Vegetation.color().map(|c| (u16::from(c) * 150 / 255) as u8);
+        assert!(has(tree), "no tree");
     }
 
     #[test]

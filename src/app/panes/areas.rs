@@ -3,7 +3,6 @@
 use egui::{Rect, Ui, UiBuilder, pos2, vec2};
 
 use super::compare::tag;
-use language::t;
 
 /// The left and the right half of an area, with a line between them.
 pub(crate) fn halves(area: Rect) -> (Rect, Rect) {
@@ -20,9 +19,9 @@ pub(crate) fn left_part(area: Rect, at: f32) -> Rect {
 }
 
 /// Names the two halves.
-pub(crate) fn sides(ui: &Ui, left: Rect, right: Rect) {
-    tag(ui, left.left_top() + vec2(8.0, 8.0), t("before"), false);
-    tag(ui, right.left_top() + vec2(8.0, 8.0), t("after"), false);
+pub(crate) fn sides(ui: &Ui, left: Rect, right: Rect, [other, now]: [&str; 2]) {
+    tag(ui, left.left_top() + vec2(8.0, 8.0), other, false);
+    tag(ui, right.left_top() + vec2(8.0, 8.0), now, false);
 }
 
 /// Draws within a rectangle.

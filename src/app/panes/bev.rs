@@ -102,14 +102,14 @@ impl Pane for Bev {
                 clipped(ui, left, |ui| {
                     cx.compare.canvas.still(ui, left, &map, &before, cx.state);
                 });
-                sides(ui, left, right);
+                sides(ui, left, right, cx.state.compare.names());
             }
             CompareMode::Wipe => {
                 let part = left_part(area, cx.state.compare.wipe_at);
                 clipped(ui, part, |ui| {
                     cx.compare.canvas.still(ui, area, &map, &before, cx.state);
                 });
-                wipe_line(ui, area, &mut cx.state.compare.wipe_at);
+                wipe_line(ui, area, &mut cx.state.compare);
             }
             CompareMode::Difference => {
                 if let Some((difference, texture)) = cx.compare.difference(ui, scene) {

@@ -17,6 +17,8 @@ use widgets::icons::{self, Icon};
 
 /// A pane that was not drawn for so many frames is not rendered for.
 const FRAMES: u8 = 3;
+/// So much room words need, points.
+const LIGHT_POINTS: f32 = 72.0;
 
 /// The camera of this index, unless another was taken in its pane.
 pub struct Camera {
@@ -82,7 +84,7 @@ impl Pane for Camera {
             ui,
             Icon::Camera,
             t("Save picture"),
-            t("as it is shown, beside the scene"),
+            t("as it is shown, beside the scene; File > Pictures… has other sizes"),
             false,
             count > 0,
         )
@@ -122,8 +124,12 @@ impl Pane for Camera {
             .accessible_name(t("Camera picture"));
         let source = cameras::source_of(view, cx.state.cameras.source);
         if source.needs().conditions {
-            widgets::menu::with_fields(ui, t("Light…"), |ui| conditions(ui, cx.scene, commands))
-                .on_hover_text(t("Time of day and weather of the scene"));
+            // Where there is no room the title of the pane comes first.
+            let short = ui.available_width() < LIGHT_POINTS;
+            let name = if short { "☀" } else { t("Light…") };
+            widgets::menu::with_fields(ui, name, |ui| conditions(ui, cx.scene, commands))
+                .on_hover_text(t("Time of day and weather of the scene"))
+                .accessible_name(t("Light…"));
         }
     }
 

@@ -3,13 +3,15 @@
 use egui::{Rect, Ui};
 
 use super::areas::{halves, in_rect, upper_and_lower};
+use super::camera_header::progress;
 use super::camera_strip::{CameraStrip, CamerasInput};
-use super::compare::CompareMode;
+use super::compare::{CompareMode, tag};
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::command::Command;
 use crate::state::UiState;
-use sensors::cameras::ViewId;
+use language::tf;
+use sensors::cameras::{ViewId, learned};
 use widgets::icons::Icon;
 
 /// All cameras.
@@ -91,6 +93,7 @@ pub(super) fn compared(
                 None => strip.show(ui, input, state, commands),
             });
         };
+    let single = camera.is_some();
     let differs = mode == CompareMode::Difference;
     strip.differ(ui, &now, other.as_ref().filter(|_| differs));
     if mode != CompareMode::Wipe {
@@ -111,9 +114,25 @@ pub(super) fn compared(
             strip.wipe(Some((textures, cx.state.compare.wipe_at)));
             draw(ui, area, strip, &now, cx.state);
         }
-        _ => {
+        (_, other) => {
             strip.wipe(None);
             draw(ui, area, strip, &now, cx.state);
+            if differs && other.is_some() {
+                let name = cx.state.compare.names()[0];
+                let text = tf!("in colour: differs from “{other}”  ·  grey: alike", other = name);
+                tag(ui, area.left_bottom() + egui::vec2(4.0, -22.0), &text, false);
+            }
         }
+    }
+    // The row above the strip tells it; a camera in a pane of its own has none.
+    if single && now.stale && now.view == learned::VIEW.id {
+        let line = Rect::from_min_max(area.left_bottom() - egui::vec2(0.0, 24.0), area.right_bottom());
+        in_rect(ui, line, |ui| {
+            ui.painter().rect_filled(line, 3.0, egui::Color32::from_black_alpha(170));
+            ui.horizontal_centered(|ui| {
+                ui.add_space(6.0);
+                progress(ui, &now, commands);
+            });
+        });
     }
 }

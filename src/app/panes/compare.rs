@@ -173,8 +173,9 @@ impl Compare {
     }
 }
 
-/// The line of the wipe over a view, which can be dragged; `at` runs from 0 to 1 across it.
-pub(crate) fn wipe_line(ui: &Ui, rect: Rect, at: &mut f32) {
+/// The line of the wipe over a view, which can be dragged.
+pub(crate) fn wipe_line(ui: &Ui, rect: Rect, how: &mut Comparing) {
+    let at = &mut how.wipe_at;
     let x = rect.left() + rect.width() * *at;
     let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
     let id = ui.scope_id().with("wipe");
@@ -198,8 +199,9 @@ pub(crate) fn wipe_line(ui: &Ui, rect: Rect, at: &mut f32) {
         theme::accent(),
         Stroke::new(1.5, Color32::WHITE),
     );
-    tag(ui, rect.left_top() + vec2(8.0, 8.0), t("before"), false);
-    tag(ui, rect.right_top() + vec2(-8.0, 8.0), t("after"), true);
+    let [other, now] = how.names();
+    tag(ui, rect.left_top() + vec2(8.0, 8.0), other, false);
+    tag(ui, rect.right_top() + vec2(-8.0, 8.0), now, true);
 }
 
 /// What the colours of a view mean, in its upper left corner.

@@ -1,5 +1,7 @@
 //! How two states are compared, as the user chose it.
 
+use language::t;
+
 /// How two states are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CompareMode {
@@ -19,7 +21,7 @@ impl CompareMode {
     pub const ALL: [(CompareMode, &'static str, &'static str); 4] = [
         (CompareMode::Off, "Off", "only the present state"),
         (CompareMode::Wipe, "Wipe", "before on the left of a line"),
-        (CompareMode::Side, "Side", "before beside after"),
+        (CompareMode::Side, "Side by side", "before beside after"),
         (CompareMode::Difference, "Diff", "voxels that differ"),
     ];
 
@@ -39,6 +41,18 @@ pub struct Comparing {
     pub holding_before: bool,
     /// Where the line of the wipe stands, 0 to 1.
     pub wipe_at: f32,
+    /// What the version is called that the user chose to compare with; none: the one before.
+    pub with: Option<String>,
+}
+
+impl Comparing {
+    /// What the two states are called, the other one first.
+    pub fn names(&self) -> [&str; 2] {
+        match &self.with {
+            Some(name) => [name, t("now")],
+            None => [t("before"), t("after")],
+        }
+    }
 }
 
 impl Default for Comparing {
@@ -47,6 +61,7 @@ impl Default for Comparing {
             mode: CompareMode::Off,
             holding_before: false,
             wipe_at: 0.5,
+            with: None,
         }
     }
 }

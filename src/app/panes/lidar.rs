@@ -116,7 +116,7 @@ impl Pane for Lidar {
                             .show(ui, &before, other.as_ref(), colors, readout);
                     });
                 });
-                wipe_line(ui, area, &mut cx.state.compare.wipe_at);
+                wipe_line(ui, area, &mut cx.state.compare);
             }
             CompareMode::Off => {}
         }

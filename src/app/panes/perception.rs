@@ -233,14 +233,14 @@ fn search_ui(
             perceiving.search(cx.document.scene(), b.id, *vary);
         }
     });
-    let found = perceiving.found.as_ref().filter(|f| f.id == b.id);
+    let found = perceiving.found.as_mut().filter(|f| f.id == b.id);
     if let Some(found) = found {
         found_ui(ui, found, cx, commands);
     }
 }
 
 /// What a search found.
-fn found_ui(ui: &mut Ui, found: &Found, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
     let Some(last) = found.search.tried.last() else {
         return;
     };
@@ -254,6 +254,10 @@ fn found_ui(ui: &mut Ui, found: &Found, cx: &mut PaneContext<'_>, commands: &mut
     }
     let percent = format!("{:.0}", last.sight.share * 100.0);
     let Some(edits) = &found.search.found else {
+        if found.search.stopped {
+            ui.label(tf!("Stopped; not missed in the first {n} tries", n = found.search.tried.len()));
+            return;
+        }
         ui.label(tf!(
             "Not missed in {n} tries; at the end {percent} % of {px} pixels are seen",
             n = found.search.tried.len(),
@@ -287,10 +291,14 @@ fn found_ui(ui: &mut Ui, found: &Found, cx: &mut PaneContext<'_>, commands: &mut
                 .clicked()
             {
                 keep_version(cx.document.scene(), found.id, last.change, edits, cx.versions);
+                found.kept = true;
                 commands.push(Command::View(ViewCommand::ShowPane(PaneId::VERSIONS)));
             }
         });
     });
+    if found.kept {
+        ui.label(RichText::new(t("kept in the list of versions")).small().color(theme::text_weak()));
+    }
     if !current {
         ui.label(
             RichText::new(t("the scene has changed since"))
@@ -320,7 +328,7 @@ fn words(change: Change) -> String {
     let m = |m: f64| format!("{m:.1}");
     match change {
         Change::None => t("as it is").to_owned(),
-        Change::Away(away_m) => tf!("{distance} m away", distance = m(away_m)),
+        Change::Away(away_m) => tf!("{distance} m from the ego vehicle", distance = m(away_m)),
         Change::Aside(left_m) if left_m < 0.0 => tf!("{distance} m to the right", distance = m(-left_m)),
         Change::Aside(left_m) => tf!("{distance} m to the left", distance = m(left_m)),
         Change::Visibility(far_m) => tf!("visibility {distance} m", distance = format!("{far_m:.0}")),

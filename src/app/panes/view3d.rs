@@ -121,11 +121,11 @@ impl Pane for View3dPane {
         let seen_from = (&cx.view3d.camera, &cx.view3d.options);
         if mode == CompareMode::Side {
             clipped(ui, left, |ui| other.still(ui, left, seen_from, &input, cx.state));
-            sides(ui, left, right);
+            sides(ui, left, right, cx.state.compare.names());
         } else {
             let part = left_part(area, cx.state.compare.wipe_at);
             clipped(ui, part, |ui| other.still(ui, area, seen_from, &input, cx.state));
-            wipe_line(ui, area, &mut cx.state.compare.wipe_at);
+            wipe_line(ui, area, &mut cx.state.compare);
         }
     }
 }

@@ -134,6 +134,8 @@ impl SceneloomApp {
     fn escape(&mut self) {
         if self.document.is_dragging() {
             self.document.cancel_drag();
+        } else if self.state.windows.close_one() {
+            // A window lies over everything else.
         } else if self.state.cameras.enlarged.is_some() {
             self.state.cameras.enlarged = None;
         } else if !self.state.tools.voxels.is_empty() {

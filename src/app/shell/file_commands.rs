@@ -281,6 +281,8 @@ impl SceneloomApp {
         let path = self.suggested("png");
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let path = free_name(&path.with_file_name(format!("{stem}_{tidy}_{}.png", view.name())));
+        // A scene that was never saved has no folder: one wants to know where the picture is.
+        let path = std::path::absolute(&path).unwrap_or(path);
         match image::save_buffer(&path, &rgba, width as u32, height as u32, image::ColorType::Rgba8) {
             Ok(()) => {
                 let text = tf!(

@@ -6,8 +6,11 @@ use std::time::{Duration, Instant};
 use egui::Context;
 use tempfile::tempdir;
 
+use crate::command::ViewCommand;
 use crate::export::ExportOptions;
+use crate::panes::id::PaneId;
 use crate::scenery::{Drawer, SceneryWish};
+use crate::shell::workspace::Workspace;
 use crate::{AppConfig, SceneloomApp, open};
 use editor::Edit;
 use job::guard::panic_next;
@@ -153,4 +156,20 @@ fn measuring() {
     };
     assert_eq!(line, "measure panicked: asked for by a test");
     assert!(matches!(next(&start()), News::Progress(..)));
+}
+
+#[test]
+fn a_workspace_keeps_the_panes_that_were_opened_in_it() {
+    let mut app = app();
+    let ctx = Context::default();
+    let go = |app: &mut SceneloomApp, to| app.view_command(ViewCommand::Workspace(to), &ctx);
+    let pane = PaneId::named("perception");
+    app.view_command(ViewCommand::ShowPane(pane), &ctx);
+    go(&mut app, Workspace::Paint);
+    assert!(app.views.dock.find(pane).is_none());
+    go(&mut app, Workspace::Edit);
+    assert!(app.views.dock.find(pane).is_some(), "the pane is gone");
+    // Chosen once more, the panes stand as they came.
+    go(&mut app, Workspace::Edit);
+    assert!(app.views.dock.find(pane).is_none());
 }

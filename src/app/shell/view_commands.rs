@@ -75,11 +75,11 @@ impl SceneloomApp {
                 }
             }
             ViewCommand::Workspace(workspace) => {
-                self.preferences.settings.workspace = workspace;
+                let before = std::mem::replace(&mut self.preferences.settings.workspace, workspace);
                 // What is drawn over the views for one kind of work goes with its controls.
                 self.state.compare.mode = CompareMode::Off;
                 self.generation.tuning.show_modelled &= workspace == Workspace::Trade;
-                self.views.dock = Dock::workspace(workspace);
+                self.views.change_workspace(before, workspace);
                 // Its tool comes to hand, unless one of the kind is there already.
                 self.state.tool = match (workspace, self.state.tool) {
                     (Workspace::Paint, tool) if paints_map(tool) => tool,

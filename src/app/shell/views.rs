@@ -1,8 +1,11 @@
 //! The views, the panes around them, and where they stand.
 
+use std::collections::BTreeMap;
+
 use egui::Rect;
 
 use super::dock::Dock;
+use super::workspace::Workspace;
 use crate::canvas::Canvas;
 use crate::panes;
 use crate::panes::camera_strip::CameraStrip;
@@ -25,6 +28,8 @@ pub struct Views {
     pub(crate) prompt: PromptField,
     pub(crate) panes: Vec<Box<dyn Pane>>,
     pub(crate) dock: Dock,
+    /// The panes of the other workspaces as they were left.
+    left: BTreeMap<Workspace, Dock>,
     pub(crate) compare: Compare,
     pub(crate) seen: SeenScenes,
     pub(crate) render_state: Option<egui_wgpu::RenderState>,
@@ -42,6 +47,18 @@ pub(crate) struct BeforeClean {
 }
 
 impl Views {
+    /// From one workspace to another, whose panes stand as they were left; to the same one, whose panes stand as they came.
+    pub fn change_workspace(&mut self, from: Workspace, to: Workspace) {
+        let next = match from == to {
+            true => None,
+            false => self.left.remove(&to),
+        };
+        let before = std::mem::replace(&mut self.dock, next.unwrap_or_else(|| Dock::workspace(to)));
+        if from != to {
+            self.left.insert(from, before);
+        }
+    }
+
     /// With the panes where the dock puts them.
     pub fn new(view3d: View3d, dock: Dock, render_state: Option<egui_wgpu::RenderState>) -> Self {
         Self {
@@ -51,6 +68,7 @@ impl Views {
             prompt: PromptField::default(),
             panes: panes::all(),
             dock,
+            left: BTreeMap::new(),
             compare: Compare::default(),
             seen: SeenScenes::default(),
             render_state,

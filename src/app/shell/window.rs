@@ -196,6 +196,9 @@ impl SceneloomApp {
         let rev = self.document.settled_scene().content();
         let active = held || self.state.compare.mode != CompareMode::Off;
         let chosen = self.views.compare.chosen.as_ref().filter(|s| s.content() != rev);
+        let versions = &self.generation.versions;
+        let version = chosen.and_then(|s| versions.of(s.content()));
+        self.state.compare.with = version.map(|i| versions.list()[i].title().to_owned());
         let before = chosen
             .or_else(|| self.generation.versions.before(rev))
             .filter(|_| active)

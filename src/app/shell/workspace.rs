@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// An arrangement made for one kind of work.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Workspace {
     /// Bird's-eye view and 3D view side by side, cameras below.

@@ -38,3 +38,17 @@ pub struct OpenWindows {
     /// The sensor chosen in it.
     pub sensor: SensorChoice,
 }
+
+impl OpenWindows {
+    /// Closes the one window that a person most likely looks at; false if none is open.
+    pub fn close_one(&mut self) -> bool {
+        let all = [&mut self.capture.open, &mut self.settings, &mut self.sensors, &mut self.log];
+        match all.into_iter().find(|open| **open) {
+            Some(open) => {
+                *open = false;
+                true
+            }
+            None => false,
+        }
+    }
+}

@@ -89,7 +89,7 @@ impl std::fmt::Display for Change {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Change::None => write!(f, "as it is"),
-            Change::Away(m) => write!(f, "{m:.1} m away"),
+            Change::Away(m) => write!(f, "{m:.1} m from the ego vehicle"),
             Change::Aside(m) if *m < 0.0 => write!(f, "{:.1} m to the right", -m),
             Change::Aside(m) => write!(f, "{m:.1} m to the left"),
             Change::Visibility(m) => write!(f, "visibility {m:.0} m"),
@@ -115,6 +115,8 @@ pub struct Search {
     pub tried: Vec<Tried>,
     /// The last one misses the object: the edits that lead there, none for the scene as it is.
     pub found: Option<Vec<Edit>>,
+    /// It was ended before everything was tried.
+    pub stopped: bool,
 }
 
 /// Varies a scene until no camera's network sees a box that is plain to see. `watch` hears of each try and how many there
@@ -132,6 +134,7 @@ pub fn search(
     let mut out = Search {
         tried: Vec::new(),
         found: None,
+        stopped: false,
     };
     let as_it_is = std::iter::once((Change::None, Vec::new()));
     for (change, edits) in as_it_is.chain(steps) {
@@ -156,7 +159,11 @@ pub fn search(
         // What is too small to be judged as it is needs no search.
         let small = tried.sight.visible_px < LEAST_PX;
         let gone = small && (vary == Vary::Distance || out.tried.len() == 1);
-        if missed || ends || gone {
+        if missed || gone {
+            break;
+        }
+        if ends {
+            out.stopped = true;
             break;
         }
     }

@@ -334,13 +334,14 @@ fn keys_problem(keys: &[Key]) -> Option<String> {
 pub(super) fn at_keys(keys: &[Key], time_s: f64) -> Option<Moving> {
     let (first, last) = (keys.first()?, keys.last()?);
     let still = |k: &Key| Some(Moving::still(k.at_m, k.yaw_deg.to_radians()));
-    if time_s.is_nan() || time_s <= first.time_s {
+    if time_s.is_nan() || time_s < first.time_s || keys.len() == 1 {
         return still(first);
     }
-    if time_s >= last.time_s {
+    if time_s > last.time_s {
         return still(last);
     }
-    let i = keys.partition_point(|k| k.time_s <= time_s) - 1;
+    // At the very first and last moment it moves as between the keys: a clip that ends there shows no sudden stop.
+    let i = (keys.partition_point(|k| k.time_s <= time_s) - 1).min(keys.len() - 2);
     let (a, b) = (&keys[i], &keys[i + 1]);
     let span = b.time_s - a.time_s;
     let u = ((time_s - a.time_s) / span).clamp(0.0, 1.0);

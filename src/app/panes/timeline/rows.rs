@@ -6,6 +6,7 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, WidgetInfo
 use scene::{BoxId, Motion, Scene};
 
 use super::row_menu;
+use crate::canvas_draw::box_color;
 use crate::command::{Command, TimeCommand};
 use crate::state::UiState;
 use crate::state::called;
@@ -129,7 +130,7 @@ impl Rows {
         let (name, color) = match id.and_then(|id| clip.tracks.get(&id)) {
             Some(t) => (
                 format!("{} {}", theme::sentence(&called(&t.made)), t.made.id.0),
-                theme::class_color(t.made.class),
+                theme::rgb(box_color(&t.made, state.shown.by_track)),
             ),
             None => (t("Ego vehicle").to_owned(), theme::accent()),
         };
