@@ -160,8 +160,7 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
                 continue;
             }
             let (x, y) = (at as i64 % width, at as i64 / width);
-            // The rim of the painter, and one pixel because it looks for shadows in squares of two.
-            let rim = Painter::RIM_PX as i64 + 1;
+            let rim = Painter::RIM_PX as i64;
             let near = (-rim..=rim).any(|dy| {
                 (-rim..=rim).any(|dx| {
                     let (x, y) = (x + dx, y + dy);

@@ -1,6 +1,6 @@
 //! Where pictures change when a scene does.
 
-use super::seen::{HALF, Seen};
+use super::seen::Seen;
 use nets::picture::{CELL, RingSize};
 
 /// So many cells around that of a pixel that changed are painted.
@@ -20,10 +20,7 @@ pub(super) fn changed(then: &Seen, now: &Seen, size: RingSize) -> Vec<Vec<bool>>
         let ((a, old), (b, new)) = (then.pixels(view), now.pixels(view));
         let told =
             |i: usize| a.class[i] != b.class[i] || a.depth_m[i] != b.depth_m[i] || a.facing[i] != b.facing[i];
-        let lit = |i: usize| {
-            let at = i / width / HALF * (width / HALF) + i % width / HALF;
-            old[at].iter().zip(new[at]).any(|(a, b)| a.abs_diff(b) > LIGHT)
-        };
+        let lit = |i: usize| old[i].iter().zip(new[i]).any(|(a, b)| a.abs_diff(b) > LIGHT);
         (0..height * width).map(|i| told(i) || lit(i)).collect()
     };
     (0..size.views()).map(of_view).collect()

@@ -14,9 +14,6 @@ const FAR_M: f64 = 4.0;
 /// So is what turned by more, rad.
 const TURNED_RAD: f64 = 0.35;
 
-/// Light is looked at in squares of so many pixels along a side.
-pub(super) const HALF: usize = 2;
-
 /// A frame as the cameras of a ring see it.
 #[derive(PartialEq)]
 pub(super) struct Seen {
@@ -29,7 +26,7 @@ pub(super) struct Seen {
 #[derive(PartialEq)]
 struct View {
     hints: PictureHints,
-    /// sRGB of the program's own renderer at half the size, row-major, without what belongs to the lens.
+    /// sRGB of the program's own renderer, row-major, without what belongs to the lens.
     plain: Vec<[u8; 3]>,
 }
 
@@ -43,8 +40,7 @@ impl Seen {
             || Appearance::new(input.frame, input.rig, &input.conditions),
         );
         let view = |camera: &&Camera| {
-            let half = [width / HALF as u32, height / HALF as u32];
-            let plain = appearance.render_plain(camera, half, Quality::Preview);
+            let plain = appearance.render_plain(camera, [width, height], Quality::Preview);
             let byte = |v: f32| (v * 255.0).round().clamp(0.0, 255.0) as u8;
             View {
                 hints: teller.of(camera, [width, height]),
@@ -73,7 +69,7 @@ impl Seen {
         self.conditions == other.conditions && self.cameras == other.cameras
     }
 
-    /// Of a view: hints of each pixel, and colours of the renderer of each square of [`HALF`] pixels.
+    /// Of a view: hints and colours of the renderer of each pixel.
     pub fn pixels(&self, place: usize) -> (&PictureHints, &[[u8; 3]]) {
         let view = &self.views[place];
         (&view.hints, &view.plain)
