@@ -8,7 +8,7 @@ use super::super::reader::Mode;
 use super::super::stage::OpenScene;
 use super::*;
 use scene::{Edit, Frame, SensorRig};
-use sensors::appearance::{Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use sensors::appearance::{Appearance, Quality};
 use world::World;
 use world::voxelize::{Vertical, complete};
 
@@ -48,17 +48,9 @@ const SENTENCES: [(&str, TimeOfDay, Weather); 28] = [
 
 /// Mean of red, green and blue of what the front camera sees of a street.
 fn brightness(frame: &Frame, rig: &SensorRig, conditions: Conditions) -> f64 {
-    let images = RayMarched
-        .synthesize(&SynthesisInput {
-            frame,
-            rig,
-            size: [48, 27],
-            prompt: "",
-            conditions,
-            quality: Quality::Preview,
-        })
-        .expect("pictures");
-    let rgb = images[0].rgba.chunks_exact(4).flat_map(|p| &p[..3]);
+    let appearance = Appearance::new(frame, rig, &conditions);
+    let image = appearance.render(&rig.cameras[0], 48, 27, Quality::Preview);
+    let rgb = image.rgba.chunks_exact(4).flat_map(|p| &p[..3]);
     let (sum, n) = rgb.fold((0.0, 0.0), |(s, n), v| (s + f64::from(*v), n + 1.0));
     sum / n
 }

@@ -6,7 +6,7 @@ use app::recovery::{Recovery, ago};
 use editor::{Document, Edit};
 use job::{GenParams, Named};
 use scene::{BoxId, Conditions};
-use sensors::appearance::{Quality, RayMarched, SynthesisInput, ViewSynthesizer};
+use sensors::appearance::{Appearance, Quality};
 use sensors::cloud::GaussianCloud;
 use sensors::splat;
 
@@ -64,20 +64,11 @@ fn row_61_sliders_and_sizes() {
     }
     let scene = open::bundled().expect("bundled");
     for size in [[0, 0], [0, 9], [1, 0], [1, 1]] {
-        let input = SynthesisInput {
-            frame: scene.frame(),
-            rig: &scene.rig,
-            size,
-            prompt: "",
-            conditions: Conditions::default(),
-            quality: Quality::Preview,
-        };
-        let pictures = RayMarched.synthesize(&input).expect("empty or not");
-        assert!(
-            pictures
-                .iter()
-                .all(|p| p.rgba.len() == 4 * (size[0] * size[1]) as usize)
-        );
+        let appearance = Appearance::new(scene.frame(), &scene.rig, &Conditions::default());
+        for camera in &scene.rig.cameras {
+            let picture = appearance.render(camera, size[0], size[1], Quality::Preview);
+            assert_eq!(picture.rgba.len(), 4 * (size[0] * size[1]) as usize);
+        }
         let cloud = GaussianCloud::from_grid(&scene.frame().occupancy, &[]);
         let maps = splat::render_rig(&cloud, &scene.rig, size[0], size[1], &Default::default());
         assert!(
