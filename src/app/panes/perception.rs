@@ -252,15 +252,19 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
         ));
         return;
     }
+    // The last try may show too little of it to be judged.
+    let tried = &found.search.tried;
+    let judged = tried.iter().rev().find(|t| t.sight.visible_px >= LEAST_PX);
+    let last = judged.unwrap_or(last);
     let percent = format!("{:.0}", last.sight.share * 100.0);
     let Some(edits) = &found.search.found else {
         if found.search.stopped {
-            ui.label(tf!("Stopped; not missed in the first {n} tries", n = found.search.tried.len()));
+            ui.label(tf!("Stopped; not missed in the first {n} tries", n = tried.len()));
             return;
         }
         ui.label(tf!(
-            "Not missed in {n} tries; at the end {percent} % of {px} pixels are seen",
-            n = found.search.tried.len(),
+            "Not missed in {n} tries; in the last that can be judged {percent} % of {px} pixels are seen",
+            n = tried.len(),
             percent = percent,
             px = last.sight.visible_px
         ));
