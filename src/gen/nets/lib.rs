@@ -10,6 +10,7 @@ pub mod layout;
 pub mod lidar;
 pub mod occ_dit;
 pub mod occ_vae;
+pub mod perceiver;
 pub mod picture;
 pub mod pieces;
 pub mod refiner;
