@@ -156,9 +156,8 @@ impl PerceptionFrame {
         points.retain(|p| p.at_m.is_finite() && inside(p.at_m));
         let count = |b: &SceneBox| {
             let reach = b.size_m.truncate() / 2.0 + MARGIN_M;
-            let on = |p: &&Return| {
-                p.class == b.class && b.to_local(p.at_m).truncate().abs().cmple(reach).all()
-            };
+            let on =
+                |p: &&Return| p.class == b.class && b.to_local(p.at_m).truncate().abs().cmple(reach).all();
             points.iter().filter(on).count()
         };
         let near = boxes.values().filter(|b| inside(b.center_m)).take(BOXES);

@@ -49,7 +49,10 @@ mod tests {
         let road = (0, Class::DriveableSurface);
         assert_eq!(column(&[]), UNKNOWN);
         assert_eq!(column(&[road]), Class::DriveableSurface.id());
-        assert_eq!(column(&[road, (6, Class::Vegetation)]), Class::DriveableSurface.id());
+        assert_eq!(
+            column(&[road, (6, Class::Vegetation)]),
+            Class::DriveableSurface.id()
+        );
         assert_eq!(column(&[road, (5, Class::Vegetation)]), Class::Vegetation.id());
         let under = [(2, Class::Car), (3, Class::Vegetation), (4, Class::Manmade)];
         assert_eq!(column(&under), Class::Car.id());
