@@ -21,23 +21,35 @@ GROUP_OF = np.array([-1, 4, 3, 1, 0, 1, 3, 2, 4, 1, 1] + [-1] * 7)
 CELLS = COLUMNS // 2
 
 
+def mapped(path):
+    """The arrays of a shard by name, memory-mapped."""
+    with open(path, "rb") as f:
+        length = int.from_bytes(f.read(8), "little")
+        header = json.loads(f.read(length))
+    if any(n not in header for n in NAMES):
+        raise SystemExit(f"{path}: expected the arrays of `sceneloom-worlds --kind perception`: {', '.join(NAMES)}")
+    return {n: np.memmap(path, DTYPES[header[n]["dtype"]], "r", 8 + length + header[n]["data_offsets"][0], tuple(header[n]["shape"]))
+            for n in NAMES}
+
+
 class PerceptionFrames:
     """All frames of some folders, memory-mapped; `limit` takes the first ones."""
 
     def __init__(self, *folders, limit=None):
-        self.index = []
-        for path in (p for folder in folders for p in sorted(Path(folder).glob("shard_*.safetensors"))):
-            with open(path, "rb") as f:
-                length = int.from_bytes(f.read(8), "little")
-                header = json.loads(f.read(length))
-            if any(n not in header for n in NAMES):
-                raise SystemExit(f"{path}: expected the arrays of `sceneloom-worlds --kind perception`: {', '.join(NAMES)}")
-            arrays = {n: np.memmap(path, DTYPES[header[n]["dtype"]], "r", 8 + length + header[n]["data_offsets"][0],
-                                   tuple(header[n]["shape"])) for n in NAMES}
-            self.index += [(arrays, i) for i in range(len(arrays["source"]))]
+        self.folders, self.limit, self.known, self.index = [Path(f) for f in folders], limit, set(), []
+        self.rescan()
         if not self.index:
             raise SystemExit(f"{', '.join(map(str, folders))}: no shard_*.safetensors with frames in it")
-        self.index = self.index[:limit]
+
+    def rescan(self):
+        """Adds shards that were written since."""
+        for path in (p for folder in self.folders for p in sorted(folder.glob("shard_*.safetensors"))):
+            if path in self.known or len(self.index) == self.limit:
+                continue
+            self.known.add(path)
+            arrays = mapped(path)
+            self.index += [(arrays, i) for i in range(len(arrays["source"]))]
+            self.index = self.index[: self.limit]
 
     def __len__(self):
         return len(self.index)

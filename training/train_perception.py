@@ -1,5 +1,5 @@
 """Trains the LiDAR perceiver: python train_perception.py --data DIR --minutes M -o W.safetensors [--resume]. DIR holds train/ and val/ with shards of
-`sceneloom-worlds --kind perception`. See README.md."""
+`sceneloom-worlds --kind perception`; shards that come while it runs are taken in. See README.md."""
 import argparse
 import json
 import time
@@ -66,13 +66,14 @@ def main():
     train, held_out = PerceptionFrames(args.data / "train", limit=args.frames), PerceptionFrames(args.data / "val", limit=args.held_out)
     model = LidarPerceiver(PerceiverConfig(widths=(8, 12, 16)) if args.tiny else None).to(device).to(memory_format=torch.channels_last)
     run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.998, warmup=100)
-    meta = {"kind": "lidar_perceiver", "config": json.dumps(model.config.as_dict()), "seed": args.seed, "frames": len(train)}
+    meta = {"kind": "lidar_perceiver", "config": json.dumps(model.config.as_dict()), "seed": args.seed}
     print(f"{len(train)} frames, {sum(p.numel() for p in model.parameters()) / 1e6:.2f} M parameters", flush=True)
     mean, noted, since = {}, run.elapsed(), (run.samples, time.monotonic())
 
     def note():
         run.note(row(evaluated(run.ema, held_out, range(len(held_out)), dtype)))
-        run.save(meta)
+        train.rescan()
+        run.save(meta | {"frames": len(train)})
 
     rng = np.random.default_rng([args.seed, run.step])
     for parts in prefetch(lambda: batch(train, rng, args.batch)):
@@ -89,7 +90,8 @@ def main():
             note()
             noted, since = run.elapsed(), (run.samples, time.monotonic())
         elif run.elapsed() - run.saved_at > SAVE_MINUTES:
-            run.save(meta)
+            train.rescan()
+            run.save(meta | {"frames": len(train)})
     note()
 
 

@@ -52,21 +52,14 @@ class LidarPerceiver(nn.Module):
         nn.init.constant_(self.box_head.bias[: len(GROUPS)], -4.0)  # centres are rare
 
     def forward(self, pillars):
-        """[B,19,X,Y] -> logits of what stands [B,9,X,Y], logits of centres and numbers of boxes [B,15,X/2,Y/2]."""
+        """[B,19,X,Y], sides a multiple of 8 columns -> logits of what stands [B,9,X,Y], logits of centres and numbers of boxes [B,15,X/2,Y/2]."""
         seen = [self.enter[0](self.stem(fold(pillars)))]
         for down, level in zip(self.down, self.enter[1:]):
-            x = fold(padded(seen[-1]))
-            seen.append(level(down(x)))
+            seen.append(level(down(fold(seen[-1]))))
         *kept, x = seen
         for up, level, before in zip(self.up, self.leave, kept[::-1]):
-            x = unfold(up(x))[..., : before.shape[2], : before.shape[3]]
-            x = level(x + before)
+            x = level(unfold(up(x)) + before)
         return unfold(self.head(self.norm(x))), self.box_head(self.box_norm(self.boxes(x)))
-
-
-def padded(x):
-    """An odd map gets one more row and column of zeros: nothing is there for the window, whose levels halve evenly."""
-    return F.pad(x, (0, x.shape[3] % 2, 0, x.shape[2] % 2)) if x.shape[2] % 2 or x.shape[3] % 2 else x
 
 
 def pillars(points, rim=HALF_M):
@@ -84,10 +77,13 @@ def pillars(points, rim=HALF_M):
     n = COLUMNS * COLUMNS
     counts = torch.bincount(height * n + column, minlength=BINS * n).view(BINS, n).float()
     total = counts.sum(0)
+
     def mean(values):
         return torch.zeros(n).index_add_(0, column, values) / total.clamp(min=1)
+
     def edge(which):
         return torch.zeros(n).scatter_reduce_(0, column, z, which, include_self=False) / 3
+
     offset = (points[:, :2] + rim) / COLUMN_M - at - 0.5
     middle = (torch.arange(COLUMNS) + 0.5) * COLUMN_M - rim
     away = (middle[:, None].square() + middle.square()).sqrt() / HALF_M

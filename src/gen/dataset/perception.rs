@@ -8,7 +8,7 @@ use safetensors::tensor::Dtype;
 use super::pictures::floats;
 use super::{Shard, world_of};
 use nets::lidar::LidarNet;
-use nets::perceiver::standing::standing;
+use nets::perceiver::stands::standing;
 use scene::{BevLayout, BoxId, Class, Extent, LidarPattern, LidarPoint, SceneBox, SensorRig, VoxelGrid};
 use sensors::learned::Drops;
 use sensors::lidar::direction_in_sensor;

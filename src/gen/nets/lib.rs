@@ -171,6 +171,7 @@ mod tests {
             ("layout", shipped::LAYOUT),
             ("lidar", shipped::LIDAR),
             ("lidar_flat", shipped::LIDAR_FLAT),
+            ("lidar_perceiver", shipped::LIDAR_PERCEIVER),
             ("occ_dit", shipped::OCC_DIT),
             ("occ_vae", shipped::OCC_VAE),
             ("occ_vae_fine", shipped::OCC_VAE_FINE),
