@@ -102,12 +102,14 @@ def decode(boxes, threshold=0.1):
     yaw = torch.atan2(v[7], v[6]) / 2
     yaw = torch.where(v[8] * torch.cos(yaw) + v[9] * torch.sin(yaw) < 0, yaw + torch.pi, yaw)
     found = torch.stack([group.float(), score, *place, v[2], *v[3:6].clamp(-3, 4).exp(), yaw], 1)
+    found = found[score.argsort(descending=True, stable=True)]
+    near = (found[:, None, 2:4] - found[:, 2:4]).norm(dim=2) < torch.tensor(APART_M)[found[:, 0].long()]
+    near = (near & (found[:, :1] == found[:, 0])).numpy()
     kept = []
-    for box in found[score.argsort(descending=True, stable=True)]:
-        near = APART_M[int(box[0])]
-        if all(k[0] != box[0] or (k[2:4] - box[2:4]).norm() >= near for k in kept) and len(kept) < MOST:
-            kept.append(box)
-    return torch.stack(kept) if kept else torch.zeros(0, 9)
+    for i in range(len(found)):
+        if len(kept) < MOST and not near[i, kept].any():
+            kept.append(i)
+    return found[kept]
 
 
 def load_perceiver(path):
