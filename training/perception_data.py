@@ -54,6 +54,10 @@ class PerceptionFrames:
     def __len__(self):
         return len(self.index)
 
+    def pick(self, rng):
+        """A random frame."""
+        return int(rng.integers(len(self)))
+
     def read(self, frame):
         """points f32 [P,4] (m, echo strength), boxes f32 [K,9], what stands u8 [200,200] (255 unknown), source."""
         arrays, i = self.index[frame]
@@ -62,6 +66,20 @@ class PerceptionFrames:
         points[:, :3] = arrays["points"][i, :n] * np.float32(POINT_M)
         points[:, 3] = arrays["intensity"][i, :n]
         return points, np.array(arrays["boxes"][i, :k]), STAND_OF[arrays["standing"][i]], int(arrays["source"][i])
+
+
+class Mixed(PerceptionFrames):
+    """Several sets of frames, each as likely as the others however large it is."""
+
+    def __init__(self, parts):
+        self.index, self.starts = [], [0]
+        for part in parts:
+            self.index += part.index
+            self.starts.append(len(self.index))
+
+    def pick(self, rng):
+        part = rng.integers(len(self.starts) - 1)
+        return int(rng.integers(self.starts[part], self.starts[part + 1]))
 
 
 def mirrored(points, boxes, standing, symmetry):
@@ -124,7 +142,7 @@ def targets(boxes):
 
 def sample(frames, rng, frame=None):
     """A frame as tensors: pillars [19,200,200], what stands [200,200], heat, numbers, weights. Without `frame` a random one, disturbed."""
-    points, boxes, standing, _ = frames.read(int(rng.integers(len(frames))) if frame is None else frame)
+    points, boxes, standing, _ = frames.read(frames.pick(rng) if frame is None else frame)
     if frame is None:
         points, boxes, standing = mirrored(disturbed(points, rng), boxes, standing, int(rng.integers(8)))
     return pillars(torch.from_numpy(points)), torch.from_numpy(standing), *map(torch.from_numpy, targets(boxes))

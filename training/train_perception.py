@@ -48,7 +48,8 @@ def row(found):
 def main():
     p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("--data", type=Path, required=True, help="folder with train/ and val/")
-    p.add_argument("--minutes", type=float, required=True, help="wall-clock budget, earlier runs included when resuming")
+    p.add_argument("--minutes", type=float, required=True, help="budget, earlier runs included when resuming")
+    p.add_argument("--busy", action="store_true", help="minutes are of the processor, not of the clock: for a machine that others use")
     p.add_argument("-o", "--output", required=True, help="f32 weights; .checkpoint.pt and .csv are written beside it")
     p.add_argument("--resume", action="store_true")
     p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
@@ -65,7 +66,8 @@ def main():
     torch.manual_seed(args.seed)
     train, held_out = PerceptionFrames(args.data / "train", limit=args.frames), PerceptionFrames(args.data / "val", limit=args.held_out)
     model = LidarPerceiver(PerceiverConfig(widths=(8, 12, 16)) if args.tiny else None).to(device).to(memory_format=torch.channels_last)
-    run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.998, warmup=100)
+    run = Run(model, args, lr=args.lr, betas=(0.9, 0.98), weight_decay=0.01, ema=0.998, warmup=100,
+              clock=time.process_time if args.busy else time.monotonic)
     meta = {"kind": "lidar_perceiver", "config": json.dumps(model.config.as_dict()), "seed": args.seed}
     print(f"{len(train)} frames, {sum(p.numel() for p in model.parameters()) / 1e6:.2f} M parameters", flush=True)
     mean, noted, since = {}, run.elapsed(), (run.samples, time.monotonic())

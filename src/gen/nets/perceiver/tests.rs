@@ -216,9 +216,11 @@ fn misses_and_ghosts_are_told_apart() {
         .into_iter()
         .map(|(id, x)| (id, car(id, x, 0.0)))
         .collect();
-    let mut sweep = LidarSweep::default();
-    sweep.points = vec![point(110.0, 0.5); 7];
-    sweep.points.extend(vec![point(120.0, 0.5); 9]);
+    let (first, second) = (vec![point(110.0, 0.5); 7], vec![point(120.0, 0.5); 9]);
+    let sweep = LidarSweep {
+        points: [first, second].concat(),
+        ..Default::default()
+    };
     let seen = |x: f32| Detection {
         group: Group::Car,
         score: 0.9,
