@@ -1,0 +1,84 @@
+"""What train_perception.py left -> the shipped f16 weights in assets/weights, and in weights/perception the log, held-out figures, a picture, and the
+golden of the parity tests.
+
+python export_perception.py RUNS/perceiver.safetensors --data DIR [--frames 256]
+The golden is computed from the f16 values, in f32, as the Rust program will compute: maps of 32 x 32 columns by the shipped network and by a tiny one, which
+lies beside it; pillars of a few returns; boxes of a map of numbers.
+"""
+import argparse
+import json
+import shutil
+from pathlib import Path
+
+import torch
+from safetensors.torch import save_file
+
+from export import halved, read, uniform
+from models.lidar_perceiver import BOX, COLUMNS, GROUPS, PILLAR, LidarPerceiver, PerceiverConfig, decode, load_perceiver, pillars
+from perception_data import PerceptionFrames
+from perception_eval import evaluated
+from perception_sheet import sheet
+
+OUT = Path(__file__).resolve().parent / "weights" / "perception"
+SHIPPED = Path(__file__).resolve().parent.parent / "assets" / "weights" / "lidar_perceiver.safetensors"
+SIDE, RETURNS, MIDDLE, CELLS = 32, 400, slice(94, 106), 16
+TINY = PerceiverConfig(widths=(8, 12, 16), kernels=((3,), (1, 3), (3,)))
+
+
+def golden_returns():
+    """Returns [P,4] around the origin that any language makes alike; two are outside the window, two are not finite."""
+    u = uniform(RETURNS * 4, 1).view(RETURNS, 4)
+    points = u * torch.tensor([1.25, 1.25, 3.0, 64.0]) + torch.tensor([0.0, 0.0, 1.0, 120.0])
+    points[0, 0], points[1, 1], points[2, 2], points[3, 3] = 40.0, -41.0, float("nan"), float("inf")
+    return points
+
+
+def tiny():
+    """A network whose weights are as random as its shape is small."""
+    torch.manual_seed(1)
+    net = LidarPerceiver(TINY).eval().requires_grad_(False)
+    for p in net.parameters():
+        torch.nn.init.normal_(p, 0.0, 0.2)
+    return net
+
+
+@torch.no_grad()
+def golden(net, small):
+    """Inputs that any language makes alike, and what is made of them."""
+    x = uniform(SIDE * SIDE * PILLAR, 2).view(1, SIDE, SIDE, PILLAR).permute(0, 3, 1, 2)
+    out = {"pillars": pillars(golden_returns())[:, MIDDLE, MIDDLE].permute(1, 2, 0)}
+    for name, network in (("shipped", net), ("tiny", small)):
+        stands, boxes = network(x)
+        out |= {f"{name}_stands": stands[0].permute(1, 2, 0), f"{name}_boxes": boxes[0].permute(1, 2, 0)}
+    width = len(GROUPS) + BOX
+    out["decoded"] = decode(uniform(CELLS * CELLS * width, 3).view(CELLS, CELLS, width).permute(2, 0, 1), 0.6)
+    return {k: v.contiguous() for k, v in out.items()}
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    p.add_argument("weights", type=Path)
+    p.add_argument("--data", type=Path, required=True, help="folder with val/")
+    p.add_argument("--frames", type=int, help="of val/ for the figures; all if left out")
+    args = p.parse_args()
+    torch.set_num_threads(1)
+    tensors, metadata = read(args.weights)
+    save_file(halved(tensors), SHIPPED, metadata)
+    OUT.mkdir(parents=True, exist_ok=True)
+    net, small = load_perceiver(SHIPPED), tiny()
+    save_file(golden(net, small), OUT / "golden.safetensors")
+    save_file(small.state_dict(), OUT / "tiny.safetensors", {"kind": "lidar_perceiver", "config": json.dumps(TINY.as_dict())})
+    shutil.copy(args.weights.with_suffix(".csv"), OUT / "log.csv")
+    frames = PerceptionFrames(args.data / "val", limit=args.frames)
+    sources = [int(a["source"][i]) for a, i in frames.index]
+    kinds = {"all": range(len(frames))} | {name: [i for i, s in enumerate(sources) if s == k] for k, name in enumerate(("surfaces", "learned", "voxels"))}
+    figures = {name: evaluated(net, frames, which) for name, which in kinds.items() if len(which)}
+    (OUT / "figures.json").write_text(json.dumps(figures, indent=1) + "\n")
+    sheet(net, frames, range(min(3, len(frames)))).save(OUT / "sheet.png")
+    for path in (SHIPPED, *OUT.iterdir()):
+        path.chmod(0o644)
+    print({path.name: path.stat().st_size for path in (SHIPPED, *sorted(OUT.iterdir()))}, f"{COLUMNS} columns a side")
+
+
+if __name__ == "__main__":
+    main()
