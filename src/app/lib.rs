@@ -15,6 +15,7 @@ pub mod clip_export;
 pub mod command;
 pub mod export;
 pub(crate) mod fields;
+pub(crate) mod detection_marks;
 mod finding_marks;
 pub mod findings;
 pub mod graphics;

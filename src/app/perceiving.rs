@@ -1,22 +1,24 @@
-//! What a camera network sees of the scene, and searches for what it misses: on a thread of its own.
+//! What small networks see of the scene in its cameras and its LiDAR, and searches for what they miss: on a thread of its own.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use authoring::corner_case::{self, Change, Search, Tried, Vary};
+use authoring::corner_case::{self, Change, Search, Sensor, Tried, Vary};
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Wake, Worker};
 use scene::{BoxId, Scene, SceneRev};
 use sensors::perceived::{self, Report};
+use sensors::perceived_sweep::{self, SweepReport};
 
 /// What is asked for.
 enum Request {
-    Look(Arc<Scene>),
-    Search(Arc<Scene>, BoxId, Vary),
+    Look(Arc<Scene>, Sensor),
+    Search(Arc<Scene>, BoxId, Vary, Sensor),
 }
 
 enum News {
     Looked(SceneRev, Report),
+    Swept(SceneRev, SweepReport),
     Tried(Tried, [usize; 2]),
     Searched(Found),
     Failed(String),
@@ -36,6 +38,13 @@ pub struct Found {
     pub kept: bool,
 }
 
+impl Found {
+    /// Whose network was asked.
+    pub fn by(&self) -> Sensor {
+        self.search.tried.first().map_or(Sensor::Cameras, |t| t.sight.by)
+    }
+}
+
 struct Perceiver;
 
 impl Product for Perceiver {
@@ -44,14 +53,18 @@ impl Product for Perceiver {
 
     fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
         match request {
-            Request::Look(scene) => {
+            Request::Look(scene, Sensor::Lidar) => match perceived_sweep::report(scene) {
+                Ok(report) => News::Swept(scene.rev, report),
+                Err(error) => News::Failed(error.to_string()),
+            },
+            Request::Look(scene, Sensor::Cameras) => {
                 let placed = scene.with_rig_in_world();
                 match perceived::report(placed.frame(), &placed.rig, &placed.conditions) {
                     Ok(report) => News::Looked(scene.rev, report),
                     Err(error) => News::Failed(error.to_string()),
                 }
             }
-            Request::Search(scene, id, vary) => {
+            Request::Search(scene, id, vary, by) => {
                 let watch = |tried: &Tried, at| {
                     ctx.tell(News::Tried(*tried, at));
                     match ctx.should_stop() {
@@ -59,7 +72,7 @@ impl Product for Perceiver {
                         false => ControlFlow::Continue(()),
                     }
                 };
-                match corner_case::search(scene, *id, *vary, watch) {
+                match corner_case::search(scene, *id, *vary, *by, watch) {
                     Ok(search) => News::Searched(Found {
                         of: scene.rev,
                         id: *id,
@@ -87,12 +100,14 @@ impl Product for Perceiver {
     }
 }
 
-/// The newest of what the network sees, and the thread that asks it.
+/// The newest of what the networks see, and the thread that asks them.
 pub struct Perceiving {
     worker: Worker<Request, News>,
-    asked: Option<SceneRev>,
-    /// What it sees, and of which state.
+    asked: Option<(SceneRev, Sensor)>,
+    /// What is seen in the cameras, and of which state.
     pub seen: Option<(SceneRev, Report)>,
+    /// What is seen in the LiDAR's sweep, and of which state.
+    pub swept: Option<(SceneRev, Arc<SweepReport>)>,
     /// A search that runs: what was tried last, its number and how many there are at most.
     pub searching: Option<(Change, [usize; 2])>,
     /// The last search.
@@ -108,34 +123,37 @@ impl Perceiving {
             worker: Worker::start("perception", || Perceiver, wake)?,
             asked: None,
             seen: None,
+            swept: None,
             searching: None,
             found: None,
             problem: None,
         })
     }
 
-    /// Takes in what has arrived, and has a scene looked at that was not yet, unless a search runs.
-    pub fn update(&mut self, scene: &Arc<Scene>) {
+    /// Takes in what has arrived, and has a scene looked at by a sensor that did not yet, unless a search runs.
+    pub fn update(&mut self, scene: &Arc<Scene>, by: Sensor) {
         for news in self.worker.updates().try_iter().map(|event| event.update) {
             match news {
                 News::Looked(rev, report) => (self.seen, self.problem) = (Some((rev, report)), None),
+                News::Swept(rev, report) => (self.swept, self.problem) = (Some((rev, Arc::new(report))), None),
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
                 News::Searched(found) => (self.searching, self.found) = (None, Some(found)),
                 News::Failed(problem) => (self.searching, self.problem) = (None, Some(problem)),
                 News::GivenUp => self.searching = None,
             }
         }
-        if self.searching.is_none() && self.asked != Some(scene.rev) {
-            self.asked = Some(scene.rev);
-            self.worker.submit(Request::Look(scene.clone()));
+        let wanted = Some((scene.rev, by));
+        if self.searching.is_none() && self.asked != wanted && self.is_stale(scene.rev, by) {
+            self.asked = wanted;
+            self.worker.submit(Request::Look(scene.clone(), by));
         }
     }
 
     /// Searches for a change of a scene after which a box is missed.
-    pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary) {
+    pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary, by: Sensor) {
         self.found = None;
         self.searching = Some((Change::None, [0, 1]));
-        self.worker.submit(Request::Search(scene.clone(), id, vary));
+        self.worker.submit(Request::Search(scene.clone(), id, vary, by));
     }
 
     /// Ends a search after what it tries now.
@@ -143,9 +161,12 @@ impl Perceiving {
         self.worker.cancel();
     }
 
-    /// True if what is seen is of another state.
-    pub fn is_stale(&self, rev: SceneRev) -> bool {
-        self.seen.as_ref().is_none_or(|(of, _)| *of != rev)
+    /// True if what a sensor sees is of another state.
+    pub fn is_stale(&self, rev: SceneRev, by: Sensor) -> bool {
+        match by {
+            Sensor::Cameras => self.seen.as_ref().is_none_or(|(of, _)| *of != rev),
+            Sensor::Lidar => self.swept.as_ref().is_none_or(|(of, _)| *of != rev),
+        }
     }
 }
 
@@ -156,12 +177,12 @@ mod tests {
     use super::*;
     use crate::open;
 
-    fn wait(perceiving: &mut Perceiving, scene: &Arc<Scene>, until: impl Fn(&Perceiving) -> bool) {
+    fn wait(perceiving: &mut Perceiving, (scene, by): (&Arc<Scene>, Sensor), until: impl Fn(&Perceiving) -> bool) {
         let start = Instant::now();
         while !until(perceiving) {
             assert!(start.elapsed() < Duration::from_secs(120), "no news");
             std::thread::sleep(Duration::from_millis(5));
-            perceiving.update(scene);
+            perceiving.update(scene, by);
         }
     }
 
@@ -169,19 +190,24 @@ mod tests {
     fn a_scene_is_looked_at_and_searched() {
         let scene = Arc::new(open::from_template("t-junction", 1).expect("a template"));
         let mut perceiving = Perceiving::spawn(Arc::new(|| {})).expect("a thread");
-        assert!(perceiving.is_stale(scene.rev));
-        wait(&mut perceiving, &scene, |p| !p.is_stale(scene.rev));
+        let by = (&scene, Sensor::Cameras);
+        assert!(perceiving.is_stale(scene.rev, Sensor::Cameras));
+        wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
+        let by_lidar = (&scene, Sensor::Lidar);
+        wait(&mut perceiving, by_lidar, |p| !p.is_stale(scene.rev, Sensor::Lidar));
+        let (_, swept) = perceiving.swept.as_ref().expect("a report");
+        assert!(!swept.detections.is_empty());
         let (_, report) = perceiving.seen.as_ref().expect("a report");
         assert!(!report.boxes.is_empty() && report.right > 0.5);
         let id = report.boxes.last().expect("a box").thing.id;
-        perceiving.search(&scene, id, Vary::Time);
-        wait(&mut perceiving, &scene, |p| p.found.is_some());
+        perceiving.search(&scene, id, Vary::Time, Sensor::Cameras);
+        wait(&mut perceiving, by, |p| p.found.is_some());
         let found = perceiving.found.take().expect("a search");
         assert_eq!((found.id, found.of), (id, scene.rev));
         assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
         // A box that is not there is told, and the thread goes on.
-        perceiving.search(&scene, BoxId(9999), Vary::Fog);
-        wait(&mut perceiving, &scene, |p| p.problem.is_some());
+        perceiving.search(&scene, BoxId(9999), Vary::Fog, Sensor::Cameras);
+        wait(&mut perceiving, by, |p| p.problem.is_some());
         assert_eq!(perceiving.problem.as_deref(), Some("there is no box 9999"));
     }
 }

@@ -25,7 +25,7 @@ use super::screen_map::{point, pos};
 use super::state::{UiState, called, position_text};
 use super::tools::ToolState;
 use super::views_shown::ViewsShown;
-use super::{thing_outlines, track_marks, unsettled_marks};
+use super::{detection_marks, thing_outlines, track_marks, unsettled_marks};
 use crate::shell::live::Bounds;
 use widgets::software_ui;
 use widgets::theme;
@@ -189,6 +189,7 @@ impl View3d {
         let project = |p_m: DVec3| View3d::project(self, p_m);
         thing_outlines::in_3d(&painter, &project, input.scene, &state.things);
         track_marks::in_3d(&painter, &project, input.scene, state);
+        detection_marks::in_3d(&painter, &project, input.scene, state);
         let (parts, generating) = input.unsettled;
         unsettled_marks::in_3d(&painter, &project, input.scene.frame(), parts, generating);
         let board = Board {

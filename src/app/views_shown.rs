@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::detection_marks::DetectionMarks;
 use super::finding_marks::FindingMarks;
 
 /// What lies under the layers of the bird's-eye view.
@@ -35,6 +36,8 @@ pub struct ViewsShown {
     pub unobserved: bool,
     /// Marks of the finding that is pointed at or chosen in the list of checks; drawn in both views.
     pub finding_marks: Option<Arc<FindingMarks>>,
+    /// What the LiDAR's network sees, while its list is shown; drawn in both views.
+    pub detection_marks: Option<Arc<DetectionMarks>>,
 }
 
 impl Default for ViewsShown {
@@ -48,6 +51,7 @@ impl Default for ViewsShown {
             lidar_from_above: false,
             unobserved: false,
             finding_marks: None,
+            detection_marks: None,
         }
     }
 }

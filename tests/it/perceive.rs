@@ -32,6 +32,10 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
         .iter()
         .find(|b| b["missed"] == false)
         .expect("a box that is seen");
+    let lidar = &seen["lidar"];
+    assert!(lidar["columns_right"].as_f64() > Some(0.5), "{lidar}");
+    let swept = lidar["boxes"].as_array().expect("a list");
+    assert!(swept.iter().any(|b| b["missed"] == false && b["returns"].as_u64() >= Some(5)));
     let number = plain["box"].clone();
     let id = number.to_string();
 
@@ -57,6 +61,10 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
         (
             vec!["perceive", &scene, "--box", "9999", "--vary", "fog"],
             "there is no box 9999",
+        ),
+        (
+            vec!["perceive", &scene, "--box", "1", "--vary", "fog", "--by", "lidar"],
+            "light and air mean nothing to the LiDAR",
         ),
         (vec!["perceive", &scene, "--box", "1"], "--vary"),
         (vec!["perceive", &scene, "--box", "1", "--vary", "mood"], "mood"),

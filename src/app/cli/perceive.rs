@@ -1,4 +1,5 @@
-//! `sceneloom perceive`: what a small camera network sees of a scene; and a search for a change after which it misses an object.
+//! `sceneloom perceive`: what small networks see of a scene in the cameras and in the LiDAR; and a search for a change after
+//! which one misses an object.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -9,11 +10,11 @@ use serde_json::json;
 use super::progress::Progress;
 use super::{Common, Moment, Outcome, output};
 use app::open;
-use authoring::corner_case::{self, Vary};
+use authoring::corner_case::{self, Sensor, Vary};
 use editor::Document;
 use formats::loom;
 use scene::{BoxId, Scene};
-use sensors::perceived;
+use sensors::{perceived, perceived_sweep};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -26,6 +27,9 @@ pub struct Perceive {
     /// What is varied until the box is missed.
     #[arg(long, requires = "of")]
     vary: Option<Vary>,
+    /// Whose network is to miss it.
+    #[arg(long, requires = "of", default_value = "cameras")]
+    by: Sensor,
     /// Scene to write in which it is missed.
     #[arg(short, long, value_name = "S.loom", requires = "vary")]
     output: Option<PathBuf>,
@@ -47,6 +51,7 @@ impl Perceive {
     fn look(&self, scene: &Scene) -> Outcome {
         let placed = scene.with_rig_in_world();
         let found = perceived::report(placed.frame(), &placed.rig, &placed.conditions)?;
+        let swept = perceived_sweep::report(scene)?;
         let name = |camera: usize| &placed.rig.cameras[camera].name;
         let boxes = found.boxes.iter().map(|b| {
             json!({
@@ -67,6 +72,7 @@ impl Perceive {
             "boxes": boxes.collect::<Vec<_>>(),
             "ghost_px": ghosts.collect::<serde_json::Map<_, _>>(),
             "pixels_right": round(found.right),
+            "lidar": of_sweep(scene, &swept),
         });
         output::report(&self.common, &report, || {
             let line = |b: &perceived::SeenByRig| {
@@ -89,14 +95,27 @@ impl Perceive {
                 "classes right: {:.1} % of the pixels",
                 found.right * 100.0
             ));
+            lines.extend(swept.boxes.iter().map(|b| {
+                let class = scene.frame().boxes.get(&b.id).map_or("box", |b| b.class.name());
+                match b.score {
+                    Some(score) => format!("seen by the LiDAR: {class} #{}, {} returns, score {score:.2}", b.id.0, b.returns),
+                    None => format!("missed by the LiDAR: {class} #{}, {} returns", b.id.0, b.returns),
+                }
+            }));
+            let ghosts = swept.detections.iter().filter(|d| d.of.is_none()).count();
+            lines.push(format!("boxes of the LiDAR's network where there are none: {ghosts}"));
+            lines.push(format!("what stands right: {:.1} % of the columns", swept.right * 100.0));
             lines.join("\n")
         });
         Ok(())
     }
 
     fn search(&self, scene: &Scene, id: BoxId, vary: Vary) -> Outcome {
+        if !self.by.varies().contains(&vary) {
+            return Err(anyhow!("light and air mean nothing to the LiDAR: vary distance or offset").into());
+        }
         let progress = Progress::new(&self.common);
-        let search = corner_case::search(scene, id, vary, |_, [k, most]| {
+        let search = corner_case::search(scene, id, vary, self.by, |_, [k, most]| {
             progress.at("search", k, most);
             ControlFlow::Continue(())
         })?;
@@ -109,7 +128,7 @@ impl Perceive {
             loom::save(path, document.scene())?;
         }
         let tried = search.tried.iter().map(|t| {
-            json!({ "what": t.change.to_string(), "visible_px": t.sight.visible_px, "share_seen": round(t.sight.share) })
+            json!({ "what": t.change.to_string(), (visible(self.by)): t.sight.visible, "share_seen": round(t.sight.share) })
         });
         let report = json!({
             "box": id.0,
@@ -121,12 +140,11 @@ impl Perceive {
         });
         output::report(&self.common, &report, || {
             let lines = search.tried.iter().map(|t| {
-                format!(
-                    "{}: {} px, {:.0} % of them taken for a thing",
-                    t.change,
-                    t.sight.visible_px,
-                    t.sight.share * 100.0
-                )
+                let (n, percent) = (t.sight.visible, t.sight.share * 100.0);
+                match self.by {
+                    Sensor::Cameras => format!("{}: {n} px, {percent:.0} % of them taken for a thing", t.change),
+                    Sensor::Lidar => format!("{}: {n} returns, {percent:.0} % sure", t.change),
+                }
             });
             let mut lines: Vec<String> = lines.collect();
             lines.push(match edits {
@@ -142,6 +160,42 @@ impl Perceive {
             }
             None => Ok(()),
         }
+    }
+}
+
+/// What the LiDAR's network sees.
+fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::Value {
+    let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
+    let boxes = swept.boxes.iter().map(|b| {
+        json!({
+            "box": b.id.0,
+            "class": class(b.id),
+            "returns": b.returns,
+            "score": b.score.map(|s| round(s.into())),
+            "missed": b.is_missed(),
+        })
+    });
+    let ghosts = swept.detections.iter().filter(|d| d.of.is_none()).map(|d| {
+        json!({
+            "class": d.thing.class.name(),
+            "center_m": d.thing.center_m.to_array().map(round),
+            "size_m": d.thing.size_m.to_array().map(round),
+            "yaw_deg": round(d.thing.yaw_rad.to_degrees()),
+            "score": round(d.score.into()),
+        })
+    });
+    json!({
+        "boxes": boxes.collect::<Vec<_>>(),
+        "ghosts": ghosts.collect::<Vec<_>>(),
+        "columns_right": round(swept.right),
+    })
+}
+
+/// What the report calls that of which there must be enough.
+fn visible(by: Sensor) -> &'static str {
+    match by {
+        Sensor::Cameras => "visible_px",
+        Sensor::Lidar => "returns",
     }
 }
 

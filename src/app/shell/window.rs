@@ -181,6 +181,9 @@ impl SceneloomApp {
         if !self.views.dock.is_shown(PaneId::CHECKS) {
             self.state.shown.finding_marks = None;
         }
+        if !self.views.dock.is_shown(PaneId::named("perception")) {
+            self.state.shown.detection_marks = None;
+        }
         self.generation.live.named = self.state.named;
     }
 

@@ -1,4 +1,4 @@
-//! A corner case: one change of a scene, varied step by step until a camera network misses an object.
+//! A corner case: one change of a scene, varied step by step until a network of cameras or LiDAR misses an object.
 
 use std::ops::ControlFlow;
 
@@ -9,6 +9,7 @@ use editor::{Document, Edit};
 use scene::{BoxId, Camera, Conditions, Scene, SceneBox, TimeOfDay, Weather};
 use sensors::appearance::Appearance;
 use sensors::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
+use sensors::perceived_sweep::{self, LEAST_RETURNS};
 
 /// Distance of one step, m, and how many there are.
 const AWAY_M: (f64, usize) = (1.0, 40);
@@ -52,19 +53,57 @@ impl Vary {
     }
 }
 
-/// How well cameras see an object.
+/// Whose network is to miss the object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Sensor {
+    /// The cameras'.
+    #[default]
+    Cameras,
+    /// The LiDAR's.
+    Lidar,
+}
+
+impl Sensor {
+    /// Both, with what they are called.
+    pub const ALL: [(Self, &'static str); 2] = [(Self::Cameras, "Cameras"), (Self::Lidar, "LiDAR")];
+
+    /// What can be varied: light and air mean nothing to the LiDAR of the program.
+    pub fn varies(self) -> &'static [Vary] {
+        match self {
+            Self::Cameras => &Vary::ALL,
+            Self::Lidar => &[Vary::Distance, Vary::Offset],
+        }
+    }
+
+    /// Pixels or returns that an object needs to be judged.
+    pub fn least(self) -> usize {
+        match self {
+            Self::Cameras => LEAST_PX,
+            Self::Lidar => LEAST_RETURNS,
+        }
+    }
+}
+
+/// How well an object is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// Pixels that show it in the camera that shows most of it.
-    pub visible_px: usize,
-    /// Share of them that the network takes for a thing, in the camera where that is most.
+    /// By what.
+    pub by: Sensor,
+    /// Pixels that show it in the camera that shows most of it, or returns on it.
+    pub visible: usize,
+    /// Share of the pixels that the network takes for a thing, in the camera where that is most; or how sure it is of the box.
     pub share: f64,
 }
 
 impl Sight {
-    /// True if it is plain to see and the network misses it in every camera.
+    /// True if there is enough of it to be judged.
+    pub fn is_judged(&self) -> bool {
+        self.visible >= self.by.least()
+    }
+
+    /// True if it is plain to see and the network misses it.
     pub fn is_missed(&self) -> bool {
-        self.visible_px >= LEAST_PX && self.share < MISSED_BELOW
+        self.is_judged() && self.share < MISSED_BELOW
     }
 }
 
@@ -119,12 +158,13 @@ pub struct Search {
     pub stopped: bool,
 }
 
-/// Varies a scene until no camera's network sees a box that is plain to see. `watch` hears of each try and how many there
+/// Varies a scene until a network does not see a box that is plain to see. `watch` hears of each try and how many there
 /// are at most, and may end the search. Errors if there is no such box, or an edit or the network fails.
 pub fn search(
     scene: &Scene,
     id: BoxId,
     vary: Vary,
+    by: Sensor,
     mut watch: impl FnMut(&Tried, [usize; 2]) -> ControlFlow<()>,
 ) -> Result<Search> {
     let b = scene.frame().boxes.get(&id);
@@ -145,7 +185,7 @@ pub fn search(
         }
         let tried = Tried {
             change,
-            sight: sight(document.scene(), id)?,
+            sight: sight(document.scene(), id, by)?,
         };
         let (missed, ends) = (
             tried.sight.is_missed(),
@@ -157,7 +197,7 @@ pub fn search(
         }
         // What is too small to be missed becomes no larger farther away.
         // What is too small to be judged as it is needs no search.
-        let small = tried.sight.visible_px < LEAST_PX;
+        let small = !tried.sight.is_judged();
         let gone = small && (vary == Vary::Distance || out.tried.len() == 1);
         if missed || gone {
             break;
@@ -170,12 +210,27 @@ pub fn search(
     Ok(out)
 }
 
-/// How the cameras of a scene's rig see a box.
-pub fn sight(scene: &Scene, id: BoxId) -> Result<Sight> {
+/// How a scene's cameras or its LiDAR see a box. Errors if the network fails.
+pub fn sight(scene: &Scene, id: BoxId, by: Sensor) -> Result<Sight> {
+    match by {
+        Sensor::Cameras => in_cameras(scene, id),
+        Sensor::Lidar => {
+            let seen = perceived_sweep::sight(scene, id)?;
+            Ok(Sight {
+                by,
+                visible: seen.map_or(0, |s| s.returns),
+                share: seen.and_then(|s| s.score).map_or(0.0, f64::from),
+            })
+        }
+    }
+}
+
+fn in_cameras(scene: &Scene, id: BoxId) -> Result<Sight> {
     let placed = scene.with_rig_in_world();
     let (frame, rig) = (placed.frame(), &placed.rig);
     let mut best = Sight {
-        visible_px: 0,
+        by: Sensor::Cameras,
+        visible: 0,
         share: 0.0,
     };
     let Some(b) = frame.boxes.get(&id) else {
@@ -184,9 +239,9 @@ pub fn sight(scene: &Scene, id: BoxId) -> Result<Sight> {
     let appearance = Appearance::new(frame, rig, &placed.conditions);
     for camera in rig.cameras.iter().filter(|c| may_see(c, b)) {
         let seen = Perceived::of(&appearance, frame, camera)?;
-        if let Some((visible_px, share)) = seen.seen(id) {
-            best.visible_px = best.visible_px.max(visible_px);
-            if visible_px >= LEAST_PX {
+        if let Some((visible, share)) = seen.seen(id) {
+            best.visible = best.visible.max(visible);
+            if visible >= LEAST_PX {
                 best.share = best.share.max(share);
             }
         }
@@ -265,8 +320,8 @@ mod tests {
         let mut boxes: Vec<&SceneBox> = scene.frame().boxes.values().collect();
         boxes.sort_by(|a, b| near(a).total_cmp(&near(b)));
         let seen = boxes.into_iter().find(|b| {
-            let sight = sight(scene, b.id).expect("the shipped network");
-            sight.visible_px > 200 && !sight.is_missed()
+            let sight = sight(scene, b.id, Sensor::Cameras).expect("the shipped network");
+            sight.visible > 200 && !sight.is_missed()
         });
         seen.expect("a box that is seen").id
     }
@@ -276,7 +331,7 @@ mod tests {
         let scene = open::from_template("t-junction", 1).expect("a template");
         let id = seen_box(&scene);
         let mut heard = 0;
-        let found = search(&scene, id, Vary::Fog, |tried, [k, most]| {
+        let found = search(&scene, id, Vary::Fog, Sensor::Cameras, |tried, [k, most]| {
             heard += 1;
             assert!(k == heard && k <= most && (k == 1) == (tried.change == Change::None));
             ControlFlow::Continue(())
@@ -289,13 +344,30 @@ mod tests {
         let edits = found.found.expect("fog hides everything in the end");
         let mut document = Document::new(scene.clone());
         document.apply_all("vary", &edits).expect("edits of the search");
-        assert_eq!(sight(document.scene(), id).expect("a sight"), last.sight);
+        assert_eq!(sight(document.scene(), id, Sensor::Cameras).expect("a sight"), last.sight);
         // It can be ended, and a box that is not there is named.
-        let ended = search(&scene, id, Vary::Offset, |_, _| ControlFlow::Break(()));
+        let ended = search(&scene, id, Vary::Offset, Sensor::Cameras, |_, _| ControlFlow::Break(()));
         let ended = ended.expect("the shipped network");
-        assert!(ended.tried.len() == 1 && ended.found.is_none());
-        let error = search(&scene, BoxId(9999), Vary::Time, |_, _| ControlFlow::Continue(()));
+        assert!(ended.tried.len() == 1 && ended.found.is_none() && ended.stopped);
+        let error = search(&scene, BoxId(9999), Vary::Time, Sensor::Cameras, |_, _| ControlFlow::Continue(()));
         assert_eq!(error.expect_err("no box").to_string(), "there is no box 9999");
+    }
+
+    #[test]
+    fn a_lidar_loses_what_goes_away() {
+        let scene = open::from_template("t-junction", 1).expect("a template");
+        let seen = |b: &&SceneBox| {
+            let sight = sight(&scene, b.id, Sensor::Lidar).expect("the shipped network");
+            sight.is_judged() && !sight.is_missed()
+        };
+        let b = scene.frame().boxes.values().find(seen).expect("a box that the LiDAR sees");
+        let found = search(&scene, b.id, Vary::Distance, Sensor::Lidar, |_, _| ControlFlow::Continue(()));
+        let found = found.expect("the shipped network");
+        let last = found.tried.last().expect("tries").sight;
+        // In the end it is missed, or has too few returns to be judged, or it was moved as far as the search goes.
+        assert!(last.is_missed() || !last.is_judged() || found.tried.len() > 30);
+        assert!(found.tried[0].sight.visible > last.visible && last.by == Sensor::Lidar);
+        assert!(!Sensor::Lidar.varies().contains(&Vary::Fog));
     }
 
     #[test]

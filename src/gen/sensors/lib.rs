@@ -22,6 +22,7 @@ pub mod order;
 pub mod own_body;
 pub mod painter;
 pub mod perceived;
+pub mod perceived_sweep;
 pub mod perspective;
 pub mod picture_hints;
 mod plots;

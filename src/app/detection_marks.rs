@@ -1,0 +1,157 @@
+//! What the LiDAR's network sees, over the large views: its boxes, those of the scene that it misses, and what it takes the
+//! ground for.
+
+use egui::epaint::{Mesh, Vertex};
+use egui::{Color32, Painter, Pos2, Shape, Stroke, TextureHandle, pos2};
+use glam::{DVec2, DVec3};
+
+use super::canvas::ScreenMap;
+use super::state::UiState;
+use language::t;
+use scene::{BoxId, Extent, Frame, Pose, Scene, SceneBox};
+use sensors::perceived::{GHOST, MISSED};
+
+/// Colour of a box of the network that belongs to one of the scene.
+const SEEN: Color32 = Color32::from_rgb(80, 230, 230);
+/// So much of what stands is seen over the map, of 255.
+const STANDS: u8 = 150;
+
+/// The marks of one sweep.
+#[derive(Clone)]
+pub struct DetectionMarks {
+    /// Boxes on the map, and true of each for which there is none in the scene.
+    pub detections: Vec<(SceneBox, bool)>,
+    /// Boxes of the scene that are missed.
+    pub missed: Vec<BoxId>,
+    /// What stands in each column of the window around the vehicle, seen from above, ahead is up.
+    pub stands: Option<TextureHandle>,
+    /// Map from the vehicle.
+    pub map_from_vehicle: Pose,
+}
+
+fn color([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+impl std::fmt::Debug for DetectionMarks {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} detections, {} missed", self.detections.len(), self.missed.len())
+    }
+}
+
+impl DetectionMarks {
+    /// What the colours mean.
+    pub(crate) fn legend() -> [(Color32, String); 3] {
+        [
+            (SEEN, t("seen by the network").to_owned()),
+            (color(MISSED), t("missed").to_owned()),
+            (color(GHOST), t("a thing where there is none").to_owned()),
+        ]
+    }
+
+    /// Each box with its colour.
+    fn boxes<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (&'a SceneBox, Color32)> {
+        let detections = self.detections.iter();
+        let detections = detections.map(|(b, ghost)| (b, if *ghost { color(GHOST) } else { SEEN }));
+        let missed = self.missed.iter().filter_map(|id| frame.boxes.get(id));
+        detections.chain(missed.map(|b| (b, color(MISSED))))
+    }
+
+    /// Draws them on the bird's-eye view.
+    pub(super) fn from_above(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
+        if let Some(texture) = &self.stands {
+            let (min, max) = (Extent::WINDOW.min_m().truncate(), Extent::WINDOW.max_m().truncate());
+            let on_map = |p: DVec2| map.to_screen(self.map_from_vehicle.apply(p.extend(0.0)).truncate());
+            // Ahead is up and left is left: the picture's upper left corner is the window's farthest left one.
+            let corners = [
+                (on_map(max), pos2(0.0, 0.0)),
+                (on_map(DVec2::new(max.x, min.y)), pos2(1.0, 0.0)),
+                (on_map(min), pos2(1.0, 1.0)),
+                (on_map(DVec2::new(min.x, max.y)), pos2(0.0, 1.0)),
+            ];
+            painter.add(Shape::mesh(quad(texture, corners)));
+        }
+        for (b, color) in self.boxes(frame).filter(|(b, _)| b.problem().is_none()) {
+            let mut outline: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
+            outline.push(outline[0]);
+            let ahead = b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0);
+            let nose = [b.center_m.truncate(), ahead].map(|p| map.to_screen(p));
+            for line in [&outline[..], &nose[..]] {
+                stroke(painter, line, color);
+            }
+        }
+    }
+
+    fn in_3d(&self, painter: &Painter, project: &dyn Fn(DVec3) -> Option<Pos2>, frame: &Frame) {
+        for (b, color) in self.boxes(frame).filter(|(b, _)| b.problem().is_none()) {
+            let half = b.size_m.z / 2.0;
+            let ring = |z: f64| b.footprint().map(|p| project(p.extend(b.center_m.z + z)));
+            let (low, high) = (ring(-half), ring(half));
+            for i in 0..4 {
+                let edges = [(low[i], low[(i + 1) % 4]), (high[i], high[(i + 1) % 4]), (low[i], high[i])];
+                for (a, b) in edges {
+                    if let (Some(a), Some(b)) = (a, b) {
+                        stroke(painter, &[a, b], color);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Draws those that are shown on the 3D view; `project` gives the place of a point on screen.
+pub(super) fn in_3d(
+    painter: &Painter,
+    project: &dyn Fn(DVec3) -> Option<Pos2>,
+    scene: &Scene,
+    state: &UiState,
+) {
+    if let Some(marks) = &state.shown.detection_marks {
+        marks.in_3d(painter, project, scene.frame());
+    }
+}
+
+/// A line that is seen on bright and on dark.
+fn stroke(painter: &Painter, line: &[Pos2], color: Color32) {
+    painter.line(line.to_vec(), Stroke::new(3.5, Color32::from_black_alpha(130)));
+    painter.line(line.to_vec(), Stroke::new(1.8, color));
+}
+
+/// A texture between four corners, each with its place in the texture.
+fn quad(texture: &TextureHandle, corners: [(Pos2, Pos2); 4]) -> Mesh {
+    let mut mesh = Mesh::with_texture(texture.id());
+    let color = Color32::from_white_alpha(STANDS);
+    mesh.vertices = corners.map(|(pos, uv)| Vertex { pos, uv, color }).into();
+    mesh.indices = vec![0, 1, 2, 0, 2, 3];
+    mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::Class;
+
+    #[test]
+    fn every_box_has_the_colour_of_what_became_of_it() {
+        let mut frame = Frame::default();
+        let b = |id: u32| SceneBox {
+            id: BoxId(id),
+            class: Class::Car,
+            center_m: DVec3::new(f64::from(id), 0.0, 0.5),
+            size_m: DVec3::new(4.0, 2.0, 1.5),
+            yaw_rad: 0.0,
+            velocity_mps: DVec2::ZERO,
+            label: Default::default(),
+        };
+        frame.boxes.insert(BoxId(1), b(1));
+        let marks = DetectionMarks {
+            detections: vec![(b(5), false), (b(6), true)],
+            // One of them is gone since.
+            missed: vec![BoxId(1), BoxId(2)],
+            stands: None,
+            map_from_vehicle: Pose::IDENTITY,
+        };
+        let colors: Vec<Color32> = marks.boxes(&frame).map(|(_, c)| c).collect();
+        assert_eq!(colors, [SEEN, color(GHOST), color(MISSED)]);
+    }
+}

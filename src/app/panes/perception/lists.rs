@@ -1,0 +1,157 @@
+//! What a network misses, what it sees, and what it sees where there is nothing, as lists.
+
+use egui::{RichText, Ui};
+
+use crate::camera_views::camera_label;
+use crate::command::{Command, ViewCommand};
+use crate::panes::pane::PaneContext;
+use crate::perceiving::Perceiving;
+use language::{t, tf};
+use sensors::cameras::perceived;
+use sensors::perceived::SeenByRig;
+use sensors::perceived_sweep::SeenBySweep;
+use widgets::icons::section;
+use widgets::theme;
+
+/// Fewer pixels of things where there are none are not worth a line.
+const LEAST_GHOST_PX: usize = 20;
+
+/// What the LiDAR's network misses and what it sees where there is nothing, or what it sees, or both.
+pub(super) fn sweep_ui(
+    ui: &mut Ui,
+    perceiving: &Perceiving,
+    cx: &PaneContext<'_>,
+    [wrong, right]: [bool; 2],
+    commands: &mut Vec<Command>,
+) {
+    let report = perceiving.swept.as_ref().map(|(_, report)| report);
+    let boxes = report.map_or(&[][..], |report| &report.boxes);
+    let missed = boxes.iter().take_while(|b| b.is_missed()).count();
+    let (missed, seen) = boxes.split_at(missed);
+    for (title, boxes, shown) in [(t("Missed"), missed, wrong), (t("Seen"), seen, right)] {
+        if !shown {
+            continue;
+        }
+        section(ui, title);
+        match (report, boxes) {
+            (None, _) => drop(ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()))),
+            (_, []) => drop(ui.label(RichText::new(t("none")).color(theme::text_weak()))),
+            (_, boxes) => boxes.iter().for_each(|b| swept_row(ui, b, cx, commands)),
+        }
+    }
+    let Some(report) = report.filter(|_| wrong) else {
+        return;
+    };
+    let ghosts: Vec<_> = report.detections.iter().filter(|d| d.of.is_none()).collect();
+    if ghosts.is_empty() {
+        return;
+    }
+    section(ui, t("Things where there are none"));
+    let ego_m = report.map_from_vehicle.translation_m;
+    for ghost in ghosts {
+        let text = tf!(
+            "{class}: {percent} % sure, {distance} m from the ego vehicle",
+            class = theme::sentence(t(&ghost.thing.class.label())),
+            percent = format!("{:.0}", ghost.score * 100.0),
+            distance = format!("{:.0}", (ghost.thing.center_m - ego_m).truncate().length())
+        );
+        if ui.selectable_label(false, text).clicked() {
+            commands.push(Command::View(ViewCommand::FrameAt(ghost.thing.center_m)));
+        }
+    }
+}
+
+/// A box in the sweep: a click chooses it.
+fn swept_row(ui: &mut Ui, seen: &SeenBySweep, cx: &PaneContext<'_>, commands: &mut Vec<Command>) {
+    let Some(b) = cx.document.scene().frame().boxes.get(&seen.id) else {
+        return;
+    };
+    let name = format!("{} #{}", theme::sentence(t(&b.class.label())), seen.id.0);
+    let text = match seen.score {
+        Some(score) => tf!(
+            "{name}: {n} returns, {percent} % sure",
+            name = name,
+            n = seen.returns,
+            percent = format!("{:.0}", score * 100.0)
+        ),
+        None => tf!("{name}: {n} returns", name = name, n = seen.returns),
+    };
+    let chosen = cx.state.selected == Some(seen.id);
+    if ui.selectable_label(chosen, text).clicked() {
+        commands.push(Command::Select(Some(seen.id)));
+    }
+}
+
+/// What is missed and things where there are none, or what is seen, or both.
+pub(super) fn report_ui(
+    ui: &mut Ui,
+    perceiving: &Perceiving,
+    cx: &PaneContext<'_>,
+    [wrong, right]: [bool; 2],
+    commands: &mut Vec<Command>,
+) {
+    let report = perceiving.seen.as_ref().map(|(_, report)| report);
+    let boxes = report.map_or(&[][..], |report| &report.boxes);
+    let missed = boxes.iter().take_while(|b| b.thing.is_missed()).count();
+    let (missed, seen) = boxes.split_at(missed);
+    for (title, boxes, shown) in [(t("Missed"), missed, wrong), (t("Seen"), seen, right)] {
+        if !shown {
+            continue;
+        }
+        section(ui, title);
+        match (report, boxes) {
+            (None, _) => drop(ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()))),
+            (_, []) => drop(ui.label(RichText::new(t("none")).color(theme::text_weak()))),
+            (_, boxes) => boxes.iter().for_each(|b| row(ui, b, cx, commands)),
+        }
+    }
+    let Some(report) = report.filter(|_| wrong) else {
+        return;
+    };
+    let ghosts: Vec<(usize, usize)> = report.ghost_px.iter().copied().enumerate().collect();
+    let ghosts: Vec<_> = ghosts
+        .into_iter()
+        .filter(|(_, px)| *px >= LEAST_GHOST_PX)
+        .collect();
+    if ghosts.is_empty() {
+        return;
+    }
+    section(ui, t("Things where there are none"));
+    for (camera, px) in ghosts {
+        let Some(of) = cx.scene.rig.cameras.get(camera) else {
+            continue;
+        };
+        let text = tf!("{camera}: {n} pixels", camera = camera_label(&of.name), n = px);
+        if ui.selectable_label(false, text).clicked() {
+            commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
+            commands.push(Command::View(ViewCommand::Inspect(Some(camera))));
+        }
+    }
+}
+
+/// A box: a click chooses it.
+fn row(ui: &mut Ui, seen: &SeenByRig, cx: &PaneContext<'_>, commands: &mut Vec<Command>) {
+    let id = seen.thing.id;
+    let (Some(b), Some(camera)) = (
+        cx.document.scene().frame().boxes.get(&id),
+        cx.scene.rig.cameras.get(seen.camera),
+    ) else {
+        return;
+    };
+    let text = format!(
+        "{} #{}  ·  {}  ·  {:.0} %",
+        theme::sentence(t(&b.class.label())),
+        id.0,
+        camera_label(&camera.name),
+        seen.thing.share * 100.0
+    );
+    let hint = tf!(
+        "{n} pixels show it; the network takes {percent} % of them for a thing",
+        n = seen.thing.visible_px,
+        percent = format!("{:.0}", seen.thing.share * 100.0)
+    );
+    let chosen = cx.state.selected == Some(id);
+    if ui.selectable_label(chosen, text).on_hover_text(hint).clicked() {
+        commands.push(Command::Select(Some(id)));
+    }
+}

@@ -1,0 +1,177 @@
+//! The search for a change of the scene after which a network misses the chosen box.
+
+use std::sync::Arc;
+
+use egui::{RichText, Ui};
+
+use authoring::corner_case::{Change, Sensor, Tried, Vary};
+use editor::Document;
+use language::{t, tf};
+use scene::{BoxId, Scene};
+use widgets::icons::section;
+use widgets::theme;
+
+use crate::command::{Command, ViewCommand};
+use crate::panes::id::PaneId;
+use crate::panes::pane::PaneContext;
+use crate::perceiving::{Found, Perceiving};
+
+/// The search for a change after which the chosen box is missed.
+pub(super) fn search_ui(
+    ui: &mut Ui,
+    perceiving: &mut Perceiving,
+    (vary, by): (&mut Vary, Sensor),
+    cx: &mut PaneContext<'_>,
+    commands: &mut Vec<Command>,
+) {
+    section(ui, t("Corner case"));
+    if let Some((change, [k, most])) = perceiving.searching {
+        ui.horizontal(|ui| {
+            ui.add(egui::Spinner::new().size(12.0));
+            ui.label(format!("{k}/{most}  {}", words(change)));
+            if ui.button(t("Stop")).clicked() {
+                perceiving.stop();
+            }
+        });
+        return;
+    }
+    let chosen = cx
+        .state
+        .selected
+        .and_then(|id| cx.document.scene().frame().boxes.get(&id));
+    let Some(b) = chosen else {
+        let text =
+            t("Choose a box, and a change of the scene is searched after which the network misses it.");
+        ui.label(RichText::new(text).color(theme::text_weak()));
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.label(t("Vary"));
+        egui::ComboBox::from_id_salt("vary")
+            .selected_text(t(vary.title()))
+            .show_ui(ui, |ui| {
+                for value in by.varies() {
+                    ui.selectable_value(vary, *value, t(value.title()));
+                }
+            })
+            .response
+            .on_hover_text(t("What is changed step by step until the box is missed"))
+            .accessible_name(t("Vary"));
+        if ui.button(t("Search")).clicked() {
+            perceiving.search(cx.document.scene(), b.id, *vary, by);
+        }
+    });
+    let found = perceiving.found.as_mut().filter(|f| f.id == b.id && f.by() == by);
+    if let Some(found) = found {
+        found_ui(ui, found, cx, commands);
+    }
+}
+
+/// What a search found.
+fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+    let Some(last) = found.search.tried.last() else {
+        return;
+    };
+    let (n, least) = (last.sight.visible, last.sight.by.least());
+    if found.search.tried.len() == 1 && !last.sight.is_judged() {
+        ui.label(match last.sight.by {
+            Sensor::Cameras => tf!(
+                "Too small to be judged: {n} pixels, at least {least} are needed",
+                n = n,
+                least = least
+            ),
+            Sensor::Lidar => tf!(
+                "Too few returns to be judged: {n}, at least {least} are needed",
+                n = n,
+                least = least
+            ),
+        });
+        return;
+    }
+    // The last try may show too little of it to be judged.
+    let tried = &found.search.tried;
+    let judged = tried.iter().rev().find(|t| t.sight.is_judged());
+    let last = judged.unwrap_or(last);
+    let Some(edits) = &found.search.found else {
+        if found.search.stopped {
+            ui.label(tf!("Stopped; not missed in the first {n} tries", n = tried.len()));
+            return;
+        }
+        let n = tried.len();
+        ui.label(tf!("Not missed in {n} tries. In the last that can be judged: {sight}", n = n, sight = sight(last)));
+        return;
+    };
+    ui.label(tf!("Missed: {change}. {sight}", change = words(last.change), sight = sight(last)));
+    if edits.is_empty() {
+        return;
+    }
+    let current = cx.document.scene().rev == found.of;
+    ui.add_enabled_ui(current, |ui| {
+        ui.horizontal(|ui| {
+            if ui
+                .button(t("Take it"))
+                .on_hover_text(t("Changes the scene so"))
+                .clicked()
+            {
+                commands.push(Command::Apply("Corner case", edits.clone()));
+            }
+            let keep = ui.button(t("Keep as a version"));
+            if keep
+                .on_hover_text(t("The scene stays; the corner case is in the list of versions"))
+                .clicked()
+            {
+                keep_version(cx.document.scene(), found.id, last.change, edits, cx.versions);
+                found.kept = true;
+                commands.push(Command::View(ViewCommand::ShowPane(PaneId::VERSIONS)));
+            }
+        });
+    });
+    if found.kept {
+        ui.label(RichText::new(t("kept in the list of versions")).small().color(theme::text_weak()));
+    }
+    if !current {
+        ui.label(
+            RichText::new(t("the scene has changed since"))
+                .small()
+                .color(theme::text_weak()),
+        );
+    }
+}
+
+fn keep_version(
+    scene: &Arc<Scene>,
+    id: BoxId,
+    change: Change,
+    edits: &[editor::Edit],
+    versions: &mut crate::shell::versions::Versions,
+) {
+    let mut document = Document::new((**scene).clone());
+    // The search applied the same edits to the same state.
+    if document.apply_all("Corner case", edits).is_ok() {
+        let note = format!("#{}: {}", id.0, words(change));
+        versions.push("Corner case".into(), note, document.scene().clone());
+    }
+}
+
+/// How a try shows the box.
+fn sight(tried: &Tried) -> String {
+    let (n, percent) = (tried.sight.visible, format!("{:.0}", tried.sight.share * 100.0));
+    match tried.sight.by {
+        Sensor::Cameras => tf!("{percent} % of {n} pixels are seen.", percent = percent, n = n),
+        Sensor::Lidar => tf!("{n} returns, {percent} % sure.", percent = percent, n = n),
+    }
+}
+
+/// A change in the language that is shown.
+fn words(change: Change) -> String {
+    let m = |m: f64| format!("{m:.1}");
+    match change {
+        Change::None => t("as it is").to_owned(),
+        Change::Away(away_m) => tf!("{distance} m from the ego vehicle", distance = m(away_m)),
+        Change::Aside(left_m) if left_m < 0.0 => tf!("{distance} m to the right", distance = m(-left_m)),
+        Change::Aside(left_m) => tf!("{distance} m to the left", distance = m(left_m)),
+        Change::Visibility(far_m) => tf!("visibility {distance} m", distance = format!("{far_m:.0}")),
+        Change::Time(time) => t(time.name()).to_owned(),
+        Change::Weather(weather) => t(weather.name()).to_owned(),
+    }
+}

@@ -1,0 +1,172 @@
+//! What a small network makes out in the LiDAR sweep of a scene, beside what is there: boxes that it misses, and boxes that it
+//! sees where there are none.
+
+use crate::painter::PaintError;
+use crate::rolling;
+pub use nets::perceiver::against::LEAST_RETURNS;
+use nets::perceiver::against::{Beside, against};
+use nets::perceiver::detection::Detection;
+use nets::perceiver::stands::{Stands, standing};
+use nets::perceiver::{LidarPerceiver, Perceived, SCORE};
+use scene::{BoxId, Extent, LidarSweep, Pose, Scene, SceneBox};
+
+/// What the network makes of a scene's sweep.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SweepReport {
+    /// Boxes with [`LEAST_RETURNS`] returns or more: missed ones first, then those with the most returns first.
+    pub boxes: Vec<SeenBySweep>,
+    /// What the network sees, the surest first.
+    pub detections: Vec<Detected>,
+    /// Share of the columns around the vehicle, of those with a voxel, that are taken for what stands there.
+    pub right: f64,
+    /// The window that the network looked at: its columns `[x][y]`, what it sees in each, and where the vehicle is.
+    pub stands: Vec<Stands>,
+    /// Map from the vehicle.
+    pub map_from_vehicle: Pose,
+}
+
+/// A box of the scene in the sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenBySweep {
+    /// The box.
+    pub id: BoxId,
+    /// Returns on it.
+    pub returns: usize,
+    /// How sure the network is of it; none if it sees nothing there.
+    pub score: Option<f32>,
+}
+
+impl SeenBySweep {
+    /// True if the network does not see it.
+    pub fn is_missed(&self) -> bool {
+        self.score.is_none()
+    }
+}
+
+/// A box that the network sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detected {
+    /// Place, size, heading and class on the map.
+    pub thing: SceneBox,
+    /// How sure it is, 0 to 1.
+    pub score: f32,
+    /// The box of the scene that it belongs to; none where there is nothing of the kind.
+    pub of: Option<BoxId>,
+}
+
+/// Looks at the sweep of a scene's first LiDAR. Errors if the network cannot be read or refuses the sweep.
+pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
+    let seen = Seen::of(scene)?;
+    let mut boxes: Vec<SeenBySweep> = seen
+        .besides
+        .iter()
+        .filter(|b| b.returns >= LEAST_RETURNS)
+        .map(|b| seen.score(b))
+        .collect();
+    boxes.sort_by_key(|b| (!b.is_missed(), std::cmp::Reverse(b.returns)));
+    let of = |i: usize| seen.besides.iter().find(|b| b.found == Some(i)).map(|b| b.id);
+    let detected = |(i, d): (usize, &Detection)| Detected {
+        thing: d.to_box(BoxId(0)).in_frame(&seen.map_from_vehicle),
+        score: d.score,
+        of: of(i),
+    };
+    let detections = seen.perceived.detections.iter().enumerate().map(detected);
+    // What stands around the vehicle, in its own frame.
+    let around = scene.in_ego();
+    let truth = standing(&around.frame().occupancy.crop(Extent::WINDOW));
+    let known = truth.iter().zip(&seen.perceived.stands);
+    let known = known.filter_map(|(truth, said)| Some(Stands::of_label(*truth)? == *said));
+    let (right, all) = known.fold((0usize, 0usize), |(r, n), ok| (r + usize::from(ok), n + 1));
+    Ok(SweepReport {
+        boxes,
+        detections: detections.collect(),
+        right: if all == 0 { 1.0 } else { right as f64 / all as f64 },
+        stands: seen.perceived.stands.clone(),
+        map_from_vehicle: seen.map_from_vehicle,
+    })
+}
+
+/// How the sweep shows one box; none if it is not in the window.
+pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenBySweep>, PaintError> {
+    let seen = Seen::of(scene)?;
+    let beside = seen.besides.iter().find(|b| b.id == id);
+    Ok(beside.map(|b| seen.score(b)))
+}
+
+/// A sweep, what the network sees in it, and the boxes beside that.
+struct Seen {
+    perceived: Perceived,
+    besides: Vec<Beside>,
+    map_from_vehicle: Pose,
+}
+
+impl Seen {
+    fn of(scene: &Scene) -> Result<Self, PaintError> {
+        let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
+        let net = LidarPerceiver::bundled().map_err(|e| network(&e))?;
+        let sweep = rolling::exact(&scene.with_rig_in_world());
+        let map_from_vehicle = scene.frame().world_from_ego;
+        let returns = in_vehicle(&sweep, &map_from_vehicle);
+        let perceived = net.perceive(returns, SCORE).map_err(|e| network(&e))?;
+        let boxes = scene.frame().boxes.values();
+        let found = against(&perceived.detections, boxes, &sweep, &map_from_vehicle);
+        Ok(Self {
+            perceived,
+            besides: found.boxes,
+            map_from_vehicle,
+        })
+    }
+
+    fn score(&self, beside: &Beside) -> SeenBySweep {
+        let detection = beside.found.and_then(|i| self.perceived.detections.get(i));
+        SeenBySweep {
+            id: beside.id,
+            returns: beside.returns,
+            score: detection.map(|d| d.score),
+        }
+    }
+}
+
+/// Returns of a sweep on the map as the vehicle measured them: x, y, z (m) and echo strength.
+fn in_vehicle(sweep: &LidarSweep, map_from_vehicle: &Pose) -> impl Iterator<Item = [f32; 4]> {
+    let to_vehicle = map_from_vehicle.inverse();
+    sweep.points.iter().map(move |point| {
+        let at = to_vehicle.apply(point.position_in_ego.map(f64::from).into());
+        [at.x as f32, at.y as f32, at.z as f32, point.intensity]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use scene::{Class, Frame, SensorRig};
+    use world::World;
+    use world::voxelize::{Vertical, complete};
+
+    fn scene() -> Scene {
+        let world = World::random(3);
+        let grid = complete(&world, Vertical::Occ3d);
+        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), grid);
+        Scene::single("crossing", frame, Arc::new(SensorRig::default()), 1)
+    }
+
+    #[test]
+    fn most_boxes_are_seen_and_one_that_goes_is_seen_no_more() {
+        let scene = scene();
+        let report = report(&scene).expect("the shipped network");
+        assert!(report.right > 0.6, "{}", report.right);
+        assert!(report.boxes.is_sorted_by_key(|b| !b.is_missed()));
+        let seen: Vec<&SeenBySweep> = report.boxes.iter().filter(|b| !b.is_missed()).collect();
+        assert!(!seen.is_empty());
+        for b in &seen {
+            let boxes = &scene.frame().boxes;
+            let detected = report.detections.iter().find(|d| d.of == Some(b.id)).expect("found");
+            assert!(detected.thing.center_m.truncate().distance(boxes[&b.id].center_m.truncate()) < 2.0);
+            assert_eq!(sight(&scene, b.id).expect("seen"), Some(**b));
+        }
+        assert_eq!(sight(&scene, BoxId(9999)), Ok(None));
+        assert!(seen.iter().any(|b| scene.frame().boxes[&b.id].class == Class::Car));
+    }
+}
