@@ -165,7 +165,7 @@ impl SceneloomApp {
         let Opened {
             scene,
             versions: kept,
-            ..
+            damaged,
         } = Opened::of(config.scene);
         let mut versions = Versions::default();
         versions.replace(kept);
@@ -198,7 +198,7 @@ impl SceneloomApp {
             save: config.save,
             new_scene: config.new_scene,
         };
-        Ok(Self {
+        let mut app = Self {
             document: Document::new(scene),
             state,
             toasts,
@@ -219,7 +219,9 @@ impl SceneloomApp {
             },
             guests: Guests::default(),
             ctx: ctx.clone(),
-        })
+        };
+        app.tell_damaged(damaged);
+        Ok(app)
     }
 
     /// Which part of the ground the frame that is shown covers.

@@ -162,12 +162,14 @@ impl SceneloomApp {
         );
         match thread {
             Ok(_) => {
+                let leaves = self.files.leaves.take().unwrap_or_else(|| self.left());
                 self.files.opening = Some(Opening {
                     path,
                     what,
                     is_import,
                     recovers: false,
                     step: None,
+                    leaves,
                     scene,
                 })
             }
@@ -283,7 +285,11 @@ impl SceneloomApp {
         let path = free_name(&path.with_file_name(format!("{stem}_{tidy}_{}.png", view.name())));
         // A scene that was never saved has no folder: one wants to know where the picture is.
         let path = std::path::absolute(&path).unwrap_or(path);
-        match image::save_buffer(&path, &rgba, width as u32, height as u32, image::ColorType::Rgba8) {
+        let scene = self.document.scene().clone();
+        // A picture of the state before an edit does not lead back to the one after it.
+        let is_of_it = !self.threads.sensing.is_stale(source, scene.rev);
+        let picture = Picture { width, height, rgba };
+        match save_png(is_of_it.then_some(&*scene), &picture, &path) {
             Ok(()) => {
                 let text = tf!(
                     "Saved {file} ({width} × {height})",

@@ -28,6 +28,7 @@ pub mod logging;
 mod measuring;
 mod menus;
 pub mod models;
+mod opening;
 pub mod perf;
 mod picking;
 mod preferences;

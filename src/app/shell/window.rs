@@ -276,7 +276,7 @@ impl SceneloomApp {
         self.take_model();
         self.recovery_dialog(ui);
         if self.files.unsaved.is_some()
-            && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name)
+            && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name, self.waits_to_be_shown().as_deref())
         {
             self.answer_unsaved(answer, ui.ctx());
         }
