@@ -14,6 +14,7 @@ use crate::state::UiState;
 use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, ToolState, option_rows};
 use crate::views_shown::Underlay;
+use editor::merge::merge;
 use editor::tools::brush;
 use language::{t, tf};
 use scene::{BevLayer, BevLayout, Frame};
@@ -195,11 +196,25 @@ fn layer_row(
             ),
             false => t("Choose for the brush"),
         };
-        if row.on_hover_text(hint).clicked() {
+        let row = row.on_hover_text(hint);
+        row.context_menu(|ui| merge_menu(ui, layout, layer, commands));
+        if row.clicked() {
             tools.layer = layer;
             commands.push(Command::Tool(brush::ID));
         }
     });
+}
+
+/// The layers that a layer can become part of.
+fn merge_menu(ui: &mut Ui, layout: &BevLayout, layer: BevLayer, commands: &mut Vec<Command>) {
+    ui.label(egui::RichText::new(t("Merge into")).color(theme::text_weak()));
+    for into in BevLayer::MAP.into_iter().filter(|other| *other != layer) {
+        let name = theme::sentence(t(&into.label()));
+        let button = ui.add_enabled(layout.count(layer) > 0, egui::Button::new(name));
+        if button.clicked() {
+            commands.push(Command::Apply("Merge layers", merge(layout, layer, into)));
+        }
+    }
 }
 
 /// Shows one layer alone, or if it is, what was shown before.
