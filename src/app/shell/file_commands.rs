@@ -11,8 +11,10 @@ use super::file_dialogs::Purpose;
 use super::files::{Next, Opening};
 use super::toasts::Level;
 use super::versions::Opened;
+use crate::capture;
 use crate::command::FileCommand;
 use crate::open;
+use crate::picture::Picture;
 use editor::Edit;
 use language::{t, tf};
 use scene::{Kept, Scene};
@@ -99,7 +101,9 @@ impl SceneloomApp {
     }
 
     pub(crate) fn go_on(&mut self, next: Next, ctx: &Context) {
+        self.files.leaves = Some(self.left());
         match next {
+            Next::Arrived => self.show_arrived(ctx),
             Next::Quit => {
                 self.files.may_close = true;
                 if let Some(recovery) = &mut self.files.recovery {
@@ -299,7 +303,7 @@ impl SceneloomApp {
                 );
                 self.toasts.push(Level::Info, text, self.now_s());
             }
-            Err(error) => self.fail(tf!("No picture saved: {error}", error = error)),
+            Err(error) => self.fail(tf!("No picture saved: {error}", error = one_line(&error))),
         }
     }
 
@@ -307,7 +311,13 @@ impl SceneloomApp {
         let scene = self.document.scene().clone();
         let shot = self.views.view3d.screenshot(&scene, &self.state.shown, None);
         let saved = shot.and_then(|([width, height], rgba)| {
-            image::save_buffer(path, &rgba, width, height, image::ColorType::Rgba8)?;
+            let [w, h] = [width, height].map(|side| side as usize);
+            let picture = Picture {
+                width: w,
+                height: h,
+                rgba,
+            };
+            save_png(Some(&scene), &picture, path)?;
             Ok([width, height])
         });
         match saved {
@@ -324,6 +334,21 @@ impl SceneloomApp {
             Err(error) => self.fail(tf!("No screenshot: {error}", error = one_line(&error))),
         }
     }
+}
+
+/// Writes a picture, with the scene that it shows inside if that is known, whole or not at all.
+fn save_png(scene: Option<&Scene>, picture: &Picture, path: &Path) -> anyhow::Result<()> {
+    let bytes = match scene {
+        Some(scene) => capture::to_png(scene, picture)?,
+        None => formats::png::rgba(
+            picture.width,
+            picture.height,
+            &picture.rgba,
+            &Default::default(),
+        )?,
+    };
+    formats::atomic::write(path, &bytes)?;
+    Ok(())
 }
 
 /// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.
@@ -348,6 +373,20 @@ fn free_name(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_leads_back_to_its_scene() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("shot.png");
+        let scene = open::from_template("straight", 3).expect("a template");
+        let picture = Picture::filled(4, 3, [9, 8, 7]);
+        save_png(Some(&scene), &picture, &path).expect("written");
+        let back = crate::scene_of(&path).expect("a scene inside");
+        assert!(back.canvas() == scene.canvas());
+        // What cannot be written leaves nothing behind.
+        let nowhere = folder.path().join("missing").join("shot.png");
+        assert!(save_png(Some(&scene), &picture, &nowhere).is_err() && !nowhere.exists());
+    }
 
     #[test]
     fn names_that_are_taken_get_a_number() {
