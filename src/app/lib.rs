@@ -17,6 +17,7 @@ pub mod export;
 pub(crate) mod fields;
 mod finding_marks;
 pub mod findings;
+mod fly;
 pub mod graphics;
 mod map_edges;
 mod marks;

@@ -39,7 +39,14 @@ impl Pane for VersionsPane {
         266.0
     }
 
-    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        if ui
+            .button(t("Keep"))
+            .on_hover_text(t("Keep this state as a version"))
+            .clicked()
+        {
+            commands.push(Command::Generation(GenerationCommand::KeepVersion));
+        }
         versions_controls(ui, &mut cx.state.compare);
     }
 
@@ -204,7 +211,7 @@ impl Entry {
             .id_salt("version name")
             .char_limit(Versions::LONGEST_NAME)
             .hint_text(t("name"));
-        let field = ui.put(rect, field);
+        let field = ui.put(rect, field).accessible_name(t("Name of the version"));
         if field.lost_focus() {
             let text = text.clone();
             if !ui.input(|i| i.key_pressed(egui::Key::Escape)) {

@@ -44,6 +44,10 @@ impl SceneloomApp {
                     self.restore(&scene);
                 }
             }
+            GenerationCommand::KeepVersion => {
+                self.generation.versions.keep(self.document.settled_scene());
+                self.views.dock.open(crate::panes::id::PaneId::VERSIONS);
+            }
             GenerationCommand::ToggleLive => {
                 self.generation.live.on = !self.generation.live.on;
                 self.generation.live.forget_asked();

@@ -11,6 +11,9 @@ use formats::loom;
 use language::{t, tf};
 use scene::{KeptVersion, Scene, SceneRev};
 
+/// What led to a version that the user asked for.
+const KEPT: &str = "Kept";
+
 /// A version as a file keeps it; none if it cannot be written.
 type Packed = OnceLock<Option<Arc<Vec<u8>>>>;
 
@@ -176,6 +179,17 @@ impl Versions {
         }
     }
 
+    /// Keeps a state with a star, as a version of its own or as the one that it is, and asks for its name.
+    pub(crate) fn keep(&mut self, scene: &Arc<Scene>) {
+        let rev = scene.content();
+        self.push(KEPT.to_owned(), String::new(), scene.clone());
+        if let Some(i) = self.of(rev) {
+            self.list[i].starred = true;
+            self.changed = true;
+            self.renaming = Some((rev, self.list[i].name.clone()));
+        }
+    }
+
     /// Those of another file, in place of all.
     pub fn replace(&mut self, versions: Vec<Version>) {
         *self = Self {
@@ -322,6 +336,22 @@ mod tests {
         );
         assert!(same(versions.neighbour(rev(1), 1), 0) && versions.neighbour(rev(0), 1).is_none());
         assert!(versions.before(scenes[1].content()).is_none());
+    }
+
+    #[test]
+    fn a_state_is_kept_once_and_stays_though_many_come_after_it() {
+        let mut versions = Versions::default();
+        let kept = scene();
+        versions.keep(&kept);
+        versions.keep(&kept);
+        assert_eq!(versions.list().len(), 1);
+        assert!(versions.changed && versions.list()[0].starred);
+        assert!(versions.renaming.as_ref().is_some_and(|(rev, _)| *rev == kept.content()));
+        for _ in 0..Versions::MAX + 3 {
+            versions.push("edit".into(), String::new(), scene());
+        }
+        assert_eq!(versions.of(kept.content()), Some(0));
+        assert_eq!(versions.kept(kept.content()).len(), Versions::MAX + 1);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::app::SceneloomApp;
 use super::files::Next;
 use crate::camera_views::Wanted;
 use crate::command::{Command, FileCommand};
+use crate::fly;
 use crate::panes;
 use crate::panes::camera_strip::CamerasInput;
 use crate::panes::compare::CompareMode;
@@ -35,6 +36,7 @@ impl SceneloomApp {
     pub fn draw(&mut self, ui: &mut Ui) {
         self.frames.passes = self.frames.passes.saturating_add(1);
         let mut commands = Vec::new();
+        fly::note(ui.ctx());
         // Asked before: the key that closes a menu or a list is no shortcut.
         let popup = egui::Popup::is_any_open(ui.ctx());
         let over_window = is_over_window(ui.ctx());
