@@ -56,13 +56,13 @@ pub enum FileCommand {
     Save,
     /// Asks for a file and saves there.
     SaveAs,
-    /// Asks for a file and saves the picture there that the dialog of pictures describes.
+    /// Asks for a file and saves there what the dialog of pictures describes.
     AskCapture,
     /// Saves the 3D view beside the scene.
     QuickShot,
     /// Saves what a camera shows in a view beside the scene.
     SavePicture(usize, ViewId),
-    /// Asks for a file and writes the clip there as moving pictures.
+    /// Shows the dialog of pictures with moving ones chosen.
     SaveClip,
     /// Asks for a model and puts it into the scene.
     PlaceModel,

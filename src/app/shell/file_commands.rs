@@ -38,14 +38,13 @@ impl SceneloomApp {
                 .files
                 .dialogs
                 .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
-            FileCommand::SaveClip => {
-                let path = self.suggested("mp4");
-                self.files.dialogs.ask(Purpose::Clip, &path, ctx);
-            }
+            FileCommand::SaveClip => self.state.windows.capture.open_for_clip(),
             FileCommand::AskCapture => {
-                let (purpose, ending) = match self.state.windows.capture.turns {
-                    true => (Purpose::Turn, "gif"),
-                    false => (Purpose::Screenshot, "png"),
+                let dialog = &self.state.windows.capture;
+                let (purpose, ending) = match (dialog.turns, dialog.is_clip()) {
+                    (true, _) => (Purpose::Turn, "gif"),
+                    (_, true) => (Purpose::Clip, "mp4"),
+                    _ => (Purpose::Screenshot, "png"),
                 };
                 let path = self.suggested(ending);
                 self.files.dialogs.ask(purpose, &path, ctx);

@@ -249,7 +249,7 @@ impl SceneloomApp {
             guests: &self.guests,
         };
         settings_ui(ui, choices, &mut self.state.windows, commands);
-        capture_ui(ui, &mut self.state.windows.capture, commands);
+        capture_ui(ui, &mut self.state.windows.capture, scene, commands);
         start_ui(
             ui,
             &mut self.preferences.settings,
