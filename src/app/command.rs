@@ -154,6 +154,8 @@ pub enum GenerationCommand {
     RestoreVersion(SceneRev),
     /// Goes to the next (1) or previous (-1) version.
     StepVersion(i32),
+    /// Sets seed and knobs to those that the version of that state was made with.
+    UseAgain(SceneRev),
     /// Keeps the present state as a version, and asks for its name.
     KeepVersion,
     /// Switches generation after each edit on or off.

@@ -9,6 +9,7 @@ use super::saved_brushes::saved_brushes_ui;
 use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
+use crate::shell::recall::SeedWish;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
 use crate::state::UiState;
 use crate::tools::things::ThingCommand;
@@ -17,7 +18,7 @@ use crate::views_shown::Underlay;
 use editor::merge::merge;
 use editor::tools::brush;
 use language::{t, tf};
-use scene::{BevLayer, BevLayout, Frame};
+use scene::{BevLayer, BevLayout, Frame, Scene};
 use widgets::hint::caption;
 use widgets::icons::Icon;
 use widgets::icons::{self, section};
@@ -47,13 +48,14 @@ impl Pane for Tools {
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        let frame = cx.document.scene().frame();
-        theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, cx.state, commands));
+        let scene = cx.document.scene();
+        theme::panel_frame().show(ui, |ui| layers_ui(ui, scene, cx.state, commands));
     }
 }
 
 /// Draws the pane.
-pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+pub fn layers_ui(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mut Vec<Command>) {
+    let (frame, scene_seed) = (scene.frame(), scene.seed);
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         options(ui, frame, &mut state.tools, commands);
         let UiState { tools, brushes, .. } = state;
@@ -82,6 +84,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         density_row(ui, t("Buildings"), &mut named.building, TYPICAL_BUILDING as f32);
         density_row(ui, t("Clutter"), &mut named.clutter, 0.25);
         density_row(ui, t("Completeness"), &mut named.completeness, 1.0);
+        seed_row(ui, &mut state.seed, scene_seed);
         caption(
             ui,
             t("What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there."),
@@ -141,6 +144,29 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
         if slider.changed() {
             *value = Some(shown);
         }
+    });
+}
+
+/// The seed of what is generated on request.
+fn seed_row(ui: &mut Ui, wish: &mut SeedWish, scene_seed: u64) {
+    ui.horizontal(|ui| {
+        ui.label(t("Seed"));
+        let mut seed = wish.of(scene_seed);
+        let field = egui::DragValue::new(&mut seed).speed(1.0);
+        let field = ui
+            .add(field)
+            .on_hover_text(t("The same scene, settings and seed give the same result"))
+            .accessible_name(t("Seed of the generation"));
+        if field.changed() {
+            wish.value = Some(seed);
+        }
+        let roll = ui.button(t("Draw one")).on_hover_text(t("Another seed, at random"));
+        roll.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Draw a seed")));
+        if roll.clicked() {
+            wish.roll();
+        }
+        ui.checkbox(&mut wish.another, t("each time"))
+            .on_hover_text(t("Another seed for each result that is asked for"));
     });
 }
 

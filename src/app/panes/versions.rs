@@ -9,7 +9,7 @@ use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::comparing::{CompareMode, Comparing};
 use crate::shell::versions::{Version, Versions};
-use language::t;
+use language::{t, tf};
 use scene::SceneRev;
 use widgets::icons;
 use widgets::icons::Icon;
@@ -137,6 +137,12 @@ impl Entry {
             (false, true) => t(&version.label).to_owned(),
             (false, false) => format!("{} · {}", t(&version.label), t(&version.note)),
         };
+        let seed = version.made.as_ref().map(|made| tf!("seed {n}", n = made.params.seed));
+        let below = match seed {
+            Some(seed) if below.is_empty() => seed,
+            Some(seed) => format!("{below} · {seed}"),
+            None => below,
+        };
         let found = versions.findings_in_words(i);
         let below = match found {
             Some(found) if below.is_empty() => found,
@@ -189,6 +195,14 @@ impl Entry {
         }
         if ui.button(t("Go back to it")).clicked() {
             commands.push(self.go_back());
+        }
+        if let Some(made) = versions.made(self.rev)
+            && ui
+                .button(t("Use these settings again"))
+                .on_hover_text(made.in_words())
+                .clicked()
+        {
+            commands.push(Command::Generation(GenerationCommand::UseAgain(self.rev)));
         }
         ui.separator();
         if ui.button(t("Name…")).clicked()

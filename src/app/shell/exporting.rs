@@ -72,6 +72,7 @@ impl SceneloomApp {
             Some(Asked::Write(formats)) => {
                 let mut options = dialog.options.clone();
                 options.shot.camera = self.views.view3d.camera;
+                options.parameters = self.parameters();
                 dialog.written.clone_from(&dialog.path);
                 self.start_export(formats, options, path, ui.ctx());
             }
@@ -164,9 +165,10 @@ impl SceneloomApp {
         let mut options = dialog.options;
         options.shot.camera = self.views.view3d.camera;
         if !dialog.turns {
+            let parameters = self.parameters();
             return self.run_export("the picture", ctx, move |_| {
                 let picture = capture::capture(&scene, &options)?;
-                let bytes = capture::to_png(&scene, &picture)?;
+                let bytes = capture::to_png_made_with(&scene, &picture, parameters)?;
                 formats::atomic::write(&path, &bytes)?;
                 Ok(vec![(path, bytes.len() as u64)])
             });

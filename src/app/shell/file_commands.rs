@@ -292,7 +292,7 @@ impl SceneloomApp {
         // A picture of the state before an edit does not lead back to the one after it.
         let is_of_it = !self.threads.sensing.is_stale(source, scene.rev);
         let picture = Picture { width, height, rgba };
-        match save_png(is_of_it.then_some(&*scene), &picture, &path) {
+        match save_png(is_of_it.then(|| (&*scene, self.parameters())), &picture, &path) {
             Ok(()) => {
                 let text = tf!(
                     "Saved {file} ({width} × {height})",
@@ -308,6 +308,7 @@ impl SceneloomApp {
 
     pub(crate) fn screenshot(&mut self, path: &Path) {
         let scene = self.document.scene().clone();
+        let made = self.parameters();
         let shot = self.views.view3d.screenshot(&scene, &self.state.shown, None);
         let saved = shot.and_then(|([width, height], rgba)| {
             let [w, h] = [width, height].map(|side| side as usize);
@@ -316,7 +317,7 @@ impl SceneloomApp {
                 height: h,
                 rgba,
             };
-            save_png(Some(&scene), &picture, path)?;
+            save_png(Some((&scene, made)), &picture, path)?;
             Ok([width, height])
         });
         match saved {
@@ -336,9 +337,13 @@ impl SceneloomApp {
 }
 
 /// Writes a picture, with the scene that it shows inside if that is known, whole or not at all.
-fn save_png(scene: Option<&Scene>, picture: &Picture, path: &Path) -> anyhow::Result<()> {
+fn save_png(
+    scene: Option<(&Scene, serde_json::Value)>,
+    picture: &Picture,
+    path: &Path,
+) -> anyhow::Result<()> {
     let bytes = match scene {
-        Some(scene) => capture::to_png(scene, picture)?,
+        Some((scene, made)) => capture::to_png_made_with(scene, picture, made)?,
         None => formats::png::rgba(
             picture.width,
             picture.height,
@@ -379,12 +384,19 @@ mod tests {
         let path = folder.path().join("shot.png");
         let scene = open::from_template("straight", 3).expect("a template");
         let picture = Picture::filled(4, 3, [9, 8, 7]);
-        save_png(Some(&scene), &picture, &path).expect("written");
+        let made = serde_json::json!({"params": {"seed": 7}});
+        save_png(Some((&scene, made)), &picture, &path).expect("written");
         let back = crate::scene_of(&path).expect("a scene inside");
         assert!(back.canvas() == scene.canvas());
+        let bytes = std::fs::read(&path).expect("written");
+        let inside = formats::png::notes_inside(&bytes).expect("sound");
+        let recipe = inside.text.iter().find(|(name, _)| name == "recipe");
+        let recipe: formats::recipe::Recipe =
+            serde_json::from_str(&recipe.expect("there").1).expect("as written");
+        assert_eq!(recipe.parameters["params"]["seed"], 7);
         // What cannot be written leaves nothing behind.
         let nowhere = folder.path().join("missing").join("shot.png");
-        assert!(save_png(Some(&scene), &picture, &nowhere).is_err() && !nowhere.exists());
+        assert!(save_png(None, &picture, &nowhere).is_err() && !nowhere.exists());
     }
 
     #[test]

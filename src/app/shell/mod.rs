@@ -33,6 +33,7 @@ pub mod perf;
 mod picking;
 mod preferences;
 pub mod priority;
+pub mod recall;
 mod recovering;
 pub mod recovery;
 mod repair;

@@ -132,6 +132,7 @@ impl SceneloomApp {
         self.state.correcting = false;
         self.state.tools.region = InpaintMask::default();
         self.state.named = Named::default();
+        self.state.seed.value = None;
         self.note_opened(opening.recovers, true);
         ctx.request_repaint();
     }

@@ -184,6 +184,7 @@ impl SceneloomApp {
             self.state.shown.finding_marks = None;
         }
         self.generation.live.named = self.state.named;
+        self.generation.live.seed = self.state.seed.value;
     }
 
     /// Decides what the present state is compared with, in this frame.

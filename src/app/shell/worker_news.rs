@@ -179,9 +179,11 @@ impl SceneloomApp {
                 .map_or_else(String::new, Receipt::text);
             let label = self.document.undo_label().unwrap_or("Generated");
             let scene = self.document.settled_scene().clone();
+            let label = label.to_owned();
+            let made = self.made_with(&result.key.params);
             self.generation
                 .versions
-                .push(label.to_owned(), note.clone(), scene);
+                .push_made(label, note.clone(), scene, Some(made));
             self.views.compare.chosen = None;
             if self.generation.receipt.is_some() {
                 self.toasts.log(note, now_s);
@@ -237,7 +239,10 @@ impl SceneloomApp {
         if adopted.is_ok() {
             let note = tf!("After {step} of {steps} steps", step = step, steps = steps);
             let scene = self.document.settled_scene().clone();
-            self.generation.versions.push(label.to_owned(), note, scene);
+            let made = self.made_with(&params);
+            self.generation
+                .versions
+                .push_made(label.to_owned(), note, scene, Some(made));
             self.generation.receipt = None;
             self.generation.live.source_changed();
             self.stage(
