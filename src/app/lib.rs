@@ -44,7 +44,7 @@ pub mod views_shown;
 pub mod windows;
 
 pub use authoring::again::{again, scene_of};
-pub use authoring::{memory, open, prompting, scenery, text};
+pub use authoring::{memory, open, prompting, scenery, text, wildcards};
 
 pub use command::Command;
 pub use panes::compare;
