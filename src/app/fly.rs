@@ -22,10 +22,7 @@ fn id() -> Id {
 
 /// True for the keys that steer.
 pub fn steers(physical: Key) -> bool {
-    matches!(
-        physical,
-        Key::W | Key::A | Key::S | Key::D | Key::Q | Key::E
-    )
+    matches!(physical, Key::W | Key::A | Key::S | Key::D | Key::Q | Key::E)
 }
 
 /// Notes which keys went down or up; to be called in each frame.

@@ -29,6 +29,7 @@ mod pipeline;
 pub mod playback;
 mod pointer;
 mod screen_map;
+pub mod seed_wish;
 pub mod seen;
 pub mod sensing;
 pub mod shell;

@@ -14,7 +14,7 @@ use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
 use super::panes::pointed::Pointed;
 use super::playback::Playback;
-use super::shell::recall::SeedWish;
+use super::seed_wish::SeedWish;
 use super::tools::{Hand, ToolState};
 use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;

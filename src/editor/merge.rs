@@ -74,7 +74,9 @@ mod tests {
         let mut document = document();
         let before = document.scene().frame().clone();
         let edits = merge(&before.layout, BevLayer::Walkway, BevLayer::CarparkArea);
-        document.apply_all("Merge layers", &edits).expect("both are painted");
+        document
+            .apply_all("Merge layers", &edits)
+            .expect("both are painted");
         let layout = &document.scene().frame().layout;
         assert_eq!(layout.count(BevLayer::Walkway), 0);
         assert_eq!(layout.count(BevLayer::CarparkArea), 200);
@@ -88,7 +90,9 @@ mod tests {
         let mut document = document();
         let layout = document.scene().frame().layout.clone();
         let edits = merge(&layout, BevLayer::LaneDivider, BevLayer::RoadDivider);
-        document.apply_all("Merge layers", &edits).expect("both are painted");
+        document
+            .apply_all("Merge layers", &edits)
+            .expect("both are painted");
         let layout = &document.scene().frame().layout;
         let kinds: Vec<_> = layout.polylines.iter().map(|line| line.kind).collect();
         assert_eq!(kinds, [PolylineKind::RoadDivider]);

@@ -9,8 +9,8 @@ use super::saved_brushes::saved_brushes_ui;
 use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
-use crate::shell::recall::SeedWish;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::seed_wish::SeedWish;
 use crate::state::UiState;
 use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, ToolState, option_rows};
@@ -160,7 +160,9 @@ fn seed_row(ui: &mut Ui, wish: &mut SeedWish, scene_seed: u64) {
         if field.changed() {
             wish.value = Some(seed);
         }
-        let roll = ui.button(t("Draw one")).on_hover_text(t("Another seed, at random"));
+        let roll = ui
+            .button(t("Draw one"))
+            .on_hover_text(t("Another seed, at random"));
         roll.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Draw a seed")));
         if roll.clicked() {
             wish.roll();

@@ -137,7 +137,10 @@ impl Entry {
             (false, true) => t(&version.label).to_owned(),
             (false, false) => format!("{} · {}", t(&version.label), t(&version.note)),
         };
-        let seed = version.made.as_ref().map(|made| tf!("seed {n}", n = made.params.seed));
+        let seed = version
+            .made
+            .as_ref()
+            .map(|made| tf!("seed {n}", n = made.params.seed));
         let below = match seed {
             Some(seed) if below.is_empty() => seed,
             Some(seed) => format!("{below} · {seed}"),

@@ -344,12 +344,7 @@ fn save_png(
 ) -> anyhow::Result<()> {
     let bytes = match scene {
         Some((scene, made)) => capture::to_png_made_with(scene, picture, made)?,
-        None => formats::png::rgba(
-            picture.width,
-            picture.height,
-            &picture.rgba,
-            &Default::default(),
-        )?,
+        None => formats::png::rgba(picture.width, picture.height, &picture.rgba, &Default::default())?,
     };
     formats::atomic::write(path, &bytes)?;
     Ok(())

@@ -79,7 +79,10 @@ impl SceneloomApp {
         }
         if let Some(arrived) = self.files.arrived.take() {
             self.note_opened(arrived.opening.recovers, false);
-            let text = tf!("{name} was not opened: your changes stay", name = arrived.opened.scene.name);
+            let text = tf!(
+                "{name} was not opened: your changes stay",
+                name = arrived.opened.scene.name
+            );
             let now_s = self.now_s();
             self.toasts.push(Level::Info, text, now_s);
         }
@@ -147,6 +150,9 @@ impl SceneloomApp {
     /// What the question about unsaved changes says of the scene that waits.
     pub(crate) fn waits_to_be_shown(&self) -> Option<String> {
         let arrived = self.files.arrived.as_ref()?;
-        Some(tf!("“{name}” has been read and waits.", name = arrived.opened.scene.name))
+        Some(tf!(
+            "“{name}” has been read and waits.",
+            name = arrived.opened.scene.name
+        ))
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use egui::TextureHandle;
 use rayon::prelude::*;
 
-use super::recall::MadeWith;
+use super::made_with::MadeWith;
 use editor::checks::Counts;
 use formats::loom;
 use language::{t, tf};
@@ -369,7 +369,12 @@ mod tests {
         versions.keep(&kept);
         assert_eq!(versions.list().len(), 1);
         assert!(versions.changed && versions.list()[0].starred);
-        assert!(versions.renaming.as_ref().is_some_and(|(rev, _)| *rev == kept.content()));
+        assert!(
+            versions
+                .renaming
+                .as_ref()
+                .is_some_and(|(rev, _)| *rev == kept.content())
+        );
         for _ in 0..Versions::MAX + 3 {
             versions.push("edit".into(), String::new(), scene());
         }

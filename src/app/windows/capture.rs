@@ -156,7 +156,9 @@ fn subject(ui: &mut Ui, dialog: &mut CaptureDialog, scene: &Scene) {
     }
     if !dialog.turns && CaptureDialog::can_move(dialog.options.subject) {
         ui.checkbox(&mut dialog.moves, t("Moving, from the first moment to the last"))
-            .on_hover_text(t("What the timeline plays; the 3D view goes along if it does so there"));
+            .on_hover_text(t(
+                "What the timeline plays; the 3D view goes along if it does so there",
+            ));
         if dialog.is_clip() && dialog.options.subject == Subject::Cameras {
             cameras_of(ui, &mut dialog.camera, &scene.rig.cameras);
         }

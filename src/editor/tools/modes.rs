@@ -51,7 +51,11 @@ impl VoxelTip {
     /// Every tip with its name and hint.
     pub const ALL: [(VoxelTip, &'static str, &'static str); 2] = [
         (VoxelTip::Block, "Block tip", "the brush is a block of voxels"),
-        (VoxelTip::Round, "Round tip", "the brush is a ball, from 3 voxels on"),
+        (
+            VoxelTip::Round,
+            "Round tip",
+            "the brush is a ball, from 3 voxels on",
+        ),
     ];
 
     /// The other one.
@@ -177,11 +181,7 @@ impl VoxelMode {
     pub fn chooses(self) -> bool {
         matches!(
             self,
-            Self::Wand
-                | Self::ChooseBlock
-                | Self::ChooseSphere
-                | Self::ChooseLasso
-                | Self::ChoosePolygon
+            Self::Wand | Self::ChooseBlock | Self::ChooseSphere | Self::ChooseLasso | Self::ChoosePolygon
         )
     }
 }

@@ -152,7 +152,9 @@ impl Tool for Marker {
             return hint_of(&["The region is marked in the bird's-eye view"]);
         }
         let drag = match hand.region_shape {
-            RegionShape::Polygon => return hint_of(&["Click sets corners", "Enter closes", "Shift takes away"]),
+            RegionShape::Polygon => {
+                return hint_of(&["Click sets corners", "Enter closes", "Shift takes away"]);
+            }
             RegionShape::Brush => "Drag paints the mark",
             RegionShape::Lasso => "Drag marks what it goes around",
             RegionShape::Rectangle => "Drag marks a rectangle",

@@ -233,15 +233,27 @@ fn a_polygon_chooses_boxes_and_marks_regions_corner_by_corner() {
     table.click(tool, -5.0, 5.0, NONE);
     table.click(tool, 40.0, 40.0, NONE);
     assert!(table.key(tool, Key::Backspace).taken);
-    assert_eq!((tool.wants(), tool.draws_in()), (Wants::Points, Some(ViewKind::Bev)));
-    assert!(tool.overlay(&table.sight(0.0, 0.0)).iter().any(|m| matches!(m, Mark::Dashed(p, _) if p.len() == 6)));
+    assert_eq!(
+        (tool.wants(), tool.draws_in()),
+        (Wants::Points, Some(ViewKind::Bev))
+    );
+    assert!(
+        tool.overlay(&table.sight(0.0, 0.0))
+            .iter()
+            .any(|m| matches!(m, Mark::Dashed(p, _) if p.len() == 6))
+    );
     assert_eq!(table.hand.chosen(), []);
     assert!(table.tell(tool, Event::DoubleClick).taken);
     assert_eq!(table.hand.chosen(), [BoxId(2), BoxId(1)]);
     assert_eq!(tool.wants(), Wants::Nothing);
     // What is held at the first corner counts.
     let ctrl = Modifiers { ctrl: true, ..NONE };
-    for ((x, y), held) in [((-5.0, -5.0), ctrl), ((5.0, -5.0), NONE), ((5.0, 5.0), NONE), ((-5.0, 5.0), NONE)] {
+    for ((x, y), held) in [
+        ((-5.0, -5.0), ctrl),
+        ((5.0, -5.0), NONE),
+        ((5.0, 5.0), NONE),
+        ((-5.0, 5.0), NONE),
+    ] {
         table.click(tool, x, y, held);
     }
     table.key(tool, Key::Enter);

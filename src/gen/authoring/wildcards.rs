@@ -15,7 +15,10 @@ pub fn drawn(text: &str, seed: u64) -> String {
         let (before, from) = rest.split_at(open);
         out.push_str(before);
         let inside = &from[1..];
-        match inside.find(['{', '}']).filter(|at| inside[*at..].starts_with('}')) {
+        match inside
+            .find(['{', '}'])
+            .filter(|at| inside[*at..].starts_with('}'))
+        {
             Some(close) => {
                 match one_of(&inside[..close], &mut draw) {
                     Some(one) => out.push_str(&one),
@@ -62,12 +65,27 @@ mod tests {
         // Each wildcard is a draw of its own.
         let twice: BTreeSet<String> = (0..50).map(|seed| drawn("{a|b}{a|b}", seed)).collect();
         assert_eq!(twice.len(), 4);
-        assert_eq!(drawn("{9-9} cones, {a car|}", 1).split(',').next(), Some("9 cones"));
+        assert_eq!(
+            drawn("{9-9} cones, {a car|}", 1).split(',').next(),
+            Some("9 cones")
+        );
     }
 
     #[test]
     fn what_is_no_wildcard_stays() {
-        for text in ["", "two cars", "{", "}{", "{car}", "{2-}", "{-3}", "{1-100000}", "a { b", "{a{b}", "{Straße–ü}"] {
+        for text in [
+            "",
+            "two cars",
+            "{",
+            "}{",
+            "{car}",
+            "{2-}",
+            "{-3}",
+            "{1-100000}",
+            "a { b",
+            "{a{b}",
+            "{Straße–ü}",
+        ] {
             assert_eq!(drawn(text, 3), text);
         }
         let half = drawn("{a {x|y} b", 3);

@@ -86,9 +86,16 @@ fn a_state_without_a_generation_is_kept_as_a_version() {
     bench.click("Box 7 car");
     bench.key(Modifiers::NONE, Key::ArrowLeft);
     let rev = bench.app().document.scene().content();
-    assert_eq!(bench.app().generation.versions.of(rev), None, "an edit alone is none");
+    assert_eq!(
+        bench.app().generation.versions.of(rev),
+        None,
+        "an edit alone is none"
+    );
     bench.click("Keep");
-    bench.harness.get_by_label("Name of the version").type_text("further left");
+    bench
+        .harness
+        .get_by_label("Name of the version")
+        .type_text("further left");
     bench.steps(2);
     bench.key(Modifiers::NONE, Key::Enter);
     bench.steps(2);

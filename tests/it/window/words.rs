@@ -177,7 +177,15 @@ fn wildcards_are_drawn_by_the_seed_and_what_was_drawn_is_recorded() {
     let words = bench.app().document.scene().words.clone();
     assert_eq!(words.last(), Some(&drawn));
     // What was typed is what is typed again.
-    assert!(bench.app().views.prompt.typed().iter().any(|t| t == "make it {night|dusk}"));
+    assert!(
+        bench
+            .app()
+            .views
+            .prompt
+            .typed()
+            .iter()
+            .any(|t| t == "make it {night|dusk}")
+    );
 }
 
 #[test]

@@ -304,9 +304,7 @@ impl PromptField {
         let said = self.said();
         match self.read.as_ref().map(|r| &r.prompted) {
             Some(Ok(prompted)) => {
-                let ask = self
-                    .plan
-                    .ask(&said, &prompted.described.description, seed, scene);
+                let ask = self.plan.ask(&said, &prompted.described.description, seed, scene);
                 self.done = Some(prompted.answer());
                 (self.asks, self.notes) = (false, doubts(&prompted.heard));
                 self.plan.makes(&said, seed);
@@ -389,7 +387,6 @@ impl PromptField {
         state.cursor.set_char_range(Some(CCursorRange::one(at)));
         state.store(ctx, field_id());
     }
-
 
     /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
     pub(super) fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {

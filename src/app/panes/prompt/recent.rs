@@ -50,10 +50,17 @@ impl PromptField {
             let (rect, star) = ui.allocate_exact_size(vec2(20.0, theme::ROW), Sense::click());
             let name = tf!("Keep the words “{words}”", words = words);
             star.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, starred, &name));
-            let color = if starred { theme::warn() } else { theme::text_weak() };
+            let color = if starred {
+                theme::warn()
+            } else {
+                theme::text_weak()
+            };
             icons::star(ui, rect.center(), color, starred);
             icons::focus_ring(ui, &star, rect);
-            if star.on_hover_text(t("Kept words stand first, in every scene")).clicked() {
+            if star
+                .on_hover_text(t("Kept words stand first, in every scene"))
+                .clicked()
+            {
                 self.star(words);
             }
             let text = egui::RichText::new(words).small().color(theme::text());

@@ -135,7 +135,9 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
         forecast(ui, commands);
         if ui
             .button(t("Save clip…"))
-            .on_hover_text(t("All that is played as moving pictures, of the 3D view, the map or the cameras"))
+            .on_hover_text(t(
+                "All that is played as moving pictures, of the 3D view, the map or the cameras",
+            ))
             .clicked()
         {
             commands.push(Command::File(FileCommand::SaveClip));

@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::pick::{self, Handle};
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers, Pointer,
-    Response, Role, Sight,
+    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers,
+    Pointer, Response, Role, Sight,
 };
 use crate::transform::{Axis, Pull, Transform, TransformKind};
 use crate::{Edit, choose};
@@ -47,11 +47,7 @@ pub(super) enum Drag {
         moved: bool,
     },
     /// Chooses in a rectangle.
-    Marquee {
-        from_m: DVec2,
-        to_m: DVec2,
-        how: Choose,
-    },
+    Marquee { from_m: DVec2, to_m: DVec2, how: Choose },
     /// Chooses in an outline.
     Lasso { points_m: Vec<DVec2>, how: Choose },
 }
@@ -365,8 +361,7 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
 /// Chooses what lies in an outline, ego frame, m.
 pub(super) fn outline(cx: &mut Context<'_>, points_m: &[DVec2], how: Choose) {
     let scene = cx.settled;
-    cx.hand
-        .choose(&choose::in_outline(scene.frame(), points_m), how);
+    cx.hand.choose(&choose::in_outline(scene.frame(), points_m), how);
     things::choose_in(scene, cx.hand, how, |p| choose::is_inside(points_m, p));
 }
 

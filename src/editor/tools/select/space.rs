@@ -7,8 +7,8 @@ use crate::pick::{self, Hit};
 use crate::pick_things;
 use crate::tools::rays::along_axis;
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Hand, Key, Mark, Modifiers, Pointer, Response, Role, Sight, View,
-    farthest_m, point_of,
+    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Hand, Key, Mark, Modifiers, Pointer, Response, Role,
+    Sight, View, farthest_m, point_of,
 };
 use crate::transform::{Axis, Orientation, Pull, Transform, TransformKind};
 use scene::{BoxId, Frame, Scene, ThingId};

@@ -24,10 +24,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
         "Symmetry about the ego axis",
         "S",
     ));
-    if matches!(
-        hand.voxel_mode,
-        VoxelMode::ChooseLasso | VoxelMode::ChoosePolygon
-    ) {
+    if matches!(hand.voxel_mode, VoxelMode::ChooseLasso | VoxelMode::ChoosePolygon) {
         let hint = "The outline chooses voxels behind others, too";
         out.push(Setting::toggle(
             "through",

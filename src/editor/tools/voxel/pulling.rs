@@ -10,13 +10,7 @@ use crate::voxel_ops::{self, Cell};
 use scene::{Class, Extent, Frame};
 
 /// The edit of a face pulled as far as the pointer is.
-pub(super) fn pulled(
-    ray: &Ray,
-    frame: &Frame,
-    hand: &Hand,
-    first: &VoxelHit,
-    face: &[Cell],
-) -> Option<Edit> {
+pub(super) fn pulled(ray: &Ray, frame: &Frame, hand: &Hand, first: &VoxelHit, face: &[Cell]) -> Option<Edit> {
     let [x, y, z] = first.cell;
     let normal = DVec3::from_array(first.normal.map(f64::from));
     let surface_m = frame.extent().center(x, y, z) + normal * (Extent::VOXEL_M / 2.0);

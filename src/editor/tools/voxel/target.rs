@@ -167,7 +167,10 @@ mod tests {
         assert_eq!(count([3, 3]), 27 - 8);
         // About pi / 6 of the block, and of the higher one as well.
         let [ball, egg] = [count([5, 5]), count([5, 9])];
-        assert!((60..=90).contains(&ball) && (105..=155).contains(&egg), "{ball} {egg}");
+        assert!(
+            (60..=90).contains(&ball) && (105..=155).contains(&egg),
+            "{ball} {egg}"
+        );
     }
 
     #[test]
