@@ -229,8 +229,7 @@ impl Canvas {
         if let Some(pointer) = response.hover_pos() {
             // With Ctrl held egui turns the wheel into a zoom: here it is the brush's size.
             if (zoom - 1.0).abs() > 1e-3 {
-                hand.brush_m =
-                    (hand.brush_m * f64::from(zoom)).clamp(*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end());
+                hand.scale_brush(f64::from(zoom));
             } else if scroll != 0.0 {
                 let under = map.to_ego(pointer);
                 let scale = self.scale * f64::from(scroll / 220.0).exp();

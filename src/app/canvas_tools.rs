@@ -164,7 +164,9 @@ impl Driver {
                 }
             }
             Wants::Escape | Wants::Points => {
-                if ui.ctx().text_edit_focused() {
+                let drawn_in = tools.toolbox.tool(tools.hand.tool).draws_in();
+                let elsewhere = drawn_in.is_some_and(|kind| kind != seen.view.kind());
+                if elsewhere || ui.ctx().text_edit_focused() {
                     return;
                 }
                 let twice = response.contains_pointer()

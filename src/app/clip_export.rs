@@ -15,6 +15,7 @@ use sensors::painter::{PaintOptions, Painter};
 use viewport::ViewCamera;
 
 use crate::camera_views::{camera_input, paint_input};
+use crate::capture::{CaptureOptions, Subject, capture};
 use crate::picture::{self, Picture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// What is shown.
@@ -27,8 +28,10 @@ pub enum ClipView {
         /// It goes along with the ego vehicle.
         follow: bool,
     },
-    /// The layout from above, with boxes.
+    /// The layout from above, with boxes, a whole number of pixels for each cell.
     Bev,
+    /// The map from above, as large as fits the size.
+    Map,
     /// One camera of the rig by index, or all of them in two rows.
     Cameras {
         /// What the pictures show.
@@ -45,7 +48,7 @@ pub enum ClipView {
 pub struct ClipOptions {
     /// What is shown.
     pub view: ClipView,
-    /// Width and height of the 3D view, or of each camera, pixels.
+    /// Width and height of the 3D view and the map, or of each camera, pixels.
     pub size: [u32; 2],
     /// First and last moment, s.
     pub span_s: [f64; 2],
@@ -127,6 +130,7 @@ enum Drawer {
         size: [u32; 2],
     },
     Bev,
+    Map([u32; 2]),
     Cameras(ClipOptions, Option<Painter>),
 }
 
@@ -147,6 +151,7 @@ impl Drawer {
                 }
             }
             ClipView::Bev => Self::Bev,
+            ClipView::Map => Self::Map(options.size),
             ClipView::Cameras { view, source, camera } => {
                 let found = scene.rig.cameras.len();
                 if camera.map_or(0, |i| i + 1).max(1) > found {
@@ -198,6 +203,18 @@ impl Drawer {
                 let scale = (BEV_PIXELS / extent.nx().max(extent.ny())).clamp(1, 8);
                 Ok(picture::layout_top(scene.frame(), scale))
             }
+            Self::Map(size) => capture(
+                scene,
+                &CaptureOptions {
+                    subject: Subject::Map,
+                    shot: ShotOptions {
+                        size: *size,
+                        ..ShotOptions::default()
+                    },
+                    legend: false,
+                    ..CaptureOptions::default()
+                },
+            ),
             Self::Cameras(options, painter) => pictures(scene, options, painter.as_mut()),
         }
     }
@@ -290,14 +307,19 @@ mod tests {
             source: learned::ID,
             camera: None,
         };
-        for view in [ClipView::Bev, camera, learned] {
+        for view in [ClipView::Bev, ClipView::Map, camera, learned] {
             let seen = std::cell::RefCell::new(Vec::new());
             let go_on = |done, all| {
                 seen.borrow_mut().push((done, all));
                 true
             };
+            let is_map = view == ClipView::Map;
             let bytes = clip(&scene, &options(view), VideoKind::Gif, &go_on).expect("small");
             assert!(bytes.starts_with(b"GIF89a"));
+            if is_map {
+                let size = [6, 8].map(|at| u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+                assert_eq!(size, [96, 54], "the size that was asked for");
+            }
             assert_eq!(seen.into_inner().last(), Some(&(5, 6)));
         }
         let error =

@@ -56,13 +56,13 @@ pub enum FileCommand {
     Save,
     /// Asks for a file and saves there.
     SaveAs,
-    /// Asks for a file and saves the picture there that the dialog of pictures describes.
+    /// Asks for a file and saves there what the dialog of pictures describes.
     AskCapture,
     /// Saves the 3D view beside the scene.
     QuickShot,
     /// Saves what a camera shows in a view beside the scene.
     SavePicture(usize, ViewId),
-    /// Asks for a file and writes the clip there as moving pictures.
+    /// Shows the dialog of pictures with moving ones chosen.
     SaveClip,
     /// Asks for a model and puts it into the scene.
     PlaceModel,
@@ -154,6 +154,10 @@ pub enum GenerationCommand {
     RestoreVersion(SceneRev),
     /// Goes to the next (1) or previous (-1) version.
     StepVersion(i32),
+    /// Sets seed and knobs to those that the version of that state was made with.
+    UseAgain(SceneRev),
+    /// Keeps the present state as a version, and asks for its name.
+    KeepVersion,
     /// Switches generation after each edit on or off.
     ToggleLive,
     /// Generates with the settings of a preset of the quality slider, by index.

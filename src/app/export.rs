@@ -42,6 +42,8 @@ pub struct ExportOptions {
     pub lidar: LidarModel,
     /// How the picture of the 3D view is taken.
     pub shot: ShotOptions,
+    /// What the scene was made with, for the recipe that files carry; null if that is not known.
+    pub parameters: serde_json::Value,
 }
 
 impl Default for ExportOptions {
@@ -51,6 +53,7 @@ impl Default for ExportOptions {
             source: cameras::told::ID,
             lidar: LidarModel::default(),
             shot: ShotOptions::default(),
+            parameters: serde_json::Value::Null,
         }
     }
 }
@@ -357,7 +360,10 @@ impl Products for Making<'_> {
     }
 
     fn recipe(&self) -> &Recipe {
-        self.recipe.get_or_init(|| Recipe::of(self.whole))
+        self.recipe.get_or_init(|| Recipe {
+            parameters: self.options.parameters.clone(),
+            ..Recipe::of(self.whole)
+        })
     }
 
     fn world_from_ego(&self) -> Pose {

@@ -18,6 +18,7 @@ pub(crate) mod fields;
 pub(crate) mod detection_marks;
 mod finding_marks;
 pub mod findings;
+mod fly;
 pub mod graphics;
 mod map_edges;
 mod marks;
@@ -29,6 +30,7 @@ mod pipeline;
 pub mod playback;
 mod pointer;
 mod screen_map;
+pub mod seed_wish;
 pub mod seen;
 pub mod sensing;
 pub mod shell;
@@ -44,7 +46,7 @@ pub mod views_shown;
 pub mod windows;
 
 pub use authoring::again::{again, scene_of};
-pub use authoring::{memory, open, prompting, scenery, text};
+pub use authoring::{memory, open, prompting, scenery, text, wildcards};
 
 pub use command::Command;
 pub use panes::compare;

@@ -14,6 +14,7 @@ use super::camera_views::{CamerasShown, LidarShown};
 use super::panes::comparing::Comparing;
 use super::panes::pointed::Pointed;
 use super::playback::Playback;
+use super::seed_wish::SeedWish;
 use super::tools::{Hand, ToolState};
 use super::views_shown::ViewsShown;
 use super::windows::open::OpenWindows;
@@ -31,6 +32,8 @@ pub struct UiState {
     pub correcting: bool,
     /// Densities that generation is asked for.
     pub named: Named,
+    /// The seed that it is asked for.
+    pub seed: SeedWish,
     /// What the pictures of the cameras show.
     pub cameras: CamerasShown,
     /// What the LiDAR sweep shows.

@@ -25,7 +25,7 @@ use super::screen_map::{point, pos};
 use super::state::{UiState, called, position_text};
 use super::tools::ToolState;
 use super::views_shown::ViewsShown;
-use super::{detection_marks, thing_outlines, track_marks, unsettled_marks};
+use super::{detection_marks, fly, thing_outlines, track_marks, unsettled_marks};
 use crate::shell::live::Bounds;
 use widgets::software_ui;
 use widgets::theme;
@@ -36,8 +36,6 @@ const ORBIT_RAD: f64 = 0.006;
 const SLOW_FRAME_S: f32 = 0.045;
 /// Time without motion after which the picture is fine again, s.
 const SETTLE_S: f64 = 0.18;
-/// Speed of flight, m/s.
-const FLY_MPS: f64 = 14.0;
 
 /// Device objects of the view.
 struct Gpu {
@@ -156,7 +154,7 @@ impl View3d {
             return response;
         }
         let steps = pointer::steps(ui, &response);
-        let moved = self.navigate(ui, &response, &steps, input, &state.tools);
+        let moved = self.navigate(ui, &response, &steps, input, &mut state.tools);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
         let mut driver = self.driver;
         driver.drive(
@@ -268,7 +266,7 @@ impl View3d {
         response: &Response,
         steps: &[Step],
         input: &View3dInput<'_>,
-        tools: &ToolState,
+        tools: &mut ToolState,
     ) -> bool {
         let before = self.camera;
         let (shift, space) = ui.input(|i| (i.modifiers.shift, i.key_down(egui::Key::Space)));
@@ -285,7 +283,7 @@ impl View3d {
                 _ => space,
             };
             if button == PointerButton::Secondary {
-                self.fly(ui, dx, dy);
+                fly::fly(ui, &mut self.camera, dx, dy);
             } else if pans {
                 self.camera.pan(DVec2::new(dx, dy) * px, self.size_px());
             } else {
@@ -298,7 +296,12 @@ impl View3d {
         let wheel_taken = self.driver.is_dragging() && tools.toolbox.tool(tools.tool).wants() == Wants::Wheel;
         if let Some(at) = response.hover_pos().filter(|_| !wheel_taken) {
             let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
-            let factor = f64::from((scroll / 260.0).exp() * zoom);
+            let mut factor = f64::from((scroll / 260.0).exp() * zoom);
+            // With Ctrl held egui turns the wheel into a zoom: with a brush in hand it is the brush's size.
+            if tools.tool.def().is_brush && (zoom - 1.0).abs() > 1e-4 {
+                tools.scale_brush(f64::from(zoom));
+                factor = 1.0;
+            }
             if (factor - 1.0).abs() > 1e-4 {
                 let toward = self.pointer(at).map(|p| {
                     let hit_m = pick::pick(input.scene.frame(), &p.ray).map(|hit| match hit {
@@ -313,26 +316,6 @@ impl View3d {
             }
         }
         self.camera != before
-    }
-
-    fn fly(&mut self, ui: &Ui, dx: f64, dy: f64) {
-        use egui::Key;
-        self.camera.turn_head(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
-        let (step, modifiers, dt) = ui.input(|i| {
-            let axis =
-                |plus: Key, minus: Key| f64::from(i8::from(i.key_down(plus)) - i8::from(i.key_down(minus)));
-            let step = DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
-            (step, i.modifiers, f64::from(i.stable_dt.min(0.1)))
-        });
-        let pace = if modifiers.shift {
-            4.0
-        } else if modifiers.alt {
-            0.25
-        } else {
-            1.0
-        };
-        self.camera.fly(step * (FLY_MPS * pace * dt));
-        ui.ctx().request_repaint();
     }
 
     fn paint(

@@ -17,6 +17,7 @@ pub mod lanes;
 #[cfg(test)]
 mod map_tests;
 pub mod measure;
+pub mod merge;
 pub mod models;
 pub mod outline;
 pub mod part;

@@ -30,7 +30,7 @@ pub struct KeptVersion {
     pub name: String,
     /// The edit that led there.
     pub label: String,
-    /// What generating it took.
+    /// What generating it took; on a second line what it was made with, as JSON.
     pub note: String,
     /// The user wants to keep it.
     pub starred: bool,
@@ -39,6 +39,16 @@ pub struct KeptVersion {
 }
 
 impl KeptVersion {
+    /// What generating it took, for a person.
+    pub fn said(&self) -> &str {
+        self.note.lines().next().unwrap_or_default()
+    }
+
+    /// What it was made with, as JSON, if that is known.
+    pub fn made(&self) -> Option<&str> {
+        self.note.lines().nth(1)
+    }
+
     /// What it is called: its name, else what led there.
     pub fn title(&self) -> &str {
         if self.name.is_empty() {
@@ -46,5 +56,25 @@ impl KeptVersion {
         } else {
             &self.name
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_says_what_it_took_and_what_it_was_made_with() {
+        let of = |note: &str| KeptVersion {
+            name: String::new(),
+            label: "Generate".into(),
+            note: note.into(),
+            starred: false,
+            loom: Arc::default(),
+        };
+        let both = of("0.4 s\n{\"seed\":3}");
+        assert_eq!((both.said(), both.made()), ("0.4 s", Some("{\"seed\":3}")));
+        assert_eq!((of("").said(), of("0.4 s").made()), ("", None));
+        assert_eq!((of("\n{}").said(), of("\n{}").made()), ("", Some("{}")));
     }
 }

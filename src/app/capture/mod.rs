@@ -128,12 +128,23 @@ fn stacked(picture: Picture, below: Option<Picture>) -> Picture {
 
 /// The bytes of a PNG that also tells how the picture came to be, and holds the scene.
 pub fn to_png(scene: &Scene, picture: &Picture) -> anyhow::Result<Vec<u8>> {
+    to_png_made_with(scene, picture, serde_json::Value::Null)
+}
+
+/// The same, with what the scene was made with.
+pub fn to_png_made_with(
+    scene: &Scene,
+    picture: &Picture,
+    parameters: serde_json::Value,
+) -> anyhow::Result<Vec<u8>> {
     let encode = |notes: &formats::png::Notes<'_>| {
         formats::png::rgba(picture.width, picture.height, &picture.rgba, notes)
     };
-    Recipe::of(scene)
-        .in_png(true, encode)
-        .context("encode the picture")
+    let recipe = Recipe {
+        parameters,
+        ..Recipe::of(scene)
+    };
+    recipe.in_png(true, encode).context("encode the picture")
 }
 
 /// All cameras of the rig, three in a row.

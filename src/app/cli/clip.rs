@@ -23,8 +23,8 @@ use sensors::cameras;
 pub struct ClipCommand {
     /// Scene to read.
     scene: PathBuf,
-    /// What is shown: view (the 3D view), turntable (it turns once around; also of a scene of one moment), bev, or what cameras
-    /// see (semantic, depth, picture, normals).
+    /// What is shown: view (the 3D view), turntable (it turns once around; also of a scene of one moment), bev, map (as large as
+    /// fits the size), or what cameras see (semantic, depth, picture, normals).
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
     /// Viewpoint of the 3D view: perspective, top, front, side, ego, or a camera of the rig (CAM_FRONT).
@@ -36,7 +36,7 @@ pub struct ClipCommand {
     /// One camera of the rig; all of them if left out.
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
-    /// Size in pixels: of the 3D view, or of each camera.
+    /// Size in pixels: of the 3D view or the map, or of each camera.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "640x360")]
     size: [u32; 2],
     /// First moment, s.
@@ -134,12 +134,13 @@ impl ClipCommand {
                 follow: !self.fixed,
             }),
             "bev" => Ok(ClipView::Bev),
+            "map" => Ok(ClipView::Map),
             what => {
                 let views = cameras::views();
                 let Some(view) = views.iter().find(|v| v.id.name() == what) else {
                     let names: Vec<&str> = views.iter().map(|v| v.id.name()).collect();
                     bail!(
-                        "--what is {what:?}, expected view, turntable, bev, {}",
+                        "--what is {what:?}, expected view, turntable, bev, map, {}",
                         names.join(", ")
                     );
                 };

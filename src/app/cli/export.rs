@@ -101,6 +101,7 @@ impl Export {
                 transparent: self.transparent,
                 ..ShotOptions::default()
             },
+            parameters: serde_json::Value::Null,
         };
         let start = Instant::now();
         let files = export_all(&scene, &formats, &options, &path, &ExportProgress::default())?;

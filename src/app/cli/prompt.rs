@@ -13,6 +13,7 @@ use crate::endpoint::{self, Endpoint};
 use app::open;
 use app::prompting::{How, Keep, Placer};
 use app::text::{self, Prompted, doubts};
+use app::wildcards;
 use editor::{Document, Edit};
 use formats::loom;
 use job::GenParams;
@@ -27,7 +28,7 @@ use words::stage::Candidate;
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Prompt {
-    /// What the scene should hold, or what should change in it.
+    /// What the scene should hold, or what should change in it. {car|bus} and {2-5} are wildcards: the seed draws one.
     #[arg(required_unless_present = "schema", default_value = "")]
     text: String,
     /// Scene to edit; without one a new scene is made.
@@ -77,7 +78,8 @@ pub struct Prompt {
 }
 
 impl Prompt {
-    pub(super) fn run(self) -> Outcome {
+    pub(super) fn run(mut self) -> Outcome {
+        self.text = wildcards::drawn(&self.text, self.seed);
         if self.schema {
             println!("{:#}", endpoint::schema());
             return Ok(());
@@ -185,6 +187,7 @@ impl Prompt {
         let answer = prompted.answer();
         let frame = made.scene.frame();
         let report = json!({
+            "text": self.text,
             "description": made.laid.description,
             "graph": made.laid.graphed.graph,
             "placer": self.placer,
@@ -287,6 +290,7 @@ impl Prompt {
         let remarks: Vec<String> = edited.outcome.remarks.iter().map(|r| r.1.to_string()).collect();
         let (notes, answer) = (doubts(&edited.heard), edited.answer());
         let report = json!({
+            "text": self.text,
             "edits": edits,
             "answer": answer,
             "questions": questions,

@@ -56,7 +56,8 @@ impl VersionsCommand {
                 "number": i + 1,
                 "name": v.name,
                 "label": v.label,
-                "note": v.note,
+                "note": v.said(),
+                "made_with": v.made().and_then(|m| serde_json::from_str::<serde_json::Value>(m).ok()),
                 "starred": v.starred,
                 "bytes": v.loom.len(),
             })
@@ -71,10 +72,9 @@ impl VersionsCommand {
             false => {
                 let line = |(i, v): (usize, &KeptVersion)| {
                     let star = if v.starred { "★" } else { " " };
-                    let note = if v.note.is_empty() {
-                        String::new()
-                    } else {
-                        format!(" ({})", v.note)
+                    let note = match v.said() {
+                        "" => String::new(),
+                        said => format!(" ({said})"),
                     };
                     format!("{:3} {star} {}{note}", i + 1, v.title())
                 };

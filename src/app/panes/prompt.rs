@@ -5,6 +5,7 @@ pub mod field;
 mod graph;
 pub mod plan;
 mod reading;
+mod recent;
 pub mod recalled;
 mod typed_text;
 

@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{
-    Color32, Key, PointerButton, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
+    Color32, PointerButton, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
 };
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::baking::{Baking, Seen};
 use crate::command::Command;
+use crate::fly;
 use language::{t, tf};
 use viewport::ViewCamera;
 use widgets::icons::Icon;
@@ -19,8 +20,6 @@ use widgets::theme;
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;
-/// Speed of flight, m/s.
-const FLY_MPS: f64 = 14.0;
 /// Width of the picture while the view moves, and at rest, px.
 const MOVING_PX: f32 = 320.0;
 const STILL_PX: f32 = 960.0;
@@ -85,7 +84,7 @@ impl Pane for Splats {
         }
         let response = ui.allocate_rect(rect, Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("Splats")));
-        fly(ui, &response, &mut cx.view3d.camera);
+        navigate(ui, &response, &mut cx.view3d.camera);
         self.look(ui, rect, &cx.view3d.camera);
         let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let painter = ui.painter().with_clip_rect(rect);
@@ -217,21 +216,12 @@ impl Splats {
 
 /// The pointer as in the 3D view: drag turns, with Shift shifts; the right button looks around, and W A S D Q E fly; the
 /// wheel comes nearer.
-fn fly(ui: &Ui, response: &Response, camera: &mut ViewCamera) {
+fn navigate(ui: &Ui, response: &Response, camera: &mut ViewCamera) {
     let delta = response.drag_delta();
     let (dx, dy) = (f64::from(delta.x), f64::from(delta.y));
     let shift = ui.input(|i| i.modifiers.shift);
     if response.dragged_by(PointerButton::Secondary) {
-        camera.turn_head(dx * ORBIT_RAD * 0.6, dy * ORBIT_RAD * 0.6);
-        let (step, dt) = ui.input(|i| {
-            let axis =
-                |plus: Key, minus: Key| f64::from(i8::from(i.key_down(plus)) - i8::from(i.key_down(minus)));
-            let step = DVec3::new(axis(Key::D, Key::A), axis(Key::E, Key::Q), axis(Key::W, Key::S));
-            (step, f64::from(i.stable_dt.min(0.1)))
-        });
-        let pace = if shift { 4.0 } else { 1.0 };
-        camera.fly(step * (FLY_MPS * pace * dt));
-        ui.ctx().request_repaint();
+        fly::fly(ui, camera, dx, dy);
     } else if delta != egui::Vec2::ZERO {
         let pans = shift && response.dragged();
         if pans {

@@ -10,13 +10,15 @@ use crate::bev_image::DRAW_ORDER;
 use crate::command::{Command, GenerationCommand};
 use crate::pointer::carry_out;
 use crate::scenery::{Drawer, TYPICAL_BUILDING, TYPICAL_VEGETATION};
+use crate::seed_wish::SeedWish;
 use crate::state::UiState;
 use crate::tools::things::ThingCommand;
 use crate::tools::{ToolCommand, ToolState, option_rows};
 use crate::views_shown::Underlay;
+use editor::merge::merge;
 use editor::tools::brush;
 use language::{t, tf};
-use scene::{BevLayer, BevLayout, Frame};
+use scene::{BevLayer, BevLayout, Frame, Scene};
 use widgets::hint::caption;
 use widgets::icons::Icon;
 use widgets::icons::{self, section};
@@ -46,13 +48,14 @@ impl Pane for Tools {
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
-        let frame = cx.document.scene().frame();
-        theme::panel_frame().show(ui, |ui| layers_ui(ui, frame, cx.state, commands));
+        let scene = cx.document.scene();
+        theme::panel_frame().show(ui, |ui| layers_ui(ui, scene, cx.state, commands));
     }
 }
 
 /// Draws the pane.
-pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut Vec<Command>) {
+pub fn layers_ui(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mut Vec<Command>) {
+    let (frame, scene_seed) = (scene.frame(), scene.seed);
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         options(ui, frame, &mut state.tools, commands);
         let UiState { tools, brushes, .. } = state;
@@ -81,6 +84,7 @@ pub fn layers_ui(ui: &mut Ui, frame: &Frame, state: &mut UiState, commands: &mut
         density_row(ui, t("Buildings"), &mut named.building, TYPICAL_BUILDING as f32);
         density_row(ui, t("Clutter"), &mut named.clutter, 0.25);
         density_row(ui, t("Completeness"), &mut named.completeness, 1.0);
+        seed_row(ui, &mut state.seed, scene_seed);
         caption(
             ui,
             t("What generation is asked for. Unticked, a new scene is free (but complete) and an edit keeps what is there."),
@@ -143,6 +147,31 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
     });
 }
 
+/// The seed of what is generated on request.
+fn seed_row(ui: &mut Ui, wish: &mut SeedWish, scene_seed: u64) {
+    ui.horizontal(|ui| {
+        ui.label(t("Seed"));
+        let mut seed = wish.of(scene_seed);
+        let field = egui::DragValue::new(&mut seed).speed(1.0);
+        let field = ui
+            .add(field)
+            .on_hover_text(t("The same scene, settings and seed give the same result"))
+            .accessible_name(t("Seed of the generation"));
+        if field.changed() {
+            wish.value = Some(seed);
+        }
+        let roll = ui
+            .button(t("Draw one"))
+            .on_hover_text(t("Another seed, at random"));
+        roll.widget_info(|| WidgetInfo::labeled(Role::Button, true, t("Draw a seed")));
+        if roll.clicked() {
+            wish.roll();
+        }
+        ui.checkbox(&mut wish.another, t("each time"))
+            .on_hover_text(t("Another seed for each result that is asked for"));
+    });
+}
+
 /// Options of the tool in hand.
 fn options(ui: &mut Ui, frame: &Frame, tools: &mut ToolState, commands: &mut Vec<Command>) {
     tools.region_m2 = tools.region.count() as f64 * REGION_CELL_M2;
@@ -195,11 +224,25 @@ fn layer_row(
             ),
             false => t("Choose for the brush"),
         };
-        if row.on_hover_text(hint).clicked() {
+        let row = row.on_hover_text(hint);
+        row.context_menu(|ui| merge_menu(ui, layout, layer, commands));
+        if row.clicked() {
             tools.layer = layer;
             commands.push(Command::Tool(brush::ID));
         }
     });
+}
+
+/// The layers that a layer can become part of.
+fn merge_menu(ui: &mut Ui, layout: &BevLayout, layer: BevLayer, commands: &mut Vec<Command>) {
+    ui.label(egui::RichText::new(t("Merge into")).color(theme::text_weak()));
+    for into in BevLayer::MAP.into_iter().filter(|other| *other != layer) {
+        let name = theme::sentence(t(&into.label()));
+        let button = ui.add_enabled(layout.count(layer) > 0, egui::Button::new(name));
+        if button.clicked() {
+            commands.push(Command::Apply("Merge layers", merge(layout, layer, into)));
+        }
+    }
 }
 
 /// Shows one layer alone, or if it is, what was shown before.

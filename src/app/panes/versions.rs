@@ -9,7 +9,7 @@ use crate::bev_image;
 use crate::command::{Command, GenerationCommand, ViewCommand};
 use crate::panes::comparing::{CompareMode, Comparing};
 use crate::shell::versions::{Version, Versions};
-use language::t;
+use language::{t, tf};
 use scene::SceneRev;
 use widgets::icons;
 use widgets::icons::Icon;
@@ -39,7 +39,14 @@ impl Pane for VersionsPane {
         266.0
     }
 
-    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+    fn controls(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        if ui
+            .button(t("Keep"))
+            .on_hover_text(t("Keep this state as a version"))
+            .clicked()
+        {
+            commands.push(Command::Generation(GenerationCommand::KeepVersion));
+        }
         versions_controls(ui, &mut cx.state.compare);
     }
 
@@ -130,6 +137,15 @@ impl Entry {
             (false, true) => t(&version.label).to_owned(),
             (false, false) => format!("{} · {}", t(&version.label), t(&version.note)),
         };
+        let seed = version
+            .made
+            .as_ref()
+            .map(|made| tf!("seed {n}", n = made.params.seed));
+        let below = match seed {
+            Some(seed) if below.is_empty() => seed,
+            Some(seed) => format!("{below} · {seed}"),
+            None => below,
+        };
         let found = versions.findings_in_words(i);
         let below = match found {
             Some(found) if below.is_empty() => found,
@@ -183,6 +199,14 @@ impl Entry {
         if ui.button(t("Go back to it")).clicked() {
             commands.push(self.go_back());
         }
+        if let Some(made) = versions.made(self.rev)
+            && ui
+                .button(t("Use these settings again"))
+                .on_hover_text(made.in_words())
+                .clicked()
+        {
+            commands.push(Command::Generation(GenerationCommand::UseAgain(self.rev)));
+        }
         ui.separator();
         if ui.button(t("Name…")).clicked()
             && let Some(i) = versions.of(self.rev)
@@ -204,7 +228,7 @@ impl Entry {
             .id_salt("version name")
             .char_limit(Versions::LONGEST_NAME)
             .hint_text(t("name"));
-        let field = ui.put(rect, field);
+        let field = ui.put(rect, field).accessible_name(t("Name of the version"));
         if field.lost_focus() {
             let text = text.clone();
             if !ui.input(|i| i.key_pressed(egui::Key::Escape)) {

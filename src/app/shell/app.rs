@@ -165,7 +165,7 @@ impl SceneloomApp {
         let Opened {
             scene,
             versions: kept,
-            ..
+            damaged,
         } = Opened::of(config.scene);
         let mut versions = Versions::default();
         versions.replace(kept);
@@ -191,6 +191,7 @@ impl SceneloomApp {
         let dock = dock.map(|dock| dock.with_new_panes(&settings.panes_known));
         let dock = dock.unwrap_or_else(|| Dock::workspace(settings.workspace));
         let mut views = Views::new(view3d, dock, render_state);
+        views.prompt.favourites.clone_from(&settings.kept_words);
         views.prompt.opened(&scene);
         let live = Live::new(params, config.full_params, config.warm_up);
         let disk = Disk {
@@ -198,7 +199,7 @@ impl SceneloomApp {
             save: config.save,
             new_scene: config.new_scene,
         };
-        Ok(Self {
+        let mut app = Self {
             document: Document::new(scene),
             state,
             toasts,
@@ -219,7 +220,9 @@ impl SceneloomApp {
             },
             guests: Guests::default(),
             ctx: ctx.clone(),
-        })
+        };
+        app.tell_damaged(damaged);
+        Ok(app)
     }
 
     /// Which part of the ground the frame that is shown covers.
@@ -319,7 +322,9 @@ impl SceneloomApp {
 
     fn write_settings(&mut self, ctx: &egui::Context) {
         let now_s = self.now_s();
-        self.preferences.settings.brushes.clone_from(&self.state.brushes);
+        let settings = &mut self.preferences.settings;
+        settings.brushes.clone_from(&self.state.brushes);
+        settings.kept_words.clone_from(&self.views.prompt.favourites);
         let complaint = self.preferences.write(ctx.zoom_factor(), &self.views.dock, now_s);
         if let Some(text) = complaint {
             self.toasts.push(Level::Error, text, now_s);

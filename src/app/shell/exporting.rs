@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, TryRecvError, bounded};
 use super::app::{SceneloomApp, one_line};
 use super::file_dialogs::Purpose;
 use super::toasts::Level;
-use crate::capture::{self, Turntable};
+use crate::capture::{self, Subject, Turntable};
 use crate::clip_export::{ClipOptions, ClipView, clip};
 use crate::export::{ExportOptions, ExportProgress, Format, export_all};
 use crate::windows::export::{Asked, ExportDialog, ExportInput, export_window};
@@ -16,8 +16,6 @@ use editor::checks::{Severity, waive};
 use formats::video::VideoKind;
 use language::{t, tf};
 
-/// Width and height of a clip, pixels.
-const CLIP_SIZE: [u32; 2] = [1280, 720];
 /// Frames per second of a turn.
 const TURN_HZ: f64 = 15.0;
 
@@ -74,6 +72,7 @@ impl SceneloomApp {
             Some(Asked::Write(formats)) => {
                 let mut options = dialog.options.clone();
                 options.shot.camera = self.views.view3d.camera;
+                options.parameters = self.parameters();
                 dialog.written.clone_from(&dialog.path);
                 self.start_export(formats, options, path, ui.ctx());
             }
@@ -107,7 +106,7 @@ impl SceneloomApp {
         });
     }
 
-    /// Writes the clip as the 3D view shows it.
+    /// Writes the clip that the dialog of pictures describes: of the 3D view as it stands, the map or cameras.
     pub(super) fn save_clip(&mut self, path: PathBuf, ctx: &egui::Context) {
         let kind = match VideoKind::of_path(&path) {
             Ok(kind) => kind,
@@ -122,12 +121,29 @@ impl SceneloomApp {
             let now = scene.frame().world_from_ego;
             camera.go_along(&now, &scene.at(span_s[0]).frame().world_from_ego);
         }
+        let dialog = &self.state.windows.capture;
+        let asked = &dialog.options;
+        let (view, size) = match asked.subject {
+            Subject::Map => (ClipView::Map, asked.shot.size),
+            Subject::Cameras => {
+                let view = ClipView::Cameras {
+                    view: asked.view,
+                    source: asked.source,
+                    camera: dialog.camera,
+                };
+                (view, asked.camera_size)
+            }
+            _ => {
+                let view = ClipView::View3d {
+                    camera: Box::new(camera),
+                    follow: playback.follow,
+                };
+                (view, asked.shot.size)
+            }
+        };
         let options = ClipOptions {
-            view: ClipView::View3d {
-                camera: Box::new(camera),
-                follow: playback.follow,
-            },
-            size: CLIP_SIZE,
+            view,
+            size,
             span_s,
             rate_hz: scene.clip().rate_hz,
         };
@@ -149,9 +165,10 @@ impl SceneloomApp {
         let mut options = dialog.options;
         options.shot.camera = self.views.view3d.camera;
         if !dialog.turns {
+            let parameters = self.parameters();
             return self.run_export("the picture", ctx, move |_| {
                 let picture = capture::capture(&scene, &options)?;
-                let bytes = capture::to_png(&scene, &picture)?;
+                let bytes = capture::to_png_made_with(&scene, &picture, parameters)?;
                 formats::atomic::write(&path, &bytes)?;
                 Ok(vec![(path, bytes.len() as u64)])
             });

@@ -11,8 +11,10 @@ use super::file_dialogs::Purpose;
 use super::files::{Next, Opening};
 use super::toasts::Level;
 use super::versions::Opened;
+use crate::capture;
 use crate::command::FileCommand;
 use crate::open;
+use crate::picture::Picture;
 use editor::Edit;
 use language::{t, tf};
 use scene::{Kept, Scene};
@@ -36,14 +38,13 @@ impl SceneloomApp {
                 .files
                 .dialogs
                 .ask(Purpose::SaveAs, &self.suggested("loom"), ctx),
-            FileCommand::SaveClip => {
-                let path = self.suggested("mp4");
-                self.files.dialogs.ask(Purpose::Clip, &path, ctx);
-            }
+            FileCommand::SaveClip => self.state.windows.capture.open_for_clip(),
             FileCommand::AskCapture => {
-                let (purpose, ending) = match self.state.windows.capture.turns {
-                    true => (Purpose::Turn, "gif"),
-                    false => (Purpose::Screenshot, "png"),
+                let dialog = &self.state.windows.capture;
+                let (purpose, ending) = match (dialog.turns, dialog.is_clip()) {
+                    (true, _) => (Purpose::Turn, "gif"),
+                    (_, true) => (Purpose::Clip, "mp4"),
+                    _ => (Purpose::Screenshot, "png"),
                 };
                 let path = self.suggested(ending);
                 self.files.dialogs.ask(purpose, &path, ctx);
@@ -99,7 +100,9 @@ impl SceneloomApp {
     }
 
     pub(crate) fn go_on(&mut self, next: Next, ctx: &Context) {
+        self.files.leaves = Some(self.left());
         match next {
+            Next::Arrived => self.show_arrived(ctx),
             Next::Quit => {
                 self.files.may_close = true;
                 if let Some(recovery) = &mut self.files.recovery {
@@ -162,12 +165,14 @@ impl SceneloomApp {
         );
         match thread {
             Ok(_) => {
+                let leaves = self.files.leaves.take().unwrap_or_else(|| self.left());
                 self.files.opening = Some(Opening {
                     path,
                     what,
                     is_import,
                     recovers: false,
                     step: None,
+                    leaves,
                     scene,
                 })
             }
@@ -283,7 +288,11 @@ impl SceneloomApp {
         let path = free_name(&path.with_file_name(format!("{stem}_{tidy}_{}.png", view.name())));
         // A scene that was never saved has no folder: one wants to know where the picture is.
         let path = std::path::absolute(&path).unwrap_or(path);
-        match image::save_buffer(&path, &rgba, width as u32, height as u32, image::ColorType::Rgba8) {
+        let scene = self.document.scene().clone();
+        // A picture of the state before an edit does not lead back to the one after it.
+        let is_of_it = !self.threads.sensing.is_stale(source, scene.rev);
+        let picture = Picture { width, height, rgba };
+        match save_png(is_of_it.then(|| (&*scene, self.parameters())), &picture, &path) {
             Ok(()) => {
                 let text = tf!(
                     "Saved {file} ({width} × {height})",
@@ -293,15 +302,22 @@ impl SceneloomApp {
                 );
                 self.toasts.push(Level::Info, text, self.now_s());
             }
-            Err(error) => self.fail(tf!("No picture saved: {error}", error = error)),
+            Err(error) => self.fail(tf!("No picture saved: {error}", error = one_line(&error))),
         }
     }
 
     pub(crate) fn screenshot(&mut self, path: &Path) {
         let scene = self.document.scene().clone();
+        let made = self.parameters();
         let shot = self.views.view3d.screenshot(&scene, &self.state.shown, None);
         let saved = shot.and_then(|([width, height], rgba)| {
-            image::save_buffer(path, &rgba, width, height, image::ColorType::Rgba8)?;
+            let [w, h] = [width, height].map(|side| side as usize);
+            let picture = Picture {
+                width: w,
+                height: h,
+                rgba,
+            };
+            save_png(Some((&scene, made)), &picture, path)?;
             Ok([width, height])
         });
         match saved {
@@ -318,6 +334,20 @@ impl SceneloomApp {
             Err(error) => self.fail(tf!("No screenshot: {error}", error = one_line(&error))),
         }
     }
+}
+
+/// Writes a picture, with the scene that it shows inside if that is known, whole or not at all.
+fn save_png(
+    scene: Option<(&Scene, serde_json::Value)>,
+    picture: &Picture,
+    path: &Path,
+) -> anyhow::Result<()> {
+    let bytes = match scene {
+        Some((scene, made)) => capture::to_png_made_with(scene, picture, made)?,
+        None => formats::png::rgba(picture.width, picture.height, &picture.rgba, &Default::default())?,
+    };
+    formats::atomic::write(path, &bytes)?;
+    Ok(())
 }
 
 /// `a.png`, or if it is taken `a_1.png`, `a_2.png` and so on.
@@ -342,6 +372,27 @@ fn free_name(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_leads_back_to_its_scene() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("shot.png");
+        let scene = open::from_template("straight", 3).expect("a template");
+        let picture = Picture::filled(4, 3, [9, 8, 7]);
+        let made = serde_json::json!({"params": {"seed": 7}});
+        save_png(Some((&scene, made)), &picture, &path).expect("written");
+        let back = crate::scene_of(&path).expect("a scene inside");
+        assert!(back.canvas() == scene.canvas());
+        let bytes = std::fs::read(&path).expect("written");
+        let inside = formats::png::notes_inside(&bytes).expect("sound");
+        let recipe = inside.text.iter().find(|(name, _)| name == "recipe");
+        let recipe: formats::recipe::Recipe =
+            serde_json::from_str(&recipe.expect("there").1).expect("as written");
+        assert_eq!(recipe.parameters["params"]["seed"], 7);
+        // What cannot be written leaves nothing behind.
+        let nowhere = folder.path().join("missing").join("shot.png");
+        assert!(save_png(None, &picture, &nowhere).is_err() && !nowhere.exists());
+    }
 
     #[test]
     fn names_that_are_taken_get_a_number() {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crossbeam_channel::Receiver;
 
-use scene::Scene;
+use scene::{Scene, SceneRev};
 
 use super::batching::Batching;
 use super::exporting::Exporting;
@@ -40,7 +40,17 @@ pub(crate) enum Next {
     Open(PathBuf),
     /// A variant of a batch of the queue.
     Variant(u64, usize),
+    /// The scene that was read while this one was edited.
+    Arrived,
     Quit,
+}
+
+/// A state that another scene is to replace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Left {
+    pub content: SceneRev,
+    /// It had changes that the user gave up.
+    pub unsaved: bool,
 }
 
 /// A scene on its way from a file.
@@ -53,7 +63,15 @@ pub(crate) struct Opening {
     pub recovers: bool,
     /// It becomes an undo step of this name, not a document of its own.
     pub step: Option<&'static str>,
+    /// The state that it replaces: what was edited after it is asked about.
+    pub leaves: Left,
     pub scene: Receiver<anyhow::Result<Opened>>,
+}
+
+/// A scene that was read, while the one in the window was edited.
+pub(crate) struct Arrived {
+    pub opening: Opening,
+    pub opened: Opened,
 }
 
 /// Roads from a file, on which a scene will stand.
@@ -71,6 +89,10 @@ pub struct Files {
     pub(crate) disk: Disk,
     pub(crate) dialogs: FileDialogs,
     pub(crate) opening: Option<Opening>,
+    /// Waits for the answer about what was edited meanwhile.
+    pub(crate) arrived: Option<Box<Arrived>>,
+    /// What the user agreed to leave for a scene that is being chosen or read.
+    pub(crate) leaves: Option<Left>,
     /// Roads on which a place is chosen.
     pub(crate) picking: Option<Picking>,
     /// A model that is being read.
@@ -94,6 +116,8 @@ impl Files {
             disk,
             dialogs: FileDialogs::new(native_dialogs),
             opening: None,
+            arrived: None,
+            leaves: None,
             picking: None,
             model: None,
             unsaved: None,

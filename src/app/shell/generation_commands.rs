@@ -44,6 +44,11 @@ impl SceneloomApp {
                     self.restore(&scene);
                 }
             }
+            GenerationCommand::UseAgain(rev) => self.use_again(rev),
+            GenerationCommand::KeepVersion => {
+                self.generation.versions.keep(self.document.settled_scene());
+                self.views.dock.open(crate::panes::id::PaneId::VERSIONS);
+            }
             GenerationCommand::ToggleLive => {
                 self.generation.live.on = !self.generation.live.on;
                 self.generation.live.forget_asked();
@@ -81,9 +86,14 @@ impl SceneloomApp {
             self.toasts.push(Level::Info, text, now_s);
             return;
         }
+        if (full || inpaints) && self.state.seed.another {
+            self.state.seed.roll();
+        }
+        self.generation.live.seed = self.state.seed.value;
         let mut params = self.generation.live.params_for(&scene, full);
         if inpaints {
             self.state.tools.inpaint_region(&mut params);
+            params.seed = self.state.seed.of(params.seed);
         }
         if full && self.draws_scenery_first() {
             return self.generate_on_scenery(params);

@@ -6,6 +6,7 @@ use egui::{Context, Key, Modifiers};
 use super::actions::{When, nudge_direction};
 use super::keymap::{Chord, Keymap};
 use crate::command::Command;
+use crate::fly;
 use crate::panes::id::PaneId;
 use crate::state::UiState;
 use crate::tools::{Hand, ToolCommand};
@@ -55,7 +56,7 @@ pub fn commands(ctx: &Context, keymap: &Keymap, state: &UiState, hands: Hands, c
         if hands.over_window && !under_way && !chord.ctrl {
             continue;
         }
-        if hands.flying && is_flight(key) && !chord.ctrl {
+        if hands.flying && fly::steers(physical.unwrap_or(key)) && !chord.ctrl {
             continue;
         }
         if let Some(nudge) = nudge(chord, state).filter(|_| !hands.dragging) {
@@ -147,10 +148,6 @@ fn is_arrow(key: Key) -> bool {
         key,
         Key::ArrowUp | Key::ArrowDown | Key::ArrowLeft | Key::ArrowRight
     )
-}
-
-fn is_flight(key: Key) -> bool {
-    matches!(key, Key::W | Key::A | Key::S | Key::D | Key::Q | Key::E)
 }
 
 /// Arrows move what is chosen by 0.1 m, with Shift by 1 m, with Ctrl by 0.01 m.

@@ -107,6 +107,8 @@ pub struct Live {
     pub full_params: GenParams,
     /// Densities that the user chose; they override those of the parameters.
     pub named: Named,
+    /// The seed for what is generated on request; that of the scene if none.
+    pub seed: Option<u64>,
     /// Time that the present preset is predicted to take, s; 0 if unknown.
     pub predicted_s: f64,
     /// The job on its way.
@@ -133,6 +135,7 @@ impl Live {
             params,
             full_params,
             named: Named::default(),
+            seed: None,
             cold: warm_up,
             warm_up,
             predicted_s: 0.0,
@@ -155,8 +158,10 @@ impl Live {
             true => (self.full_params.clone(), RegionMode::Full),
             false => (self.params.clone(), RegionMode::Auto),
         };
+        // An edit begins with the noise of what is there: another seed would only make it other for nothing.
+        let seed = self.seed.filter(|_| full).unwrap_or(scene.seed);
         GenParams {
-            seed: scene.seed,
+            seed,
             region,
             named: self.named.or_else(&params.named),
             ..params

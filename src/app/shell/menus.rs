@@ -349,6 +349,10 @@ fn generate_menu(ui: &mut Ui, input: &ToolbarInput<'_>, on: &mut On<'_>) {
         }),
     );
     ui.separator();
+    on(
+        item(ui, t("Keep this state as a version"), "", true),
+        Command::Generation(GenerationCommand::KeepVersion),
+    );
     let live = if input.live {
         t("Switch live off")
     } else {

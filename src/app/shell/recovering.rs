@@ -51,7 +51,7 @@ impl SceneloomApp {
 
     /// Asks about the newest offer, if there is one.
     pub(crate) fn recovery_dialog(&mut self, ui: &egui::Ui) {
-        if self.files.opening.is_some() {
+        if self.files.opening.is_some() || self.files.arrived.is_some() {
             return;
         }
         let Some(recovery) = &mut self.files.recovery else {

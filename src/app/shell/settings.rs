@@ -52,6 +52,8 @@ pub struct Settings {
     pub bookmarks: BTreeMap<u8, Bookmark>,
     /// Brushes that the user keeps.
     pub brushes: Vec<SavedBrush>,
+    /// Words of the prompt that the user keeps, the newest first.
+    pub kept_words: Vec<String>,
     /// How learned camera pictures are painted.
     pub painting: PaintSettings,
     /// Memory that the history may take, MB.
@@ -81,6 +83,7 @@ impl Default for Settings {
             panes_known: Vec::new(),
             bookmarks: BTreeMap::new(),
             brushes: Vec::new(),
+            kept_words: Vec::new(),
             painting: PaintSettings::default(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             assistants: false,

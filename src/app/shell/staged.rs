@@ -154,6 +154,8 @@ impl SceneloomApp {
         match again {
             Again::Generate(mut params) => {
                 params.seed = params.seed.wrapping_add(1);
+                // The field shows what is generated.
+                self.state.seed.value = self.state.seed.value.map(|_| params.seed);
                 if self.draws_scenery_first() && params.region == RegionMode::Full {
                     return self.generate_on_scenery(*params);
                 }

@@ -6,10 +6,14 @@ use std::sync::{Arc, OnceLock};
 use egui::TextureHandle;
 use rayon::prelude::*;
 
+use super::made_with::MadeWith;
 use editor::checks::Counts;
 use formats::loom;
 use language::{t, tf};
 use scene::{KeptVersion, Scene, SceneRev};
+
+/// What led to a version that the user asked for.
+const KEPT: &str = "Kept";
 
 /// A version as a file keeps it; none if it cannot be written.
 type Packed = OnceLock<Option<Arc<Vec<u8>>>>;
@@ -28,6 +32,8 @@ pub struct Version {
     pub starred: bool,
     /// Its occupancy from above.
     pub(crate) thumbnail: Option<TextureHandle>,
+    /// What it was made with, if something was generated and that is known.
+    pub made: Option<MadeWith>,
     /// What the checks found in it, once it was on screen long enough to be checked.
     pub findings: Option<Counts>,
     packed: Arc<Packed>,
@@ -42,6 +48,7 @@ impl Version {
             scene,
             starred: false,
             thumbnail: None,
+            made: None,
             findings: None,
             packed: Arc::default(),
         }
@@ -88,7 +95,8 @@ impl Opened {
                 name: kept.name.clone(),
                 starred: kept.starred,
                 packed: Arc::new(OnceLock::from(Some(kept.loom.clone()))),
-                ..Version::new(kept.label.clone(), kept.note.clone(), Arc::new(found))
+                made: kept.made().and_then(MadeWith::from_json),
+                ..Version::new(kept.label.clone(), kept.said().to_owned(), Arc::new(found))
             })
         };
         let versions: Vec<Version> = scene.kept.versions.par_iter().filter_map(version).collect();
@@ -158,10 +166,18 @@ impl Versions {
 
     /// Adds a version, unless the newest is the same; the oldest that is not starred may have to go.
     pub fn push(&mut self, label: String, note: String, scene: Arc<Scene>) {
+        self.push_made(label, note, scene, None);
+    }
+
+    /// The same, with what it was made with.
+    pub fn push_made(&mut self, label: String, note: String, scene: Arc<Scene>, made: Option<MadeWith>) {
         if self.list.iter().any(|v| v.scene.content() == scene.content()) {
             return;
         }
-        let version = Version::new(label, note, scene);
+        let version = Version {
+            made,
+            ..Version::new(label, note, scene)
+        };
         let (packed, scene) = (version.packed.clone(), version.scene.clone());
         // Beforehand, so that saving waits for none.
         rayon::spawn(move || {
@@ -176,6 +192,17 @@ impl Versions {
         }
     }
 
+    /// Keeps a state with a star, as a version of its own or as the one that it is, and asks for its name.
+    pub(crate) fn keep(&mut self, scene: &Arc<Scene>) {
+        let rev = scene.content();
+        self.push(KEPT.to_owned(), String::new(), scene.clone());
+        if let Some(i) = self.of(rev) {
+            self.list[i].starred = true;
+            self.changed = true;
+            self.renaming = Some((rev, self.list[i].name.clone()));
+        }
+    }
+
     /// Those of another file, in place of all.
     pub fn replace(&mut self, versions: Vec<Version>) {
         *self = Self {
@@ -184,15 +211,20 @@ impl Versions {
         };
     }
 
-    /// What a file of the state `saved` keeps: all, but that state itself if it has neither name nor star.
+    /// What a file of the state `saved` keeps: all, but that state itself if nothing more is known of it: neither name nor star,
+    /// nor what it was made with.
     pub fn kept(&self, saved: SceneRev) -> Vec<KeptVersion> {
-        let is_kept = |v: &&Version| v.starred || !v.name.is_empty() || v.scene.content() != saved;
+        let more = |v: &Version| v.starred || !v.name.is_empty() || v.made.is_some();
+        let is_kept = |v: &&Version| more(v) || v.scene.content() != saved;
         let kept: Vec<&Version> = self.list.iter().filter(is_kept).collect();
         let version = |v: &&Version| {
             Some(KeptVersion {
                 name: v.name.clone(),
                 label: v.label.clone(),
-                note: v.note.clone(),
+                note: match &v.made {
+                    Some(made) => format!("{}\n{}", v.note, made.to_json()),
+                    None => v.note.clone(),
+                },
                 starred: v.starred,
                 loom: v.packed.get_or_init(|| pack(&v.scene)).clone()?,
             })
@@ -221,6 +253,11 @@ impl Versions {
             self.list[i].starred = !self.list[i].starred;
             self.changed = true;
         }
+    }
+
+    /// What the version of that state was made with.
+    pub fn made(&self, rev: SceneRev) -> Option<&MadeWith> {
+        self.list[self.of(rev)?].made.as_ref()
     }
 
     /// All versions, the oldest first.
@@ -325,6 +362,27 @@ mod tests {
     }
 
     #[test]
+    fn a_state_is_kept_once_and_stays_though_many_come_after_it() {
+        let mut versions = Versions::default();
+        let kept = scene();
+        versions.keep(&kept);
+        versions.keep(&kept);
+        assert_eq!(versions.list().len(), 1);
+        assert!(versions.changed && versions.list()[0].starred);
+        assert!(
+            versions
+                .renaming
+                .as_ref()
+                .is_some_and(|(rev, _)| *rev == kept.content())
+        );
+        for _ in 0..Versions::MAX + 3 {
+            versions.push("edit".into(), String::new(), scene());
+        }
+        assert_eq!(versions.of(kept.content()), Some(0));
+        assert_eq!(versions.kept(kept.content()).len(), Versions::MAX + 1);
+    }
+
+    #[test]
     fn they_come_back_from_the_file() {
         let mut versions = Versions::default();
         let scenes: Vec<_> = (0..3)
@@ -335,7 +393,12 @@ mod tests {
             })
             .collect();
         for s in &scenes {
-            versions.push("Add a car".into(), "0.1 s".into(), s.clone());
+            let params = job::GenParams {
+                seed: 7 + s.seed,
+                ..Default::default()
+            };
+            let made = (s.seed == 1).then(|| MadeWith::new(&params, None));
+            versions.push_made("Add a car".into(), "0.1 s".into(), s.clone(), made);
         }
         assert!(!versions.changed);
         versions.rename(scenes[0].content(), "  before the rain ");
@@ -368,6 +431,12 @@ mod tests {
                 ("now", false, 2)
             ]
         );
+        let made: Vec<_> = opened
+            .versions
+            .iter()
+            .map(|v| (v.note.as_str(), v.made.as_ref().map(|m| m.params.seed)))
+            .collect();
+        assert_eq!(made, [("0.1 s", None), ("0.1 s", Some(8)), ("0.1 s", None)]);
         assert_eq!(opened.damaged, 1);
         assert_eq!(opened.versions[2].scene.content(), opened.scene.content());
         versions.replace(opened.versions);

@@ -25,7 +25,8 @@ pub struct Views {
     /// The 3D view.
     pub view3d: View3d,
     pub(crate) strip: CameraStrip,
-    pub(crate) prompt: PromptField,
+    /// The field of the prompt.
+    pub prompt: PromptField,
     pub(crate) panes: Vec<Box<dyn Pane>>,
     pub(crate) dock: Dock,
     /// The panes of the other workspaces as they were left.

@@ -8,6 +8,7 @@ use super::app::SceneloomApp;
 use super::files::Next;
 use crate::camera_views::Wanted;
 use crate::command::{Command, FileCommand};
+use crate::fly;
 use crate::panes;
 use crate::panes::camera_strip::CamerasInput;
 use crate::panes::compare::CompareMode;
@@ -35,6 +36,7 @@ impl SceneloomApp {
     pub fn draw(&mut self, ui: &mut Ui) {
         self.frames.passes = self.frames.passes.saturating_add(1);
         let mut commands = Vec::new();
+        fly::note(ui.ctx());
         // Asked before: the key that closes a menu or a list is no shortcut.
         let popup = egui::Popup::is_any_open(ui.ctx());
         let over_window = is_over_window(ui.ctx());
@@ -185,6 +187,7 @@ impl SceneloomApp {
             self.state.shown.detection_marks = None;
         }
         self.generation.live.named = self.state.named;
+        self.generation.live.seed = self.state.seed.value;
     }
 
     /// Decides what the present state is compared with, in this frame.
@@ -250,7 +253,7 @@ impl SceneloomApp {
             guests: &self.guests,
         };
         settings_ui(ui, choices, &mut self.state.windows, commands);
-        capture_ui(ui, &mut self.state.windows.capture, commands);
+        capture_ui(ui, &mut self.state.windows.capture, scene, commands);
         start_ui(
             ui,
             &mut self.preferences.settings,
@@ -279,7 +282,7 @@ impl SceneloomApp {
         self.take_model();
         self.recovery_dialog(ui);
         if self.files.unsaved.is_some()
-            && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name)
+            && let Some(answer) = unsaved::unsaved_ui(ui, &scene.name, self.waits_to_be_shown().as_deref())
         {
             self.answer_unsaved(answer, ui.ctx());
         }

@@ -1,20 +1,15 @@
-//! Submits jobs to the worker, and takes the updates of the worker and of the file threads.
+//! Submits jobs to the worker, and takes its updates.
 
 use std::sync::Arc;
 use std::time::Duration;
 
-use crossbeam_channel::TryRecvError;
-
-use super::app::{SceneloomApp, one_line};
-use super::versions::Opened;
+use super::app::SceneloomApp;
 use crate::camera_views::Wanted;
 use crate::shell::live::{Advice, Purpose, Running};
 use crate::shell::staged::Again;
 use crate::shell::status::Receipt;
 use crate::shell::toasts::Level;
-use editor::Document;
-use job::inpaint::InpaintMask;
-use job::{GenParams, GenResult, JobEvent, JobUpdate, Named};
+use job::{GenParams, GenResult, JobEvent, JobUpdate};
 use language::tf;
 use scene::{Frame, Scene};
 
@@ -184,9 +179,11 @@ impl SceneloomApp {
                 .map_or_else(String::new, Receipt::text);
             let label = self.document.undo_label().unwrap_or("Generated");
             let scene = self.document.settled_scene().clone();
+            let label = label.to_owned();
+            let made = self.made_with(&result.key.params);
             self.generation
                 .versions
-                .push(label.to_owned(), note.clone(), scene);
+                .push_made(label, note.clone(), scene, Some(made));
             self.views.compare.chosen = None;
             if self.generation.receipt.is_some() {
                 self.toasts.log(note, now_s);
@@ -242,86 +239,16 @@ impl SceneloomApp {
         if adopted.is_ok() {
             let note = tf!("After {step} of {steps} steps", step = step, steps = steps);
             let scene = self.document.settled_scene().clone();
-            self.generation.versions.push(label.to_owned(), note, scene);
+            let made = self.made_with(&params);
+            self.generation
+                .versions
+                .push_made(label.to_owned(), note, scene, Some(made));
             self.generation.receipt = None;
             self.generation.live.source_changed();
             self.stage(
                 drawn.map_or(before, |(_, before)| before),
                 Some(Again::Generate(Box::new(params))),
             );
-        }
-    }
-
-    pub(crate) fn take_opened(&mut self, ctx: &egui::Context) {
-        let Some(opening) = &self.files.opening else {
-            return;
-        };
-        let answer = match opening.scene.try_recv() {
-            Err(TryRecvError::Empty) => return,
-            Ok(answer) => answer,
-            Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("reading it ended unexpectedly")),
-        };
-        let Some(opening) = self.files.opening.take() else {
-            return;
-        };
-        let now_s = self.now_s();
-        match answer {
-            Ok(Opened {
-                scene,
-                versions,
-                damaged,
-            }) => {
-                self.generation.forget_scene();
-                self.views.prompt.opened(&scene);
-                if opening.is_import {
-                    let text = tf!(
-                        "Imported {name} as a draft. Ctrl+Enter generates it.",
-                        name = scene.name
-                    );
-                    self.toasts.push(Level::Info, text, now_s);
-                } else {
-                    self.toasts.log(tf!("Opened {name}", name = scene.name), now_s);
-                }
-                let version = match opening.step {
-                    Some(label) => {
-                        self.document.restore(label, &scene);
-                        label
-                    }
-                    None => {
-                        self.document = Document::new(scene);
-                        self.generation.versions.replace(versions);
-                        "As opened"
-                    }
-                };
-                if damaged > 0 {
-                    let text = tf!("{n} versions in the file cannot be read", n = damaged);
-                    self.toasts.push(Level::Error, text, now_s);
-                }
-                let opened = self.document.settled_scene().clone();
-                self.generation
-                    .versions
-                    .push(version.into(), String::new(), opened);
-                self.views.compare.chosen = None;
-                if let Some(path) = &opening.path {
-                    self.preferences.settings.remember(path);
-                }
-                // What the camera looked at is not there any more.
-                let extent = self.extent();
-                self.views.view3d.camera.focus_map(extent);
-                // Saving must not replace the file of another scene without asking.
-                self.files.path = opening.path;
-                self.state.choose(&[], crate::tools::Choose::Only);
-                self.state.correcting = false;
-                self.state.tools.region = InpaintMask::default();
-                self.state.named = Named::default();
-                self.note_opened(opening.recovers, true);
-                ctx.request_repaint();
-            }
-            Err(error) => {
-                self.note_opened(opening.recovers, false);
-                let text = format!("{}: {}", opening.what, one_line(&error));
-                self.toasts.push(Level::Error, text, now_s);
-            }
         }
     }
 }

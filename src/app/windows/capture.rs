@@ -2,9 +2,11 @@
 
 use egui::{DragValue, Ui, Window};
 
+use crate::camera_views::camera_label;
 use crate::capture::{CaptureOptions, Subject};
 use crate::command::{Command, FileCommand};
 use language::{t, tf};
+use scene::{Camera, Scene};
 use sensors::cameras;
 use widgets::icons::section;
 use widgets::theme;
@@ -20,6 +22,30 @@ pub struct CaptureDialog {
     pub turns: bool,
     /// How long a turn takes, s.
     pub seconds: f64,
+    /// Moving pictures of the scene from its first moment to its last; see [`Self::is_clip`].
+    pub moves: bool,
+    /// The camera that moving pictures show; all if none.
+    pub camera: Option<usize>,
+}
+
+impl CaptureDialog {
+    /// True if moving pictures of what happens are saved, not one picture or a turn.
+    pub fn is_clip(&self) -> bool {
+        self.moves && !self.turns && Self::can_move(self.options.subject)
+    }
+
+    /// True for what a clip can show.
+    fn can_move(subject: Subject) -> bool {
+        matches!(subject, Subject::View | Subject::Map | Subject::Cameras)
+    }
+
+    /// Shows the dialog with moving pictures chosen.
+    pub fn open_for_clip(&mut self) {
+        (self.open, self.turns, self.moves) = (true, false, true);
+        if !Self::can_move(self.options.subject) {
+            self.options.subject = Subject::View;
+        }
+    }
 }
 
 impl Default for CaptureDialog {
@@ -29,6 +55,8 @@ impl Default for CaptureDialog {
             options: CaptureOptions::default(),
             turns: false,
             seconds: 6.0,
+            moves: false,
+            camera: None,
         }
     }
 }
@@ -51,7 +79,7 @@ const CAMERA_SIZES: [(&str, [u32; 2]); 3] = [
 const MOST_PX: u32 = 16_384;
 
 /// Draws the dialog while it is open.
-pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, commands: &mut Vec<Command>) {
+pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, scene: &Scene, commands: &mut Vec<Command>) {
     if !dialog.open {
         return;
     }
@@ -64,23 +92,25 @@ pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, commands: &mut Vec<Comman
         .default_pos(ui.max_rect().center() - egui::vec2(210.0, 200.0))
         .show(ui.ctx(), |ui| {
             ui.set_width(420.0);
-            subject(ui, dialog);
+            subject(ui, dialog, scene);
             section(ui, t("Size"));
             sizes(ui, dialog);
-            section(ui, t("With"));
-            beside(ui, dialog);
+            if !dialog.is_clip() {
+                section(ui, t("With"));
+                beside(ui, dialog);
+            }
             ui.add_space(theme::GAP);
             ui.horizontal(|ui| {
-                let name = if dialog.turns {
-                    t("Save turn…")
-                } else {
-                    t("Save picture…")
+                let name = match (dialog.turns, dialog.is_clip()) {
+                    (true, _) => t("Save turn…"),
+                    (_, true) => t("Save moving pictures…"),
+                    _ => t("Save picture…"),
                 };
                 let accent = egui::Button::new(egui::RichText::new(name).color(theme::text_strong()));
                 if ui.add(accent.fill(theme::accent_fill())).clicked() {
                     commands.push(Command::File(FileCommand::AskCapture));
                 }
-                ui.weak(match dialog.turns {
+                ui.weak(match dialog.turns || dialog.is_clip() {
                     true => t("GIF, MP4 or APNG, by the ending of the file"),
                     false => t("PNG with the scene inside: opening it opens the scene"),
                 });
@@ -89,7 +119,7 @@ pub fn capture_ui(ui: &Ui, dialog: &mut CaptureDialog, commands: &mut Vec<Comman
     dialog.open &= open;
 }
 
-fn subject(ui: &mut Ui, dialog: &mut CaptureDialog) {
+fn subject(ui: &mut Ui, dialog: &mut CaptureDialog, scene: &Scene) {
     let options = &mut dialog.options;
     ui.horizontal_wrapped(|ui| {
         for (subject, _, title) in Subject::ALL {
@@ -124,7 +154,32 @@ fn subject(ui: &mut Ui, dialog: &mut CaptureDialog) {
             ui.weak(t("Seen from above, ahead is up."));
         }
     }
+    if !dialog.turns && CaptureDialog::can_move(dialog.options.subject) {
+        ui.checkbox(&mut dialog.moves, t("Moving, from the first moment to the last"))
+            .on_hover_text(t(
+                "What the timeline plays; the 3D view goes along if it does so there",
+            ));
+        if dialog.is_clip() && dialog.options.subject == Subject::Cameras {
+            cameras_of(ui, &mut dialog.camera, &scene.rig.cameras);
+        }
+    }
     ui.add_space(theme::GAP / 2.0);
+}
+
+/// Which cameras a clip shows.
+fn cameras_of(ui: &mut Ui, chosen: &mut Option<usize>, cameras: &[Camera]) {
+    *chosen = chosen.filter(|i| *i < cameras.len());
+    let name = |i: Option<usize>| match i.and_then(|i| cameras.get(i)) {
+        Some(camera) => camera_label(&camera.name),
+        None => t("All cameras").to_owned(),
+    };
+    egui::ComboBox::from_id_salt("camera of the clip")
+        .selected_text(name(*chosen))
+        .show_ui(ui, |ui| {
+            for i in std::iter::once(None).chain((0..cameras.len()).map(Some)) {
+                ui.selectable_value(chosen, i, name(i));
+            }
+        });
 }
 
 fn sizes(ui: &mut Ui, dialog: &mut CaptureDialog) {
@@ -150,7 +205,10 @@ fn sizes(ui: &mut Ui, dialog: &mut CaptureDialog) {
             });
     });
     if of_cameras {
-        ui.weak(t("Of each camera; the sheet has three in a row."));
+        ui.weak(match dialog.moves {
+            true => t("Of each camera."),
+            false => t("Of each camera; the sheet has three in a row."),
+        });
     }
     if dialog.turns {
         ui.horizontal(|ui| {
@@ -188,5 +246,25 @@ fn beside(ui: &mut Ui, dialog: &mut CaptureDialog) {
                 .on_hover_text(t("More make edges smoother and take longer"))
                 .accessible_name(t("Samples per axis"));
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clip_shows_what_can_move() {
+        let mut dialog = CaptureDialog::default();
+        assert!(!dialog.is_clip());
+        dialog.options.subject = Subject::Lidar;
+        dialog.turns = true;
+        dialog.open_for_clip();
+        assert!(dialog.is_clip() && dialog.open && dialog.options.subject == Subject::View);
+        dialog.options.subject = Subject::Map;
+        assert!(dialog.is_clip());
+        // What was ticked for one does not count for others.
+        dialog.options.subject = Subject::Occupancy;
+        assert!(!dialog.is_clip());
     }
 }

@@ -16,8 +16,8 @@ pub enum Unsaved {
     Stay,
 }
 
-/// Asks what should become of unsaved changes; `None` until there is an answer.
-pub fn unsaved_ui(ui: &Ui, name: &str) -> Option<Unsaved> {
+/// Asks what should become of unsaved changes; `None` until there is an answer. `waits`: what is said of a scene that waits for it.
+pub fn unsaved_ui(ui: &Ui, name: &str, waits: Option<&str>) -> Option<Unsaved> {
     let mut answer = None;
     let modal = Modal::new(Id::unique("unsaved"))
         .frame(theme::dialog_frame(ui.style()))
@@ -26,6 +26,9 @@ pub fn unsaved_ui(ui: &Ui, name: &str) -> Option<Unsaved> {
             ui.heading(t("Unsaved changes"));
             ui.add_space(theme::GAP);
             ui.label(tf!("“{name}” has changes that are in no file yet.", name = name));
+            if let Some(waits) = waits {
+                ui.label(waits);
+            }
             ui.add_space(2.0 * theme::GAP);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui

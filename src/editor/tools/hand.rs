@@ -17,7 +17,7 @@ use scene::{
 
 use super::ToolId;
 use super::beside::ThingState;
-use super::modes::{PaintShape, RegionShape, VoxelMode, VoxelVerb};
+use super::modes::{ChooseBy, PaintShape, RegionShape, VoxelMode, VoxelTip, VoxelVerb};
 use super::paints::PaintsBefore;
 use super::road::RoadHand;
 use super::saved::Stamp;
@@ -46,6 +46,8 @@ pub enum Choose {
     Add,
     /// Each changes sides.
     Toggle,
+    /// They are chosen no more.
+    Remove,
 }
 
 /// What the user holds.
@@ -75,8 +77,8 @@ pub struct Hand {
     pub layers_shown: u32,
     /// What was copied.
     pub clipboard: Clipboard,
-    /// Selecting draws lassos instead of rectangles.
-    pub lasso: bool,
+    /// How several things are chosen at once.
+    pub choose_by: ChooseBy,
     /// What dragging a chosen box changes.
     pub gizmo: TransformKind,
     /// Whose axes gizmo and number fields use.
@@ -103,8 +105,12 @@ pub struct Hand {
     pub fill: FillBounds,
     /// What the voxel tool does.
     pub voxel_mode: VoxelMode,
+    /// What the voxel brush covers.
+    pub voxel_tip: VoxelTip,
     /// Height of the voxel brush and of a new block, voxels.
     pub voxel_height: usize,
+    /// How far the wheel was turned toward the next size of the voxel brush; see [`Hand::scale_brush`].
+    pub wheel_turned: f64,
     /// Voxels are painted on both sides of the ego x axis.
     pub symmetry: bool,
     /// Chosen voxels.
@@ -150,7 +156,7 @@ impl Default for Hand {
             voxel_size: 1,
             layers_shown: 0xff,
             clipboard: Clipboard::default(),
-            lasso: false,
+            choose_by: ChooseBy::default(),
             gizmo: TransformKind::default(),
             orientation: Orientation::default(),
             pivot: Pivot::default(),
@@ -164,7 +170,9 @@ impl Default for Hand {
             road: RoadHand::default(),
             fill: FillBounds::default(),
             voxel_mode: VoxelMode::default(),
+            voxel_tip: VoxelTip::default(),
             voxel_height: 1,
+            wheel_turned: 0.0,
             symmetry: false,
             voxels: Vec::new(),
             voxels_through: false,
@@ -211,6 +219,25 @@ impl Hand {
             let smaller = sizes.into_iter().rev().find(|s| *s < self.brush_m - 1e-6);
             smaller.unwrap_or(*Self::BRUSH_M.start())
         };
+    }
+
+    /// The brush in hand so many times as large. The voxel brush has few sizes: each takes about a notch of the wheel.
+    pub fn scale_brush(&mut self, factor: f64) {
+        const NOTCH: f64 = 0.18;
+        // Written so that NaN fails too.
+        if !(factor.is_finite() && factor > 0.0) {
+            return;
+        }
+        if self.tool != ToolId::VOXEL {
+            self.brush_m = (self.brush_m * factor).clamp(*Self::BRUSH_M.start(), *Self::BRUSH_M.end());
+            return;
+        }
+        self.wheel_turned = (self.wheel_turned + factor.ln()).clamp(-1.0, 1.0);
+        while self.wheel_turned.abs() >= NOTCH {
+            let step = self.wheel_turned.signum();
+            self.wheel_turned -= step * NOTCH;
+            self.step_brush(step as i32);
+        }
     }
 
     /// The voxel brush one voxel higher or lower.
@@ -266,6 +293,11 @@ impl Hand {
         }
     }
 
+    /// True if an outline chooses: where it begins nothing is taken hold of.
+    pub fn outlines(&self) -> bool {
+        self.choose_by != ChooseBy::Rectangle
+    }
+
     /// True if that box is one of the chosen.
     pub fn is_chosen(&self, id: BoxId) -> bool {
         match self.selected {
@@ -282,10 +314,10 @@ impl Hand {
                 self.things.chosen.clear();
                 BTreeSet::new()
             }
-            Choose::Add | Choose::Toggle => self.chosen().into_iter().collect(),
+            Choose::Add | Choose::Toggle | Choose::Remove => self.chosen().into_iter().collect(),
         };
         for id in ids {
-            if how == Choose::Toggle && now.contains(id) {
+            if how == Choose::Remove || how == Choose::Toggle && now.contains(id) {
                 now.remove(id);
             } else {
                 now.insert(*id);
@@ -446,6 +478,29 @@ mod tests {
     }
 
     #[test]
+    fn the_wheel_makes_brushes_larger_and_smaller() {
+        let mut ui = Hand {
+            tool: crate::tools::brush::ID,
+            ..Hand::default()
+        };
+        ui.scale_brush(2.0);
+        assert_eq!(ui.brush_m, 6.4);
+        ui.scale_brush(f64::NAN);
+        ui.scale_brush(1e9);
+        assert_eq!((ui.brush_m, ui.voxel_size), (12.0, 1));
+        ui.tool = ToolId::VOXEL;
+        // A notch comes in small parts.
+        for _ in 0..4 {
+            ui.scale_brush(1.05);
+        }
+        assert_eq!((ui.brush_m, ui.voxel_size), (12.0, 2));
+        for _ in 0..8 {
+            ui.scale_brush(1.0 / 1.05);
+        }
+        assert_eq!(ui.voxel_size, 1);
+    }
+
+    #[test]
     fn boxes_join_and_leave_the_selection() {
         let [a, b, c] = [BoxId(1), BoxId(2), BoxId(3)];
         let mut ui = Hand::default();
@@ -456,6 +511,10 @@ mod tests {
         ui.choose(&[c], Choose::Add);
         assert_eq!(ui.chosen(), [c, a]);
         assert!(ui.is_chosen(a) && !ui.is_chosen(b));
+        ui.choose(&[c, b], Choose::Remove);
+        assert_eq!(ui.chosen(), [a]);
+        ui.choose(&[a], Choose::Remove);
+        assert_eq!((ui.selected, ui.chosen()), (None, vec![]));
         // Setting the one alone means it alone.
         ui.selected = Some(b);
         assert_eq!(ui.chosen(), [b]);

@@ -5,6 +5,7 @@ pub mod add_box;
 pub mod beside;
 pub mod brush;
 pub mod circle;
+mod corners;
 mod hand;
 mod mark;
 pub mod measure;
@@ -29,7 +30,7 @@ pub mod voxel;
 
 pub use hand::{Choose, DRAW_ORDER, Hand, lane_heading};
 pub use mark::{At, Mark, Role};
-pub use modes::{PaintShape, RegionShape, VoxelMode, VoxelVerb};
+pub use modes::{ChooseBy, PaintShape, RegionShape, VoxelMode, VoxelTip, VoxelVerb};
 pub use response::{Act, Area, Response};
 pub use setting::{Setting, Value};
 pub use tool::{Cursor, Group, Hint, Shortcut, Tool, ToolDef, ToolId, Wants, When, hint_of};

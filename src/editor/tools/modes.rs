@@ -24,6 +24,49 @@ impl VoxelVerb {
     ];
 }
 
+/// How the select tool chooses several things at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ChooseBy {
+    /// A rectangle from corner to corner.
+    #[default]
+    Rectangle,
+    /// An outline that is drawn.
+    Lasso,
+    /// An outline that is set corner by corner.
+    Polygon,
+}
+
+/// What the voxel brush covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VoxelTip {
+    /// A block.
+    #[default]
+    Block,
+    /// A ball; an egg where it is higher than wide.
+    Round,
+}
+
+impl VoxelTip {
+    /// Every tip with its name and hint.
+    pub const ALL: [(VoxelTip, &'static str, &'static str); 2] = [
+        (VoxelTip::Block, "Block tip", "the brush is a block of voxels"),
+        (
+            VoxelTip::Round,
+            "Round tip",
+            "the brush is a ball, from 3 voxels on",
+        ),
+    ];
+
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Block => Self::Round,
+            Self::Round => Self::Block,
+        }
+    }
+}
+
 /// What a drag of the brush draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -53,6 +96,8 @@ pub enum RegionShape {
     Rectangle,
     /// What an outline goes around.
     Lasso,
+    /// The same, set corner by corner.
+    Polygon,
     /// Along the way.
     Brush,
 }
@@ -96,6 +141,8 @@ pub enum VoxelMode {
     ChooseSphere,
     /// Chooses in an outline on the screen.
     ChooseLasso,
+    /// The same, set corner by corner.
+    ChoosePolygon,
     /// Pulls a face out or pushes it in.
     Extrude,
     /// Sets down voxels that were kept.
@@ -104,7 +151,7 @@ pub enum VoxelMode {
 
 impl VoxelMode {
     /// Every mode with its name and hint.
-    pub const ALL: [(VoxelMode, &'static str, &'static str); 10] = [
+    pub const ALL: [(VoxelMode, &'static str, &'static str); 11] = [
         (VoxelMode::Brush, "Dab", "B"),
         (VoxelMode::Block, "Block", "U; wheel sets the height"),
         (VoxelMode::Row, "Row", "L"),
@@ -118,6 +165,11 @@ impl VoxelMode {
             "chooses voxels in an outline on the screen",
         ),
         (
+            VoxelMode::ChoosePolygon,
+            "Polygon",
+            "chooses voxels in an outline that is set corner by corner",
+        ),
+        (
             VoxelMode::ChooseBlock,
             "In box",
             "chooses voxels in a box; wheel sets the height",
@@ -129,7 +181,7 @@ impl VoxelMode {
     pub fn chooses(self) -> bool {
         matches!(
             self,
-            Self::Wand | Self::ChooseBlock | Self::ChooseSphere | Self::ChooseLasso
+            Self::Wand | Self::ChooseBlock | Self::ChooseSphere | Self::ChooseLasso | Self::ChoosePolygon
         )
     }
 }

@@ -5,10 +5,11 @@ use glam::DVec2;
 use language::tf;
 use scene::{Extent, Frame};
 
+use super::corners::{Corners, Set};
 use super::setting::{self, Setting, Value};
 use super::{
     Act, Area, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, RegionShape, Response, Role,
-    Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, When, hint_of,
+    Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
 };
 
 /// Its name.
@@ -34,9 +35,14 @@ pub static DEF: ToolDef = ToolDef {
 };
 
 /// Ways to mark.
-const WAYS: [(RegionShape, &str, &str); 3] = [
+const WAYS: [(RegionShape, &str, &str); 4] = [
     (RegionShape::Rectangle, "Rectangle", "drag from corner to corner"),
     (RegionShape::Lasso, "Lasso", "draw around it"),
+    (
+        RegionShape::Polygon,
+        "Polygon",
+        "click corners around it, Enter ends",
+    ),
     (
         RegionShape::Brush,
         "Brush",
@@ -57,6 +63,8 @@ enum Drag {
 pub struct Marker {
     /// What is being marked, and whether it marks or takes the mark away.
     drag: Option<(Drag, bool)>,
+    /// Corners of an outline.
+    corners: Corners,
 }
 
 impl Marker {
@@ -101,6 +109,14 @@ impl Marker {
 
 impl Tool for Marker {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match self.corners.event(event) {
+            Set::Not => {}
+            Set::Taken => return Response::taken(),
+            Set::Closed(points_m, held) => {
+                let area = Area::Outline(points_m);
+                return Response::taken().and(Act::Mark(area, !held.shift));
+            }
+        }
         match event {
             Event::Press(pointer) if cx.from_above() => {
                 let Some(at_m) = cx.ground_m(pointer.at) else {
@@ -113,6 +129,10 @@ impl Tool for Marker {
                     },
                     RegionShape::Lasso => Drag::Outline(vec![at_m]),
                     RegionShape::Brush => Drag::Stroke(at_m),
+                    RegionShape::Polygon => {
+                        self.corners.add(cx, pointer);
+                        return Response::none();
+                    }
                 };
                 self.drag = Some((drag, !pointer.held.shift));
                 Response::hold()
@@ -132,6 +152,9 @@ impl Tool for Marker {
             return hint_of(&["The region is marked in the bird's-eye view"]);
         }
         let drag = match hand.region_shape {
+            RegionShape::Polygon => {
+                return hint_of(&["Click sets corners", "Enter closes", "Shift takes away"]);
+            }
             RegionShape::Brush => "Drag paints the mark",
             RegionShape::Lasso => "Drag marks what it goes around",
             RegionShape::Rectangle => "Drag marks a rectangle",
@@ -162,6 +185,7 @@ impl Tool for Marker {
             }
             _ => {}
         }
+        out.extend(self.corners.marks(sight));
         if let (RegionShape::Brush, Some(at_m)) = (sight.hand.region_shape, sight.ground_m()) {
             out.push(Mark::Disc(at_m, sight.hand.brush_m / 2.0, Role::Choose));
         }
@@ -175,7 +199,7 @@ impl Tool for Marker {
             Setting::text(
                 "Mark it in the bird's-eye view, Shift takes away. All else, and boxes in it, stay as they are.",
             ),
-            Setting::segments("way", hand.region_shape, &WAYS, 3),
+            Setting::segments("way", hand.region_shape, &WAYS, 2),
         ];
         if hand.region_shape == RegionShape::Brush {
             let range = [*Hand::BRUSH_M.start(), *Hand::BRUSH_M.end()];
@@ -205,6 +229,28 @@ impl Tool for Marker {
             "clear" => return vec![Act::Mark(Area::All, false)],
             _ => {}
         }
+        if id == "way" {
+            self.corners.clear();
+        }
         Vec::new()
+    }
+
+    fn wants(&self) -> Wants {
+        match self.corners.is_empty() {
+            true => Wants::Nothing,
+            false => Wants::Points,
+        }
+    }
+
+    fn draws_in(&self) -> Option<ViewKind> {
+        self.corners.view()
+    }
+
+    fn put_down(&mut self) {
+        self.corners.clear();
+    }
+
+    fn restart(&mut self) {
+        self.corners.clear();
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use scene::{BevLayer, Class, Frame};
 
-use super::{Hand, PaintShape, ToolId, VoxelMode, VoxelVerb};
+use super::{Hand, PaintShape, ToolId, VoxelMode, VoxelTip, VoxelVerb};
 use crate::voxel_ops::Cell;
 
 /// Voxels that are set down together: where, from the middle of their underside, and of what class.
@@ -99,6 +99,9 @@ pub enum Held {
         size: usize,
         /// Height, voxels.
         height: usize,
+        /// What it covers.
+        #[serde(default)]
+        tip: VoxelTip,
     },
     /// Voxels that are set down together.
     Stamp(Stamp),
@@ -137,6 +140,7 @@ impl Hand {
                 class: self.voxel_class,
                 size: self.voxel_size,
                 height: self.voxel_height,
+                tip: self.voxel_tip,
             }),
             _ => None,
         }
@@ -163,9 +167,11 @@ impl Hand {
                 class,
                 size,
                 height,
+                tip,
             } => {
                 self.tool = ToolId::VOXEL;
                 (self.voxel_mode, self.verb, self.voxel_class) = (*mode, *verb, *class);
+                self.voxel_tip = *tip;
                 self.voxel_size = (*size).clamp(1, Self::MAX_VOXEL_SIZE);
                 self.voxel_height = (*height).clamp(1, scene::Extent::NZ);
             }
@@ -245,11 +251,17 @@ mod tests {
             class: Class::Car,
             size: 900,
             height: 0,
+            tip: VoxelTip::Round,
         });
         assert_eq!(
             (hand.tool, hand.voxel_size, hand.voxel_height),
             (ToolId::VOXEL, 5, 1)
         );
+        assert_eq!(hand.voxel_tip, VoxelTip::Round);
+        // One of before there were tips.
+        let old = r#"{"voxels":{"mode":"brush","verb":"attach","class":"manmade","size":3,"height":2}}"#;
+        hand.take_brush(&serde_json::from_str(old).expect("as it was written then"));
+        assert_eq!((hand.voxel_size, hand.voxel_tip), (3, VoxelTip::Block));
         hand.tool = ToolId::SELECT;
         assert_eq!(hand.brush_in_hand(), None);
     }

@@ -179,6 +179,103 @@ fn regions_are_marked_and_points_measured() {
     assert!(table.key(tool, Key::Escape).taken && tool.points_m().is_empty());
 }
 
+/// Cars of the ids 1 to 3 at x = 0, 10 and 20 m.
+fn with_cars(table: &mut Table) {
+    for x in [0.0, 10.0, 20.0] {
+        let b = table
+            .hand
+            .new_box(table.scene.frame(), Class::Car, DVec2::new(x, 0.0), 0.0)
+            .expect("a car");
+        table.scene.change_canvas(|f| f.boxes.insert(b.id, b));
+    }
+}
+
+#[test]
+fn ctrl_takes_what_a_rectangle_or_lasso_goes_around_out_of_the_selection() {
+    let (mut table, mut toolbox) = (Table::new(), Toolbox::default());
+    with_cars(&mut table);
+    let tool = of(&mut toolbox, &mut table, select::ID);
+    let ctrl = Modifiers { ctrl: true, ..NONE };
+    table.hand.choose(&[1, 2, 3].map(BoxId), Choose::Only);
+    table.press(tool, 6.0, -8.0, ctrl);
+    table.drag(tool, 14.0, 8.0);
+    table.release(tool, 14.0, 8.0);
+    assert_eq!(table.hand.chosen(), [BoxId(3), BoxId(1)]);
+    table.hand.choose_by = ChooseBy::Lasso;
+    // It may begin on a box.
+    table.press(tool, 20.0, 0.0, ctrl);
+    for (x, y) in [(15.0, -5.0), (25.0, -5.0), (25.0, 5.0), (15.0, 5.0)] {
+        table.drag(tool, x, y);
+    }
+    table.release(tool, 15.0, 5.0);
+    assert_eq!(table.hand.chosen(), [BoxId(1)]);
+    // A click with Ctrl chooses nothing.
+    table.click(tool, 10.0, 0.0, ctrl);
+    assert_eq!(table.hand.chosen(), [BoxId(1)]);
+    table.click(tool, 0.0, 0.0, ctrl);
+    assert_eq!(table.hand.chosen(), []);
+}
+
+#[test]
+fn a_polygon_chooses_boxes_and_marks_regions_corner_by_corner() {
+    let (mut table, mut toolbox) = (Table::new(), Toolbox::default());
+    with_cars(&mut table);
+    for by in [ChooseBy::Lasso, ChooseBy::Polygon] {
+        toolbox.shortcut(&mut table.hand, "lasso");
+        assert_eq!((table.hand.tool, table.hand.choose_by), (select::ID, by));
+    }
+    let corners = [(-5.0, -5.0), (14.0, -5.0), (14.0, 5.0), (-5.0, 5.0)];
+    let tool = toolbox.tool_mut(select::ID);
+    for (x, y) in corners {
+        table.click(tool, x, y, NONE);
+    }
+    // The second press of a double click is no corner, and one that is taken back is none.
+    table.click(tool, -5.0, 5.0, NONE);
+    table.click(tool, 40.0, 40.0, NONE);
+    assert!(table.key(tool, Key::Backspace).taken);
+    assert_eq!(
+        (tool.wants(), tool.draws_in()),
+        (Wants::Points, Some(ViewKind::Bev))
+    );
+    assert!(
+        tool.overlay(&table.sight(0.0, 0.0))
+            .iter()
+            .any(|m| matches!(m, Mark::Dashed(p, _) if p.len() == 6))
+    );
+    assert_eq!(table.hand.chosen(), []);
+    assert!(table.tell(tool, Event::DoubleClick).taken);
+    assert_eq!(table.hand.chosen(), [BoxId(2), BoxId(1)]);
+    assert_eq!(tool.wants(), Wants::Nothing);
+    // What is held at the first corner counts.
+    let ctrl = Modifiers { ctrl: true, ..NONE };
+    for ((x, y), held) in [
+        ((-5.0, -5.0), ctrl),
+        ((5.0, -5.0), NONE),
+        ((5.0, 5.0), NONE),
+        ((-5.0, 5.0), NONE),
+    ] {
+        table.click(tool, x, y, held);
+    }
+    table.key(tool, Key::Enter);
+    assert_eq!(table.hand.chosen(), [BoxId(2)]);
+    // Fewer than three corners are no outline.
+    table.click(tool, 1.0, 9.0, NONE);
+    assert!(table.key(tool, Key::Enter).taken);
+    assert_eq!(table.hand.chosen(), [BoxId(2)]);
+
+    let tool = of(&mut toolbox, &mut table, region::ID);
+    table.hand.region_shape = RegionShape::Polygon;
+    for (x, y) in [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0)] {
+        assert_eq!(table.click(tool, x, y, SHIFT).acts, []);
+    }
+    let marked = table.key(tool, Key::Enter);
+    let outline = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0]].map(DVec2::from_array);
+    assert_eq!(marked.acts, [Act::Mark(Area::Outline(outline.to_vec()), false)]);
+    table.click(tool, 1.0, 1.0, NONE);
+    toolbox.take(&mut table.hand, select::ID);
+    assert_eq!(toolbox.tool(region::ID).wants(), Wants::Nothing);
+}
+
 #[test]
 fn things_are_drawn_and_another_tool_drops_what_is_half_drawn() {
     let (mut table, mut toolbox) = (Table::new(), Toolbox::default());

@@ -142,6 +142,11 @@ pub trait Tool: Debug + Send {
         &[]
     }
 
+    /// The view in which it is used point by point, if that is one alone: keys for points are told there.
+    fn draws_in(&self) -> Option<ViewKind> {
+        None
+    }
+
     /// The keys that it wants now.
     fn wants(&self) -> Wants {
         match self.points_m().is_empty() {

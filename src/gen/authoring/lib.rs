@@ -12,3 +12,4 @@ pub mod roads;
 pub mod scenery;
 pub mod scenery_around;
 pub mod text;
+pub mod wildcards;

@@ -77,3 +77,36 @@ fn a_named_version_is_saved_with_the_scene() {
     assert_eq!(kept.versions.len(), 1);
     assert_eq!(kept.versions[0].name, "before the rain");
 }
+
+#[test]
+fn a_state_without_a_generation_is_kept_as_a_version() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.click("Versions");
+    bench.click("Box 7 car");
+    bench.key(Modifiers::NONE, Key::ArrowLeft);
+    let rev = bench.app().document.scene().content();
+    assert_eq!(
+        bench.app().generation.versions.of(rev),
+        None,
+        "an edit alone is none"
+    );
+    bench.click("Keep");
+    bench
+        .harness
+        .get_by_label("Name of the version")
+        .type_text("further left");
+    bench.steps(2);
+    bench.key(Modifiers::NONE, Key::Enter);
+    bench.steps(2);
+    let versions = &bench.app().generation.versions;
+    let i = versions.of(rev).expect("it is kept");
+    assert_eq!(versions.list()[i].title(), "further left");
+    assert!(versions.list()[i].starred);
+    // Going back to it is one step.
+    bench.key(Modifiers::NONE, Key::Delete);
+    let ctx = bench.harness.ctx.clone();
+    let back = app::command::GenerationCommand::RestoreVersion(rev);
+    bench.app().execute(app::Command::Generation(back), &ctx);
+    assert_eq!(bench.frame().boxes.len(), 1);
+}

@@ -1,5 +1,7 @@
 //! Failures, saving, opening, closing.
 
+use app::command::{Command, FileCommand};
+use editor::Edit;
 use editor::tools::select;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -130,4 +132,79 @@ fn a_dropped_file_opens_and_closing_asks_first() {
     bench.steps(2);
     bench.click("Discard changes");
     assert!(!close(&mut bench), "the user has decided");
+}
+
+/// Asks for a scene named "Other", and deletes the only box before it has been read.
+fn opens_while_editing(bench: &mut Bench) -> Arc<scene::Frame> {
+    let path = bench.folder.path().join("other.loom");
+    let mut other = scene();
+    other.name = "Other".into();
+    loom::save(&path, &other).expect("saved");
+    let ctx = bench.harness.ctx.clone();
+    let id = *bench.frame().boxes.keys().next().expect("a box");
+    let app = bench.app();
+    app.execute(Command::File(FileCommand::OpenPath(path)), &ctx);
+    app.execute(Command::Apply("Delete", vec![Edit::RemoveBox { id }]), &ctx);
+    let edited = bench.frame();
+    bench.wait_until("the question", |b| {
+        b.harness.query_by_label("Unsaved changes").is_some()
+    });
+    assert!(
+        bench
+            .harness
+            .query_by_label("“Other” has been read and waits.")
+            .is_some()
+    );
+    assert!(bench.frame() == edited && bench.app().document.is_dirty());
+    edited
+}
+
+#[test]
+fn what_is_edited_while_a_file_opens_stays_if_the_user_stays() {
+    let mut bench = Bench::new();
+    bench.off();
+    let edited = opens_while_editing(&mut bench);
+    bench.click("Keep editing");
+    bench.steps(5);
+    assert!(bench.frame() == edited && bench.app().document.is_dirty());
+    let told = "Other was not opened: your changes stay";
+    assert!(bench.app().toasts.last().is_some_and(|t| t.contains(told)));
+    // Undo is there as before.
+    bench.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(bench.frame().boxes.len(), 1);
+    opens_while_editing(&mut bench);
+    bench.click("Discard changes");
+    bench.wait_until("the scene", |b| &*b.app().document.scene().name == "Other");
+    assert!(!bench.app().document.is_dirty());
+}
+
+#[test]
+fn what_is_edited_while_a_file_opens_is_saved_first() {
+    let mut bench = Bench::new();
+    bench.off();
+    let edited = opens_while_editing(&mut bench);
+    bench.click("Save changes");
+    let path = bench.open_path();
+    bench.give_path(&path, "Save file");
+    bench.wait_until("the scene", |b| &*b.app().document.scene().name == "Other");
+    let saved = loom::load(&path).expect("saved");
+    assert_eq!(saved.frame().boxes, edited.boxes);
+}
+
+#[test]
+fn who_gives_no_name_for_the_edits_stays() {
+    let mut bench = Bench::new();
+    bench.off();
+    let edited = opens_while_editing(&mut bench);
+    bench.click("Save changes");
+    bench.steps(2);
+    bench.click("Cancel file");
+    bench.steps(5);
+    assert!(bench.frame() == edited);
+    // What is saved later opens nothing.
+    let path = bench.open_path();
+    bench.key(Modifiers::CTRL, Key::S);
+    bench.give_path(&path, "Save file");
+    bench.steps(20);
+    assert!(path.is_file() && bench.frame() == edited);
 }

@@ -257,3 +257,69 @@ fn scenery_drawn_for_a_generation_that_is_cancelled_goes_with_it() {
     assert!(bench.frame().occupancy == before);
     assert!(bench.app().document.scene().background.is_empty());
 }
+
+#[test]
+fn the_seed_that_made_a_result_is_kept_with_it_and_used_again() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.app().state.seed.value = Some(77);
+    bench.app().state.named.vegetation = Some(0.5);
+    bench.click("Generate everything");
+    finish(&mut bench);
+    assert_eq!(seed_of(&mut bench), Some(77));
+    bench.click("Next seed");
+    finish(&mut bench);
+    assert_eq!(bench.app().state.seed.value, Some(78), "the field shows it");
+    bench.click("Accept");
+    let rev = bench.app().document.settled_scene().content();
+    let made = bench.app().generation.versions.made(rev).cloned().expect("known");
+    assert_eq!((made.params.seed, made.params.named.vegetation), (78, Some(0.5)));
+    // It comes back with the file.
+    let path = bench.open_path();
+    bench.key(Modifiers::CTRL, egui::Key::S);
+    bench.give_path(&path, "Save file");
+    let ctx = bench.harness.ctx.clone();
+    let open = app::command::FileCommand::OpenPath(path);
+    bench.app().execute(Command::File(open), &ctx);
+    bench.wait_until("the scene", |b| b.app().document.history().len() == 1);
+    assert_eq!(bench.app().state.seed.value, None, "the scene's own");
+    let list = bench.app().generation.versions.list();
+    let found = list
+        .iter()
+        .find(|v| v.made.as_ref().is_some_and(|m| m.params.seed == 78));
+    let rev = found.expect("it is kept").scene.content();
+    bench
+        .app()
+        .execute(Command::Generation(GenerationCommand::UseAgain(rev)), &ctx);
+    assert_eq!(bench.app().state.seed.value, Some(78));
+    assert_eq!(bench.app().state.named.vegetation, Some(0.5));
+}
+
+#[test]
+fn another_seed_each_time_is_drawn_and_recorded() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.app().state.seed.another = true;
+    let mut seeds = std::collections::BTreeSet::new();
+    for _ in 0..2 {
+        bench.click("Generate everything");
+        finish(&mut bench);
+        let rev = bench.app().document.settled_scene().content();
+        let made = bench.app().generation.versions.made(rev).expect("known");
+        seeds.insert(made.params.seed);
+        assert_eq!(bench.app().state.seed.value, Some(made.params.seed));
+        bench.click("Accept");
+    }
+    assert_eq!(seeds.len(), 2);
+    // A seed that is typed or drawn by hand is used as it is.
+    bench.app().state.seed.another = false;
+    bench.click("Draw a seed");
+    let drawn = bench.app().state.seed.value;
+    bench.click("Generate everything");
+    finish(&mut bench);
+    assert_eq!(seed_of(&mut bench), drawn);
+    // Edits keep the seed of the scene.
+    let scene = bench.app().document.settled_scene().clone();
+    let params = bench.app().generation.live.params_for(&scene, false);
+    assert_eq!(params.seed, scene.seed);
+}

@@ -94,3 +94,34 @@ fn keys_play_and_step_as_in_video_editors() {
     bench.key(Modifiers::NONE, Key::Space);
     assert!(!bench.app().state.playback.playing);
 }
+
+#[test]
+fn a_clip_of_the_map_and_of_cameras_is_saved_at_a_chosen_size() {
+    let mut bench = Bench::new();
+    bench.off();
+    bench.click("Clip");
+    bench.click("Motion of the ego vehicle…");
+    bench.click("Drive along the lane");
+    bench.app().state.playback.span_s = Some([0.0, 0.2]);
+    let saved = |bench: &mut Bench, name: &str| {
+        let path = bench.folder.path().join(name);
+        bench.click("Save moving pictures…");
+        bench.give_path(&path, "Save clip");
+        bench.wait_until("the clip", |_| path.exists());
+        let bytes = std::fs::read(&path).expect("there");
+        assert!(bytes.starts_with(b"GIF89a"));
+        [6, 8].map(|at| u16::from_le_bytes([bytes[at], bytes[at + 1]]))
+    };
+    bench.click("Save clip…");
+    bench.click("Map");
+    bench.app().state.windows.capture.options.shot.size = [320, 200];
+    assert_eq!(saved(&mut bench, "map.gif"), [320, 200]);
+    bench.app().state.windows.capture.options.subject = app::capture::Subject::Cameras;
+    bench.app().state.windows.capture.options.camera_size = [80, 46];
+    bench.app().state.windows.capture.camera = Some(1);
+    bench.steps(2);
+    assert_eq!(saved(&mut bench, "front.gif"), [80, 46]);
+    bench.app().state.windows.capture.camera = None;
+    let [width, height] = saved(&mut bench, "all.gif");
+    assert!(width > 3 * 80 && height > 2 * 46, "{width} x {height}");
+}

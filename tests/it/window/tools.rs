@@ -398,6 +398,27 @@ fn locked_layers_are_not_painted_and_one_can_be_shown_alone() {
 }
 
 #[test]
+fn a_layer_is_merged_into_another_as_one_step() {
+    let mut bench = Bench::new();
+    bench.off();
+    let before = bench.frame().layout.clone();
+    let walkway = before.count(BevLayer::Walkway);
+    assert!(walkway > 0);
+    bench.harness.get_by_label("Paint walkway").click_secondary();
+    bench.steps(3);
+    bench.click("Carpark area");
+    let after = bench.frame().layout.clone();
+    assert_eq!(after.count(BevLayer::Walkway), 0);
+    assert_eq!(
+        after.count(BevLayer::CarparkArea),
+        before.count(BevLayer::CarparkArea) + walkway
+    );
+    assert_eq!(bench.history(), ["Open", "Merge layers"]);
+    bench.key(Modifiers::COMMAND, Key::Z);
+    assert!(bench.frame().layout == before);
+}
+
+#[test]
 fn distances_are_measured_and_stay() {
     let mut bench = Bench::new();
     bench.off();

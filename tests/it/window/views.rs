@@ -79,6 +79,28 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     assert_eq!(bench.history(), ["Open", "Attach voxels", "Remove voxels"]);
     bench.key(Modifiers::CTRL, Key::Z);
     assert_eq!(bench.frame(), after);
+    // Ctrl and the wheel change the brush in hand, not the viewpoint; without a brush they zoom.
+    let turned = |bench: &mut Bench| {
+        bench.harness.hover_at(middle);
+        let modifiers = Modifiers::COMMAND;
+        let wheel = egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, 100.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers,
+        };
+        bench.harness.event_modifiers(wheel, modifiers);
+        bench.steps(30);
+        let camera = bench.app().views.view3d.camera;
+        (bench.app().state.voxel_size, camera)
+    };
+    let camera = bench.app().views.view3d.camera;
+    let (size, now) = turned(&mut bench);
+    assert!(size > 1 && now == camera, "{size}");
+    bench.key(Modifiers::NONE, Key::V);
+    let (same, now) = turned(&mut bench);
+    assert!(same == size && now != camera, "{same}");
     // A click chooses the car where it is seen.
     bench.key(Modifiers::NONE, Key::V);
     bench.key(Modifiers::NONE, Key::Num7);
@@ -106,9 +128,10 @@ fn voxels_are_painted_and_shot_in_the_3d_view() {
     );
     bench.wait_until("the scene", |b| b.app().path().is_some());
     bench.key(Modifiers::NONE, Key::F12);
-    let shot = image::open(path.with_extension("png"))
-        .expect("a picture")
-        .to_rgba8();
+    let picture = path.with_extension("png");
+    let back = app::scene_of(&picture).expect("its scene is inside");
+    assert_eq!(back.frame().boxes, bench.frame().boxes);
+    let shot = image::open(picture).expect("a picture").to_rgba8();
     let colors: std::collections::HashSet<_> = shot.pixels().copied().collect();
     assert!(colors.len() > 100, "{} colours", colors.len());
 }

@@ -163,3 +163,48 @@ fn words_change_only_what_lies_in_the_marked_region() {
     let bus = frame.boxes.values().find(|b| b.id != BoxId(7)).expect("a bus");
     assert!((-30.0..-5.0).contains(&bus.center_m.x), "{bus:?}");
 }
+
+#[test]
+fn wildcards_are_drawn_by_the_seed_and_what_was_drawn_is_recorded() {
+    let mut bench = Bench::new();
+    bench.off();
+    say(&mut bench, "make it {night|dusk}");
+    let drawn = app::wildcards::drawn("make it {night|dusk}", 0);
+    let told = format!("Drawn by the seed: {drawn}");
+    assert!(bench.harness.query_by_label(&told).is_some());
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.history(), ["Open".to_owned(), format!("“{drawn}”")]);
+    let words = bench.app().document.scene().words.clone();
+    assert_eq!(words.last(), Some(&drawn));
+    // What was typed is what is typed again.
+    assert!(
+        bench
+            .app()
+            .views
+            .prompt
+            .typed()
+            .iter()
+            .any(|t| t == "make it {night|dusk}")
+    );
+}
+
+#[test]
+fn kept_words_stand_first_and_outlive_the_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("settings.json");
+    let mut bench = Bench::with_settings(&file);
+    bench.off();
+    bench.click("Go on with this scene");
+    bench.app().views.prompt.star("add a {car|bus} 12 m ahead");
+    bench.key(Modifiers::NONE, Key::Slash);
+    bench.click("add a {car|bus} 12 m ahead");
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert_eq!(bench.frame().boxes.len(), 2);
+    let kept = ["add a {car|bus} 12 m ahead"];
+    bench.wait_until("settings", |_| {
+        app::settings::Settings::load(&file).is_ok_and(|s| s.kept_words == kept)
+    });
+    drop(bench);
+    let mut again = Bench::with_settings(&file);
+    assert_eq!(again.app().views.prompt.favourites, kept);
+}

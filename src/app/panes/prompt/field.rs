@@ -10,6 +10,7 @@ use super::plan::{Plan, Told};
 use super::typed_text::Both;
 use crate::command::{Command, FileCommand};
 use crate::text::doubts;
+use crate::wildcards;
 use language::{t, tf};
 use scene::Scene;
 use widgets::icons::section;
@@ -34,6 +35,8 @@ pub struct PromptField {
     pub(super) history: Vec<String>,
     /// What was typed for the scene that is open.
     typed: Vec<String>,
+    /// Words that the user keeps; the settings hold them.
+    pub favourites: Vec<String>,
     pub(super) back: usize, // steps back in the history; 0 is what is typed
     pub(super) draft: String,
     pub(super) read: Option<Both>,
@@ -68,6 +71,11 @@ impl PromptField {
         &self.typed
     }
 
+    /// What is typed, with its wildcards drawn by the seed: what is read, carried out and recorded.
+    pub(super) fn said(&self) -> String {
+        wildcards::drawn(&self.prompt, self.seed)
+    }
+
     /// The next frame gives the field the focus.
     pub fn focus(&mut self) {
         self.wants_focus = true;
@@ -81,7 +89,7 @@ impl PromptField {
     /// Another scene is open: words that were typed for the one before go, unless it was made of them. They stay in the
     /// history.
     pub fn opened(&mut self, scene: &Scene) {
-        if scene.words.contains(&self.prompt) {
+        if scene.words.contains(&self.said()) {
             self.typed = vec![self.prompt.clone()];
             return;
         }
@@ -175,6 +183,11 @@ impl PromptField {
         }
         self.completions(ui);
         self.listen(scene);
+        let said = self.said();
+        if said != self.prompt {
+            let text = tf!("Drawn by the seed: {words}", words = said);
+            ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+        }
         if change && !self.offers && self.read.as_ref().is_some_and(Both::is_described) {
             // (a whole scene was described: which is meant is asked once, with what each would do)
             (self.offers, change) = (true, false);
@@ -273,26 +286,28 @@ impl PromptField {
             self.read = None;
             return;
         }
+        let said = self.said();
         match &mut self.read {
-            Some(read) if read.text == self.prompt => {
+            Some(read) if read.text == said => {
                 // (what was carried out is not carried out again for a preview)
                 if !self.is_sent {
                     read.follow(scene, self.seed);
                 }
             }
-            _ => self.read = Some(Both::of(&self.prompt, scene, self.seed)),
+            _ => self.read = Some(Both::of(&said, scene, self.seed)),
         }
     }
 
     pub(super) fn make(&mut self, seed: u64, scene: &Scene, commands: &mut Vec<Command>) {
+        // (another seed draws other words)
+        self.listen(scene);
+        let said = self.said();
         match self.read.as_ref().map(|r| &r.prompted) {
             Some(Ok(prompted)) => {
-                let ask = self
-                    .plan
-                    .ask(&self.prompt, &prompted.described.description, seed, scene);
+                let ask = self.plan.ask(&said, &prompted.described.description, seed, scene);
                 self.done = Some(prompted.answer());
                 (self.asks, self.notes) = (false, doubts(&prompted.heard));
-                self.plan.makes(&self.prompt, seed);
+                self.plan.makes(&said, seed);
                 commands.push(Command::File(FileCommand::NewFromPrompt(Box::new(ask))));
             }
             Some(Err(error)) => self.notes = vec![error.clone()],
@@ -306,12 +321,14 @@ impl PromptField {
             return;
         };
         let read = prompted.described.description.clone();
-        let ask = self.plan.ask(&self.prompt, &read, self.seed, scene);
+        let ask = self.plan.ask(&self.said(), &read, self.seed, scene);
         self.plan.recalled(ui, &ask);
         let chosen = self.plan.variants(ui, &ask);
         self.plan.origin(ui);
         let place = self.plan.graph(ui, &ask.description, self.seed, scene, commands);
         if let Some(seed) = chosen {
+            // A variant is one of the words as they were drawn for it.
+            self.prompt = self.said();
             self.seed = seed;
         }
         if chosen.is_some() || place {
@@ -371,25 +388,6 @@ impl PromptField {
         state.store(ctx, field_id());
     }
 
-    pub(super) fn recent(&mut self, ui: &mut Ui) {
-        if self.history.is_empty() {
-            return;
-        }
-        section(ui, t("Typed before"));
-        for past in self.history.clone().iter().rev().take(5) {
-            let text = egui::RichText::new(past).small().color(theme::text());
-            let button = egui::Button::new(text).wrap().fill(theme::field());
-            if ui
-                .add(button)
-                .on_hover_text(t("Alt+Up and Alt+Down too"))
-                .clicked()
-            {
-                self.prompt.clone_from(past);
-                self.wants_focus = true;
-            }
-        }
-    }
-
     /// Carries out the words as edits of the scene at hand; what must be asked first is shown.
     pub(super) fn change(&mut self, scene: &Scene, commands: &mut Vec<Command>) {
         self.remember();
@@ -409,7 +407,7 @@ impl PromptField {
         (self.done, self.asks) = (Some(edited.answer()), edited.asks());
         self.notes = doubts(&edited.heard);
         if !edits.is_empty() && !self.asks {
-            commands.push(Command::ApplyWords(self.prompt.clone(), edits));
+            commands.push(Command::ApplyWords(self.said(), edits));
             // (carried out again, the words are read again)
             self.read = None;
         }

@@ -23,12 +23,13 @@ impl PromptField {
     /// Each part of what was read: to be changed, locked, re-rolled or taken out. Of a change that was carried out nothing is
     /// left to change.
     pub(super) fn chips(&mut self, ui: &mut Ui, scene: &Scene, commands: &mut Vec<Command>) {
+        let said = self.said();
         let Some(both) = &self.read else { return };
-        if self.is_sent && self.done.is_some() && !self.plan.made_of(&self.prompt) {
+        if self.is_sent && self.done.is_some() && !self.plan.made_of(&said) {
             return;
         }
         // (chips are of what Enter would do)
-        let as_change = !both.is_described() && !self.plan.made_of(&self.prompt) && both.edited.is_ok();
+        let as_change = !both.is_described() && !self.plan.made_of(&said) && both.edited.is_ok();
         let (mut gone, mut number, mut other, mut beside) = (None, None, None, None);
         let takes_other;
         ui.add_space(4.0);
@@ -54,7 +55,7 @@ impl PromptField {
             takes_other = self.say_doubts(ui, &edited.heard);
         } else {
             let Ok(prompted) = &both.prompted else { return };
-            self.plan.follow(&self.prompt);
+            self.plan.follow(&said);
             let (plan, described) = (&mut self.plan, &prompted.described);
             ui.horizontal_wrapped(|ui| {
                 ui.spacing_mut().item_spacing = vec2(4.0, 4.0);
@@ -130,8 +131,9 @@ impl PromptField {
     /// What of the words is doubtful or not in the reading; after they were carried out the answer says it. True if what the other
     /// reader says is taken.
     fn say_doubts(&self, ui: &mut Ui, heard: &Heard) -> bool {
+        let said = self.said();
         for m in &heard.mended {
-            let typed = m.span.of(&self.prompt);
+            let typed = m.span.of(&said);
             let text = tf!("“{typed}” is read as “{meant}”", typed = typed, meant = m.to);
             ui.label(egui::RichText::new(text).small().color(theme::text()));
         }

@@ -135,7 +135,9 @@ pub(super) fn bar(ui: &mut Ui, scene: &Scene, state: &mut UiState, commands: &mu
         forecast(ui, commands);
         if ui
             .button(t("Save clip…"))
-            .on_hover_text(t("Writes the 3D view of all that is played: .mp4, .gif or .png"))
+            .on_hover_text(t(
+                "All that is played as moving pictures, of the 3D view, the map or the cameras",
+            ))
             .clicked()
         {
             commands.push(Command::File(FileCommand::SaveClip));

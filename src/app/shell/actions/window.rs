@@ -340,6 +340,13 @@ pub(super) const ACTIONS: &[ActionDef] = &[
     }),
     action(
         Generation,
+        "keep_version",
+        "Keep this state as a version",
+        "",
+        || Command::Generation(GenerationCommand::KeepVersion),
+    ),
+    action(
+        Generation,
         "confirm_inferred",
         "Confirm what was inferred",
         "",

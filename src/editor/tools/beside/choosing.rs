@@ -13,7 +13,7 @@ impl Hand {
         }
         let chosen = &mut self.things.chosen;
         for id in ids {
-            if !chosen.insert(*id) && how == Choose::Toggle {
+            if how == Choose::Remove || !chosen.insert(*id) && how == Choose::Toggle {
                 chosen.remove(id);
             }
         }

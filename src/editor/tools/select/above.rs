@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 
 use crate::pick::{self, Handle};
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers, Pointer,
-    Response, Role, Sight,
+    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Cursor, HANDLE_REACH, Hand, Key, Mark, Modifiers,
+    Pointer, Response, Role, Sight,
 };
 use crate::transform::{Axis, Pull, Transform, TransformKind};
 use crate::{Edit, choose};
@@ -46,10 +46,10 @@ pub(super) enum Drag {
         from_m: DVec2,
         moved: bool,
     },
-    /// Chooses in a rectangle; `add`s to the selection.
-    Marquee { from_m: DVec2, to_m: DVec2, add: bool },
+    /// Chooses in a rectangle.
+    Marquee { from_m: DVec2, to_m: DVec2, how: Choose },
     /// Chooses in an outline.
-    Lasso { points_m: Vec<DVec2>, add: bool },
+    Lasso { points_m: Vec<DVec2>, how: Choose },
 }
 
 /// How far the line of an axis is drawn to both sides, m: across the whole map.
@@ -71,7 +71,7 @@ fn held(transform: Transform, at_m: DVec2) -> Drag {
 /// True over the knob that turns the chosen box: it goes before an arrow that runs under it.
 fn is_over_knob(frame: &Frame, hand: &Hand, at_m: DVec2, reach_m: f64) -> bool {
     let b = hand.selected.and_then(|id| frame.boxes.get(&id));
-    !hand.lasso && b.is_some_and(|b| pick::handle_at(b, at_m, reach_m) == Some(Handle::Rotate))
+    !hand.outlines() && b.is_some_and(|b| pick::handle_at(b, at_m, reach_m) == Some(Handle::Rotate))
 }
 
 /// What a press takes hold of.
@@ -88,7 +88,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
         transform.axis = Some(axis);
         return Some(held(transform, at_m));
     }
-    if !cx.hand.lasso {
+    if !cx.hand.outlines() {
         let first = cx.hand.selected.and_then(|id| frame.boxes.get(&id));
         let handle = first.and_then(|b| pick::handle_at(b, at_m, reach_m));
         match (first, handle) {
@@ -127,7 +127,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
                 return Some(Drag::Marquee {
                     from_m: at_m,
                     to_m: at_m,
-                    add: true,
+                    how: Choose::Add,
                 });
             }
             boxes::take(cx.settled, cx.hand, id);
@@ -143,17 +143,20 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
             });
         }
     }
-    Some(match cx.hand.lasso {
-        true => Drag::Lasso {
-            points_m: vec![at_m],
-            add: shift,
-        },
-        false => Drag::Marquee {
+    let how = how(pointer.held);
+    match cx.hand.choose_by {
+        ChooseBy::Rectangle => Some(Drag::Marquee {
             from_m: at_m,
             to_m: at_m,
-            add: shift,
-        },
-    })
+            how,
+        }),
+        ChooseBy::Lasso => Some(Drag::Lasso {
+            points_m: vec![at_m],
+            how,
+        }),
+        // (its corners are set by clicks)
+        ChooseBy::Polygon => None,
+    }
 }
 
 /// What a move of the pointer changes.
@@ -295,9 +298,9 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
     let (scene, scale) = (cx.settled, cx.view.scale());
     let frame = scene.frame();
     let reach_m = HANDLE_REACH / scale;
-    let click = |hand: &mut Hand, at_m, add| {
+    let click = |hand: &mut Hand, at_m, how| {
         let hit = thing_under(scene, hand, at_m, reach_m);
-        things::choose(hand, hit, add);
+        things::choose(hand, hit, how);
     };
     match drag {
         Drag::Boxes {
@@ -324,40 +327,51 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>) -> Response {
         Drag::Things { drag, from_m, .. } => {
             // A click on one of several chooses it alone.
             if drag.pull() == ThingPull::Place {
-                click(cx.hand, from_m, false);
+                click(cx.hand, from_m, Choose::Only);
             }
         }
         Drag::Motion {
             drag, moved: true, ..
         } => return Response::act(Act::Commit(drag.label().into())),
         Drag::Motion { .. } => {}
-        Drag::Marquee { from_m, to_m, add } => {
+        Drag::Marquee { from_m, to_m, how } => {
             if from_m.distance(to_m) * scale > CLICK_SLACK {
-                cx.hand.choose(&choose::in_rect(frame, from_m, to_m), how(add));
+                cx.hand.choose(&choose::in_rect(frame, from_m, to_m), how);
                 let (min, max) = (from_m.min(to_m), from_m.max(to_m));
-                things::choose_in(scene, cx.hand, |p| p.cmpge(min).all() && p.cmple(max).all());
-            } else if pick::box_at(frame, from_m).is_none() || !add {
-                click(cx.hand, from_m, add);
+                let inside = |p: DVec2| p.cmpge(min).all() && p.cmple(max).all();
+                things::choose_in(scene, cx.hand, how, inside);
+            } else if pick::box_at(frame, from_m).is_none() || how != Choose::Add {
+                click(cx.hand, from_m, how);
             }
         }
-        Drag::Lasso { points_m, add } => {
+        Drag::Lasso { points_m, how } => {
             if points_m.len() >= 3 {
-                cx.hand.choose(&choose::in_outline(frame, &points_m), how(add));
-                things::choose_in(scene, cx.hand, |p| choose::is_inside(&points_m, p));
+                outline(cx, &points_m, how);
             } else if let Some(id) = points_m.first().and_then(|p| pick::box_at(frame, *p)) {
-                let how = if add { Choose::Toggle } else { Choose::Only };
+                let how = if how == Choose::Add { Choose::Toggle } else { how };
                 cx.hand.choose(&[id], how);
             } else if let Some(at_m) = points_m.first() {
-                click(cx.hand, *at_m, add);
+                click(cx.hand, *at_m, how);
             }
         }
     }
     Response::none()
 }
 
-/// How what a rectangle or lasso took joins the selection.
-pub(super) fn how(add: bool) -> Choose {
-    if add { Choose::Add } else { Choose::Only }
+/// Chooses what lies in an outline, ego frame, m.
+pub(super) fn outline(cx: &mut Context<'_>, points_m: &[DVec2], how: Choose) {
+    let scene = cx.settled;
+    cx.hand.choose(&choose::in_outline(scene.frame(), points_m), how);
+    things::choose_in(scene, cx.hand, how, |p| choose::is_inside(points_m, p));
+}
+
+/// How what a rectangle or outline took joins the selection, by the keys that are held.
+pub(super) fn how(held: Modifiers) -> Choose {
+    match (held.shift, held.ctrl) {
+        (true, _) => Choose::Add,
+        (false, true) => Choose::Remove,
+        (false, false) => Choose::Only,
+    }
 }
 
 /// What the pointer looks like where it could take hold of something.

@@ -11,9 +11,10 @@ use crate::arrange::Pivot;
 use crate::transform::{Orientation, TransformKind};
 use scene::{Frame, Members};
 
+use super::corners::{Corners, Set};
 use super::setting::{self, Control, Setting, Value};
 use super::{
-    Act, Context, Cursor, Event, Group, Hand, Hint, Mark, Response, Shortcut, Sight, Tool, ToolDef, ToolId,
+    Act, ChooseBy, Context, Cursor, Event, Group, Hand, Hint, Mark, Response, Shortcut, Sight, Tool, ToolDef, ToolId,
     ViewKind, Wants, When, hint_of,
 };
 
@@ -38,8 +39,8 @@ const fn shortcut(
     }
 }
 
-fn lasso(hand: &mut Hand, lasso: bool) {
-    (hand.tool, hand.lasso) = (ID, lasso);
+fn by(hand: &mut Hand, by: ChooseBy) {
+    (hand.tool, hand.choose_by) = (ID, by);
 }
 
 fn gizmo(hand: &mut Hand, kind: TransformKind) {
@@ -56,14 +57,26 @@ pub static DEF: ToolDef = ToolDef {
     is_brush: false,
     paints: false,
     shortcuts: &[
-        shortcut(ID.0, "Select", "V", When::Always, |h| lasso(h, false)),
-        shortcut("lasso", "Select by lasso", "O", When::Always, |h| lasso(h, true)),
+        shortcut(ID.0, "Select", "V", When::Always, |h| by(h, ChooseBy::Rectangle)),
+        shortcut(
+            "lasso",
+            "Select by lasso; again: by polygon",
+            "O",
+            When::Always,
+            |h| match h.tool == ID && h.choose_by == ChooseBy::Lasso {
+                true => by(h, ChooseBy::Polygon),
+                false => by(h, ChooseBy::Lasso),
+            },
+        ),
+        shortcut("polygon_select", "Select by polygon", "", When::Always, |h| {
+            by(h, ChooseBy::Polygon)
+        }),
         shortcut(
             "rectangle_select",
             "Select by rectangle",
             "Shift+V",
             When::Always,
-            |h| lasso(h, false),
+            |h| by(h, ChooseBy::Rectangle),
         ),
         shortcut("gizmo_move", "Dragging moves", "W", When::Chosen, |h| {
             gizmo(h, TransformKind::Move)
@@ -89,23 +102,52 @@ enum Drag {
 #[derive(Clone, Debug, Default)]
 pub struct Select {
     drag: Option<Drag>,
-    /// What was chosen when the button went down.
+    /// Corners of an outline.
+    corners: Corners,
+    /// What was chosen when the button went down, or the first corner was set.
     before: Members,
+}
+
+impl Select {
+    /// Who takes one out of a group that was chosen wants that one.
+    fn with_groups(&self, cx: &mut Context<'_>) {
+        let now = boxes::members(cx.hand);
+        if !now.is_within(&self.before) {
+            boxes::choose_groups(cx.settled, cx.hand);
+        }
+    }
 }
 
 impl Tool for Select {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match self.corners.event(event) {
+            Set::Not => {}
+            Set::Taken => return Response::taken(),
+            Set::Closed(points, held) => {
+                match cx.from_above() {
+                    true => above::outline(cx, &points, above::how(held)),
+                    false => space::chosen_in(cx, &points, above::how(held)),
+                }
+                self.with_groups(cx);
+                return Response::taken();
+            }
+        }
         match event {
             Event::Press(pointer) => {
-                self.before = boxes::members(cx.hand);
+                if self.corners.is_empty() {
+                    self.before = boxes::members(cx.hand);
+                }
                 self.drag = match cx.from_above() {
                     true => above::press(cx, pointer).map(Drag::Above),
                     false => space::press(cx, pointer).map(Drag::Space),
                 };
-                match self.drag {
-                    Some(_) => Response::hold(),
-                    None => Response::none(),
+                if self.drag.is_some() {
+                    return Response::hold();
                 }
+                if cx.hand.choose_by == ChooseBy::Polygon {
+                    self.corners.add(cx, pointer);
+                }
+                Response::none()
             }
             Event::Drag(pointer) => match &mut self.drag {
                 Some(Drag::Above(drag)) => above::drag(drag, cx, pointer),
@@ -118,11 +160,7 @@ impl Tool for Select {
                     Some(Drag::Space(drag)) => space::release(drag, cx, pointer.at),
                     None => Response::none(),
                 };
-                // Who takes one out of a group that was chosen wants that one.
-                let now = boxes::members(cx.hand);
-                if !now.is_within(&self.before) {
-                    boxes::choose_groups(cx.settled, cx.hand);
-                }
+                self.with_groups(cx);
                 response
             }
             Event::Key(key, repeat, held) => {
@@ -146,9 +184,11 @@ impl Tool for Select {
 
     fn hint(&self, hand: &Hand, view: Option<ViewKind>) -> Hint {
         let over_space = view == Some(ViewKind::Space);
-        let mut parts = match hand.lasso {
-            true => vec!["Drag draws around boxes", "Shift adds"],
-            false => vec!["Click chooses", "Shift adds", "drag over ground marks"],
+        let more = "Shift adds, Ctrl takes out";
+        let mut parts = match hand.choose_by {
+            ChooseBy::Lasso => vec!["Drag draws around boxes", more],
+            ChooseBy::Polygon => vec!["Click sets corners", "Enter chooses", more],
+            ChooseBy::Rectangle => vec!["Click chooses", "drag over ground marks", more],
         };
         if hand.selected.is_none() && !hand.things.chosen.is_empty() {
             parts.push("Drag moves");
@@ -185,10 +225,12 @@ impl Tool for Select {
             Some(Drag::Space(drag)) => (None, Some(drag)),
             None => (None, None),
         };
-        match sight.from_above() {
+        let mut out = match sight.from_above() {
             true => above::overlay(above, sight),
             false => space::overlay(space, sight),
-        }
+        };
+        out.extend(self.corners.marks(sight));
+        out
     }
 
     fn options(&self, hand: &Hand) -> Vec<Setting> {
@@ -235,7 +277,7 @@ impl Tool for Select {
         ];
         vec![
             Setting::title("Select"),
-            Setting::segments("lasso", hand.lasso, &WAYS, 2),
+            Setting::segments("lasso", hand.choose_by, &WAYS, 3),
             Setting::gap(),
             Setting::segments("gizmo", hand.gizmo, &KINDS, 3),
             Setting::gap(),
@@ -258,7 +300,10 @@ impl Tool for Select {
 
     fn set(&mut self, hand: &mut Hand, _: &Frame, id: &str, value: Value) -> Vec<Act> {
         match id {
-            "lasso" => setting::take(&mut hand.lasso, value, &WAYS),
+            "lasso" => {
+                setting::take(&mut hand.choose_by, value, &WAYS);
+                self.corners.clear();
+            }
             "gizmo" => setting::take(&mut hand.gizmo, value, &KINDS),
             "orientation" => setting::take(&mut hand.orientation, value, &ORIENTATIONS),
             "pivot" => setting::take(&mut hand.pivot, value, &PIVOTS),
@@ -283,18 +328,40 @@ impl Tool for Select {
             Some(Drag::Above(above::Drag::Boxes { .. }) | Drag::Space(space::Drag::Boxes { .. })) => {
                 Wants::Drag
             }
+            _ if !self.corners.is_empty() => Wants::Points,
             _ => Wants::Nothing,
         }
     }
+
+    fn draws_in(&self) -> Option<ViewKind> {
+        self.corners.view()
+    }
+
+    fn put_down(&mut self) {
+        self.corners.clear();
+    }
+
+    fn restart(&mut self) {
+        self.corners.clear();
+    }
 }
 
-const WAYS: [(bool, &str, &str); 2] = [
+const WAYS: [(ChooseBy, &str, &str); 3] = [
     (
-        false,
+        ChooseBy::Rectangle,
         "Marquee",
-        "V: click, or drag over empty ground; Shift adds and removes",
+        "V: click, or drag over empty ground; Shift adds, Ctrl takes out",
     ),
-    (true, "Lasso", "O: drag around boxes"),
+    (
+        ChooseBy::Lasso,
+        "Lasso",
+        "O: drag around boxes; Shift adds, Ctrl takes out",
+    ),
+    (
+        ChooseBy::Polygon,
+        "Polygon",
+        "O again: click corners around boxes, Enter ends; Shift adds, Ctrl takes out",
+    ),
 ];
 
 const KINDS: [(TransformKind, &str, &str); 3] = [

@@ -126,7 +126,7 @@ pub(super) fn knots_m(sight: &Sight<'_>) -> Vec<DVec2> {
 /// True if a knot is under the pointer.
 pub(super) fn is_over_knot(sight: &Sight<'_>, at_m: DVec2) -> bool {
     let reach_m = HANDLE_REACH / sight.view.scale();
-    !sight.hand.lasso && MotionDrag::held(sight.settled, sight.hand, at_m, reach_m).is_some()
+    !sight.hand.outlines() && MotionDrag::held(sight.settled, sight.hand, at_m, reach_m).is_some()
 }
 
 /// The motion of the one thing that is chosen; with nothing chosen the ego vehicle's.

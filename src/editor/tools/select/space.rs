@@ -7,8 +7,8 @@ use crate::pick::{self, Hit};
 use crate::pick_things;
 use crate::tools::rays::along_axis;
 use crate::tools::{
-    Act, At, CLICK_SLACK, Choose, Context, Hand, Key, Mark, Modifiers, Pointer, Response, Role, Sight, View,
-    farthest_m, point_of,
+    Act, At, CLICK_SLACK, Choose, ChooseBy, Context, Hand, Key, Mark, Modifiers, Pointer, Response, Role,
+    Sight, View, farthest_m, point_of,
 };
 use crate::transform::{Axis, Orientation, Pull, Transform, TransformKind};
 use scene::{BoxId, Frame, Scene, ThingId};
@@ -52,7 +52,7 @@ pub(super) enum Drag {
     Area {
         points: Vec<DVec2>,
         lasso: bool,
-        add: bool,
+        how: Choose,
     },
 }
 
@@ -83,7 +83,7 @@ fn press_things(cx: &Context<'_>, pointer: &Pointer) -> Option<Drag> {
     {
         return drag(ThingPull::Height, knob_m, None);
     }
-    if pointer.held.shift || cx.hand.lasso {
+    if pointer.held.shift || cx.hand.outlines() {
         return None;
     }
     let ray = cx.view.ray(pointer.at)?;
@@ -103,7 +103,7 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
     }
     let ray = cx.view.ray(at)?;
     match pick::pick(cx.frame(), &ray) {
-        Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.lasso => {
+        Some(hit @ Hit::Box { id, .. }) if !pointer.held.shift && !cx.hand.outlines() => {
             if cx.settled.arranged.group_of_box(id).is_some() {
                 boxes::take(cx.settled, cx.hand, id);
             }
@@ -121,10 +121,12 @@ pub(super) fn press(cx: &mut Context<'_>, pointer: &Pointer) -> Option<Drag> {
                 hit: Some(id),
             })
         }
+        // (its corners are set by clicks)
+        _ if cx.hand.choose_by == ChooseBy::Polygon => None,
         _ => Some(Drag::Area {
             points: vec![at],
-            lasso: cx.hand.lasso,
-            add: pointer.held.shift,
+            lasso: cx.hand.outlines(),
+            how: how(pointer.held),
         }),
     }
 }
@@ -318,36 +320,34 @@ pub(super) fn release(drag: Drag, cx: &mut Context<'_>, at: DVec2) -> Response {
             // A click on one of several chooses it alone; one on the knob changes nothing.
             let there = hit.filter(|id| cx.settled.background.get(*id).is_some());
             if there.is_some() && cx.hand.things.is_open() {
-                things::choose(cx.hand, there, false);
+                things::choose(cx.hand, there, Choose::Only);
             }
             Response::none()
         }
-        Drag::Area { points, lasso, add } => {
+        Drag::Area { points, lasso, how } => {
             match points.iter().all(|p| p.distance(at) <= CLICK_SLACK) {
-                true => click(cx, at, add),
-                false => area(cx, &points, at, lasso, add),
+                true => click(cx, at, how),
+                false => area(cx, &points, at, lasso, how),
             }
             Response::none()
         }
     }
 }
 
-fn click(cx: &mut Context<'_>, at: DVec2, add: bool) {
+fn click(cx: &mut Context<'_>, at: DVec2, how: Choose) {
     let scene = cx.settled;
     let hit = cx.view.ray(at).and_then(|ray| pick::pick(scene.frame(), &ray));
-    match (hit, add) {
-        (Some(Hit::Box { id, .. }), true) => cx.hand.choose(&[id], Choose::Toggle),
-        (Some(Hit::Box { id, .. }), false) => cx.hand.choose(&[id], Choose::Only),
-        (hit, add) => {
+    match (hit, how) {
+        (Some(Hit::Box { id, .. }), Choose::Add) => cx.hand.choose(&[id], Choose::Toggle),
+        (Some(Hit::Box { id, .. }), how) => cx.hand.choose(&[id], how),
+        (hit, how) => {
             let thing = hit.and_then(|hit| thing_of(scene, cx.hand, &hit));
-            things::choose(cx.hand, thing, add);
+            things::choose(cx.hand, thing, how);
         }
     }
 }
 
-fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, add: bool) {
-    let (scene, view) = (cx.settled, cx.view);
-    let frame = scene.frame();
+fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, how: Choose) {
     let outline: Vec<DVec2> = match (lasso, points.first()) {
         (false, Some(from)) => {
             let (min, max) = (from.min(at), from.max(at));
@@ -355,12 +355,19 @@ fn area(cx: &mut Context<'_>, points: &[DVec2], at: DVec2, lasso: bool, add: boo
         }
         _ => points.to_vec(),
     };
-    let inside = |p_m: DVec3| view.project(p_m).is_some_and(|p| choose::is_inside(&outline, p));
+    chosen_in(cx, &outline, how);
+}
+
+/// Chooses what lies in an outline on the screen.
+pub(super) fn chosen_in(cx: &mut Context<'_>, outline: &[DVec2], how: Choose) {
+    let (scene, view) = (cx.settled, cx.view);
+    let frame = scene.frame();
+    let inside = |p_m: DVec3| view.project(p_m).is_some_and(|p| choose::is_inside(outline, p));
     let taken = frame.boxes.values().filter(|b| inside(b.center_m));
     let ids: Vec<BoxId> = taken.map(|b| b.id).collect();
-    cx.hand.choose(&ids, how(add));
+    cx.hand.choose(&ids, how);
     let on_screen = |p: DVec2| inside(p.extend(frame.layout.relief.height_m(p)));
-    things::choose_in(scene, cx.hand, on_screen);
+    things::choose_in(scene, cx.hand, how, on_screen);
 }
 
 /// The part of the gizmo that a drag holds.

@@ -181,21 +181,25 @@ pub(super) fn held(scene: &Scene, hand: &Hand, at_m: DVec2, reach_m: f64, shift:
 }
 
 /// A click where no box is: chooses the thing there, or nothing.
-pub(super) fn choose(hand: &mut Hand, hit: Option<ThingId>, add: bool) {
-    match (hit, add) {
-        (Some(id), true) => hand.choose_things(&[id], Choose::Toggle),
-        (Some(id), false) => hand.choose_things(&[id], Choose::Only),
-        (None, true) => {}
-        (None, false) => hand.choose(&[], Choose::Only),
+pub(super) fn choose(hand: &mut Hand, hit: Option<ThingId>, how: Choose) {
+    match (hit, how) {
+        (Some(id), Choose::Add) => hand.choose_things(&[id], Choose::Toggle),
+        (Some(id), how) => hand.choose_things(&[id], how),
+        (None, Choose::Only) => hand.choose(&[], Choose::Only),
+        (None, _) => {}
     }
 }
 
-/// Chooses the things whose middle (ego frame, m) lies in an area, too.
-pub(super) fn choose_in(scene: &Scene, hand: &mut Hand, inside: impl Fn(DVec2) -> bool) {
+/// Chooses the things whose middle (ego frame, m) lies in an area, too, or takes them out of what is chosen.
+pub(super) fn choose_in(scene: &Scene, hand: &mut Hand, how: Choose, inside: impl Fn(DVec2) -> bool) {
     if hand.things.is_open() {
         let ids = pick_things::things_in(&scene.background, inside);
         if !ids.is_empty() {
-            hand.choose_things(&ids, Choose::Add);
+            let how = match how {
+                Choose::Remove => Choose::Remove,
+                _ => Choose::Add,
+            };
+            hand.choose_things(&ids, how);
         }
     }
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::Edit;
 use crate::choose;
 use crate::pick;
-use crate::voxel_ops::Cell;
+use crate::voxel_ops::{self, Cell};
 use scene::{Class, Extent, Frame};
 
 use crate::tools::rays::on_plane;
@@ -128,6 +128,15 @@ impl Area {
             Self::Lasso { .. } => {}
         }
         out
+    }
+
+    /// Chooses the solid voxels in it, with symmetry on both sides of the ego axis.
+    pub(super) fn take(&self, cx: &mut Context<'_>, how: Joins) {
+        let frame = cx.settled.frame();
+        let cells = self.cells(frame, cx.view, cx.hand.voxels_through);
+        let both = cx.hand.both_sides(frame.extent(), cells);
+        let cells = voxel_ops::only(&frame.occupancy, both, false);
+        cx.hand.choose_voxels(cells, how);
     }
 
     /// What is drawn while it grows.

@@ -1,13 +1,15 @@
 //! The voxel tool: dabs, blocks, rows, floods, chosen voxels and pulled faces, in space.
 
 mod choosing;
+mod def;
 mod options;
+mod pulling;
 mod stamping;
 mod target;
 
 use std::collections::BTreeSet;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use crate::Edit;
 use crate::pick::{self, Ray, VoxelHit};
@@ -15,17 +17,20 @@ use crate::voxel_ops::{self, Cell};
 use language::tf;
 use scene::{Class, Extent, Frame};
 
-use super::rays::{along_axis, on_plane};
+use super::corners::{Corners, Set};
+use super::rays::on_plane;
 use super::saved::Stamp;
 use super::setting::{self, Setting, Value};
 use super::{
-    Act, At, Context, Cursor, Event, Group, Hand, Hint, Mark, Modifiers, Pointer, Response, Shortcut, Sight,
-    Tool, ToolDef, ToolId, ViewKind, VoxelMode, VoxelVerb, Wants, When, hint_of,
+    Act, At, Context, Cursor, Event, Hand, Hint, Mark, Modifiers, Pointer, Response, Sight, Tool, ToolId,
+    ViewKind, VoxelMode, VoxelTip, VoxelVerb, Wants, hint_of,
 };
 pub use choosing::Joins;
+pub use def::DEF;
 use choosing::{Area, joins};
+use pulling::pulled;
 use stamping::{stamp_at, stamped};
-use target::target;
+use target::{target, tipped};
 
 /// Its name.
 pub const ID: ToolId = ToolId::VOXEL;
@@ -36,107 +41,6 @@ pub(super) const REMOVED: [u8; 3] = [238, 112, 104];
 const CHOSEN: [u8; 3] = [255, 70, 255];
 /// Distance between two samples of a quick stroke, points.
 const SAMPLE_EVERY: f64 = 3.0;
-
-const fn shortcut(
-    id: &'static str,
-    title: &'static str,
-    keys: &'static str,
-    when: When,
-    set: fn(&mut Hand),
-) -> Shortcut {
-    Shortcut {
-        id,
-        title,
-        keys,
-        when,
-        set,
-    }
-}
-
-fn mode(hand: &mut Hand, mode: VoxelMode) {
-    (hand.tool, hand.voxel_mode) = (ID, mode);
-}
-
-fn verb(hand: &mut Hand, verb: VoxelVerb) {
-    (hand.tool, hand.verb) = (ID, verb);
-}
-
-/// Its row of the table.
-pub static DEF: ToolDef = ToolDef {
-    id: ID,
-    title: "Voxels",
-    key: "B in 3D",
-    icon: "voxel",
-    group: Group::Scene,
-    is_brush: true,
-    paints: true,
-    shortcuts: &[
-        shortcut(
-            ID.0,
-            "Voxel brush (over the 3D view)",
-            "B",
-            When::OverSpace,
-            |h| {
-                h.tool = if h.tool == ID { ToolId::BRUSH } else { ID };
-            },
-        ),
-        shortcut("voxel_attach", "Attach voxels", "T", When::Always, |h| {
-            verb(h, VoxelVerb::Attach)
-        }),
-        shortcut("voxel_remove", "Remove voxels", "R", When::Always, |h| {
-            verb(h, VoxelVerb::Remove)
-        }),
-        shortcut("voxel_recolour", "Recolour voxels", "Y", When::Always, |h| {
-            verb(h, VoxelVerb::Recolour)
-        }),
-        shortcut("voxel_block", "Voxels: block", "U", When::OverSpace, |h| {
-            mode(h, VoxelMode::Block)
-        }),
-        shortcut("voxel_row", "Voxels: row", "L", When::OverSpace, |h| {
-            mode(h, VoxelMode::Row)
-        }),
-        shortcut("voxel_fill", "Voxels: flood", "K", When::OverSpace, |h| {
-            mode(h, VoxelMode::Fill)
-        }),
-        shortcut("voxel_pull", "Voxels: pull a face", "P", When::OverSpace, |h| {
-            mode(h, VoxelMode::Extrude)
-        }),
-        shortcut("voxel_wand", "Voxels: magic wand", "Shift+O", When::Always, |h| {
-            mode(h, VoxelMode::Wand)
-        }),
-        shortcut(
-            "voxels_in_box",
-            "Voxels: choose in a box",
-            "",
-            When::Always,
-            |h| mode(h, VoxelMode::ChooseBlock),
-        ),
-        shortcut(
-            "voxels_in_sphere",
-            "Voxels: choose in a sphere",
-            "",
-            When::Always,
-            |h| mode(h, VoxelMode::ChooseSphere),
-        ),
-        shortcut(
-            "voxels_in_lasso",
-            "Voxels: choose by lasso",
-            "",
-            When::Always,
-            |h| mode(h, VoxelMode::ChooseLasso),
-        ),
-        shortcut(
-            "symmetry",
-            "Symmetry about the ego axis",
-            "S",
-            When::Always,
-            |h| {
-                h.symmetry = !h.symmetry;
-            },
-        ),
-    ],
-    make: || Box::new(Voxels::default()),
-};
 
 /// What the button held does.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,6 +70,8 @@ enum Drag {
 #[derive(Clone, Debug, Default)]
 pub struct Voxels {
     drag: Option<Drag>,
+    /// Corners of an outline.
+    corners: Corners,
 }
 
 fn class_of(hand: &Hand, verb: VoxelVerb) -> Class {
@@ -183,9 +89,13 @@ fn step_of(verb: VoxelVerb) -> &'static str {
     }
 }
 
-/// Edge of the brush across the face, and its height along the normal, voxels.
-fn size(hand: &Hand) -> [usize; 2] {
-    [hand.voxel_size, hand.voxel_size.max(hand.voxel_height)]
+/// The tip of the brush, its edge across the face, and its height along the normal, voxels.
+fn brush(hand: &Hand) -> (VoxelTip, [usize; 2]) {
+    let size = [hand.voxel_size, hand.voxel_size.max(hand.voxel_height)];
+    match hand.voxel_mode {
+        VoxelMode::Brush => (hand.voxel_tip, size),
+        _ => (VoxelTip::Block, size),
+    }
 }
 
 fn normal_axis(hit: &VoxelHit) -> usize {
@@ -224,6 +134,10 @@ impl Voxels {
         if mode == VoxelMode::Stamp {
             return stamped(cx, pointer);
         }
+        if mode == VoxelMode::ChoosePolygon {
+            self.corners.add(cx, pointer);
+            return Response::none();
+        }
         if mode.chooses() && mode != VoxelMode::Wand {
             self.drag = Area::begin(cx, mode, pointer.at).map(Drag::Choose);
             return match self.drag {
@@ -238,9 +152,11 @@ impl Voxels {
         let hit = pick::ray_voxels(&ray, &frame.occupancy, |_, _| true);
         let first = target(frame, verb, [1, 1], &ray).first().copied();
         self.drag = match mode {
-            VoxelMode::ChooseBlock | VoxelMode::ChooseSphere | VoxelMode::ChooseLasso | VoxelMode::Stamp => {
-                None
-            }
+            VoxelMode::ChooseBlock
+            | VoxelMode::ChooseSphere
+            | VoxelMode::ChooseLasso
+            | VoxelMode::ChoosePolygon
+            | VoxelMode::Stamp => None,
             VoxelMode::Block | VoxelMode::Brush => first.map(|cell| Drag::Block {
                 first: VoxelHit {
                     cell,
@@ -289,7 +205,7 @@ impl Voxels {
                 for i in 1..=samples {
                     let between = last.lerp(at, i as f64 / samples as f64);
                     if let Some(ray) = cx.view.ray(between) {
-                        cells.extend(target(frame, *verb, size(hand), &ray));
+                        cells.extend(tipped(frame, *verb, brush(hand), &ray));
                     }
                 }
                 *last = at;
@@ -379,11 +295,7 @@ impl Voxels {
         let label = match self.drag.take() {
             None => return Response::none(),
             Some(Drag::Choose(area)) => {
-                let frame = cx.settled.frame();
-                let cells = area.cells(frame, cx.view, cx.hand.voxels_through);
-                let both = cx.hand.both_sides(frame.extent(), cells);
-                let cells = voxel_ops::only(&frame.occupancy, both, false);
-                cx.hand.choose_voxels(cells, joins(held));
+                area.take(cx, joins(held));
                 return Response::none();
             }
             Some(Drag::Dab { verb, .. } | Drag::Block { verb, .. } | Drag::Row { verb, .. }) => step_of(verb),
@@ -404,28 +316,16 @@ fn flood(cells: Vec<Cell>, class: Class) -> Response {
     Response::act(Act::Apply(label.into(), vec![Edit::PaintVoxels { cells, class }]))
 }
 
-/// The edit of a face pulled as far as the pointer is.
-fn pulled(ray: &Ray, frame: &Frame, hand: &Hand, first: &VoxelHit, face: &[Cell]) -> Option<Edit> {
-    let [x, y, z] = first.cell;
-    let normal = DVec3::from_array(first.normal.map(f64::from));
-    let surface_m = frame.extent().center(x, y, z) + normal * (Extent::VOXEL_M / 2.0);
-    let way_m = along_axis(ray, surface_m, normal)?;
-    let layers = (way_m / Extent::VOXEL_M).round() as i32;
-    let cells = voxel_ops::extrude(&frame.occupancy, face, first.normal, layers);
-    let cells = voxel_ops::only(
-        &frame.occupancy,
-        hand.both_sides(frame.extent(), cells),
-        layers > 0,
-    );
-    let class = match layers > 0 {
-        true => Class::from_id(first.label)?,
-        false => Class::Free,
-    };
-    (!cells.is_empty()).then_some(Edit::PaintVoxels { cells, class })
-}
-
 impl Tool for Voxels {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
+        match self.corners.event(event) {
+            Set::Not => {}
+            Set::Taken => return Response::taken(),
+            Set::Closed(points, held) => {
+                Area::Lasso { points }.take(cx, joins(held));
+                return Response::taken();
+            }
+        }
         match event {
             _ if cx.from_above() => Response::none(),
             Event::Press(pointer) => self.press(cx, pointer),
@@ -471,6 +371,7 @@ impl Tool for Voxels {
             ],
             VoxelMode::ChooseSphere => vec!["Drag chooses in a sphere", "Shift adds, Ctrl takes out"],
             VoxelMode::ChooseLasso => vec!["Draw around voxels to choose them", "Shift adds, Ctrl takes out"],
+            VoxelMode::ChoosePolygon => vec!["Click sets corners", "Enter chooses", "Shift adds, Ctrl takes out"],
             VoxelMode::Extrude => vec!["Drag pulls a face out or in"],
             VoxelMode::Stamp => vec!["Click sets the kept voxels down", "Turn them in the options"],
         })
@@ -492,7 +393,9 @@ impl Tool for Voxels {
             return area.marks(sight.settled.frame(), hand, sight.view, CHOSEN);
         }
         if hand.voxel_mode.chooses() {
-            return vec![Mark::Voxels(hand.voxels.clone(), CHOSEN)];
+            let mut out = vec![Mark::Voxels(hand.voxels.clone(), CHOSEN)];
+            out.extend(self.corners.marks(sight));
+            return out;
         }
         let Some(pointer) = sight.pointer else {
             return Vec::new();
@@ -512,7 +415,7 @@ impl Tool for Voxels {
                 _ => hand.voxel_class.color(),
             };
             let frame = sight.settled.frame();
-            let cells = target(frame, hand.verb, size(hand), &ray);
+            let cells = tipped(frame, hand.verb, brush(hand), &ray);
             out.push(Mark::Voxels(hand.both_sides(frame.extent(), cells), color));
         }
         if let Some(Drag::Block {
@@ -538,7 +441,10 @@ impl Tool for Voxels {
     fn set(&mut self, hand: &mut Hand, frame: &Frame, id: &str, value: Value) -> Vec<Act> {
         let number = value.number().map_or(1, |n| n.round().max(1.0) as usize);
         match (id, value) {
-            ("mode", _) => setting::take(&mut hand.voxel_mode, value, &VoxelMode::ALL),
+            ("mode", _) => {
+                setting::take(&mut hand.voxel_mode, value, &VoxelMode::ALL);
+                self.corners.clear();
+            }
             ("stamp", _) => match Stamp::of(frame, &hand.voxels) {
                 Some(stamp) => (hand.stamp, hand.voxel_mode) = (stamp, VoxelMode::Stamp),
                 None => return vec![Act::Note(tf!("A stamp has 1 to {n} voxels", n = Stamp::MOST))],
@@ -547,6 +453,7 @@ impl Tool for Voxels {
             ("through", _) => setting::take_on(&mut hand.voxels_through, value),
             ("height", _) => hand.voxel_height = number.min(16),
             ("symmetry", _) => setting::take_on(&mut hand.symmetry, value),
+            ("tip", _) => setting::take(&mut hand.voxel_tip, value, &VoxelTip::ALL),
             ("verb", _) => setting::take(&mut hand.verb, value, &VoxelVerb::ALL),
             ("size", _) => hand.voxel_size = number.min(Hand::MAX_VOXEL_SIZE),
             ("class", Value::Class(class)) => hand.voxel_class = class,
@@ -574,7 +481,20 @@ impl Tool for Voxels {
     fn wants(&self) -> Wants {
         match self.drag {
             Some(Drag::Block { .. } | Drag::Choose(Area::Block { .. })) => Wants::Wheel,
+            _ if !self.corners.is_empty() => Wants::Points,
             _ => Wants::Nothing,
         }
+    }
+
+    fn draws_in(&self) -> Option<ViewKind> {
+        self.corners.view()
+    }
+
+    fn put_down(&mut self) {
+        self.corners.clear();
+    }
+
+    fn restart(&mut self) {
+        self.corners.clear();
     }
 }

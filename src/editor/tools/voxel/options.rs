@@ -2,7 +2,7 @@
 
 use crate::tools::paints::voxel_classes;
 use crate::tools::setting::{Control, Number, Setting};
-use crate::tools::{Hand, VoxelMode, VoxelVerb};
+use crate::tools::{Hand, VoxelMode, VoxelTip, VoxelVerb};
 use language::tf;
 
 /// Everything that can be set of the tool.
@@ -11,6 +11,9 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
         Setting::title("Voxel brush"),
         Setting::segments("mode", hand.voxel_mode, &VoxelMode::ALL, 3),
     ];
+    if hand.voxel_mode == VoxelMode::Brush {
+        out.push(Setting::segments("tip", hand.voxel_tip, &VoxelTip::ALL, 2));
+    }
     if matches!(hand.voxel_mode, VoxelMode::Brush | VoxelMode::Block) {
         let height = hand.voxel_height as f64;
         out.push(Setting::number("height", "Height, vx", height, [1.0, 16.0], 0));
@@ -21,7 +24,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
         "Symmetry about the ego axis",
         "S",
     ));
-    if hand.voxel_mode == VoxelMode::ChooseLasso {
+    if matches!(hand.voxel_mode, VoxelMode::ChooseLasso | VoxelMode::ChoosePolygon) {
         let hint = "The outline chooses voxels behind others, too";
         out.push(Setting::toggle(
             "through",
@@ -45,7 +48,7 @@ pub(super) fn options(hand: &Hand) -> Vec<Setting> {
             Control::Number(Number {
                 title: "Size",
                 label: "Voxel brush size",
-                hint: "[ and ]",
+                hint: "[ and ], or Ctrl+wheel",
                 value: hand.voxel_size as f64,
                 range: [1.0, Hand::MAX_VOXEL_SIZE as f64],
                 unit: " vx",

@@ -1,12 +1,22 @@
-//! Which voxels a brush would change: a block in front of the face under the ray, or behind it.
+//! Which voxels a brush would change: a block or a ball in front of the face under the ray, or behind it.
 
 use crate::pick::{self, Ray, VoxelHit};
-use crate::tools::VoxelVerb;
+use crate::tools::{VoxelTip, VoxelVerb};
 use scene::{Class, Extent, Frame};
 
-/// Voxels of the first face along the ray that the brush covers: free ones in front of it to attach,
-/// others behind it to remove or recolour.
+/// Voxels of the first face along the ray that a block covers: free ones in front of it to attach, others behind it to remove
+/// or recolour.
 pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray) -> Vec<[usize; 3]> {
+    tipped(frame, verb, (VoxelTip::Block, size), ray)
+}
+
+/// The same with another tip.
+pub(super) fn tipped(
+    frame: &Frame,
+    verb: VoxelVerb,
+    brush: (VoxelTip, [usize; 2]),
+    ray: &Ray,
+) -> Vec<[usize; 3]> {
     let Some(hit) = pick::ray_voxels(ray, &frame.occupancy, |_, _| true) else {
         // On empty ground voxels are attached to the floor of the grid.
         if verb != VoxelVerb::Attach {
@@ -20,27 +30,27 @@ pub(super) fn target(frame: &Frame, verb: VoxelVerb, size: [usize; 2], ray: &Ray
             normal: [0, 0, 1],
             distance_m: 0.0,
         });
-        return floor.map_or_else(Vec::new, |hit| cube(frame, hit.cell, hit.normal, size, true));
+        return floor.map_or_else(Vec::new, |hit| covered(frame, hit.cell, hit.normal, brush, true));
     };
     match verb {
         VoxelVerb::Attach => hit
             .neighbour(frame.extent())
-            .map_or_else(Vec::new, |cell| cube(frame, cell, hit.normal, size, true)),
-        _ => cube(frame, hit.cell, hit.normal.map(|n| -n), size, false),
+            .map_or_else(Vec::new, |cell| covered(frame, cell, hit.normal, brush, true)),
+        _ => covered(frame, hit.cell, hit.normal.map(|n| -n), brush, false),
     }
 }
 
-/// A block of voxels that begins at `cell` and reaches along `direction`, centred across it; only the
-/// voxels that are free, or only those that are not.
-fn cube(
+/// What a brush covers that begins at `cell` and reaches along `direction`, centred across it; only the voxels that are free, or
+/// only those that are not.
+fn covered(
     frame: &Frame,
     cell: [usize; 3],
     direction: [i32; 3],
-    [across, height]: [usize; 2],
+    (tip, [across, height]): (VoxelTip, [usize; 2]),
     free: bool,
 ) -> Vec<[usize; 3]> {
     let limit = frame.extent().shape();
-    let range = |axis: usize| {
+    let whole = |axis: usize| {
         let at = cell[axis] as i64;
         let size = if direction[axis] == 0 { across } else { height } as i64;
         let low = match direction[axis] {
@@ -48,12 +58,27 @@ fn cube(
             d if d > 0 => at,
             _ => at - size + 1,
         };
-        low.max(0)..(low + size).min(limit[axis] as i64)
+        [low, low + size]
+    };
+    let range = |axis: usize| {
+        let [low, end] = whole(axis);
+        low.max(0)..end.min(limit[axis] as i64)
+    };
+    let is_in_ball = |at: [i64; 3]| {
+        let part = |axis: usize| {
+            let [low, end] = whole(axis).map(|v| v as f64);
+            let half = (end - low) / 2.0;
+            (at[axis] as f64 + 0.5 - low - half) / half
+        };
+        (0..3).map(|axis| part(axis).powi(2)).sum::<f64>() <= 1.0
     };
     let mut cells = Vec::new();
     for x in range(0) {
         for y in range(1) {
             for z in range(2) {
+                if tip == VoxelTip::Round && !is_in_ball([x, y, z]) {
+                    continue;
+                }
                 let [x, y, z] = [x, y, z].map(|v| v as usize);
                 if (frame.occupancy.get(x, y, z) == Class::FREE) == free {
                     cells.push([x, y, z]);
@@ -125,6 +150,27 @@ mod tests {
         );
         let ray = Ray::new(DVec3::new(132.1, 60.1, 9.0), -DVec3::Z).expect("a direction");
         assert!(target(&frame, VoxelVerb::Attach, [3, 1], &ray).is_empty());
+    }
+
+    #[test]
+    fn a_round_tip_covers_a_ball() {
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
+        let count = |size: [usize; 2]| {
+            let brush = (VoxelTip::Round, size);
+            let cells = tipped(&frame, VoxelVerb::Attach, brush, &down(100, 100));
+            let block = target(&frame, VoxelVerb::Attach, size, &down(100, 100));
+            assert!(cells.iter().all(|c| block.contains(c)));
+            cells.len()
+        };
+        assert_eq!([count([1, 1]), count([2, 2])], [1, 8]);
+        // Without the eight corners.
+        assert_eq!(count([3, 3]), 27 - 8);
+        // About pi / 6 of the block, and of the higher one as well.
+        let [ball, egg] = [count([5, 5]), count([5, 9])];
+        assert!(
+            (60..=90).contains(&ball) && (105..=155).contains(&egg),
+            "{ball} {egg}"
+        );
     }
 
     #[test]

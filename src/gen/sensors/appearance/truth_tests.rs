@@ -10,8 +10,8 @@ use super::*;
 use crate::rays::CameraRays;
 use scene::truth::{OTHERS, OUTSIDE, SKY};
 use scene::{
-    BevLayout, BoxId, Camera, CameraTruth, Class, Lens, ReadOut, SceneBox, Shutter, TimeOfDay, VoxelGrid,
-    Weather,
+    BevLayout, BoxId, Camera, CameraTruth, Class, Frame, Lens, ReadOut, SceneBox, SensorRig, Shutter,
+    TimeOfDay, VoxelGrid, Weather,
 };
 use world::World;
 use world::voxelize::{Vertical, complete};

@@ -1,0 +1,95 @@
+//! What a result was made with: the seed and the knobs. It is kept with the version that the result is, told in pictures and
+//! exports of that state, and can be used again.
+
+use serde::{Deserialize, Serialize};
+
+use job::GenParams;
+use job::inpaint::InpaintMask;
+use language::{t, tf};
+
+/// How a result was made.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MadeWith {
+    /// Name of the preset; empty for settings of one's own.
+    pub preset: String,
+    /// The knobs. Where it was to change is left out: that belongs to the scene.
+    pub params: GenParams,
+}
+
+impl MadeWith {
+    /// Of the parameters of a job.
+    pub fn new(params: &GenParams, preset: Option<&str>) -> Self {
+        Self {
+            preset: preset.unwrap_or_default().to_owned(),
+            params: GenParams {
+                inpaint: InpaintMask::default(),
+                ..params.clone()
+            },
+        }
+    }
+
+    /// As text on one line.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// From such a text; none if it is of another program or damaged.
+    pub fn from_json(text: &str) -> Option<Self> {
+        serde_json::from_str(text).ok()
+    }
+
+    /// The knobs that one sets, for a person: seed, preset, steps, guidance, densities.
+    pub fn in_words(&self) -> String {
+        let params = &self.params;
+        let mut parts = vec![tf!("seed {n}", n = params.seed)];
+        if !self.preset.is_empty() {
+            parts.push(t(&self.preset).to_owned());
+        }
+        parts.push(tf!("{n} steps", n = params.steps));
+        if params.guidance != 1.0 {
+            parts.push(tf!("guidance {n}", n = params.guidance));
+        }
+        if params.strength > 0.0 {
+            parts.push(tf!("strength {n}", n = params.strength));
+        }
+        let names = [t("Vegetation"), t("Buildings"), t("Clutter"), t("Completeness")];
+        let named = names.into_iter().zip(params.named.values());
+        parts.extend(named.filter_map(|(name, value)| Some(format!("{name} {:.2}", value?))));
+        parts.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use job::Named;
+
+    #[test]
+    fn what_a_result_was_made_with_comes_back_from_text() {
+        let params = GenParams {
+            seed: u64::MAX,
+            steps: 7,
+            guidance: 2.5,
+            named: Named {
+                vegetation: Some(0.25),
+                ..Named::default()
+            },
+            ..GenParams::default()
+        };
+        let made = MadeWith::new(&params, Some("fast"));
+        let text = made.to_json();
+        assert!(!text.contains('\n'), "{text}");
+        let back = MadeWith::from_json(&text).expect("as written");
+        assert_eq!((&back.params, back.preset.as_str()), (&params, "fast"));
+        let words = back.in_words();
+        for part in [
+            "seed 18446744073709551615",
+            "7 steps",
+            "guidance 2.5",
+            "Vegetation 0.25",
+        ] {
+            assert!(words.contains(part), "{words}");
+        }
+        assert!(MadeWith::from_json("{\"preset\":\"\",\"params\":{\"of_tomorrow\":1}}").is_none());
+    }
+}

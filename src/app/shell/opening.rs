@@ -1,0 +1,158 @@
+//! Takes scenes that were read from a file over. What was edited while the file was read is not lost: the scene that was read
+//! waits until the user has said what becomes of the edits.
+
+use crossbeam_channel::TryRecvError;
+use egui::Context;
+
+use super::app::{SceneloomApp, one_line};
+use super::files::{Arrived, Left, Next, Opening};
+use super::toasts::Level;
+use super::versions::Opened;
+use editor::Document;
+use job::Named;
+use job::inpaint::InpaintMask;
+use language::tf;
+
+impl SceneloomApp {
+    /// The state that is left if another scene is opened now.
+    pub(crate) fn left(&self) -> Left {
+        Left {
+            content: self.document.settled_scene().content(),
+            unsaved: self.document.is_dirty(),
+        }
+    }
+
+    /// True if there are changes now that the user was not asked about when that state was left.
+    fn edited_since(&self, left: Left) -> bool {
+        self.document.is_dirty() && self.left() != left
+    }
+
+    /// Takes over what was read. During a drag, and while another question is open, it waits.
+    pub(crate) fn take_opened(&mut self, ctx: &Context) {
+        self.leave_arrived();
+        if self.document.is_dragging() || self.files.unsaved.is_some() || self.files.dialogs.is_open() {
+            return;
+        }
+        let Some(opening) = &self.files.opening else {
+            return;
+        };
+        let answer = match opening.scene.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Ok(answer) => answer,
+            Err(TryRecvError::Disconnected) => Err(anyhow::anyhow!("reading it ended unexpectedly")),
+        };
+        let Some(opening) = self.files.opening.take() else {
+            return;
+        };
+        match answer {
+            // A step of the document's own history takes nothing away.
+            Ok(opened) if opening.step.is_none() && self.edited_since(opening.leaves) => {
+                self.files.arrived = Some(Box::new(Arrived { opening, opened }));
+                self.files.unsaved = Some(Next::Arrived);
+                ctx.request_repaint();
+            }
+            Ok(opened) => self.show_opened(opening, opened, ctx),
+            Err(error) => {
+                self.note_opened(opening.recovers, false);
+                self.fail(format!("{}: {}", opening.what, one_line(&error)));
+            }
+        }
+    }
+
+    /// Shows the scene that waited.
+    pub(crate) fn show_arrived(&mut self, ctx: &Context) {
+        if let Some(arrived) = self.files.arrived.take() {
+            let Arrived { opening, opened } = *arrived;
+            self.show_opened(opening, opened, ctx);
+        }
+    }
+
+    /// Gives up the scene that waits if nobody is asked about it any more: the user stays, or nothing was saved.
+    fn leave_arrived(&mut self) {
+        if !self.files.dialogs.is_open() {
+            // The dialog that was to name the file was closed.
+            self.files.after_save = None;
+        }
+        let next = [&self.files.unsaved, &self.files.after_save];
+        if next.iter().any(|n| **n == Some(Next::Arrived)) {
+            return;
+        }
+        if let Some(arrived) = self.files.arrived.take() {
+            self.note_opened(arrived.opening.recovers, false);
+            let text = tf!(
+                "{name} was not opened: your changes stay",
+                name = arrived.opened.scene.name
+            );
+            let now_s = self.now_s();
+            self.toasts.push(Level::Info, text, now_s);
+        }
+    }
+
+    fn show_opened(&mut self, opening: Opening, opened: Opened, ctx: &Context) {
+        let now_s = self.now_s();
+        let Opened {
+            scene,
+            versions,
+            damaged,
+        } = opened;
+        self.generation.forget_scene();
+        self.views.prompt.opened(&scene);
+        if opening.is_import {
+            let text = tf!(
+                "Imported {name} as a draft. Ctrl+Enter generates it.",
+                name = scene.name
+            );
+            self.toasts.push(Level::Info, text, now_s);
+        } else {
+            self.toasts.log(tf!("Opened {name}", name = scene.name), now_s);
+        }
+        let version = match opening.step {
+            Some(label) => {
+                self.document.restore(label, &scene);
+                label
+            }
+            None => {
+                self.document = Document::new(scene);
+                self.generation.versions.replace(versions);
+                "As opened"
+            }
+        };
+        self.tell_damaged(damaged);
+        let opened = self.document.settled_scene().clone();
+        self.generation
+            .versions
+            .push(version.into(), String::new(), opened);
+        self.views.compare.chosen = None;
+        if let Some(path) = &opening.path {
+            self.preferences.settings.remember(path);
+        }
+        // What the camera looked at is not there any more.
+        let extent = self.extent();
+        self.views.view3d.camera.focus_map(extent);
+        // Saving must not replace the file of another scene without asking.
+        self.files.path = opening.path;
+        self.state.choose(&[], crate::tools::Choose::Only);
+        self.state.correcting = false;
+        self.state.tools.region = InpaintMask::default();
+        self.state.named = Named::default();
+        self.state.seed.value = None;
+        self.note_opened(opening.recovers, true);
+        ctx.request_repaint();
+    }
+
+    /// Tells how many versions of a file could not be read.
+    pub(crate) fn tell_damaged(&mut self, damaged: usize) {
+        if damaged > 0 {
+            self.fail(tf!("{n} versions in the file cannot be read", n = damaged));
+        }
+    }
+
+    /// What the question about unsaved changes says of the scene that waits.
+    pub(crate) fn waits_to_be_shown(&self) -> Option<String> {
+        let arrived = self.files.arrived.as_ref()?;
+        Some(tf!(
+            "“{name}” has been read and waits.",
+            name = arrived.opened.scene.name
+        ))
+    }
+}

@@ -1,0 +1,60 @@
+//! What made a version is told in files and used again.
+
+use super::app::SceneloomApp;
+use super::made_with::MadeWith;
+use super::toasts::Level;
+use crate::seed_wish::SeedWish;
+use job::{GenParams, Named, RegionMode};
+use language::tf;
+use scene::SceneRev;
+
+impl SceneloomApp {
+    /// How a job with these parameters makes its result.
+    pub(crate) fn made_with(&self, params: &GenParams) -> MadeWith {
+        let tuning = &self.generation.tuning;
+        let preset = tuning.current(params).and_then(|i| tuning.presets.all.get(i));
+        MadeWith::new(params, preset.map(|p| p.name.as_str()))
+    }
+
+    /// What is known of how the present state was made, for files that tell; null if nothing is.
+    pub(crate) fn parameters(&self) -> serde_json::Value {
+        let made = self
+            .generation
+            .versions
+            .made(self.document.settled_scene().content());
+        made.and_then(|made| serde_json::to_value(made).ok())
+            .unwrap_or_default()
+    }
+
+    /// Sets the knobs to those of a version.
+    pub(crate) fn use_again(&mut self, rev: SceneRev) {
+        let Some(made) = self.generation.versions.made(rev).cloned() else {
+            return;
+        };
+        let params = GenParams {
+            named: Named::default(),
+            strength: 0.0,
+            ..made.params.clone()
+        };
+        match made.params.region {
+            RegionMode::Full => self.generation.live.full_params = params,
+            RegionMode::Auto => {
+                self.generation.live.params = params;
+                self.preferences.settings.quality.clone_from(&made.preset);
+                // The source's trajectory belongs to its settings.
+                self.generation.live.source_changed();
+            }
+        }
+        if made.params.strength > 0.0 {
+            self.state.tools.region_strength = made.params.strength;
+        }
+        self.state.named = made.params.named;
+        self.state.seed = SeedWish {
+            value: Some(made.params.seed),
+            another: false,
+        };
+        let text = tf!("Set: {what}", what = made.in_words());
+        let now_s = self.now_s();
+        self.toasts.push(Level::Info, text, now_s);
+    }
+}

@@ -1,0 +1,108 @@
+//! An outline that is set corner by corner, to choose what lies in it.
+
+use glam::DVec2;
+
+use super::{At, CLICK_SLACK, Context, Event, Key, Mark, Modifiers, Pointer, Role, Sight, ViewKind};
+
+/// The corners set so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Corners {
+    /// From above points of the ego frame, m; in space points of the screen.
+    points: Vec<DVec2>,
+    /// The view in which they were set.
+    view: Option<ViewKind>,
+    /// What was held at the first one.
+    held: Modifiers,
+}
+
+/// What an event does to them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Set {
+    /// Nothing: it is for somebody else.
+    Not,
+    /// A corner came or went.
+    Taken,
+    /// The outline is closed, and this was held when it was begun.
+    Closed(Vec<DVec2>, Modifiers),
+}
+
+impl Corners {
+    pub(super) fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.points.clear();
+    }
+
+    /// The view in which they were set; none if there are none.
+    pub(super) fn view(&self) -> Option<ViewKind> {
+        self.view.filter(|_| !self.is_empty())
+    }
+
+    /// A click sets a corner; one in another view begins anew.
+    pub(super) fn add(&mut self, cx: &Context<'_>, pointer: &Pointer) {
+        let from_above = cx.from_above();
+        let Some(at) = (match from_above {
+            true => cx.ground_m(pointer.at),
+            false => Some(pointer.at),
+        }) else {
+            return;
+        };
+        if self.view != Some(cx.view.kind()) {
+            self.clear();
+        }
+        if self.is_empty() {
+            (self.view, self.held) = (Some(cx.view.kind()), pointer.held);
+        }
+        // The second half of a double click is no corner.
+        let near = CLICK_SLACK / if from_above { cx.view.scale() } else { 1.0 };
+        if self.points.last().is_none_or(|last| last.distance(at) > near) {
+            self.points.push(at);
+        }
+    }
+
+    /// Enter and a double click close the outline, Backspace takes a corner back, Escape all of them.
+    pub(super) fn event(&mut self, event: &Event) -> Set {
+        if self.is_empty() {
+            return Set::Not;
+        }
+        match event {
+            Event::DoubleClick | Event::Key(Key::Enter, ..) => {
+                let points = std::mem::take(&mut self.points);
+                match points.len() {
+                    0..3 => Set::Taken,
+                    _ => Set::Closed(points, self.held),
+                }
+            }
+            Event::Key(Key::Escape, ..) => {
+                self.clear();
+                Set::Taken
+            }
+            Event::Key(Key::Backspace, ..) => {
+                self.points.pop();
+                Set::Taken
+            }
+            _ => Set::Not,
+        }
+    }
+
+    /// The outline with the pointer as its next corner, in the view in which it was begun.
+    pub(super) fn marks(&self, sight: &Sight<'_>) -> Option<Mark> {
+        let from_above = sight.from_above();
+        if self.view() != Some(sight.view.kind()) {
+            return None;
+        }
+        let next = match from_above {
+            true => sight.ground_m(),
+            false => sight.pointer.map(|p| p.at),
+        };
+        let corners = self.points.iter().copied().chain(next);
+        let closed = corners.chain(self.points.first().copied());
+        let at = |p: DVec2| match from_above {
+            true => At::from(p),
+            false => At::Screen(p),
+        };
+        Some(Mark::Dashed(closed.map(at).collect(), Role::Choose))
+    }
+}

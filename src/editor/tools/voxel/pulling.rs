@@ -1,0 +1,30 @@
+//! A face of voxels that is pulled out or pushed in.
+
+use glam::DVec3;
+
+use crate::Edit;
+use crate::pick::{Ray, VoxelHit};
+use crate::tools::Hand;
+use crate::tools::rays::along_axis;
+use crate::voxel_ops::{self, Cell};
+use scene::{Class, Extent, Frame};
+
+/// The edit of a face pulled as far as the pointer is.
+pub(super) fn pulled(ray: &Ray, frame: &Frame, hand: &Hand, first: &VoxelHit, face: &[Cell]) -> Option<Edit> {
+    let [x, y, z] = first.cell;
+    let normal = DVec3::from_array(first.normal.map(f64::from));
+    let surface_m = frame.extent().center(x, y, z) + normal * (Extent::VOXEL_M / 2.0);
+    let way_m = along_axis(ray, surface_m, normal)?;
+    let layers = (way_m / Extent::VOXEL_M).round() as i32;
+    let cells = voxel_ops::extrude(&frame.occupancy, face, first.normal, layers);
+    let cells = voxel_ops::only(
+        &frame.occupancy,
+        hand.both_sides(frame.extent(), cells),
+        layers > 0,
+    );
+    let class = match layers > 0 {
+        true => Class::from_id(first.label)?,
+        false => Class::Free,
+    };
+    (!cells.is_empty()).then_some(Edit::PaintVoxels { cells, class })
+}
