@@ -43,7 +43,7 @@ impl Words {
     /// tokens for the ends of a text.
     pub fn open(folder: &Path) -> Result<Self, StableError> {
         let whole = folder.join("tokenizer.json");
-        let tokenizer = if folder.join("vocab.json").exists() || !whole.exists() {
+        let mut tokenizer = if folder.join("vocab.json").exists() || !whole.exists() {
             of_pairs(folder)?
         } else {
             let bytes = read_bounded(&whole, MOST_BYTES)?;
@@ -54,11 +54,17 @@ impl Words {
             tokenizer.with_truncation(None).map_err(refuse)?;
             tokenizer
         };
+        let pad = TokenizerConfig::read(folder)?.pad;
+        if let Some(pad) = &pad
+            && tokenizer.token_to_id(pad).is_some()
+        {
+            // A mark that fills up texts is one word wherever it stands, as in transformers: "!" in 2.1.
+            tokenizer.add_special_tokens([AddedToken::from(pad.clone(), true)]).map_err(refuse)?;
+        }
         let id = |word: &str| {
             let id = tokenizer.token_to_id(word);
             id.ok_or_else(|| refuse(format!("{}: no token {word:?}", folder.display())))
         };
-        let pad = TokenizerConfig::read(folder)?.pad;
         let largest = tokenizer.get_vocab(true).into_values().max();
         Ok(Self {
             first: id(FIRST)?,
