@@ -1,0 +1,133 @@
+//! The `config.json` of each part, as typed values. What changes a computation and is not known here is refused in one line; what
+//! does not matter for drawing is passed over.
+
+mod control;
+mod scheduler;
+mod text;
+mod unet;
+mod vae;
+
+use std::io::Read;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use crate::StableError;
+
+pub use control::{ControlConfig, MpiConfig};
+pub use scheduler::{BetaSchedule, Predicts, SchedulerConfig, SchedulerKind, Steps};
+pub use text::{Activation, TextConfig, TokenizerConfig};
+pub use unet::{Block, Connector, Heard, UnetConfig};
+pub use vae::VaeConfig;
+
+/// Most bytes of a configuration.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// One number for all levels, or one for each.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "a whole number, or a list of them")]
+pub enum Each {
+    /// For all.
+    All(usize),
+    /// For each level, from the finest to the coarsest.
+    Of(Vec<usize>),
+}
+
+impl Each {
+    /// For each of so many levels; `None` if there is another number of them.
+    pub fn of(&self, levels: usize) -> Option<Vec<usize>> {
+        match self {
+            Self::All(n) => Some(vec![*n; levels]),
+            Self::Of(all) if all.len() == levels => Some(all.clone()),
+            Self::Of(_) => None,
+        }
+    }
+}
+
+/// A JSON file as the wanted type. Errors in one line if it cannot be read, has more than `most` bytes, or says something else.
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path, most: u64) -> Result<T, StableError> {
+    let bytes = read_bounded(path, most)?;
+    serde_json::from_slice(&bytes).map_err(|e| refused(path, e.to_string()))
+}
+
+/// The bytes of a regular file of at most `most` bytes.
+pub(crate) fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, StableError> {
+    let unread = |source| StableError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    let kind = std::fs::metadata(path).map_err(unread)?;
+    if !kind.is_file() {
+        return Err(StableError::Folder {
+            path: path.to_owned(),
+            expected: "a regular file".into(),
+            found: if kind.is_dir() { "a folder" } else { "a device or a pipe" }.into(),
+        });
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(unread)?;
+    // It may grow while it is read.
+    file.take(most + 1).read_to_end(&mut bytes).map_err(unread)?;
+    if bytes.len() as u64 > most {
+        return Err(refused(path, format!("expected at most {most} bytes, found more")));
+    }
+    Ok(bytes)
+}
+
+/// The configuration of a file: read, then checked by its own `check`.
+fn read_config<T: DeserializeOwned>(
+    path: &Path,
+    check: impl FnOnce(&T) -> Result<(), String>,
+) -> Result<T, StableError> {
+    let config = read_json(path, MOST_BYTES)?;
+    check(&config).map_err(|reason| refused(path, reason))?;
+    Ok(config)
+}
+
+fn refused(path: &Path, reason: String) -> StableError {
+    StableError::Config {
+        path: path.to_owned(),
+        reason: reason.replace('\n', " "),
+    }
+}
+
+/// Fails at a field that has another value than those listed, written as in JSON.
+fn check_plain(rest: &Map<String, Value>, plain: &[(&str, &[&str])]) -> Result<(), String> {
+    for (name, allowed) in plain {
+        let Some(value) = rest.get(*name) else { continue };
+        let text = value.to_string();
+        if !allowed.contains(&text.as_str()) {
+            let short: String = text.chars().take(60).collect();
+            return Err(format!("{name} is {short}, expected {}", allowed.join(" or ")));
+        }
+    }
+    Ok(())
+}
+
+/// Fails unless a number lies in a range.
+fn check_range(name: &str, found: usize, range: std::ops::RangeInclusive<usize>) -> Result<(), String> {
+    if range.contains(&found) {
+        return Ok(());
+    }
+    Err(format!(
+        "{name} is {found}, expected {} to {}",
+        range.start(),
+        range.end()
+    ))
+}
+
+/// Fails unless widths can be divided into groups of channels.
+fn check_widths(widths: &[usize], groups: usize) -> Result<(), String> {
+    check_range("the number of block_out_channels", widths.len(), 1..=8)?;
+    for &width in widths {
+        check_range("block_out_channels", width, 1..=8192)?;
+        if groups == 0 || !width.is_multiple_of(groups) {
+            return Err(format!(
+                "norm_num_groups is {groups}, expected a divisor of {width}, a width of block_out_channels"
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,149 @@
+//! Why weights are refused or a picture cannot be drawn. Every message is one line.
+
+use std::path::PathBuf;
+
+use diffusion::schedule::ScheduleError;
+use diffusion::solver::SolverError;
+use thiserror::Error;
+
+/// What this room refuses, or cannot do.
+#[derive(Debug, Error)]
+pub enum StableError {
+    /// The system could not read a file or folder.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file or folder is not there, or is of another kind.
+    #[error("{}: expected {expected}, found {found}", path.display())]
+    Folder {
+        /// Where it was looked for.
+        path: PathBuf,
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// Not a safetensors file, or a damaged one.
+    #[error("{}: not a usable safetensors file: {reason}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A configuration that does not describe a network of this room.
+    #[error("{}: {reason}", path.display())]
+    Config {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Tensors that are missing, have another shape or type, or belong to another network.
+    #[error("{}: {reason}", path.display())]
+    Tensors {
+        /// The folder or file.
+        path: PathBuf,
+        /// The first few names, and how many more.
+        reason: String,
+    },
+    /// An input of the wrong size.
+    #[error("{what} has {found} values, expected {expected}")]
+    Length {
+        /// Which input.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// The length it must have.
+        expected: usize,
+    },
+    /// A value that the pipeline does not take.
+    #[error("{what} is {found}, expected {expected}")]
+    Value {
+        /// Which input.
+        what: &'static str,
+        /// What was given.
+        found: String,
+        /// What may be given.
+        expected: String,
+    },
+    /// NaN, infinity, or so large that the network would overflow.
+    #[error("{what}: value {index} is {value}, expected finite numbers below 1e30")]
+    NotFinite {
+        /// Which input or output.
+        what: &'static str,
+        /// Index of the first such value.
+        index: usize,
+        /// That value.
+        value: f32,
+    },
+    /// The tokenizer refuses a text or its own files.
+    #[error("tokenizer: {0}")]
+    Tokenizer(String),
+    /// A number of steps that the schedule does not have.
+    #[error(transparent)]
+    Schedule(#[from] ScheduleError),
+    /// The solver refuses a state.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// Whoever watched a run ended it. Not an error to show.
+    #[error("stopped after step {step} of {steps}")]
+    Stopped {
+        /// Steps done, from 1.
+        step: usize,
+        /// All steps.
+        steps: usize,
+    },
+    /// Candle or the card could not compute.
+    #[error("candle: {0}")]
+    Backend(String),
+}
+
+impl From<candle_core::Error> for StableError {
+    fn from(error: candle_core::Error) -> Self {
+        // Below the first line stands where in the program it came from.
+        let text = error.to_string();
+        Self::Backend(text.lines().next().unwrap_or("no message").trim().to_owned())
+    }
+}
+
+/// Fails unless an input has the expected length.
+pub(crate) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), StableError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(StableError::Length {
+        what,
+        found,
+        expected,
+    })
+}
+
+/// Fails at the first value that is not finite, or so large that a network would overflow.
+pub(crate) fn check_finite(what: &'static str, values: &[f32]) -> Result<(), StableError> {
+    match values.iter().position(|v| v.is_nan() || v.abs() >= 1e30) {
+        None => Ok(()),
+        Some(index) => Err(StableError::NotFinite {
+            what,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
+/// An error about a value.
+pub(crate) fn wrong(
+    what: &'static str,
+    found: impl std::fmt::Display,
+    expected: impl Into<String>,
+) -> StableError {
+    StableError::Value {
+        what,
+        found: found.to_string(),
+        expected: expected.into(),
+    }
+}

@@ -1,0 +1,96 @@
+//! Attention between tokens.
+
+use candle_core::{DType, Device, Result, Tensor};
+
+use super::{Linear, softmax};
+use crate::StableError;
+use crate::weights::Names;
+
+/// Most scores that are held at once: 256 MiB. Larger attentions go through their queries part by part.
+const MOST_SCORES: usize = 1 << 26;
+
+/// Queries, keys, values and the layer behind, with names as in a UNet: `to_q`, `to_k`, `to_v`, `to_out.0`.
+#[derive(Clone, Debug)]
+pub(crate) struct Attention {
+    query: Linear,
+    key: Linear,
+    value: Linear,
+    out: Linear,
+    heads: usize,
+}
+
+impl Attention {
+    /// Of a UNet: tokens of `width` that look at tokens of `context`; only the layer behind has a bias. `heads` divides `width`.
+    pub fn load(
+        names: &Names<'_>,
+        width: usize,
+        context: usize,
+        heads: usize,
+    ) -> std::result::Result<Self, StableError> {
+        Ok(Self {
+            query: Linear::load_without_bias(&names.at("to_q"), width, width)?,
+            key: Linear::load_without_bias(&names.at("to_k"), context, width)?,
+            value: Linear::load_without_bias(&names.at("to_v"), context, width)?,
+            out: Linear::load(&names.at("to_out.0"), width, width)?,
+            heads,
+        })
+    }
+
+    /// With biases, and the first of several names that the file has for query, key, value and the layer behind.
+    pub fn load_named(
+        names: &Names<'_>,
+        [query, key, value, out]: [&[&str]; 4],
+        width: usize,
+        heads: usize,
+    ) -> std::result::Result<Self, StableError> {
+        let layer = |all: &[&str]| Linear::load(&names.at_any(all, "weight"), width, width);
+        Ok(Self {
+            query: layer(query)?,
+            key: layer(key)?,
+            value: layer(value)?,
+            out: layer(out)?,
+            heads,
+        })
+    }
+
+    /// Tokens `x` `[batch, tokens, width]` look at `context` `[batch, others, ..]`. `mask` `[tokens, others]` is added to the
+    /// scores.
+    pub fn forward(&self, x: &Tensor, context: &Tensor, mask: Option<&Tensor>) -> Result<Tensor> {
+        let (batch, tokens, width) = x.dims3()?;
+        let each = width / self.heads;
+        let by_head = |x: &Tensor| {
+            let (batch, tokens, _) = x.dims3()?;
+            let x = x.reshape((batch, tokens, self.heads, each))?.transpose(1, 2)?;
+            x.contiguous()?.reshape((batch * self.heads, tokens, each))
+        };
+        // The scale goes to the queries, so that products stay small.
+        let scale = 1.0 / (each as f64).sqrt();
+        let queries = by_head(&self.query.forward(x)?.affine(scale, 0.0)?)?;
+        let keys = by_head(&self.key.forward(context)?)?.t()?.contiguous()?;
+        let values = by_head(&self.value.forward(context)?)?;
+        let row = batch * self.heads * keys.dim(2)?;
+        let part = (MOST_SCORES / row.max(1)).clamp(1, tokens.max(1));
+        let mut parts = Vec::new();
+        for first in (0..tokens).step_by(part) {
+            let count = part.min(tokens - first);
+            let scores = queries.narrow(1, first, count)?.contiguous()?.matmul(&keys)?;
+            let scores = match mask {
+                Some(mask) => {
+                    let mask = mask.narrow(0, first, count)?;
+                    scores.to_dtype(DType::F32)?.broadcast_add(&mask)?
+                }
+                None => scores,
+            };
+            parts.push(softmax(&scores)?.to_dtype(x.dtype())?.matmul(&values)?);
+        }
+        let mixed = Tensor::cat(&parts, 1)?.reshape((batch, self.heads, tokens, each))?;
+        let mixed = mixed.transpose(1, 2)?.contiguous()?;
+        self.out.forward(&mixed.reshape((batch, tokens, width))?)
+    }
+}
+
+/// What lets each of `tokens` look at itself and those before it: 0 there, a large negative number elsewhere.
+pub(crate) fn causal_mask(tokens: usize, device: &Device) -> Result<Tensor> {
+    let all = (0..tokens).flat_map(|i| (0..tokens).map(move |j| if j > i { -1e30f32 } else { 0.0 }));
+    Tensor::from_vec(all.collect::<Vec<_>>(), (tokens, tokens), device)
+}

@@ -1,0 +1,57 @@
+//! A residual block of two convolutions.
+
+use candle_core::{Result, Tensor};
+
+use super::{Conv, GroupNorm, Linear};
+use crate::StableError;
+use crate::weights::Names;
+
+/// x + convolution(silu(norm(convolution(silu(norm(x))) + time))), with x through a 1x1 convolution where the channels change.
+#[derive(Clone, Debug)]
+pub(crate) struct Residual {
+    norms: [GroupNorm; 2],
+    convolutions: [Conv; 2],
+    time: Option<Linear>,
+    shortcut: Option<Conv>,
+}
+
+impl Residual {
+    /// `time` is the width of the timestep's embedding, if the block hears of it.
+    pub fn load(
+        names: &Names<'_>,
+        [inputs, outputs]: [usize; 2],
+        time: Option<usize>,
+        groups: usize,
+        epsilon: f64,
+    ) -> std::result::Result<Self, StableError> {
+        let time = time.map(|width| Linear::load(&names.at("time_emb_proj"), width, outputs));
+        let shortcut = (inputs != outputs).then(|| Conv::load_point(&names.at("conv_shortcut"), inputs, outputs));
+        Ok(Self {
+            norms: [
+                GroupNorm::load(&names.at("norm1"), inputs, groups, epsilon)?,
+                GroupNorm::load(&names.at("norm2"), outputs, groups, epsilon)?,
+            ],
+            convolutions: [
+                Conv::load(&names.at("conv1"), inputs, outputs)?,
+                Conv::load(&names.at("conv2"), outputs, outputs)?,
+            ],
+            time: time.transpose()?,
+            shortcut: shortcut.transpose()?,
+        })
+    }
+
+    /// Of a map, and of the timestep's embedding `[1, width]`.
+    pub fn forward(&self, x: &Tensor, time: Option<&Tensor>) -> Result<Tensor> {
+        let mut y = self.convolutions[0].forward(&self.norms[0].forward(x)?.silu()?)?;
+        if let (Some(layer), Some(time)) = (&self.time, time) {
+            let told = layer.forward(&time.silu()?)?;
+            let (batch, width) = told.dims2()?;
+            y = y.broadcast_add(&told.reshape((batch, width, 1, 1))?)?;
+        }
+        let y = self.convolutions[1].forward(&self.norms[1].forward(&y)?.silu()?)?;
+        match &self.shortcut {
+            Some(shortcut) => shortcut.forward(x)? + y,
+            None => x + y,
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Stable Diffusion 1.5 and 2.1 in candle, from public weights in folders as diffusers writes them, for pictures of driving
+//! scenes: text encoder, autoencoder, UNet, ControlNet, schedulers, and what SyntheOcc adds: planes of classes through 1x1
+//! convolutions, and attention to the neighbouring views and frames.
+//!
+//! [`Pipeline::open`] checks every name and shape before it reads a number. [`Pipeline::draw`] is a pure function of its
+//! [`Request`]. Sources: Rombach et al. 2022 (arXiv 2112.10752), Zhang et al. 2023 (ControlNet, arXiv 2302.05543), Li et al.
+//! 2024 (SyntheOcc, arXiv 2410.00337), and the layout of weights of diffusers 0.42.
+
+#![forbid(unsafe_code)]
+
+pub mod config;
+mod control;
+mod error;
+mod layers;
+mod machine;
+pub mod noise;
+mod pictures;
+mod pipeline;
+pub mod sampling;
+#[cfg(test)]
+mod tests;
+mod text;
+mod unet;
+mod vae;
+mod weights;
+
+pub use control::{ControlNet, MpiEncoder};
+pub use error::StableError;
+pub(crate) use error::{check_finite, check_length, wrong};
+pub use machine::Machine;
+pub use pictures::Pictures;
+pub use pipeline::{Control, Drawn, Folders, Onward, Pipeline, Planes, Request, Start, Step};
+pub use text::{TextEncoder, Words};
+pub use unet::{Extra, Unet};
+pub use vae::Vae;
+pub use weights::Weights;

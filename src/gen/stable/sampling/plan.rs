@@ -1,0 +1,201 @@
+//! Which training steps a run visits.
+
+use diffusion::schedule::{Betas, Level, Schedule, ScheduleError};
+use diffusion::solver::Prediction;
+
+use crate::config::{BetaSchedule, Predicts, SchedulerConfig, SchedulerKind, Steps};
+use crate::{StableError, wrong};
+
+/// alpha^2 of the noisiest step where a method divides by its signal and the schedule leaves none.
+const LEAST_ALPHA_BAR: f64 = 1.0 / (1u64 << 24) as f64;
+
+/// A network call: from which level to which.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Call {
+    /// Level of the state that the network is shown; `t` is what it is told.
+    pub at: Level,
+    /// Level that the step leaves from, which only PNDM has elsewhere.
+    pub from: Level,
+    /// Level of the state behind the step.
+    pub to: Level,
+}
+
+/// All calls of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The method.
+    pub kind: SchedulerKind,
+    /// What the network says.
+    pub prediction: Prediction,
+    /// The calls in order.
+    pub calls: Vec<Call>,
+    /// `calls + 1` levels from noise to data, for methods that remember.
+    pub(super) levels: Vec<Level>,
+    /// Spread of the noise that a run from nothing starts with.
+    pub spread: f64,
+}
+
+impl Plan {
+    /// The last `strength` (0 to 1) of `steps` steps by `kind`; 1 is a run from nothing, 0 has no calls. Errors if there are no
+    /// steps or more than the schedule has, or two fall together.
+    pub fn new(
+        config: &SchedulerConfig,
+        kind: SchedulerKind,
+        steps: usize,
+        strength: f64,
+    ) -> Result<Self, StableError> {
+        if !(0.0..=1.0).contains(&strength) {
+            return Err(wrong("strength", strength, "0 to 1"));
+        }
+        let train = config.num_train_timesteps;
+        if steps == 0 {
+            return Err(ScheduleError::NoSteps.into());
+        }
+        if steps > train {
+            let error = ScheduleError::TooManySteps {
+                found: steps,
+                train_steps: train,
+            };
+            return Err(error.into());
+        }
+        let (first, last) = (config.beta_start, config.beta_end);
+        let betas = match config.beta_schedule {
+            BetaSchedule::Linear => Betas::Linear { first, last },
+            BetaSchedule::ScaledLinear => Betas::ScaledLinear { first, last },
+            BetaSchedule::Cosine => Betas::Cosine,
+        };
+        let schedule = Table {
+            schedule: Schedule::new(betas, train, config.rescale_betas_zero_snr)?,
+            divides: kind != SchedulerKind::Ddim,
+        };
+        let spacing = config.timestep_spacing.unwrap_or(match kind {
+            SchedulerKind::Ddim | SchedulerKind::Pndm => Steps::Leading,
+            _ => Steps::Linspace,
+        });
+        let all = timesteps(kind, spacing, steps, train, config.steps_offset);
+        if all.windows(2).any(|w| w[1] >= w[0]) {
+            let error = ScheduleError::NotDecreasing {
+                found: steps,
+                train_steps: train,
+            };
+            return Err(error.into());
+        }
+        let kept = ((steps as f64 * strength) as usize).min(steps);
+        let told = &all[steps - kept..];
+        let to_one = config.set_alpha_to_one.unwrap_or(kind == SchedulerKind::Ddim);
+        let behind = match kind {
+            SchedulerKind::Ddim | SchedulerKind::Pndm if !to_one => Level {
+                t: -1.0,
+                ..schedule.at(0.0)
+            },
+            _ => Level::CLEAN,
+        };
+        let mut levels: Vec<Level> = told.iter().map(|t| schedule.at(*t)).collect();
+        levels.push(behind);
+        let stride = (train / steps) as f64;
+        let calls = match kind {
+            SchedulerKind::Ddim => strides(&schedule, told, stride, behind),
+            SchedulerKind::Pndm => repeated(strides(&schedule, told, stride, behind), &schedule, stride),
+            _ => levels
+                .windows(2)
+                .map(|w| Call {
+                    at: w[0],
+                    from: w[0],
+                    to: w[1],
+                })
+                .collect(),
+        };
+        let spread = match (kind, spacing) {
+            (SchedulerKind::Euler, Steps::Linspace | Steps::Trailing) => levels[0].sigma,
+            _ => 1.0,
+        };
+        Ok(Self {
+            kind,
+            prediction: match config.prediction_type {
+                Predicts::Noise => Prediction::Epsilon,
+                Predicts::V => Prediction::V,
+            },
+            calls,
+            levels,
+            spread,
+        })
+    }
+}
+
+/// Steps of equal stride. diffusers counts the stride in whole training steps, also where the next timestep is one further.
+fn strides(schedule: &Table, told: &[f64], stride: f64, behind: Level) -> Vec<Call> {
+    let call = |t: &f64| {
+        let at = schedule.at(*t);
+        let to = if *t < stride { behind } else { schedule.at(t - stride) };
+        Call { at, from: at, to }
+    };
+    told.iter().map(call).collect()
+}
+
+/// PNDM does its first step twice: again from where it left, with the mean of what the network says at both of its ends.
+fn repeated(mut calls: Vec<Call>, schedule: &Table, stride: f64) -> Vec<Call> {
+    if let Some(second) = calls.get(1).copied() {
+        let again = Call {
+            at: second.at,
+            from: schedule.at(second.at.t + stride),
+            to: second.at,
+        };
+        calls.insert(1, again);
+    }
+    calls
+}
+
+/// Levels of a schedule at whole training steps and between.
+struct Table {
+    schedule: Schedule,
+    /// Whether the method divides by the signal of the noisiest step.
+    divides: bool,
+}
+
+impl Table {
+    fn whole(&self, t: usize) -> Level {
+        let level = self.schedule.level(t.min(self.schedule.train_steps() - 1));
+        match self.divides && level.alpha == 0.0 {
+            true => Level::from_log_alpha_bar(level.t, LEAST_ALPHA_BAR.ln()),
+            false => level,
+        }
+    }
+
+    /// Between two steps noise per signal is a straight line.
+    fn at(&self, t: f64) -> Level {
+        let below = t.max(0.0).floor();
+        let level = self.whole(below as usize);
+        let part = t - below;
+        if part <= 0.0 {
+            return Level { t, ..level };
+        }
+        let ratio = |level: Level| level.sigma / level.alpha;
+        let above = ratio(self.whole(below as usize + 1));
+        let between = ratio(level) * (1.0 - part) + above * part;
+        Level::from_log_alpha_bar(t, -(between * between).ln_1p())
+    }
+}
+
+/// The timesteps of diffusers, from the noisiest on.
+fn timesteps(kind: SchedulerKind, spacing: Steps, steps: usize, train: usize, offset: usize) -> Vec<f64> {
+    // DPM-Solver++ and UniPC count the end as a step of its own, and leave it out.
+    let extra = usize::from(matches!(kind, SchedulerKind::DpmPp | SchedulerKind::UniPc));
+    let (total, count) = (train as f64, (steps + extra) as f64);
+    let most = total - 1.0;
+    let at = |i: usize| match spacing {
+        Steps::Linspace if count == 1.0 => 0.0,
+        Steps::Linspace => {
+            let t = (count - 1.0 - i as f64) * (most / (count - 1.0));
+            match kind {
+                SchedulerKind::Euler => t,
+                _ => t.round_ties_even(),
+            }
+        }
+        Steps::Leading => {
+            let stride = train / (steps + extra);
+            ((steps + extra - 1 - i) * stride + offset) as f64
+        }
+        Steps::Trailing => (total - i as f64 * (total / steps as f64)).round_ties_even() - 1.0,
+    };
+    (0..steps).map(|i| at(i).clamp(0.0, most)).collect()
+}

@@ -1,0 +1,299 @@
+//! What holds of every run: the same bytes, pixels that stay, runs that end when told, and refusals in one line.
+
+use std::ops::ControlFlow;
+
+use super::opened;
+use crate::noise::{carried, fresh, with_prior};
+use crate::{Control, Drawn, Onward, Pictures, Pipeline, Planes, Request, StableError, Start};
+use diffusion::solver::Guidance;
+
+fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn request(seed: u64) -> Request<'static> {
+    Request {
+        steps: 4,
+        ..Request::new("a road", [16, 24], seed)
+    }
+}
+
+fn drawn(pipeline: &Pipeline, request: &Request<'_>) -> Drawn {
+    pipeline.draw(request, go_on).expect("drawn")
+}
+
+fn some_picture(count: usize, size: [usize; 2]) -> Pictures {
+    let bytes: Vec<u8> = (0..count * size[0] * size[1] * 3).map(|i| (i * 37 % 251) as u8).collect();
+    Pictures::from_bytes(count, size, &bytes).expect("pictures")
+}
+
+#[test]
+fn the_same_request_gives_the_same_bits_on_any_number_of_threads() {
+    let pipeline = opened("sd15");
+    let bits = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let drawn = pool.install(|| drawn(&pipeline, &request(3)));
+        drawn.pictures.rgb().iter().map(|v| v.to_bits()).collect::<Vec<_>>()
+    };
+    let one = bits(1);
+    assert_eq!(one, bits(2));
+    assert_eq!(one, bits(16));
+    assert_ne!(drawn(&pipeline, &request(3)).pictures, drawn(&pipeline, &request(4)).pictures);
+}
+
+#[test]
+fn pixels_outside_of_the_mask_stay_to_the_bit() {
+    let pipeline = opened("sd15");
+    let before = some_picture(1, [16, 24]);
+    let mask: Vec<bool> = (0..16 * 24).map(|i| i % 24 < 7 && i / 24 > 4).collect();
+    for strength in [0.5, 1.0] {
+        let start = Some(Start {
+            pictures: &before,
+            strength,
+            mask: Some(&mask),
+        });
+        let after = drawn(&pipeline, &Request { start, ..request(1) }).pictures;
+        let pairs = after.rgb().chunks_exact(3).zip(before.rgb().chunks_exact(3)).zip(&mask);
+        let changed = pairs.clone().filter(|((a, b), anew)| **anew && a != b).count();
+        assert!(pairs.clone().all(|((a, b), anew)| *anew || a == b));
+        assert!(changed > 60, "{changed}");
+    }
+    // What is drawn depends on what stays around it.
+    let other = some_picture(1, [16, 24]).rgb().iter().map(|v| -v).collect();
+    let other = Pictures::new(1, [16, 24], other).expect("a picture");
+    let inside = |pictures: &Pictures| {
+        let start = Some(Start {
+            pictures,
+            strength: 1.0,
+            mask: Some(&mask),
+        });
+        let after = drawn(&pipeline, &Request { start, ..request(1) }).pictures;
+        let pixels = after.rgb().chunks_exact(3).zip(&mask).filter(|(_, m)| **m);
+        pixels.flat_map(|(p, _)| p.to_vec()).collect::<Vec<f32>>()
+    };
+    assert_ne!(inside(&before), inside(&other));
+}
+
+#[test]
+fn nothing_to_draw_costs_no_call() {
+    let pipeline = opened("sd15");
+    let before = some_picture(1, [16, 24]);
+    let nothing = vec![false; 16 * 24];
+    for (strength, mask) in [(0.0, None), (1.0, Some(nothing.as_slice()))] {
+        let start = Some(Start {
+            pictures: &before,
+            strength,
+            mask,
+        });
+        let after = drawn(&pipeline, &Request { start, ..request(1) });
+        assert_eq!((after.calls, after.pictures), (0, before.clone()));
+    }
+}
+
+#[test]
+fn strength_keeps_or_leaves_the_picture() {
+    let pipeline = opened("sd15");
+    let before = some_picture(1, [16, 24]);
+    let clean = pipeline.encode(&before).expect("encoded");
+    let off = |strength| {
+        let start = Some(Start {
+            pictures: &before,
+            strength,
+            mask: None,
+        });
+        let asked = Request {
+            steps: 20,
+            guidance: Guidance::NONE,
+            start,
+            ..request(2)
+        };
+        let after = drawn(&pipeline, &asked).latents;
+        after.iter().zip(&clean).map(|(a, b)| (a - b).powi(2)).sum::<f32>()
+    };
+    assert!(off(0.1) < off(0.5) && off(0.5) < off(1.0));
+}
+
+#[test]
+fn a_run_ends_when_its_watcher_says_so() {
+    let pipeline = opened("sd15");
+    let mut seen = Vec::new();
+    let stopped = pipeline.draw(&request(1), |step| {
+        seen.push((step.step, step.steps, step.clean_estimate().len()));
+        match step.step {
+            2 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    });
+    // PNDM calls once more than it has steps.
+    assert!(matches!(stopped, Err(StableError::Stopped { step: 2, steps: 5 })));
+    assert_eq!(seen, [(1, 5, 4 * 8 * 12), (2, 5, 4 * 8 * 12)]);
+}
+
+#[test]
+fn guidance_of_one_and_zero_asks_one_branch() {
+    let pipeline = opened("sd15");
+    let with = |weight, negative: &str, prompt: &str| {
+        let asked = Request {
+            prompts: vec![prompt.into()],
+            negative: negative.into(),
+            guidance: Guidance { weight, rescale: 0.0 },
+            ..request(1)
+        };
+        drawn(&pipeline, &asked)
+    };
+    assert_eq!(with(1.0, "a", "road").latents, with(1.0, "b", "road").latents);
+    assert_eq!(with(0.0, "a", "road").latents, with(0.0, "a", "car").latents);
+    assert_eq!(with(0.0, "road", "x").latents, with(1.0, "x", "road").latents);
+    assert_eq!([with(1.0, "", "a").calls, with(7.0, "", "a").calls], [5, 10]);
+}
+
+#[test]
+fn a_control_is_heard_as_loud_and_as_long_as_asked() {
+    let pipeline = opened("sd15");
+    let picture: Vec<f32> = (0..3 * 16 * 24).map(|i| (i % 7) as f32 / 7.0).collect();
+    let with = |scale, during| {
+        let controls = vec![Control {
+            scale,
+            during,
+            ..Control::new(0, &picture)
+        }];
+        drawn(&pipeline, &Request { controls, ..request(1) }).latents
+    };
+    let silent = drawn(&pipeline, &request(1)).latents;
+    assert_eq!(with(0.0, [0.0, 1.0]), silent);
+    assert_eq!(with(1.0, [0.0, 0.0]), silent);
+    let loud = with(1.0, [0.0, 1.0]);
+    assert_ne!(loud, silent);
+    let early = with(1.0, [0.0, 0.5]);
+    assert!(early != loud && early != silent);
+}
+
+#[test]
+fn a_reference_frame_comes_back_and_is_heard() {
+    let folders = crate::Folders {
+        unet: super::folder("ring").join("unet_add_zero_linear_2"),
+        controls: Vec::new(),
+        ..crate::Folders::of(&super::folder("ring"))
+    };
+    let pipeline = Pipeline::open(&folders, &crate::Machine::cpu()).expect("a model");
+    assert!(pipeline.unet().hears_frames());
+    let size = [8, 14];
+    let mask: Vec<bool> = (0..12 * 8 * 14).map(|i| i >= 6 * 8 * 14).collect();
+    let with = |pictures: &Pictures| {
+        let asked = Request {
+            views: 6,
+            frames: 2,
+            steps: 2,
+            size,
+            start: Some(Start {
+                pictures,
+                strength: 1.0,
+                mask: Some(&mask),
+            }),
+            ..request(1)
+        };
+        drawn(&pipeline, &asked)
+    };
+    let one = some_picture(12, size);
+    let other: Vec<f32> = one.rgb().iter().map(|v| v * 0.5).collect();
+    let other = Pictures::new(12, size, other).expect("pictures");
+    let (a, b) = (with(&one), with(&other));
+    let half = 6 * 8 * 14 * 3;
+    assert_eq!(a.pictures.rgb()[..half], one.rgb()[..half]);
+    assert_ne!(a.pictures.rgb()[half..], b.pictures.rgb()[half..]);
+}
+
+#[test]
+fn the_next_frame_goes_on_from_the_one_before() {
+    let pipeline = opened("sd15");
+    let first = drawn(&pipeline, &request(5));
+    let size = pipeline.latent_size(1, [16, 24]);
+    let still: Vec<Option<u32>> = (0..8 * 12).map(Some).collect();
+    let onward = Onward {
+        pictures: &first.pictures,
+        cells: &still,
+        strength: 0.5,
+        frame: 1,
+    };
+    let next = pipeline.next_frame(&first, &onward, &request(5), go_on).expect("drawn");
+    assert_eq!(next.noise, first.noise, "nothing moved");
+    let nowhere = vec![None; 8 * 12];
+    let onward = Onward { cells: &nowhere, ..onward };
+    let next = pipeline.next_frame(&first, &onward, &request(5), go_on).expect("drawn");
+    assert_eq!(next.noise, fresh(5, 1, size));
+}
+
+#[test]
+fn noise_that_is_carried_stays_white() {
+    let size = [1, 4, 20, 30];
+    let (before, new) = (fresh(1, 0, size), fresh(1, 1, size));
+    // One to the right; two cells that name the same; one that is new.
+    let mut from: Vec<Option<u32>> = (0..600).map(|i| (i % 30 != 0).then(|| i as u32 - 1)).collect();
+    from[5] = from[4];
+    let moved = carried(&before, &from, &new, size).expect("carried");
+    assert_eq!(moved[1], before[0]);
+    assert_eq!(moved[600 + 31], before[600 + 30]);
+    assert_eq!((moved[5], moved[0]), (new[5], new[0]));
+    let variance = moved.iter().map(|v| v * v).sum::<f32>() / moved.len() as f32;
+    assert!((variance - 1.0).abs() < 0.1, "{variance}");
+    let error = carried(&before, &vec![Some(600); 600], &new, size).expect_err("no such cell");
+    assert_eq!(error.to_string(), "cell of the frame before is 600, expected less than 600");
+    assert_eq!(with_prior(&[1.0, 2.0], &[10.0, 0.0], 0.03).expect("a prior"), [1.3, 2.0]);
+    // Fixed by seed, frame and place.
+    assert_eq!(fresh(1, 0, [2, 4, 20, 30])[..4 * 600], before);
+    assert!(fresh(u64::MAX, u32::MAX, size).iter().all(|v| v.is_finite()));
+}
+
+#[test]
+fn bytes_come_back_as_they_were() {
+    let bytes: Vec<u8> = (0..=255).flat_map(|b| [b, b, b]).collect();
+    let pictures = Pictures::from_bytes(1, [16, 16], &bytes).expect("a picture");
+    assert_eq!(pictures.to_bytes(), bytes);
+    assert!(Pictures::from_bytes(2, [16, 16], &bytes).is_err());
+    assert!(Pictures::new(1, [1, 1], vec![f32::NAN; 3]).is_err());
+    assert!(Pictures::new(usize::MAX, [8192, 8192], vec![]).is_err());
+}
+
+#[test]
+fn requests_that_do_not_fit_are_refused_in_one_line() {
+    let (plain, ring) = (opened("sd15"), opened("ring"));
+    let (picture, numbers) = (some_picture(1, [16, 24]), vec![0.0; 9]);
+    let refused = |pipeline: &Pipeline, request: Request<'_>| {
+        let error = pipeline.draw(&request, go_on).expect_err("refused").to_string();
+        assert!(!error.contains('\n'), "{error}");
+        error
+    };
+    let start = |strength, mask| {
+        Some(Start {
+            pictures: &picture,
+            strength,
+            mask,
+        })
+    };
+    let bad = f64::NAN;
+    for (request, begins) in [
+        (Request { size: [16, 23], ..request(1) }, "side of a picture is 23"),
+        (Request { size: [0, 16], ..request(1) }, "side of a picture is 0"),
+        (Request { views: 0, ..request(1) }, "number of pictures is 0"),
+        (Request { views: usize::MAX, frames: 3, ..request(1) }, "number of pictures is 18446744073709551615"),
+        (Request { prompts: vec![], ..request(1) }, "prompts has 0 values"),
+        (Request { steps: 0, ..request(1) }, "steps is 0"),
+        (Request { steps: 1001, ..request(1) }, "steps is 1001"),
+        (Request { guidance: Guidance { weight: bad, rescale: 0.0 }, ..request(1) }, "guidance is NaN"),
+        (Request { noise: Some(vec![0.0; 3]), ..request(1) }, "noise has 3 values, expected 384"),
+        (Request { noise: Some(vec![f32::NAN; 384]), ..request(1) }, "noise: value 0 is NaN"),
+        (Request { start: start(2.0, None), ..request(1) }, "strength is 2"),
+        (Request { start: start(1.0, Some(&[true])), ..request(1) }, "mask has 1 values, expected 384"),
+        (Request { start: start(1.0, None), size: [16, 16], ..request(1) }, "size of the pictures to go out from"),
+        (Request { controls: vec![Control::new(3, &numbers)], ..request(1) }, "ControlNet is 3"),
+        (Request { controls: vec![Control::new(0, &numbers)], ..request(1) }, "picture of a ControlNet has 9 values"),
+        (Request { planes: Some(Planes { ids: &numbers, scale: 1.0 }), ..request(1) }, "multi-plane images is 9"),
+    ] {
+        let error = refused(&plain, request);
+        assert!(error.starts_with(begins), "{error}");
+    }
+    let error = refused(&ring, request(1));
+    assert_eq!(error, "number of views is 1, expected 6, those of the UNet");
+    let error = refused(&ring, Request { views: 6, controls: vec![Control::new(0, &numbers)], ..request(1) });
+    assert!(error.starts_with("condition of a ControlNet that takes planes"), "{error}");
+}

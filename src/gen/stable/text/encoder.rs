@@ -1,0 +1,103 @@
+//! CLIP's text encoder: a transformer in which each token looks at those before it.
+
+use candle_core::{Device, Tensor};
+
+use crate::config::{Activation, TextConfig};
+use crate::layers::{Attention, LayerNorm, Linear, causal_mask, quick_gelu};
+use crate::weights::{Names, Weights};
+use crate::{Machine, StableError, wrong};
+
+struct Layer {
+    norms: [LayerNorm; 2],
+    attention: Attention,
+    widen: Linear,
+    narrow: Linear,
+}
+
+/// Token ids to what the UNet listens to.
+pub struct TextEncoder {
+    config: TextConfig,
+    words: Tensor,     // [vocab, width]
+    positions: Tensor, // [tokens, width]
+    layers: Vec<Layer>,
+    norm: LayerNorm,
+    mask: Tensor,
+    device: Device,
+}
+
+impl TextEncoder {
+    /// Of weights, whose names may begin with `text_model.` or not. Errors if they do not fit the configuration.
+    pub fn load(config: TextConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
+        // A table of positions stands in old files, and the projection of the whole network in some.
+        let ignored = ["position_ids", "text_projection.weight"];
+        let config = &config;
+        weights.build(machine, &ignored, |names| Self::of(config, names, machine))
+    }
+
+    fn of(config: &TextConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
+        const PREFIX: &str = "text_model";
+        let embeddings = "embeddings.token_embedding.weight";
+        let names = match names.at(PREFIX).has(embeddings) || !names.has(embeddings) {
+            true => names.at(PREFIX),
+            false => names.clone(),
+        };
+        let (width, epsilon) = (config.hidden_size, config.layer_norm_eps);
+        let layer = |i: usize| {
+            let names = names.at("encoder.layers").at(i);
+            let attention: [&[&str]; 4] = [&["q_proj"], &["k_proj"], &["v_proj"], &["out_proj"]];
+            Ok(Layer {
+                norms: [
+                    LayerNorm::load(&names.at("layer_norm1"), width, epsilon)?,
+                    LayerNorm::load(&names.at("layer_norm2"), width, epsilon)?,
+                ],
+                attention: Attention::load_named(
+                    &names.at("self_attn"),
+                    attention,
+                    width,
+                    config.num_attention_heads,
+                )?,
+                widen: Linear::load(&names.at("mlp.fc1"), width, config.intermediate_size)?,
+                narrow: Linear::load(&names.at("mlp.fc2"), config.intermediate_size, width)?,
+            })
+        };
+        let at = names.at("embeddings");
+        let tokens = config.max_position_embeddings;
+        Ok(Self {
+            words: at.tensor("token_embedding.weight", &[config.vocab_size, width])?,
+            positions: at.tensor("position_embedding.weight", &[tokens, width])?,
+            layers: (0..config.num_hidden_layers).map(layer).collect::<Result<_, StableError>>()?,
+            norm: LayerNorm::load(&names.at("final_layer_norm"), width, epsilon)?,
+            mask: causal_mask(tokens, &machine.device)?,
+            device: machine.device.clone(),
+            config: config.clone(),
+        })
+    }
+
+    /// Sizes of the network.
+    pub fn config(&self) -> &TextConfig {
+        &self.config
+    }
+
+    /// The last hidden states `[1, tokens, width]` of one text's ids, behind the final norm. Errors if an id is no word or the
+    /// number of ids is not that of the positions.
+    pub fn encode(&self, ids: &[u32]) -> Result<Tensor, StableError> {
+        crate::check_length("token ids", ids.len(), self.config.max_position_embeddings)?;
+        if let Some(id) = ids.iter().find(|id| **id as usize >= self.config.vocab_size) {
+            let expected = format!("less than {}, the words of the encoder", self.config.vocab_size);
+            return Err(wrong("token id", id, expected));
+        }
+        let ids = Tensor::from_slice(ids, ids.len(), &self.device)?;
+        let mut x = (self.words.index_select(&ids, 0)? + &self.positions)?.unsqueeze(0)?;
+        for layer in &self.layers {
+            let y = layer.norms[0].forward(&x)?;
+            x = (&x + layer.attention.forward(&y, &y, Some(&self.mask))?)?;
+            let y = layer.widen.forward(&layer.norms[1].forward(&x)?)?;
+            let y = match self.config.hidden_act {
+                Activation::QuickGelu => quick_gelu(&y)?,
+                Activation::Gelu => y.gelu_erf()?,
+            };
+            x = (&x + layer.narrow.forward(&y)?)?;
+        }
+        Ok(self.norm.forward(&x)?)
+    }
+}

@@ -1,0 +1,12 @@
+//! Weights as diffusers keeps them: folders of safetensors files, whole or in shards.
+//!
+//! Files are read tensor by tensor at their offsets, not mapped into memory. A map would need `unsafe` (a file that somebody
+//! changes under a map is undefined behaviour) and would gain nothing: every tensor is read once, converted once, and then
+//! lies in its own memory, so at most one tensor is held twice.
+
+mod file;
+mod folder;
+mod names;
+
+pub use folder::Weights;
+pub(crate) use names::Names;
