@@ -225,6 +225,7 @@ pub fn camera_input(scene: &Scene, detail: Detail) -> CameraInput<'_> {
         background: &scene.background,
         conditions: scene.conditions,
         detail,
+        paint: None,
     }
 }
 

@@ -5,17 +5,17 @@ use std::ops::ControlFlow;
 use anyhow::{Context, bail};
 
 use formats::video::{VideoKind, VideoWriter};
-use nets::picture::PictureNets;
 use scene::Scene;
 use sensors::appearance::Quality;
 use sensors::cameras::{
     self, CameraPicture, Detail, Ready, RenderContext, RenderOptions, SourceId, ViewId, bounds, learned,
 };
-use sensors::painter::{PaintOptions, Painter};
+use sensors::painter::{Paint, PaintWith};
 use viewport::ViewCamera;
 
 use crate::camera_views::{camera_input, paint_input};
 use crate::capture::{CaptureOptions, Subject, capture};
+use crate::painting::PaintWish;
 use crate::picture::{self, Picture, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// What is shown.
@@ -54,9 +54,19 @@ pub struct ClipOptions {
     pub span_s: [f64; 2],
     /// Frames per second.
     pub rate_hz: f64,
+    /// What paints learned pictures; the weights that ship if none.
+    pub paint: Option<PaintWith>,
 }
 
 impl ClipOptions {
+    /// True if networks paint its pictures.
+    pub fn paints(&self) -> bool {
+        match self.view {
+            ClipView::Cameras { view, source, .. } => cameras::source_of(view, source).id() == learned::ID,
+            _ => false,
+        }
+    }
+
     /// The moments that are shown, s.
     fn times_s(&self) -> Vec<f64> {
         let [from, to] = self.span_s;
@@ -131,7 +141,7 @@ enum Drawer {
     },
     Bev,
     Map([u32; 2]),
-    Cameras(ClipOptions, Option<Painter>),
+    Cameras(ClipOptions, Option<Box<dyn Paint>>),
 }
 
 /// Pixels of a cell from above: the whole map about so high.
@@ -163,11 +173,12 @@ impl Drawer {
                     0,
                 )?;
                 // Painted pictures go on from those of the frame before.
-                let paints = cameras::source_of(*view, *source).id() == learned::ID;
-                let painter = paints.then(PictureNets::bundled).transpose()?;
-                let painter =
-                    painter.map(|nets| Painter::new(nets, PaintOptions::default()).without_previews());
-                Self::Cameras(options.clone(), painter)
+                let with = || match &options.paint {
+                    Some(with) => Ok(with.clone()),
+                    None => PaintWish::default().open(),
+                };
+                let with: Option<PaintWith> = options.paints().then(with).transpose()?;
+                Self::Cameras(options.clone(), with.map(|with| with.painter(false)))
             }
         })
     }
@@ -215,18 +226,18 @@ impl Drawer {
                     ..CaptureOptions::default()
                 },
             ),
-            Self::Cameras(options, painter) => pictures(scene, options, painter.as_mut()),
+            Self::Cameras(options, painter) => pictures(scene, options, painter.as_deref_mut()),
         }
     }
 }
 
-fn pictures(scene: &Scene, options: &ClipOptions, painter: Option<&mut Painter>) -> anyhow::Result<Picture> {
+fn pictures(scene: &Scene, options: &ClipOptions, painter: Option<&mut (dyn Paint + 'static)>) -> anyhow::Result<Picture> {
     let ClipView::Cameras { view, source, camera } = &options.view else {
         bail!("no view of cameras");
     };
     let scene = scene.with_rig_in_world();
     if let Some(painter) = painter {
-        let painted = painter.paint(&paint_input(&scene), |_| ControlFlow::Continue(()))?;
+        let painted = painter.paint(&paint_input(&scene), &mut |_| ControlFlow::Continue(()))?;
         let shown = painted
             .iter()
             .enumerate()
@@ -296,6 +307,7 @@ mod tests {
             size: [96, 54],
             span_s: [0.0, 0.5],
             rate_hz: 10.0,
+            paint: None,
         };
         let camera = ClipView::Cameras {
             view: ViewId::SEMANTIC,

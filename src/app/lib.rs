@@ -23,6 +23,7 @@ pub mod graphics;
 mod map_edges;
 mod marks;
 pub mod paint;
+pub mod painting;
 pub mod panes;
 mod perceiving;
 pub mod picture;

@@ -27,7 +27,6 @@ use sensors::lidar::EgoBox;
 use sensors::rolling;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
-pub use painting::PaintSettings;
 use painting::Painting;
 
 /// Rays whose samples are shown at most: more would cover the map.
@@ -62,7 +61,7 @@ pub struct Sensing {
     version: u64,
     problem: Option<String>,
     painting: Worker<painting::Request, painting::News>,
-    paint: Arc<PaintSettings>,
+    paint: Arc<PaintWish>,
     /// The learned pictures of all cameras, and of which state.
     painted: Option<(SceneRev, Arc<Vec<CameraView>>)>,
     step: Option<(usize, usize)>,
@@ -107,7 +106,7 @@ impl Sensing {
     }
 
     /// How learned pictures are painted from the next scene on; what is shown is painted anew if that changes.
-    pub fn paint_with(&mut self, settings: &PaintSettings) {
+    pub fn paint_with(&mut self, settings: &PaintWish) {
         if *self.paint != *settings {
             self.paint = Arc::new(settings.clone());
             self.asked = None;

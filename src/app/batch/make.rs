@@ -249,6 +249,7 @@ fn clip_options(output: &Output, scene: &Scene) -> ClipOptions {
         size: output.size.unwrap_or(CLIP_SIZE),
         span_s: [0.0, scene.clip().length_s],
         rate_hz: scene.clip().rate_hz,
+        paint: None,
     }
 }
 

@@ -6,6 +6,7 @@ use std::time::Instant;
 use anyhow::bail;
 use serde_json::json;
 
+use super::painting::Painting;
 use super::progress::Progress;
 use super::render::size;
 use super::{Common, Outcome, output};
@@ -54,6 +55,8 @@ pub struct ClipCommand {
     /// File to write: .gif, .png (an APNG) or .mp4.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    #[command(flatten)]
+    painting: Painting,
     #[command(flatten)]
     common: Common,
 }
@@ -119,12 +122,17 @@ impl ClipCommand {
                 self.scene.display()
             );
         }
-        Ok(ClipOptions {
+        let mut options = ClipOptions {
             view: self.shown(scene)?,
             size: self.size,
             span_s: [self.from, self.to.unwrap_or(length_s)],
             rate_hz: self.rate.unwrap_or(scene.clip().rate_hz),
-        })
+            paint: None,
+        };
+        if options.paints() {
+            options.paint = Some(self.painting.wish(self.common.weights.as_deref()).open()?);
+        }
+        Ok(options)
     }
 
     fn shown(&self, scene: &Scene) -> anyhow::Result<ClipView> {

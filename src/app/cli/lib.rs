@@ -19,6 +19,7 @@ mod import;
 mod mcp;
 mod new;
 pub(crate) mod output;
+mod painting;
 mod perceive;
 mod place;
 mod progress;

@@ -13,7 +13,8 @@ use super::lidar::SweepPicture;
 use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
 use crate::canvas::Canvas;
-use crate::sensing::{PaintSettings, Sensing};
+use crate::painting::PaintWish;
+use crate::sensing::Sensing;
 use crate::view3d::View3d;
 use language::{t, tf};
 use viewport::BrushCells;
@@ -122,7 +123,7 @@ impl Compare {
         before: Option<Arc<Scene>>,
         wanted: Wanted,
         senses: bool,
-        painting: &PaintSettings,
+        painting: &PaintWish,
         wake: impl Fn() + Send + Sync + 'static,
     ) {
         self.before = before;

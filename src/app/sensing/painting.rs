@@ -1,71 +1,24 @@
 //! Pictures by the picture networks for the window: which weights, and the thread that paints.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use serde::{Deserialize, Serialize};
-
 use crate::camera_views::{CameraView, paint_input};
+use crate::painting::PaintWish;
 use job::guard::Panicked;
 use job::product::{Ctx, Product};
-use nets::picture::PictureNets;
 use scene::{Scene, SceneRev};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
-use sensors::painter::{PaintError, PaintOptions, Painter, Progress};
-
-/// How the user wants learned pictures to be painted.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct PaintSettings {
-    /// Folder of the weights; those that ship with the program if none.
-    pub weights: Option<PathBuf>,
-    /// Steps from noise to a picture.
-    pub steps: usize,
-    /// How much more than in training the pictures obey the voxels.
-    pub guidance: f64,
-}
-
-impl Default for PaintSettings {
-    fn default() -> Self {
-        let PaintOptions { steps, guidance } = PaintOptions::default();
-        Self {
-            weights: None,
-            steps,
-            guidance,
-        }
-    }
-}
-
-impl PaintSettings {
-    /// Steps that can be chosen.
-    pub const STEPS: std::ops::RangeInclusive<usize> = 1..=50;
-    /// Guidance that can be chosen.
-    pub const GUIDANCE: std::ops::RangeInclusive<f64> = 1.0..=6.0;
-
-    /// With numbers that a painter takes, whatever a file of settings said.
-    fn options(&self) -> PaintOptions {
-        let guidance = match self.guidance.is_finite() {
-            true => self
-                .guidance
-                .clamp(*Self::GUIDANCE.start(), *Self::GUIDANCE.end()),
-            false => PaintOptions::default().guidance,
-        };
-        PaintOptions {
-            steps: self.steps.clamp(*Self::STEPS.start(), *Self::STEPS.end()),
-            guidance,
-        }
-    }
-}
+use sensors::painter::{Paint, PaintError, Progress};
 
 /// A scene to paint.
 pub(super) struct Request {
     /// The scene, its rig in the world.
     pub scene: Arc<Scene>,
     /// How.
-    pub settings: Arc<PaintSettings>,
+    pub settings: Arc<PaintWish>,
     /// The scene still changes. Such a painting goes on when a newer scene comes: giving way would leave the strip without
     /// any news for as long as the user drags.
     pub moving: bool,
@@ -87,8 +40,8 @@ pub(super) enum News {
 
 /// Paints scenes, with what its painter was made for.
 pub(super) struct Painting {
-    settings: Arc<PaintSettings>,
-    painter: Option<Painter>,
+    settings: Arc<PaintWish>,
+    painter: Option<Box<dyn Paint>>,
     /// The user has enough of it.
     stop: Arc<AtomicBool>,
 }
@@ -103,22 +56,16 @@ impl Painting {
         }
     }
 
-    fn painter(&mut self, settings: &Arc<PaintSettings>) -> Result<&mut Painter, String> {
+    fn painter(&mut self, settings: &Arc<PaintWish>) -> Result<&mut dyn Paint, String> {
         if *self.settings != **settings {
             self.settings = settings.clone();
             self.painter = None;
         }
         let painter = match self.painter.take() {
             Some(painter) => painter,
-            None => {
-                let nets = match &settings.weights {
-                    None => PictureNets::bundled(),
-                    Some(folder) => PictureNets::from_dir(folder).map(Arc::new),
-                };
-                Painter::new(nets.map_err(|e| e.to_string())?, settings.options())
-            }
+            None => settings.open().map_err(|e| e.to_string())?.painter(true),
         };
-        Ok(self.painter.insert(painter))
+        Ok(&mut **self.painter.insert(painter))
     }
 }
 
@@ -132,7 +79,7 @@ impl Product for Painting {
             Ok(painter) => painter,
             Err(problem) => return News::Problem(problem),
         };
-        let painted = painter.paint(&paint_input(&request.scene), |progress| {
+        let painted = painter.paint(&paint_input(&request.scene), &mut |progress| {
             let Progress { step, steps, news } = progress;
             ctx.tell(News::Step(
                 (step, steps),

@@ -111,9 +111,9 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
     let frame = Frame::new(world.layout.clone(), world.boxes.clone(), occupancy);
     let scene = Arc::new(Scene::single("test", frame, Arc::default(), 3));
     let mut sensing = Sensing::spawn(Duration::ZERO, || {}).expect("a thread");
-    sensing.paint_with(&PaintSettings {
-        steps: 30,
-        ..PaintSettings::default()
+    sensing.paint_with(&PaintWish {
+        steps: Some(30),
+        ..PaintWish::default()
     });
     let wanted = Wanted {
         source: learned::ID,
@@ -136,17 +136,17 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
     wait(&mut sensing, &|s| s.is_stopped());
     assert!(sensing.step().is_none() && sensing.cameras_stale(scene.rev));
     // Fewer steps are asked for: it paints again, to the end.
-    sensing.paint_with(&PaintSettings {
-        steps: 1,
-        ..PaintSettings::default()
+    sensing.paint_with(&PaintWish {
+        steps: Some(1),
+        ..PaintWish::default()
     });
     wait(&mut sensing, &|s| !s.cameras_stale(scene.rev));
     assert_eq!(sensing.cameras().map(|c| c.len()), Some(6));
     assert!(!sensing.is_stopped());
     // A folder without weights is one line.
-    sensing.paint_with(&PaintSettings {
+    sensing.paint_with(&PaintWish {
         weights: Some("nowhere".into()),
-        ..PaintSettings::default()
+        ..PaintWish::default()
     });
     wait(&mut sensing, &|s| s.is_stopped());
     let problem = sensing.take_problem().expect("a problem");

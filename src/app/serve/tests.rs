@@ -44,6 +44,7 @@ fn rendered(scene: &Scene, camera: usize, size: [u32; 2]) -> Vec<u8> {
         background: &scene.background,
         conditions: scene.conditions,
         detail: Detail::Full,
+        paint: None,
     };
     let options = RenderOptions {
         size,

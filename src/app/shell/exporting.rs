@@ -146,8 +146,12 @@ impl SceneloomApp {
             size,
             span_s,
             rate_hz: scene.clip().rate_hz,
+            paint: None,
         };
+        let wish = self.preferences.settings.painting.clone();
         self.run_export("the clip", ctx, move |told| {
+            let paint = options.paints().then(|| wish.open()).transpose()?;
+            let options = ClipOptions { paint, ..options };
             let go_on = |done, all| {
                 told.count(done, all);
                 !told.is_cancelled()

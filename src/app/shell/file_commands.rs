@@ -188,7 +188,11 @@ impl SceneloomApp {
             Purpose::Clip => self.save_clip(path, ctx),
             Purpose::Model => self.read_model(path, false, ctx),
             Purpose::ModelShape => self.read_model(path, true, ctx),
-            Purpose::PictureWeights => self.preferences.settings.painting.weights = Some(path),
+            Purpose::PictureWeights => {
+                let painting = &mut self.preferences.settings.painting;
+                // Other networks, other usual numbers.
+                (painting.weights, painting.steps, painting.guidance) = (Some(path), None, None);
+            }
             Purpose::ImportRig => self.import_rig(&path),
             Purpose::ExportRig => self.export_rig(&path),
             Purpose::ExportFile | Purpose::ExportFolder => {

@@ -12,7 +12,7 @@ use super::bookmarks::Bookmark;
 use super::keymap::Chords;
 use super::workspace::Workspace;
 use crate::panes::id::PaneId;
-use crate::sensing::PaintSettings;
+use crate::painting::PaintWish;
 use editor::Document;
 use editor::tools::saved::SavedBrush;
 use scene::classes::Palette;
@@ -55,7 +55,7 @@ pub struct Settings {
     /// Words of the prompt that the user keeps, the newest first.
     pub kept_words: Vec<String>,
     /// How learned camera pictures are painted.
-    pub painting: PaintSettings,
+    pub painting: PaintWish,
     /// Memory that the history may take, MB.
     pub history_mb: u32,
     /// Let assistants on this machine drive the editor, if they show the token.
@@ -84,7 +84,7 @@ impl Default for Settings {
             bookmarks: BTreeMap::new(),
             brushes: Vec::new(),
             kept_words: Vec::new(),
-            painting: PaintSettings::default(),
+            painting: PaintWish::default(),
             history_mb: (Document::LIMIT_BYTES >> 20) as u32,
             assistants: false,
             recent: Vec::new(),

@@ -3,7 +3,8 @@
 use egui::{Ui, Window};
 
 use crate::command::{Command, FileCommand};
-use crate::sensing::PaintSettings;
+use crate::painting::PaintWish;
+use sensors::painter::PaintOptions;
 use crate::shell::guests::{Guests, OpenDoor};
 use crate::shell::keymap::{Chords, Keymap, PRESETS};
 use crate::shell::settings::Settings;
@@ -190,12 +191,12 @@ fn work(ui: &mut Ui, settings: &mut Settings, keymap: &mut Keymap, windows: &mut
 }
 
 /// Which weights paint camera pictures, and how.
-fn painting(ui: &mut Ui, painting: &mut PaintSettings, commands: &mut Vec<Command>) {
+fn painting(ui: &mut Ui, painting: &mut PaintWish, commands: &mut Vec<Command>) {
     rows(ui, "painting", |ui| {
         ui.label(t("Weights"));
         ui.horizontal(|ui| {
             let choose = ui.button(t("Choose folder…")).on_hover_text(t(
-                "A folder with vae.safetensors and dit.safetensors, as training/train_pictures.py leaves it",
+                "A folder as training/train_pictures.py leaves it, or one of Stable Diffusion 1 or 2 with a model_index.json",
             ));
             if choose.clicked() {
                 commands.push(Command::File(FileCommand::PictureWeights));
@@ -206,7 +207,7 @@ fn painting(ui: &mut Ui, painting: &mut PaintSettings, commands: &mut Vec<Comman
                 .on_hover_text(t("Back to the weights that came with the program"))
                 .clicked()
             {
-                painting.weights = None;
+                (painting.weights, painting.steps, painting.guidance) = (None, None, None);
             }
         });
         ui.end_row();
@@ -215,24 +216,59 @@ fn painting(ui: &mut Ui, painting: &mut PaintSettings, commands: &mut Vec<Comman
             ui.add(egui::Label::new(folder.display().to_string()).truncate());
             ui.end_row();
         }
+        let options = painting.options();
         ui.label(t("Steps"));
-        let steps = egui::DragValue::new(&mut painting.steps)
-            .range(PaintSettings::STEPS)
-            .speed(0.1);
-        ui.add(steps)
-            .on_hover_text(t("From noise to a picture; more steps take longer"))
-            .accessible_name(t("Steps"));
+        let mut steps = options.steps;
+        let field = egui::DragValue::new(&mut steps).range(PaintWish::STEPS).speed(0.1);
+        let field = ui.add(field).on_hover_text(t("From noise to a picture; more steps take longer"));
+        if field.accessible_name(t("Steps")).changed() {
+            painting.steps = Some(steps);
+        }
         ui.end_row();
         ui.label(t("Guidance"));
-        let guidance = egui::DragValue::new(&mut painting.guidance)
-            .range(PaintSettings::GUIDANCE)
+        let mut guidance = options.guidance;
+        let field = egui::DragValue::new(&mut guidance)
+            .range(PaintWish::GUIDANCE)
             .speed(0.02)
             .fixed_decimals(1);
-        ui.add(guidance)
-            .on_hover_text(t("How strictly the pictures obey the voxels"))
-            .accessible_name(t("Guidance"));
+        let field = ui.add(field).on_hover_text(t("How strictly the pictures obey what they are told"));
+        if field.accessible_name(t("Guidance")).changed() {
+            painting.guidance = Some(guidance);
+        }
         ui.end_row();
+        if painting.is_public() {
+            public_weights(ui, painting, &options);
+        }
     });
+}
+
+/// What public weights take besides.
+fn public_weights(ui: &mut Ui, painting: &mut PaintWish, options: &PaintOptions) {
+    ui.label(t("Strength"));
+    let mut strength = options.strength;
+    let field = egui::DragValue::new(&mut strength)
+        .range(PaintWish::STRENGTH)
+        .speed(0.005)
+        .fixed_decimals(2);
+    let field = ui.add(field).on_hover_text(t("How much of the rendered picture is painted anew"));
+    if field.accessible_name(t("Strength")).changed() {
+        painting.strength = Some(strength);
+    }
+    ui.end_row();
+    ui.label(t("Width"));
+    let mut width_px = options.width_px;
+    let field = egui::DragValue::new(&mut width_px)
+        .range(PaintWish::WIDTH_PX)
+        .speed(4.0)
+        .suffix(" px");
+    if ui.add(field).accessible_name(t("Width")).changed() {
+        painting.width_px = Some(width_px);
+    }
+    ui.end_row();
+    ui.label(t("Words"));
+    ui.add(egui::TextEdit::singleline(&mut painting.prompt).hint_text(t("a photograph of a street")))
+        .on_hover_text(t("What the pictures show; time, weather and camera are added"));
+    ui.end_row();
 }
 
 fn assistants(ui: &mut Ui, settings: &mut Settings, guests: &Guests) {

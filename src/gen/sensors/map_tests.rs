@@ -80,6 +80,7 @@ fn picture(name: &str, grid: &VoxelGrid) -> CameraPicture {
         background: &Background::default(),
         conditions: Conditions::default(),
         detail: Detail::Live,
+        paint: None,
     };
     let options = RenderOptions {
         size: SIZE,

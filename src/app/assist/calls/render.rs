@@ -155,6 +155,7 @@ impl Operation for Render {
                 true => LidarModel::Learned,
                 false => LidarModel::Exact,
             },
+            paint: None,
         };
         let staging = desk.folder.staging()?;
         let made = rendering.write(&self.with_cameras(&scene)?, staging.path())?;

@@ -16,6 +16,7 @@ use app::picture::{self, Picture};
 use formats::recipe::Recipe;
 use scene::{Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
+use sensors::painter::PaintWith;
 use sensors::cameras::{self, CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
 
 use plan::{Cameras, Plan};
@@ -41,6 +42,8 @@ pub struct Rendering {
     pub preview: bool,
     /// How the LiDAR sweep comes about.
     pub lidar: camera_views::LidarModel,
+    /// What paints learned pictures; the weights that ship if none.
+    pub paint: Option<PaintWith>,
 }
 
 /// What was rendered.
@@ -76,11 +79,12 @@ pub fn check_what(what: &[String], key: &str) -> anyhow::Result<()> {
 
 impl Rendering {
     /// The scene as camera sources take it, under the weather and time that were asked for.
-    fn input<'a>(&self, scene: &'a Scene) -> CameraInput<'a> {
+    fn input<'a>(&'a self, scene: &'a Scene) -> CameraInput<'a> {
         let own = scene.conditions;
         let timed = self.time.map_or(own, |time| own.at(time));
         CameraInput {
             conditions: self.weather.map_or(timed, |weather| timed.under(weather)),
+            paint: self.paint.as_ref(),
             ..camera_input(scene, Detail::Full)
         }
     }

@@ -6,12 +6,13 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::painting::Painting;
 use super::{Common, Moment, Outcome, output};
 use app::camera_views::LidarModel;
 use app::open;
 use assist::render::{Rendering, check_what};
 use scene::{CameraMaps, LidarSweep, Scene, TimeOfDay, Weather};
-use sensors::cameras::SourceId;
+use sensors::cameras::{SourceId, learned};
 use sensors::rolling;
 use sensors::splat::{self, GaussianCloud, SplatOptions};
 
@@ -50,6 +51,8 @@ pub struct Render {
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     #[command(flatten)]
+    painting: Painting,
+    #[command(flatten)]
     moment: Moment,
     #[command(flatten)]
     common: Common,
@@ -72,6 +75,9 @@ impl Render {
         if let Some(path) = &self.rig {
             scene.rig = open::rig(path)?.into();
         }
+        let paints = self.what.iter().any(|w| w == learned::VIEW.id.name());
+        let wish = self.painting.wish(self.common.weights.as_deref());
+        let paint = paints.then(|| wish.open()).transpose().map_err(anyhow::Error::new)?;
         let rendering = Rendering {
             what: self.what,
             size: self.size,
@@ -83,6 +89,7 @@ impl Render {
                 "learned" => LidarModel::Learned,
                 _ => LidarModel::Exact,
             },
+            paint,
         };
         let made = rendering.write(&scene, &self.output)?;
         let of_lidar = |[rays, returns]: [usize; 2]| json!({ "rays": rays, "returns": returns, "dropped": rays - returns });

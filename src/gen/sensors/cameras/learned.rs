@@ -11,8 +11,7 @@ use super::{
     SourceId, View, ViewId,
 };
 use crate::appearance::CameraImage;
-use crate::painter::{PaintError, PaintInput, PaintOptions, Painter};
-use nets::picture::PictureNets;
+use crate::painter::{PaintError, PaintInput, PaintModel, PaintOptions, PaintWith};
 use scene::{Camera, SensorRig};
 
 /// What it shows.
@@ -38,7 +37,7 @@ impl CameraSource for Learned {
     }
 
     fn hint(&self) -> &'static str {
-        "drawn by a network that learned from the pictures; six cameras of 256 x 144 at once"
+        "drawn by a network that learned from the pictures, or by the weights chosen in the settings"
     }
 
     fn views(&self) -> &'static [View] {
@@ -78,14 +77,21 @@ struct Ready<'a> {
 }
 
 fn painted(input: &CameraInput<'_>) -> Result<Vec<Arc<CameraImage>>, CameraError> {
-    let nets = PictureNets::bundled().map_err(|e| PaintError::Network(e.to_string()))?;
-    let mut painter = Painter::new(nets, PaintOptions::default()).without_previews();
+    let shipped = || {
+        let model = PaintModel::bundled()?;
+        Ok::<_, PaintError>(PaintWith {
+            model,
+            options: PaintOptions::default(),
+        })
+    };
+    let with = input.paint.map_or_else(shipped, |with| Ok(with.clone()))?;
+    let mut painter = with.painter(false);
     let input = PaintInput {
         frame: input.frame,
         rig: input.rig,
         conditions: input.conditions,
     };
-    Ok(painter.paint(&input, |_| ControlFlow::Continue(()))?)
+    Ok(painter.paint(&input, &mut |_| ControlFlow::Continue(()))?)
 }
 
 impl From<PaintError> for CameraError {

@@ -113,6 +113,8 @@ pub struct CameraInput<'a> {
     pub conditions: Conditions,
     /// How much is made ready.
     pub detail: Detail,
+    /// What paints learned pictures; the weights that ship if none.
+    pub paint: Option<&'a PaintWith>,
 }
 
 /// How one picture is rendered.

@@ -41,6 +41,7 @@ fn drawn(
         background: &Background::default(),
         conditions,
         detail: Detail::Full,
+        paint: None,
     };
     let options = RenderOptions {
         size,
@@ -143,6 +144,7 @@ fn every_source_keeps_the_bounds_and_stops_when_cancelled() {
             background: &Background::default(),
             conditions: Conditions::default(),
             detail: Detail::Live,
+            paint: None,
         };
         let options = RenderOptions {
             size: [16, 9],
@@ -176,6 +178,7 @@ fn small_pictures_side_by_side_are_those_one_after_another() {
             background: &Background::default(),
             conditions: Conditions::default(),
             detail: Detail::Full,
+            paint: None,
         };
         let ready = Ready::new(*source, &input);
         assert!(ready.side_by_side(&options) >= rig.cameras.len(), "{name}");

@@ -1,6 +1,11 @@
 //! Camera pictures by the picture networks: all cameras of a rig at once, and after an edit only what it changed.
 
+mod control_pictures;
 mod mask;
+mod model;
+mod public;
+#[cfg(test)]
+mod public_tests;
 mod ring;
 mod seen;
 #[cfg(test)]
@@ -18,6 +23,7 @@ use nets::ModelError;
 use nets::picture::{self, Before, PictureNets, RingSize, Sampling};
 use numeric::philox::{Stream, normal_field};
 use ring::Ring;
+pub use model::{Paint, PaintModel, PaintWith};
 pub use ring::native_px;
 use scene::{Conditions, Frame, SensorRig};
 use seen::Seen;
@@ -26,12 +32,29 @@ use seen::Seen;
 const KEPT: usize = 6;
 
 /// How pictures are painted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PaintOptions {
     /// Steps from noise to a picture, 1 to 1000.
     pub steps: usize,
-    /// How much more than in training the pictures obey the voxels; 1 is as in training.
+    /// How much more than in training the pictures obey what they are told; 1 is as in training.
     pub guidance: f64,
+    /// Public weights alone: how much of the rendered picture is painted anew, 0 (nothing) to 1 (all).
+    pub strength: f64,
+    /// Public weights alone: width of a picture, px.
+    pub width_px: usize,
+    /// Public weights alone: what the pictures show, in words. Time, weather and camera are added.
+    pub prompt: String,
+}
+
+impl PaintOptions {
+    /// What is usual with public weights.
+    pub fn public() -> Self {
+        Self {
+            steps: 20,
+            guidance: 7.5,
+            ..Self::default()
+        }
+    }
 }
 
 impl Default for PaintOptions {
@@ -40,6 +63,9 @@ impl Default for PaintOptions {
         Self {
             steps: 4,
             guidance: 2.0,
+            strength: 0.6,
+            width_px: 512,
+            prompt: String::new(),
         }
     }
 }

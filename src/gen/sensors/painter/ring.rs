@@ -27,11 +27,20 @@ pub(super) struct Ring {
 }
 
 impl Ring {
-    /// None without cameras. Errors if there are more than 64.
+    /// At the size that the picture networks learned. None without cameras. Errors if there are more than 64.
     pub fn of(cameras: &[Camera]) -> Result<Option<Self>, PaintError> {
-        let Some(camera) = cameras.first() else {
+        match cameras.first() {
+            Some(camera) => Self::sized(cameras, native_px(camera)),
+            None => Ok(None),
+        }
+    }
+
+    /// At a size, height and width in px. None without cameras. Errors if there are more than 64, or the size is none for
+    /// the networks.
+    pub fn sized(cameras: &[Camera], size: [usize; 2]) -> Result<Option<Self>, PaintError> {
+        if cameras.is_empty() {
             return Ok(None);
-        };
+        }
         let mut order: Vec<usize> = (0..cameras.len()).collect();
         let clockwise = |i: &usize| {
             let ahead = cameras[*i].ego_from_camera().rotation * DVec3::Z;
@@ -40,7 +49,7 @@ impl Ring {
         order.sort_by(|a, b| clockwise(a).total_cmp(&clockwise(b)));
         let front = |i: &usize| cameras[*i].name.ends_with("FRONT");
         Ok(Some(Self {
-            size: RingSize::new(cameras.len(), native_px(camera)).map_err(network)?,
+            size: RingSize::new(cameras.len(), size).map_err(network)?,
             first: order.iter().position(front).unwrap_or(0),
             cameras: order,
         }))
@@ -51,11 +60,17 @@ impl Ring {
         self.cameras[place]
     }
 
+    /// All places, that of the front camera first.
+    pub fn from_the_front(&self) -> Vec<usize> {
+        let views = self.size.views();
+        (0..views).map(|i| (self.first + i) % views).collect()
+    }
+
     /// Places that a brush touches, that of the front camera first.
     pub fn order(&self, brush: &Brush<'_>) -> Vec<usize> {
-        let views = self.size.views();
-        let places = (0..views).map(|i| (self.first + i) % views);
-        places.filter(|place| brush.touches(*place)).collect()
+        let mut places = self.from_the_front();
+        places.retain(|place| brush.touches(*place));
+        places
     }
 
     /// Pictures in the ring's order, in that of the rig.

@@ -64,6 +64,11 @@ impl Seen {
         &self.cameras[place].name
     }
 
+    /// The camera at a place of the ring, at the size of its picture.
+    pub fn camera(&self, place: usize) -> &Camera {
+        &self.cameras[place]
+    }
+
     /// True if the same cameras look from the same places in the same light.
     pub fn differs_in_scene_alone(&self, other: &Self) -> bool {
         self.conditions == other.conditions && self.cameras == other.cameras

@@ -23,7 +23,7 @@ fn painter() -> Painter {
     Painter::new(nets, options)
 }
 
-fn input<'a>(frame: &'a Frame, rig: &'a SensorRig) -> PaintInput<'a> {
+pub(super) fn input<'a>(frame: &'a Frame, rig: &'a SensorRig) -> PaintInput<'a> {
     PaintInput {
         frame,
         rig,
@@ -36,7 +36,7 @@ fn go_on(_: Progress<'_>) -> ControlFlow<()> {
 }
 
 /// A world, the same without one of its cars that a camera sees, and that car.
-fn with_and_without_a_car() -> (Frame, Frame, BoxId) {
+pub(super) fn with_and_without_a_car() -> (Frame, Frame, BoxId) {
     let mut world = World::random(3);
     let with = frame(&world);
     let near = |b: &&scene::SceneBox| {

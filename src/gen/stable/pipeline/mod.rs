@@ -29,6 +29,7 @@ pub struct Pipeline {
     pub(crate) vae: Vae,
     pub(crate) unet: Unet,
     pub(crate) controls: Vec<ControlNet>,
+    pub(crate) control_names: Vec<String>,
     pub(crate) mpi: Option<MpiEncoder>,
     pub(crate) scheduler: SchedulerConfig,
     pub(crate) machine: Machine,
@@ -48,6 +49,11 @@ impl Pipeline {
     /// The ControlNets, in the order of their folders.
     pub fn controls(&self) -> &[ControlNet] {
         &self.controls
+    }
+
+    /// Name of the folder of a ControlNet; empty if there is no such one.
+    pub fn control_name(&self, net: usize) -> &str {
+        self.control_names.get(net).map_or("", String::as_str)
     }
 
     /// Channels of the planes that [`Request::planes`] takes; `None` if nothing here takes planes.

@@ -99,12 +99,19 @@ impl Pipeline {
             text: TextEncoder::load(text_config, &text_weights, &exact)?,
             vae: Vae::load(vae_config, &vae_weights, &exact)?,
             controls: controls.collect::<Result<_, _>>()?,
+            control_names: folders.controls.iter().map(|f| name(f)).collect(),
             mpi: mpi.transpose()?,
             unet: Unet::load(unet_config, &unet_weights, machine)?,
             scheduler,
             machine: machine.clone(),
         })
     }
+}
+
+/// Last part of a path.
+fn name(folder: &Path) -> String {
+    let name = folder.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 /// Fails unless the folder is that of a Stable Diffusion of the first two generations.

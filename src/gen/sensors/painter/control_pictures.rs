@@ -1,0 +1,76 @@
+//! What public networks are shown of a view: classes in their colours, depths, and planes of classes.
+
+use super::seen::Seen;
+use crate::mpi::{self, RenderIds};
+use crate::picture_hints::PictureHints;
+use scene::sensor_data::Planes;
+use scene::{Frame, truth};
+
+/// Depths up to this are brightest, m.
+const NEAREST_M: f32 = 2.0;
+
+/// `[channel][row][column]` from 0 to 1: the colour of each pixel's class; black where there is nothing.
+pub(super) fn classes(hints: &PictureHints, channels: usize) -> Vec<f32> {
+    let color = |class: u8| match class {
+        0 => [0; 3],
+        class => truth::color(class),
+    };
+    let plane = |c: usize| hints.class.iter().map(move |class| f32::from(color(*class)[c % 3]) / 255.0);
+    (0..channels).flat_map(plane).collect()
+}
+
+/// `[channel][row][column]` from 0 to 1: the inverse of each pixel's depth, 1 at 2 m and nearer; 0 where there is nothing.
+pub(super) fn depths(hints: &PictureHints, channels: usize) -> Vec<f32> {
+    let near = |depth_m: &f32| match *depth_m > 0.0 {
+        true => (NEAREST_M / depth_m).min(1.0),
+        false => 0.0,
+    };
+    let plane: Vec<f32> = hints.depth_m.iter().map(near).collect();
+    plane.repeat(channels)
+}
+
+/// `[view][channel][row][column]`: the label on each plane of some views from the nearest on, 0 where there is nothing; and in the
+/// last channel the label that is seen first (SyntheOcc, arXiv 2410.00337).
+pub(super) fn planes(
+    frame: &Frame,
+    seen: &Seen,
+    views: &[usize],
+    [rows, columns]: [usize; 2],
+    channels: usize,
+) -> Vec<f32> {
+    let ids = RenderIds::new(&frame.occupancy, &[]);
+    let count = channels.saturating_sub(1).min(usize::from(u16::MAX)) as u16;
+    let layout = Planes {
+        count,
+        ..Planes::default()
+    };
+    let mut out = Vec::with_capacity(views.len() * channels * rows * columns);
+    let number = |id: Option<u8>| f32::from(id.unwrap_or(0));
+    for view in views {
+        let image = mpi::render(&ids, seen.camera(*view), columns as u32, rows as u32, layout);
+        for plane in 0..count {
+            out.extend(image.slice(plane).into_iter().map(number));
+        }
+        out.extend(image.first_visible().into_iter().map(number));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_of_conditions_are_within_their_range() {
+        let hints = PictureHints {
+            class: vec![0, 4, 11, 17],
+            depth_m: vec![0.0, 1.0, 4.0, 80.0],
+            facing: vec![0; 4],
+        };
+        let shown = classes(&hints, 3);
+        assert_eq!(shown.len(), 12);
+        assert!(shown.iter().all(|v| (0.0..=1.0).contains(v)) && shown[0] == 0.0 && shown[4] == 0.0);
+        assert!([1, 5, 9].iter().any(|i| shown[*i] > 0.0));
+        assert_eq!(depths(&hints, 2), [0.0, 1.0, 0.5, 0.025, 0.0, 1.0, 0.5, 0.025]);
+    }
+}

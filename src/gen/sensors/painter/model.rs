@@ -1,0 +1,114 @@
+//! Which networks paint: those that ship, a folder of one's own from the same training, or a public Stable Diffusion.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::public::PublicPainter;
+use super::{PaintError, PaintInput, PaintOptions, Painter, Progress};
+use crate::appearance::CameraImage;
+use nets::picture::PictureNets;
+use stable::{Folders, Machine, Pipeline};
+
+/// What paints the cameras of a frame and remembers what it painted.
+pub trait Paint: Send {
+    /// Pictures of all cameras of the rig, in its order. `watch` hears of every step and may stop the painting. Errors if it did,
+    /// or if the networks refuse what they are told.
+    fn paint(
+        &mut self,
+        input: &PaintInput<'_>,
+        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Vec<Arc<CameraImage>>, PaintError>;
+}
+
+impl Paint for Painter {
+    fn paint(
+        &mut self,
+        input: &PaintInput<'_>,
+        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Vec<Arc<CameraImage>>, PaintError> {
+        Painter::paint(self, input, watch)
+    }
+}
+
+/// Networks that paint, with their weights.
+#[derive(Clone)]
+pub enum PaintModel {
+    /// The program's own.
+    Own(Arc<PictureNets>),
+    /// Stable Diffusion 1 or 2, with a ControlNet or SyntheOcc's planes if the folder has them.
+    Public(Arc<Pipeline>),
+}
+
+/// Networks, and how they paint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaintWith {
+    /// The networks.
+    pub model: PaintModel,
+    /// How.
+    pub options: PaintOptions,
+}
+
+impl PaintWith {
+    /// A painter; with `previews` it shows pictures of its steps, where that costs little.
+    pub fn painter(&self, previews: bool) -> Box<dyn Paint> {
+        self.model.painter(self.options.clone(), previews)
+    }
+}
+
+impl std::fmt::Debug for PaintModel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Own(_) => "own weights",
+            Self::Public(_) => "public weights",
+        })
+    }
+}
+
+/// The same networks in memory.
+impl PartialEq for PaintModel {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Own(a), Self::Own(b)) => Arc::ptr_eq(a, b),
+            (Self::Public(a), Self::Public(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+impl PaintModel {
+    /// The weights that ship with the program. Errors if they cannot be read.
+    pub fn bundled() -> Result<Self, PaintError> {
+        let nets = PictureNets::bundled();
+        nets.map(Self::Own).map_err(|e| PaintError::Network(e.to_string()))
+    }
+
+    /// The weights of a folder: a public one as diffusers writes it has a `model_index.json`, one of the program's own has
+    /// `vae.safetensors` and `dit.safetensors`. Errors in one line if something is missing, damaged or foreign.
+    pub fn open(folder: &Path) -> Result<Self, PaintError> {
+        let network = |e: String| PaintError::Network(e);
+        if Self::is_public(folder) {
+            let machine = Machine::best().map_err(|e| network(e.to_string()))?;
+            let pipeline = Pipeline::open(&Folders::of(folder), &machine);
+            return Ok(Self::Public(Arc::new(pipeline.map_err(|e| network(e.to_string()))?)));
+        }
+        let nets = PictureNets::from_dir(folder).map_err(|e| network(e.to_string()))?;
+        Ok(Self::Own(Arc::new(nets)))
+    }
+
+    /// True if a folder looks like one of public weights.
+    pub fn is_public(folder: &Path) -> bool {
+        folder.join("model_index.json").is_file()
+    }
+
+    /// A painter; with `previews` it shows pictures of its steps, where that costs little.
+    fn painter(&self, options: PaintOptions, previews: bool) -> Box<dyn Paint> {
+        match self {
+            Self::Own(nets) => {
+                let painter = Painter::new(nets.clone(), options);
+                Box::new(if previews { painter } else { painter.without_previews() })
+            }
+            Self::Public(pipeline) => Box::new(PublicPainter::new(pipeline.clone(), options)),
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Camera pictures by public weights: Stable Diffusion goes on from the program's own rendering of each camera, told by text,
+//! and shown classes, depths or planes where the folder has networks for them.
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::control_pictures::{classes, depths, planes};
+use super::ring::Ring;
+use super::seen::Seen;
+use super::{KEPT, PaintError, PaintInput, PaintOptions, Progress, mask};
+use crate::appearance::CameraImage;
+use crate::painter::model::Paint;
+use diffusion::solver::Guidance;
+use stable::{Control, Pictures, Pipeline, Planes, Request, StableError, Start};
+
+/// Paints with public weights.
+pub(super) struct PublicPainter {
+    pipeline: Arc<Pipeline>,
+    options: PaintOptions,
+    /// The newest last.
+    kept: VecDeque<Painted>,
+}
+
+/// Pictures of one state, in the ring's order.
+struct Painted {
+    seen: Seen,
+    images: Vec<Arc<CameraImage>>,
+}
+
+/// What some views of one frame are drawn from.
+struct Told<'a> {
+    input: &'a PaintInput<'a>,
+    seen: &'a Seen,
+    ring: &'a Ring,
+    /// The pictures before an edit, and of each view the share of each pixel that is new.
+    before: Option<(&'a [Arc<CameraImage>], Vec<Vec<f32>>)>,
+}
+
+impl PublicPainter {
+    pub fn new(pipeline: Arc<Pipeline>, options: PaintOptions) -> Self {
+        Self {
+            pipeline,
+            options,
+            kept: VecDeque::new(),
+        }
+    }
+
+    /// Height and width of the pictures of a rig, px.
+    fn size(&self, input: &PaintInput<'_>) -> [usize; 2] {
+        // The UNet halves the latents three times.
+        let unit = self.pipeline.cell() * 8;
+        let whole = |px: f64| ((px / unit as f64).round() as usize).max(1) * unit;
+        let camera = &input.rig.cameras[0];
+        let aspect = f64::from(camera.height.max(1)) / f64::from(camera.width.max(1));
+        let width = whole(self.options.width_px as f64);
+        [whole(width as f64 * aspect), width]
+    }
+
+    /// Draws views together: their pictures.
+    fn draw(
+        &self,
+        told: &Told<'_>,
+        views: &[usize],
+        watch: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
+    ) -> Result<Vec<CameraImage>, PaintError> {
+        let [height, width] = told.ring.size.pixels();
+        let mut start: Vec<u8> = Vec::new();
+        for view in views {
+            let plain = told.seen.pixels(*view).1.iter().flatten().copied();
+            let mut picture: Vec<u8> = plain.collect();
+            if let Some((images, shares)) = &told.before {
+                let old = images[*view].rgba.chunks_exact(4).zip(&shares[*view]);
+                let kept = picture.chunks_exact_mut(3).zip(old).filter(|(_, (_, share))| **share == 0.0);
+                kept.for_each(|(new, (old, _))| new.copy_from_slice(&old[..3]));
+            }
+            start.extend(picture);
+        }
+        let start = Pictures::from_bytes(views.len(), [height, width], &start).map_err(public)?;
+        let mask: Option<Vec<bool>> = told.before.as_ref().map(|(_, shares)| {
+            let all = views.iter().flat_map(|view| &shares[*view]);
+            all.map(|share| *share > 0.0).collect()
+        });
+        let shown = self.shown(told, views);
+        let planes = self.pipeline.plane_channels().map(|channels| {
+            let cell = self.pipeline.cell();
+            planes(told.input.frame, told.seen, views, [height / cell, width / cell], channels)
+        });
+        let request = Request {
+            prompts: views.iter().map(|view| self.prompt(told, *view)).collect(),
+            negative: String::new(),
+            size: [height, width],
+            views: views.len(),
+            frames: 1,
+            steps: self.options.steps,
+            guidance: Guidance {
+                weight: self.options.guidance,
+                rescale: 0.0,
+            },
+            scheduler: None,
+            seed: told.seen.seed(),
+            noise: None,
+            start: Some(Start {
+                pictures: &start,
+                strength: self.options.strength,
+                mask: mask.as_deref(),
+            }),
+            controls: shown.iter().map(|(net, picture)| Control::new(*net, picture)).collect(),
+            planes: planes.as_deref().map(|ids| Planes { ids, scale: 1.0 }),
+        };
+        let drawn = self.pipeline.draw(&request, |step| watch(step.step, step.steps)).map_err(public)?;
+        let rgb = drawn.pictures.to_bytes();
+        let images = views.iter().zip(rgb.chunks_exact(height * width * 3)).map(|(view, rgb)| {
+            let mut image = CameraImage {
+                camera: told.seen.camera_name(*view).to_owned(),
+                width,
+                height,
+                rgba: rgb.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect(),
+            };
+            if let Some((images, shares)) = &told.before {
+                mask::blend(&images[*view].rgba, &mut image.rgba, &shares[*view]);
+            }
+            image
+        });
+        Ok(images.collect())
+    }
+
+    /// What each ControlNet that is shown pictures sees: classes, or depths if its folder is named for them.
+    fn shown(&self, told: &Told<'_>, views: &[usize]) -> Vec<(usize, Vec<f32>)> {
+        let nets = self.pipeline.controls().iter().enumerate();
+        let pictures = nets.filter(|(_, net)| !net.takes_planes());
+        pictures
+            .map(|(i, net)| {
+                let channels = net.config().conditioning_channels;
+                let hints = views.iter().map(|view| told.seen.pixels(*view).0);
+                let picture = match self.pipeline.control_name(i).contains("depth") {
+                    true => hints.flat_map(|h| depths(h, channels)).collect(),
+                    false => hints.flat_map(|h| classes(h, channels)).collect(),
+                };
+                (i, picture)
+            })
+            .collect()
+    }
+
+    /// What is told of a view: the user's words, the light and the camera.
+    fn prompt(&self, told: &Told<'_>, view: usize) -> String {
+        let conditions = &told.input.conditions;
+        let camera = told.seen.camera_name(view).replace("CAM_", "").replace('_', " ").to_lowercase();
+        let words = match self.options.prompt.trim() {
+            "" => "a photograph of a street",
+            words => words,
+        };
+        format!("{words}, {}, {}, seen by the {camera} camera of a car", conditions.time.name(), conditions.weather.name())
+    }
+
+    fn painted(
+        &self,
+        input: &PaintInput<'_>,
+        seen: Seen,
+        ring: &Ring,
+        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Painted, PaintError> {
+        let together = self.pipeline.unet().views();
+        let count = ring.size.views();
+        if together > 1 && together != count {
+            return Err(PaintError::Network(format!(
+                "the weights draw {together} cameras together, the rig has {count}"
+            )));
+        }
+        let source = self.kept.iter().rfind(|p| p.seen.differs_in_scene_alone(&seen));
+        let [_, width] = ring.size.pixels();
+        let before = source.map(|source| {
+            let changed = mask::changed(&source.seen, &seen, ring.size);
+            let shares = changed.iter().map(|c| mask::shares(c, width)).collect();
+            (&source.images[..], shares)
+        });
+        let told = Told {
+            input,
+            seen: &seen,
+            ring,
+            before,
+        };
+        let touched = |view: &usize| match &told.before {
+            Some((_, shares)) => shares[*view].iter().any(|share| *share > 0.0),
+            None => true,
+        };
+        let views: Vec<usize> = ring.from_the_front().into_iter().filter(touched).collect();
+        let groups: Vec<Vec<usize>> = match together > 1 {
+            true if views.is_empty() => Vec::new(),
+            true => vec![(0..count).collect()],
+            false => views.into_iter().map(|view| vec![view]).collect(),
+        };
+        let mut images: Vec<Option<Arc<CameraImage>>> = match &told.before {
+            Some((images, _)) => images.iter().cloned().map(Some).collect(),
+            None => vec![None; count],
+        };
+        for (k, group) in groups.iter().enumerate() {
+            let mut last = (0, 0);
+            let drawn = self.draw(&told, group, &mut |step, steps| {
+                last = (k * steps + step, groups.len() * steps);
+                watch(Progress {
+                    step: last.0,
+                    steps: last.1,
+                    news: None,
+                })
+            })?;
+            for (view, image) in group.iter().zip(drawn) {
+                let news = Progress {
+                    step: last.0,
+                    steps: last.1,
+                    news: Some((ring.camera(*view), &image)),
+                };
+                let ends = watch(news).is_break() && k + 1 < groups.len();
+                images[*view] = Some(Arc::new(image));
+                if ends {
+                    return Err(PaintError::Stopped);
+                }
+            }
+        }
+        Ok(Painted {
+            images: images.into_iter().flatten().collect(),
+            seen,
+        })
+    }
+}
+
+impl Paint for PublicPainter {
+    fn paint(
+        &mut self,
+        input: &PaintInput<'_>,
+        watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Vec<Arc<CameraImage>>, PaintError> {
+        if input.rig.cameras.is_empty() {
+            return Ok(Vec::new());
+        }
+        let Some(ring) = Ring::sized(&input.rig.cameras, self.size(input))? else {
+            return Ok(Vec::new());
+        };
+        let seen = Seen::of(input, &ring);
+        let known = self.kept.iter().position(|p| p.seen == seen);
+        let painted = match known.and_then(|at| self.kept.remove(at)) {
+            Some(painted) => painted,
+            None => self.painted(input, seen, &ring, watch)?,
+        };
+        let images = ring.in_rig_order(&painted.images);
+        if self.kept.len() >= KEPT {
+            self.kept.pop_front();
+        }
+        self.kept.push_back(painted);
+        Ok(images)
+    }
+}
+
+fn public(error: StableError) -> PaintError {
+    match error {
+        StableError::Stopped { .. } => PaintError::Stopped,
+        error => PaintError::Network(error.to_string()),
+    }
+}
