@@ -27,6 +27,7 @@ use rayon::prelude::*;
 use super::appearance::{Appearance, CameraImage, Quality};
 use super::cloud::GaussianCloud;
 use super::march::GroundHeight;
+use super::painter::PaintWith;
 use scene::Conditions;
 use scene::{Background, Camera, CameraMaps, Frame, SensorRig};
 

@@ -28,13 +28,15 @@ struct Painted {
     images: Vec<Arc<CameraImage>>,
 }
 
+/// The pictures before an edit, and of each view the share of each pixel that is new.
+type Before<'a> = (&'a [Arc<CameraImage>], Vec<Vec<f32>>);
+
 /// What some views of one frame are drawn from.
 struct Told<'a> {
     input: &'a PaintInput<'a>,
     seen: &'a Seen,
     ring: &'a Ring,
-    /// The pictures before an edit, and of each view the share of each pixel that is new.
-    before: Option<(&'a [Arc<CameraImage>], Vec<Vec<f32>>)>,
+    before: Option<Before<'a>>,
 }
 
 impl PublicPainter {
@@ -184,7 +186,7 @@ impl PublicPainter {
             Some((_, shares)) => shares[*view].iter().any(|share| *share > 0.0),
             None => true,
         };
-        let views: Vec<usize> = ring.from_the_front().into_iter().filter(touched).collect();
+        let views: Vec<usize> = ring.front_first().into_iter().filter(touched).collect();
         let groups: Vec<Vec<usize>> = match together > 1 {
             true if views.is_empty() => Vec::new(),
             true => vec![(0..count).collect()],

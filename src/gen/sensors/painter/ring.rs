@@ -61,14 +61,14 @@ impl Ring {
     }
 
     /// All places, that of the front camera first.
-    pub fn from_the_front(&self) -> Vec<usize> {
+    pub fn front_first(&self) -> Vec<usize> {
         let views = self.size.views();
         (0..views).map(|i| (self.first + i) % views).collect()
     }
 
     /// Places that a brush touches, that of the front camera first.
     pub fn order(&self, brush: &Brush<'_>) -> Vec<usize> {
-        let mut places = self.from_the_front();
+        let mut places = self.front_first();
         places.retain(|place| brush.touches(*place));
         places
     }
