@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 
 use crate::Edit;
-use crate::pick::{self, Ray, VoxelHit};
+use crate::pick::{self, VoxelHit};
 use crate::voxel_ops::{self, Cell};
 use language::tf;
 use scene::{Class, Extent, Frame};
