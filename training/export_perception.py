@@ -14,7 +14,7 @@ from safetensors.torch import save_file
 
 from export import read, uniform
 from export_layout import write_card
-from models.lidar_perceiver import BOX, GROUPS, PILLAR, LidarPerceiver, PerceiverConfig, decode, load_perceiver, pillars
+from models.lidar_perceiver import BOX, GROUPS, PILLAR, STANDS, LidarPerceiver, PerceiverConfig, decode, load_perceiver, pillars
 from perception_data import PerceptionFrames
 from perception_eval import evaluated
 from perception_sheet import sheet
@@ -55,6 +55,34 @@ def golden(net, small):
     return {k: v.contiguous() for k, v in out.items()}
 
 
+def number(value):
+    return "–" if value is None else f"{value:.3f}".lstrip("0") if abs(value) < 1 else f"{value:.2f}"
+
+
+def card(meta, figures, data_command):
+    """What stands in CARD.md: how the weights came about, and tables of the held-out figures by the LiDAR that made the sweep."""
+    kinds = list(figures)
+    line = lambda cells: "| " + " | ".join(cells) + " |"
+    head = lambda first, names: [line([first, *names]), "|---" * (1 + len(names)) + "|"]
+    frames = ", ".join(f"{k} {figures[k]['frames']}" for k in kinds)
+    lines = ["# LiDAR perceiver", "", "Trained on this project's own procedural worlds; no frame of a data set and no foreign weights went in.", "",
+             f"- Data: `{data_command}`; {meta['frames']} training frames, seed {meta['seed']}, {meta['steps']} steps, {meta['samples']} samples, {meta['minutes']} minutes of one core; log: "
+             "`assets/weights/lidar_perceiver.csv`.", f"- Figures: held-out worlds (seed 2), by what made the sweep ({frames}); `export_perception.py`, all in `figures.json`. `sheet.png`: sweep, truth, prediction.", "",
+             "IoU of what stands in columns within 1.2 m of a return (of all columns in the last row)", "", *head("", kinds)]
+    names = ["miou", *(n for n in STANDS)]
+    lines += [line([n, *(number(figures[k]["standing"]["seen"].get(n)) for k in kinds)]) for n in names]
+    lines += [line(["miou, all", *(number(figures[k]["standing"]["all"]["miou"]) for k in kinds)]), "",
+              "Average precision of boxes: mean over 0.5, 1, 2 and 4 m, in brackets at 2 m", "", *head("", kinds),
+              line(["mAP", *(number(figures[k]["boxes"]["map"]) for k in kinds)])]
+    of = {k: figures[k]["boxes"]["groups"] for k in kinds}
+    lines += [line([g, *(f"{number(of[k][g]['mean_ap'])} ({number(of[k][g]['ap']['2.0'])})" if g in of[k] else "–" for k in kinds)]) for g in GROUPS]
+    lines += [line([what, *(number(figures[k]["boxes"][key]) for k in kinds)]) for what, key in (("ghosts a frame, score .3 on", "ghosts_per_frame"), ("precision there", "precision"))]
+    ranges = list(next(iter(of["all"].values()))["recall"]) if of["all"] else []
+    lines += ["", "Recall at score .3 and 2 m by distance, all sweeps (of how many)", "", *head("", ranges)]
+    lines += [line([g, *(f"{number(v[0])} ({v[1]})" for v in found["recall"].values())]) for g, found in of["all"].items()]
+    return "\n".join(lines) + "\n"
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("weights", type=Path)
@@ -76,6 +104,7 @@ def main():
     kinds = {"all": range(len(frames))} | {name: [i for i, s in enumerate(sources) if s == k] for k, name in enumerate(("surfaces", "learned", "voxels"))}
     figures = {name: evaluated(net, frames, which) for name, which in kinds.items() if len(which)}
     (OUT / "figures.json").write_text(json.dumps(figures, indent=1) + "\n")
+    (OUT / "CARD.md").write_text(card(meta, figures, args.data_command))
     sheet(net, frames, range(min(3, len(frames)))).save(OUT / "sheet.png")
     for path in (shipped, *OUT.iterdir()):
         path.chmod(0o644)
