@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from models.lidar_perceiver import BOX, CELL_M, COLUMNS, GROUPS, HALF_M, pillars
+from models.lidar_perceiver import BOX, CELL_M, COLUMN_M, COLUMNS, GROUPS, HALF_M, pillars
 
 DTYPES = {"U8": np.uint8, "I16": np.int16, "I32": np.int32, "F32": np.float32}
 NAMES = ("source", "returns", "points", "intensity", "box_count", "boxes", "standing")
@@ -140,13 +140,33 @@ def targets(boxes):
     return heat, numbers, weight
 
 
-def sample(frames, rng, frame=None):
-    """A frame as tensors: pillars [19,200,200], what stands [200,200], heat, numbers, weights. Without `frame` a random one, disturbed."""
+def cut(rng, boxes, side):
+    """Corner (columns, even) of a square of `side` columns: three of four times around a box of a random group that has returns."""
+    boxes, groups = asked_for(boxes)
+    boxes, groups = boxes[boxes[:, 8] > 0], groups[boxes[:, 8] > 0]
+    if len(boxes) and rng.random() < 0.75:
+        box = boxes[rng.choice(np.flatnonzero(groups == rng.choice(np.unique(groups))))]
+        corner = (box[:2] + HALF_M) / COLUMN_M - rng.uniform(0.15, 0.85, 2) * side
+    else:
+        corner = rng.uniform(0, COLUMNS - side, 2)
+    return np.clip(corner, 0, COLUMNS - side).astype(int) // 2 * 2
+
+
+def sample(frames, rng, frame=None, side=COLUMNS):
+    """A frame as tensors: pillars [19,200,200], what stands [200,200], heat, numbers, weights. Without `frame` a random one, disturbed, and of it a
+    square of `side` columns."""
     points, boxes, standing, _ = frames.read(frames.pick(rng) if frame is None else frame)
     if frame is None:
         points, boxes, standing = mirrored(disturbed(points, rng), boxes, standing, int(rng.integers(8)))
-    return pillars(torch.from_numpy(points)), torch.from_numpy(standing), *map(torch.from_numpy, targets(boxes))
+    x, y = cut(rng, boxes, side) if side < COLUMNS else (0, 0)
+    if side < COLUMNS:
+        low = np.array([x, y]) * COLUMN_M - HALF_M
+        points = points[((points[:, :2] > low - 0.01) & (points[:, :2] < low + side * COLUMN_M + 0.01)).all(1)]
+    fine = (..., slice(x, x + side), slice(y, y + side))
+    cells = (..., slice(x // 2, (x + side) // 2), slice(y // 2, (y + side) // 2))
+    return (pillars(torch.from_numpy(points))[fine], torch.from_numpy(standing)[fine[1:]],
+            *(torch.from_numpy(part)[cells if part.ndim == 3 else cells[1:]] for part in targets(boxes)))
 
 
-def batch(frames, rng, size):
-    return tuple(torch.stack(parts) for parts in zip(*(sample(frames, rng) for _ in range(size))))
+def batch(frames, rng, size, side=COLUMNS):
+    return tuple(torch.stack(parts) for parts in zip(*(sample(frames, rng, side=side) for _ in range(size))))

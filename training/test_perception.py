@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,6 @@ from loop import pick_device
 from models.lidar_perceiver import BOX, GROUPS, PILLAR, STANDS, LidarPerceiver, PerceiverConfig, decode, pillars
 from perception_data import IGNORED, PerceptionFrames, asked_for, batch, disturbed, mirrored, sample, targets
 from perception_eval import Boxes, Standing, average_precision, evaluated, matched
-from perception_sheet import sheet
 
 
 def toy(rng, cars=6):
@@ -134,17 +134,28 @@ def what_stands_is_told():
     assert list(pack_perception.standing(labels)[0, :6]) == [11, 11, 16, 15, 4, 17]
 
 
+def a_square_is_a_part_of_its_frame(frames):
+    for seed in range(4):
+        whole, part = (batch(frames, np.random.default_rng(seed), 1, side) for side in (200, 64))
+        assert [p.shape[-1] for p in part] == [64, 64, 32, 32, 32] and part[3].shape == (1, BOX, 32, 32)
+        x = part[0][0, 18, 0]
+        corner = [(x0, y0) for x0 in range(0, 137, 2) for y0 in range(0, 137, 2) if torch.equal(whole[0][0, 18, x0, y0 : y0 + 64], x)]
+        assert any(torch.allclose(whole[0][0, :, x0 : x0 + 64, y0 : y0 + 64], part[0][0], atol=1e-5)
+                   and torch.equal(whole[2][0, :, x0 // 2 : x0 // 2 + 32, y0 // 2 : y0 // 2 + 32], part[2][0]) for x0, y0 in corner)
+
+
 def toy_training():
     """A minute's training on a few frames lowers every loss and is resumed where it was."""
     with tempfile.TemporaryDirectory() as folder:
         frames = folder_of(Path(folder) / "train", 6)
         assert frames.read(0)[2].max() == 5 and sample(frames, None, 0)[0].shape == (PILLAR, 200, 200)
+        a_square_is_a_part_of_its_frame(frames)
         device, dtype = pick_device(1)
         torch.manual_seed(0)
         net, rng = LidarPerceiver(PerceiverConfig(widths=(8, 12, 16))), np.random.default_rng(0)
         optimizer, first = torch.optim.AdamW(net.parameters(), lr=1e-2), None
         for _ in range(40):
-            loss, parts = train_perception.losses(net, *batch(frames, rng, 2))
+            loss, parts = train_perception.losses(net, *batch(frames, rng, 2, 120))
             optimizer.zero_grad()
             loss.backward()
             optimizer.step()
@@ -152,7 +163,9 @@ def toy_training():
         assert all(parts[k].item() < 0.7 * first[k] for k in parts), (first, parts)
         found = evaluated(net.eval(), frames, range(2))
         assert found["standing"]["all"]["miou"] > 0.3 and set(found["boxes"]["groups"]) == {"car"}
-        assert sheet(net, frames, range(2)).size == (1212, 806)
+        if find_spec("PIL"):
+            from perception_sheet import sheet
+            assert sheet(net, frames, range(2)).size == (1212, 806)
 
 
 def frames_of_the_program(worlds):
@@ -162,7 +175,7 @@ def frames_of_the_program(worlds):
         frames = PerceptionFrames(f"{folder}/train")
         assert len(frames) == 3 and all(len(frames.read(i)[0]) > 5000 for i in range(3))
         out = f"{folder}/w.safetensors"
-        subprocess.run([sys.executable, "train_perception.py", "--data", folder, "--minutes", "0.2", "-o", out, "--tiny", "--held-out", "2", "--batch", "2"], check=True,
+        subprocess.run([sys.executable, "train_perception.py", "--data", folder, "--minutes", "0.2", "-o", out, "--tiny", "--side", "64", "--held-out", "2", "--batch", "2"], check=True,
                        cwd=Path(__file__).parent, stdout=subprocess.DEVNULL)
         said = subprocess.run([sys.executable, "perception_eval.py", out, f"{folder}/val", "--sheet", f"{folder}/s.png"], check=True, cwd=Path(__file__).parent,
                               capture_output=True, text=True).stdout

@@ -55,6 +55,7 @@ def main():
     p.add_argument("--optimizer", choices=["muon", "adamw"], default="muon")
     p.add_argument("--lr", type=float, default=3e-3)
     p.add_argument("--batch", type=int, default=4)
+    p.add_argument("--side", type=int, default=120, help="columns of the squares that are cut out of frames, a multiple of 8: 200 are a whole frame")
     p.add_argument("--seed", type=int, default=0)
     p.add_argument("--threads", type=int, default=1)
     p.add_argument("--frames", type=int, help="of train/, the first ones; all if left out")
@@ -77,8 +78,8 @@ def main():
         train.rescan()
         run.save(meta | {"frames": len(train)})
 
-    rng = np.random.default_rng([args.seed, run.step])
-    for parts in prefetch(lambda: batch(train, rng, args.batch)):
+    rng, saved = np.random.default_rng([args.seed, run.step]), time.monotonic()
+    for parts in prefetch(lambda: batch(train, rng, args.batch, args.side)):
         if run.done():
             break
         with torch.autocast(device.type, dtype, enabled=dtype is not None):
@@ -91,7 +92,8 @@ def main():
         if run.elapsed() - noted > args.note_minutes:
             note()
             noted, since = run.elapsed(), (run.samples, time.monotonic())
-        elif run.elapsed() - run.saved_at > SAVE_MINUTES:
+        elif time.monotonic() - saved > 60 * SAVE_MINUTES:
+            saved = time.monotonic()
             train.rescan()
             run.save(meta | {"frames": len(train)})
     note()

@@ -25,8 +25,8 @@ MOST = 200  # boxes of a sweep
 
 @dataclass
 class PerceiverConfig:
-    widths: tuple = (48, 96, 192)  # at 0.8, 1.6 and 3.2 m
-    kernels: tuple = ((3, 3), (3, 3, 3), (3, 3))
+    widths: tuple = (32, 64, 128)  # at 0.8, 1.6 and 3.2 m
+    kernels: tuple = ((3,), (3, 3), (3, 3))
 
     def as_dict(self):
         return asdict(self)
