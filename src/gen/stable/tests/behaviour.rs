@@ -7,11 +7,11 @@ use crate::noise::{carried, fresh, with_prior};
 use crate::{Control, Drawn, Onward, Pictures, Pipeline, Planes, Request, StableError, Start};
 use diffusion::solver::Guidance;
 
-fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
+pub(super) fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn request(seed: u64) -> Request<'static> {
+pub(super) fn request(seed: u64) -> Request<'static> {
     Request {
         steps: 4,
         ..Request::new("a road", [16, 24], seed)
@@ -22,11 +22,18 @@ fn drawn(pipeline: &Pipeline, request: &Request<'_>) -> Drawn {
     pipeline.draw(request, go_on).expect("drawn")
 }
 
-fn some_picture(count: usize, size: [usize; 2]) -> Pictures {
+pub(super) fn some_picture(count: usize, size: [usize; 2]) -> Pictures {
     let bytes: Vec<u8> = (0..count * size[0] * size[1] * 3)
         .map(|i| (i * 37 % 251) as u8)
         .collect();
     Pictures::from_bytes(count, size, &bytes).expect("pictures")
+}
+
+/// A worker thread may hold a model.
+#[test]
+fn a_model_can_go_to_another_thread() {
+    fn goes<T: Send + Sync>() {}
+    goes::<Pipeline>();
 }
 
 #[test]
@@ -293,164 +300,6 @@ fn bytes_come_back_as_they_were() {
     assert!(Pictures::from_bytes(2, [16, 16], &bytes).is_err());
     assert!(Pictures::new(1, [1, 1], vec![f32::NAN; 3]).is_err());
     assert!(Pictures::new(usize::MAX, [8192, 8192], vec![]).is_err());
-}
-
-#[test]
-fn requests_that_do_not_fit_are_refused_in_one_line() {
-    let (plain, ring) = (opened("sd15"), opened("ring"));
-    let (picture, numbers) = (some_picture(1, [16, 24]), vec![0.0; 9]);
-    let refused = |pipeline: &Pipeline, request: Request<'_>| {
-        let error = pipeline.draw(&request, go_on).expect_err("refused").to_string();
-        assert!(!error.contains('\n'), "{error}");
-        error
-    };
-    let start = |strength, mask| {
-        Some(Start {
-            pictures: &picture,
-            strength,
-            mask,
-        })
-    };
-    let bad = f64::NAN;
-    for (request, begins) in [
-        (
-            Request {
-                size: [16, 23],
-                ..request(1)
-            },
-            "side of a picture is 23",
-        ),
-        (
-            Request {
-                size: [0, 16],
-                ..request(1)
-            },
-            "side of a picture is 0",
-        ),
-        (
-            Request {
-                views: 0,
-                ..request(1)
-            },
-            "number of pictures is 0",
-        ),
-        (
-            Request {
-                views: usize::MAX,
-                frames: 3,
-                ..request(1)
-            },
-            "number of pictures is 18446744073709551615",
-        ),
-        (
-            Request {
-                prompts: vec![],
-                ..request(1)
-            },
-            "prompts has 0 values",
-        ),
-        (
-            Request {
-                steps: 0,
-                ..request(1)
-            },
-            "steps is 0",
-        ),
-        (
-            Request {
-                steps: 1001,
-                ..request(1)
-            },
-            "steps is 1001",
-        ),
-        (
-            Request {
-                guidance: Guidance {
-                    weight: bad,
-                    rescale: 0.0,
-                },
-                ..request(1)
-            },
-            "guidance is NaN",
-        ),
-        (
-            Request {
-                noise: Some(vec![0.0; 3]),
-                ..request(1)
-            },
-            "noise has 3 values, expected 384",
-        ),
-        (
-            Request {
-                noise: Some(vec![f32::NAN; 384]),
-                ..request(1)
-            },
-            "noise: value 0 is NaN",
-        ),
-        (
-            Request {
-                start: start(2.0, None),
-                ..request(1)
-            },
-            "strength is 2",
-        ),
-        (
-            Request {
-                start: start(1.0, Some(&[true])),
-                ..request(1)
-            },
-            "mask has 1 values, expected 384",
-        ),
-        (
-            Request {
-                start: start(1.0, None),
-                size: [16, 16],
-                ..request(1)
-            },
-            "size of the pictures to go out from",
-        ),
-        (
-            Request {
-                controls: vec![Control::new(3, &numbers)],
-                ..request(1)
-            },
-            "ControlNet is 3",
-        ),
-        (
-            Request {
-                controls: vec![Control::new(0, &numbers)],
-                ..request(1)
-            },
-            "picture of a ControlNet has 9 values",
-        ),
-        (
-            Request {
-                planes: Some(Planes {
-                    ids: &numbers,
-                    scale: 1.0,
-                }),
-                ..request(1)
-            },
-            "multi-plane images is 9",
-        ),
-    ] {
-        let error = refused(&plain, request);
-        assert!(error.starts_with(begins), "{error}");
-    }
-    let error = refused(&ring, request(1));
-    assert_eq!(error, "number of views is 1, expected 6, those of the UNet");
-    let error = refused(
-        &ring,
-        Request {
-            views: 6,
-            controls: vec![Control::new(0, &numbers)],
-            ..request(1)
-        },
-    );
-    assert!(
-        error.starts_with("condition of a ControlNet that takes planes"),
-        "{error}"
-    );
 }
 
 /// Cards compute in 16 bits: the same path on the processor.

@@ -4,6 +4,7 @@
 mod behaviour;
 mod blocks;
 mod damaged;
+mod refusals;
 mod ring;
 mod runs;
 mod schedules;
