@@ -175,6 +175,8 @@ def save(model, folder, dtype, config=None, name="diffusion_pytorch_model", shar
     if config is None:
         model.save_config(folder) if hasattr(model, "save_config") else model.config.save_pretrained(folder)
     else:
+        # Which values were left to diffusers stands there in an order that changes.
+        config = {k: v for k, v in config.items() if k != "_use_default_values"}
         (folder / "config.json").write_text(json.dumps(config, indent=1))
     state = {renamed(k): v.to(dtype).contiguous() for k, v in model.state_dict().items()}
     if shards == 1:
@@ -252,7 +254,7 @@ def blocks(golden, tokenizer, text, vae, unet, size):
     golden["vae.logvar"] = vae.encode(picture).latent_dist.logvar
     latent = noise(2, 1, 4, *size)
     golden["vae.latent"], golden["vae.decoded"] = latent, vae.decode(latent).sample
-    mid = [n for n in ("encoder.mid_block.resnets.0", "encoder.mid_block.attentions.0", "encoder.down_blocks.0.downsamplers.0")]
+    mid = ["encoder.mid_block.resnets.0", "encoder.mid_block.attentions.0"]
     seen = watched(vae, mid, lambda: vae.encode(picture))
     golden |= {f"vae.{k}": v for k, v in seen.items()}
     x = noise(3, 2, 4, *size)
@@ -335,7 +337,7 @@ def schedules():
             "prediction_type", "set_alpha_to_one", "clip_sample", "skip_prk_steps", "steps_offset", "rescale_betas_zero_snr")}
     write(OUT, {f"schedule.{k}": v for k, v in golden.items()})
     (OUT / "golden.safetensors").rename(OUT / "schedules.safetensors")
-    (OUT / "schedules.json").write_text("[" + ",\n".join(json.dumps(c) for c in cases) + "]\n")
+    (OUT / "schedules.json").write_text("[" + ",\n".join(json.dumps(c, separators=(",", ":")) for c in cases) + "]\n")
 
 
 # ---------------------------------------------------------------- the three models
@@ -364,8 +366,10 @@ def sd15():
     golden["run.noise"] = start
     given = dict(vae=vae, text_encoder=text, tokenizer=tokenizer, unet=unet, safety_checker=None, feature_extractor=None)
     told = dict(prompt=PROMPT, negative_prompt=NEGATIVE, output_type="latent", guidance_scale=7.5)
+    # As read from the folder, where what was not said stands as said; latents are never clipped.
+    config = dict(PNDMScheduler.from_pretrained(folder / "scheduler").config) | {"clip_sample": False}
     for kind, make in SCHEDULERS.items():
-        pipe = StableDiffusionPipeline(scheduler=make.from_config(scheduler.config), requires_safety_checker=False, **given)
+        pipe = StableDiffusionPipeline(scheduler=make.from_config(config), requires_safety_checker=False, **given)
         pipe.set_progress_bar_config(disable=True)
         latents = pipe(**told, num_inference_steps=5, latents=start).images
         golden[f"run.{kind}.latents"], golden[f"run.{kind}.picture"] = latents, decoded(vae, latents)
@@ -378,7 +382,7 @@ def sd15():
         seeded = torch.Generator().manual_seed(4)
         golden[f"again.{kind}"] = image(**told, image=clean, strength=0.6, num_inference_steps=5, generator=seeded).images
     pipe = StableDiffusionControlNetPipeline(
-        controlnet=control, scheduler=DDIMScheduler.from_config(scheduler.config), requires_safety_checker=False, **given
+        controlnet=control, scheduler=DDIMScheduler.from_config(config), requires_safety_checker=False, **given
     )
     pipe.set_progress_bar_config(disable=True)
     golden["run.control.latents"] = pipe(
@@ -482,12 +486,63 @@ def ring():
     write(folder, golden)
 
 
+# ---------------------------------------------------------------- the real models
+
+
+def real():
+    """Names and shapes of the public models, made without weights."""
+    four = (320, 640, 1280, 1280)
+    both = {
+        "sd15": dict(cross_attention_dim=768, attention_head_dim=8),
+        "sd21": dict(cross_attention_dim=1024, attention_head_dim=[5, 10, 20, 20], use_linear_projection=True),
+    }
+    texts = {
+        "sd15": dict(hidden_size=768, intermediate_size=3072, num_hidden_layers=12, num_attention_heads=12, hidden_act="quick_gelu"),
+        "sd21": dict(hidden_size=1024, intermediate_size=4096, num_hidden_layers=23, num_attention_heads=16, hidden_act="gelu"),
+    }
+    out = {}
+
+    def listed(name, model, config, shapes=None):
+        shapes = shapes or {k: list(v.shape) for k, v in model.state_dict().items()}
+        config = {k: v for k, v in dict(config).items() if not k.startswith("_") and v is not None}
+        out[name] = {"config": config, "shapes": shapes}
+
+    with torch.device("meta"):
+        for model, more in both.items():
+            unet = UNet2DConditionModel(block_out_channels=four, **more)
+            listed(f"{model}.unet", unet, unet.config)
+            if model == "sd15":
+                control = ControlNetModel(block_out_channels=four, **more)
+                listed("sd15.controlnet", control, control.config)
+            config = CLIPTextConfig(vocab_size=49408, max_position_embeddings=77, **texts[model])
+            text = CLIPTextModel(config)
+            # Public files have the names of older versions, and a table of positions.
+            shapes = {"text_model." + k: list(v.shape) for k, v in text.state_dict().items()}
+            listed(f"{model}.text_encoder", text, config.to_dict(), shapes | {"text_model.embeddings.position_ids": [1, 77]})
+        vae = AutoencoderKL(
+            block_out_channels=(128, 256, 512, 512), layers_per_block=2, latent_channels=4, sample_size=512,
+            down_block_types=("DownEncoderBlock2D",) * 4, up_block_types=("UpDecoderBlock2D",) * 4,
+        )
+        listed("sd15.vae", vae, vae.config)
+        # SyntheOcc: 2.1 with attention to neighbouring views, and a ControlNet that is shown 257 planes.
+        unet = UNet2DConditionModel(block_out_channels=four, **both["sd21"])
+        Ring(unet, 6, 1, "add", "zero_linear")
+        pairs = {"0": [5, 1], "1": [0, 2], "2": [1, 3], "3": [2, 4], "4": [3, 5], "5": [4, 0]}
+        fields = dict(neighboring_view_pair=pairs, neighboring_attn_type="add", zero_module_type="zero_linear", crossview_attn_type="basic")
+        listed("synthe_occ.unet", unet, dict(unet.config) | fields)
+        control = ControlNetModel(block_out_channels=four, conditioning_channels=257, **both["sd21"])
+        control.controlnet_cond_embedding = Planes(257, 320)
+        listed("synthe_occ.controlnet", control, control.config)
+    (OUT / "shapes.json").write_text(json.dumps(out, separators=(",", ":")))
+
+
 if __name__ == "__main__":
     torch.set_grad_enabled(False)
     torch.set_num_threads(1)
     shutil.rmtree(OUT, ignore_errors=True)
     OUT.mkdir(parents=True)
     schedules()
+    real()
     sd15()
     sd21()
     ring()

@@ -18,9 +18,14 @@ pub struct MpiEncoder {
 impl MpiEncoder {
     /// Of weights named `position_encoder.0` and `position_encoder.2`. Errors if they do not fit the configuration.
     pub fn load(config: &MpiConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
-        weights.build(machine, &[], |names| {
-            Self::of(names, config.conditioning_channels, config.embedding_channels, machine)
-        })
+        let (channels, width) = (config.conditioning_channels, config.embedding_channels);
+        weights.build(machine, &[], |names| Self::of(names, channels, width, machine))
+    }
+
+    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    pub fn check(config: &MpiConfig, weights: &Weights) -> Result<(), StableError> {
+        let (channels, width) = (config.conditioning_channels, config.embedding_channels);
+        weights.check(&[], |names| Self::of(names, channels, width, &Machine::cpu()))
     }
 
     fn of(names: &Names<'_>, channels: usize, width: usize, machine: &Machine) -> Result<Self, StableError> {
@@ -76,6 +81,11 @@ impl ControlNet {
         weights.build(machine, &[], |names| Self::of(&config, names, machine))
     }
 
+    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    pub fn check(config: &ControlConfig, weights: &Weights) -> Result<(), StableError> {
+        weights.check(&[], |names| Self::of(config, names, &Machine::cpu()))
+    }
+
     fn of(config: &ControlConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
         let unet = &config.unet;
         let levels = Levels::of(unet);
@@ -89,7 +99,11 @@ impl ControlNet {
             Embedding::Planes(planes)
         } else {
             let widths = &config.embedding;
-            let mut all = vec![Conv::load(&at.at("conv_in"), config.conditioning_channels, widths[0])?];
+            let mut all = vec![Conv::load(
+                &at.at("conv_in"),
+                config.conditioning_channels,
+                widths[0],
+            )?];
             for (i, pair) in widths.windows(2).enumerate() {
                 let block = |j: usize| at.at("blocks").at(2 * i + j);
                 all.push(Conv::load(&block(0), pair[0], pair[0])?);

@@ -16,6 +16,7 @@ mod machine;
 pub mod noise;
 mod pictures;
 mod pipeline;
+pub mod planes;
 pub mod sampling;
 #[cfg(test)]
 mod tests;

@@ -45,7 +45,9 @@ pub fn carried(
     let mut taken = vec![false; from.len()];
     let mut out = fresh.to_vec();
     for (to, from) in from.iter().enumerate() {
-        let Some(from) = from.map(|f| f as usize) else { continue };
+        let Some(from) = from.map(|f| f as usize) else {
+            continue;
+        };
         let Some(taken) = taken.get_mut(from) else {
             let expected = format!("less than {}", pictures * cells);
             return Err(crate::wrong("cell of the frame before", from, expected));

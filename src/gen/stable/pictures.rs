@@ -23,9 +23,17 @@ impl Pictures {
     pub fn new(count: usize, size: [usize; 2], rgb: Vec<f32>) -> Result<Self, StableError> {
         if size.iter().any(|side| !(1..=MOST_PX).contains(side)) {
             let found = format!("{} x {}", size[0], size[1]);
-            return Err(wrong("size of pictures", found, format!("1 to {MOST_PX} px a side")));
+            return Err(wrong(
+                "size of pictures",
+                found,
+                format!("1 to {MOST_PX} px a side"),
+            ));
         }
-        check_length("pictures", rgb.len(), count.saturating_mul(size[0] * size[1] * COLOURS))?;
+        check_length(
+            "pictures",
+            rgb.len(),
+            count.saturating_mul(size[0] * size[1] * COLOURS),
+        )?;
         check_finite("picture", &rgb)?;
         Ok(Self { count, size, rgb })
     }
@@ -59,7 +67,10 @@ impl Pictures {
 
     /// With the pixels of `other` wherever `mask` `[picture][row][column]` is false, to the bit. Both are of the same size.
     pub(crate) fn except(mut self, mask: &[bool], other: &Self) -> Self {
-        let pixels = self.rgb.chunks_exact_mut(COLOURS).zip(other.rgb.chunks_exact(COLOURS));
+        let pixels = self
+            .rgb
+            .chunks_exact_mut(COLOURS)
+            .zip(other.rgb.chunks_exact(COLOURS));
         for ((own, kept), anew) in pixels.zip(mask) {
             if !anew {
                 own.copy_from_slice(kept);
@@ -72,14 +83,20 @@ impl Pictures {
     pub(crate) fn tensor(&self, machine: &Machine) -> Result<Tensor, StableError> {
         let [height, width] = self.size;
         let x = Tensor::from_slice(&self.rgb, (self.count, height, width, COLOURS), &Device::Cpu)?;
-        Ok(x.permute((0, 3, 1, 2))?.contiguous()?.to_device(&machine.device)?)
+        Ok(x.permute((0, 3, 1, 2))?
+            .contiguous()?
+            .to_device(&machine.device)?)
     }
 
     /// Of `[n, 3, height, width]`, cut off at -1 and 1. Errors if a number is not finite.
     pub(crate) fn of_tensor(x: &Tensor) -> Result<Self, StableError> {
         let (count, _, height, width) = x.dims4()?;
         let x = x.to_dtype(DType::F32)?.to_device(&Device::Cpu)?;
-        let mut rgb = x.permute((0, 2, 3, 1))?.contiguous()?.flatten_all()?.to_vec1::<f32>()?;
+        let mut rgb = x
+            .permute((0, 2, 3, 1))?
+            .contiguous()?
+            .flatten_all()?
+            .to_vec1::<f32>()?;
         check_finite("decoded picture", &rgb)?;
         rgb.iter_mut().for_each(|v| *v = v.clamp(-1.0, 1.0));
         Self::new(count, [height, width], rgb)

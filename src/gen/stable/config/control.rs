@@ -54,7 +54,11 @@ impl ControlConfig {
         check_plain(&own.rest, &[("global_pool_conditions", &["false"])])?;
         check_range("conditioning_channels", own.conditioning_channels, 1..=4096)?;
         let embedding = own.conditioning_embedding_out_channels;
-        check_range("the number of conditioning_embedding_out_channels", embedding.len(), 1..=8)?;
+        check_range(
+            "the number of conditioning_embedding_out_channels",
+            embedding.len(),
+            1..=8,
+        )?;
         for width in &embedding {
             check_range("conditioning_embedding_out_channels", *width, 1..=8192)?;
         }

@@ -63,7 +63,12 @@ pub(crate) fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, StableErro
         return Err(StableError::Folder {
             path: path.to_owned(),
             expected: "a regular file".into(),
-            found: if kind.is_dir() { "a folder" } else { "a device or a pipe" }.into(),
+            found: if kind.is_dir() {
+                "a folder"
+            } else {
+                "a device or a pipe"
+            }
+            .into(),
         });
     }
     let mut bytes = Vec::new();
@@ -71,7 +76,10 @@ pub(crate) fn read_bounded(path: &Path, most: u64) -> Result<Vec<u8>, StableErro
     // It may grow while it is read.
     file.take(most + 1).read_to_end(&mut bytes).map_err(unread)?;
     if bytes.len() as u64 > most {
-        return Err(refused(path, format!("expected at most {most} bytes, found more")));
+        return Err(refused(
+            path,
+            format!("expected at most {most} bytes, found more"),
+        ));
     }
     Ok(bytes)
 }

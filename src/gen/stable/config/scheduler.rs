@@ -161,6 +161,10 @@ impl SchedulerConfig {
             check_plain(&self.rest, &[("skip_prk_steps", &["true"])])?;
         }
         check_range("num_train_timesteps", self.num_train_timesteps, 2..=100_000)?;
-        check_range("steps_offset", self.steps_offset, 0..=self.num_train_timesteps - 1)
+        check_range(
+            "steps_offset",
+            self.steps_offset,
+            0..=self.num_train_timesteps - 1,
+        )
     }
 }

@@ -196,13 +196,20 @@ impl UnetConfig {
                 self.freq_shift
             ));
         }
-        for depth in self.depths().ok_or("transformer_layers_per_block: expected one number per level")? {
+        for depth in self
+            .depths()
+            .ok_or("transformer_layers_per_block: expected one number per level")?
+        {
             check_range("transformer_layers_per_block", depth, 1..=32)?;
         }
-        let heads = self.heads().ok_or("attention_head_dim: expected one number per level")?;
+        let heads = self
+            .heads()
+            .ok_or("attention_head_dim: expected one number per level")?;
         for (heads, width) in heads.into_iter().zip(&self.block_out_channels) {
             if heads == 0 || !width.is_multiple_of(heads) {
-                return Err(format!("attention_head_dim is {heads}, expected a divisor of {width}"));
+                return Err(format!(
+                    "attention_head_dim is {heads}, expected a divisor of {width}"
+                ));
             }
         }
         if self.cross_frame_attn_type == Some(Heard::Concat) {
@@ -213,13 +220,17 @@ impl UnetConfig {
 
     /// Heads of each level.
     pub(crate) fn heads(&self) -> Option<Vec<usize>> {
-        let heads = self.num_attention_heads.as_ref().unwrap_or(&self.attention_head_dim);
+        let heads = self
+            .num_attention_heads
+            .as_ref()
+            .unwrap_or(&self.attention_head_dim);
         heads.of(self.block_out_channels.len())
     }
 
     /// Transformer blocks in each place of each level.
     pub(crate) fn depths(&self) -> Option<Vec<usize>> {
-        self.transformer_layers_per_block.of(self.block_out_channels.len())
+        self.transformer_layers_per_block
+            .of(self.block_out_channels.len())
     }
 
     /// The neighbours of each view; none if the network draws views one by one.
@@ -232,7 +243,8 @@ impl UnetConfig {
         (0..views)
             .map(|view| {
                 let found = pairs.get(&view.to_string());
-                let found = found.ok_or_else(|| format!("neighboring_view_pair: view {view} of {views} is missing"))?;
+                let found = found
+                    .ok_or_else(|| format!("neighboring_view_pair: view {view} of {views} is missing"))?;
                 if found.is_empty() || found.len() > views || found.iter().any(|n| *n >= views) {
                     return Err(format!(
                         "neighboring_view_pair: view {view} has {found:?}, expected views below {views}"

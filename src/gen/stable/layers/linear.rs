@@ -39,7 +39,10 @@ impl Linear {
         let inputs = dims.pop().unwrap_or(0);
         let rows = dims.iter().product::<usize>();
         dims.push(self.weight.dim(0)?);
-        let y = x.contiguous()?.reshape((rows, inputs))?.matmul(&self.weight.t()?)?;
+        let y = x
+            .contiguous()?
+            .reshape((rows, inputs))?
+            .matmul(&self.weight.t()?)?;
         let y = match &self.bias {
             Some(bias) => y.broadcast_add(bias)?,
             None => y,

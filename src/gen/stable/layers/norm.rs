@@ -31,8 +31,14 @@ impl GroupNorm {
     ) -> std::result::Result<Self, StableError> {
         let shape = (1, channels, 1);
         Ok(Self {
-            scale: names.tensor("weight", &[channels])?.to_dtype(DType::F32)?.reshape(shape)?,
-            shift: names.tensor("bias", &[channels])?.to_dtype(DType::F32)?.reshape(shape)?,
+            scale: names
+                .tensor("weight", &[channels])?
+                .to_dtype(DType::F32)?
+                .reshape(shape)?,
+            shift: names
+                .tensor("bias", &[channels])?
+                .to_dtype(DType::F32)?
+                .reshape(shape)?,
             groups,
             epsilon,
         })
@@ -61,11 +67,7 @@ pub(crate) struct LayerNorm {
 
 impl LayerNorm {
     /// `weight` and `bias` below a prefix.
-    pub fn load(
-        names: &Names<'_>,
-        width: usize,
-        epsilon: f64,
-    ) -> std::result::Result<Self, StableError> {
+    pub fn load(names: &Names<'_>, width: usize, epsilon: f64) -> std::result::Result<Self, StableError> {
         Ok(Self {
             scale: names.tensor("weight", &[width])?.to_dtype(DType::F32)?,
             shift: names.tensor("bias", &[width])?.to_dtype(DType::F32)?,

@@ -25,7 +25,8 @@ impl Residual {
         epsilon: f64,
     ) -> std::result::Result<Self, StableError> {
         let time = time.map(|width| Linear::load(&names.at("time_emb_proj"), width, outputs));
-        let shortcut = (inputs != outputs).then(|| Conv::load_point(&names.at("conv_shortcut"), inputs, outputs));
+        let shortcut =
+            (inputs != outputs).then(|| Conv::load_point(&names.at("conv_shortcut"), inputs, outputs));
         Ok(Self {
             norms: [
                 GroupNorm::load(&names.at("norm1"), inputs, groups, epsilon)?,

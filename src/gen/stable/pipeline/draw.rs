@@ -77,8 +77,14 @@ impl Pipeline {
         let plan = Plan::new(&self.scheduler, kind, request.steps, strength)?;
         let noise = request.noise.clone();
         let noise = noise.unwrap_or_else(|| noise::fresh(request.seed, 0, size));
-        let clean = request.start.map(|start| self.encode(start.pictures)).transpose()?;
-        let anew = request.start.and_then(|s| s.mask).map(|mask| self.cells(mask, size));
+        let clean = request
+            .start
+            .map(|start| self.encode(start.pictures))
+            .transpose()?;
+        let anew = request
+            .start
+            .and_then(|s| s.mask)
+            .map(|mask| self.cells(mask, size));
         let idle = plan.calls.is_empty() || anew.as_ref().is_some_and(|cells| !cells.contains(&true));
         if let (Some(start), Some(clean), true) = (request.start, &clean, idle) {
             return Ok(Drawn {
@@ -101,7 +107,9 @@ impl Pipeline {
                 // What stays is at every level what it would be if its noise were removed without a mistake.
                 let kept = noise::noised(clean, &noise, &call.to);
                 let pairs = next.iter_mut().zip(kept).zip(anew);
-                pairs.filter(|(_, anew)| !**anew).for_each(|((next, kept), _)| *next = kept);
+                pairs
+                    .filter(|(_, anew)| !**anew)
+                    .for_each(|((next, kept), _)| *next = kept);
             }
             check_state(&next, k + 1, steps)?;
             let seen = Step {
@@ -151,7 +159,11 @@ impl Pipeline {
         let on = |numbers: &[f32], shape: [usize; 4]| -> Result<Tensor, StableError> {
             Ok(Tensor::from_slice(numbers, &shape, &Device::Cpu)?.to_device(&self.machine.device)?)
         };
-        let told = request.prompts.iter().map(|p| self.told(p)).collect::<Result<Vec<_>, _>>()?;
+        let told = request
+            .prompts
+            .iter()
+            .map(|p| self.told(p))
+            .collect::<Result<Vec<_>, _>>()?;
         let mut shown = Vec::new();
         for control in &request.controls {
             let net = &self.controls[control.net];
@@ -222,7 +234,9 @@ impl Pipeline {
         // The spread that rescaling restores is that of each picture.
         let each = (x.len() / size[0]).max(1);
         let pairs = told.chunks(each).zip(negative.chunks(each));
-        Ok(pairs.flat_map(|(told, negative)| request.guidance.combine(told, negative)).collect())
+        Ok(pairs
+            .flat_map(|(told, negative)| request.guidance.combine(told, negative))
+            .collect())
     }
 
     /// What conditions add to the UNet's maps in this step.

@@ -6,7 +6,9 @@ use serde::Deserialize;
 
 use super::Pipeline;
 use super::checks;
-use crate::config::{ControlConfig, MpiConfig, SchedulerConfig, TextConfig, UnetConfig, VaeConfig, read_json};
+use crate::config::{
+    ControlConfig, MpiConfig, SchedulerConfig, TextConfig, UnetConfig, VaeConfig, read_json,
+};
 use crate::control::{ControlNet, MpiEncoder};
 use crate::text::{TextEncoder, Words};
 use crate::unet::Unet;
@@ -58,51 +60,102 @@ struct ModelIndex {
     class: String,
 }
 
-impl Pipeline {
-    /// Opens all parts of a model. Every configuration, and every name, shape and type of a tensor is checked before weights are
-    /// read. The autoencoder and the text encoder always compute in 32 bits. Errors in one line that names the file.
-    pub fn open(folders: &Folders, machine: &Machine) -> Result<Self, StableError> {
+/// A network's configuration and weights.
+struct Part<C> {
+    config: C,
+    weights: Weights,
+}
+
+impl<C> Part<C> {
+    fn read(
+        folder: &Path,
+        config: impl FnOnce(&Path) -> Result<C, StableError>,
+    ) -> Result<Self, StableError> {
+        Ok(Self {
+            config: config(&folder.join("config.json"))?,
+            weights: Weights::of_folder(folder)?,
+        })
+    }
+}
+
+/// All parts of a model, checked, before any weight is read.
+struct Parts {
+    words: Words,
+    scheduler: SchedulerConfig,
+    text: Part<TextConfig>,
+    vae: Part<VaeConfig>,
+    unet: Part<UnetConfig>,
+    controls: Vec<Part<ControlConfig>>,
+    mpi: Option<Part<MpiConfig>>,
+}
+
+impl Parts {
+    fn read(folders: &Folders) -> Result<Self, StableError> {
         let base = &folders.base;
         check_index(&base.join("model_index.json"))?;
-        let config = "config.json";
-        let scheduler = SchedulerConfig::read(&base.join("scheduler/scheduler_config.json"))?;
-        let [text, vae] = ["text_encoder", "vae"].map(|name| base.join(name));
-        let text_config = TextConfig::read(&text.join(config))?;
-        let vae_config = VaeConfig::read(&vae.join(config))?;
-        let unet_config = UnetConfig::read(&folders.unet.join(config))?;
         let controls = folders.controls.iter();
-        let control_configs: Vec<ControlConfig> = controls
-            .map(|folder| ControlConfig::read(&folder.join(config)))
-            .collect::<Result<_, _>>()?;
-        let mpi_config = folders.mpi.as_ref().map(|folder| MpiConfig::read(&folder.join(config)));
-        let mpi_config = mpi_config.transpose()?;
-        let words = Words::open(&base.join("tokenizer"))?;
-        checks::fit_text(&words, &text_config, &unet_config)?;
-        checks::fit_latents(&vae_config, &unet_config)?;
-        for control in &control_configs {
-            checks::fit_control(control, &unet_config)?;
+        let mpi = folders.mpi.as_ref();
+        let parts = Self {
+            scheduler: SchedulerConfig::read(&base.join("scheduler/scheduler_config.json"))?,
+            words: Words::open(&base.join("tokenizer"))?,
+            text: Part::read(&base.join("text_encoder"), TextConfig::read)?,
+            vae: Part::read(&base.join("vae"), VaeConfig::read)?,
+            unet: Part::read(&folders.unet, UnetConfig::read)?,
+            controls: controls
+                .map(|folder| Part::read(folder, ControlConfig::read))
+                .collect::<Result<_, _>>()?,
+            mpi: mpi
+                .map(|folder| Part::read(folder, MpiConfig::read))
+                .transpose()?,
+        };
+        parts.check()?;
+        Ok(parts)
+    }
+
+    /// Fails unless the parts fit each other, and weights their configurations.
+    fn check(&self) -> Result<(), StableError> {
+        let unet = &self.unet.config;
+        checks::fit_text(&self.words, &self.text.config, unet)?;
+        checks::fit_latents(&self.vae.config, unet)?;
+        for control in &self.controls {
+            checks::fit_control(&control.config, unet)?;
+            ControlNet::check(&control.config, &control.weights)?;
         }
-        checks::fit_mpi(mpi_config.as_ref(), &unet_config)?;
-        // All headers first: what is not there at all is said before anything is read.
-        let weights = |folder: &PathBuf| Weights::of_folder(folder);
-        let (text_weights, vae_weights) = (weights(&text)?, weights(&vae)?);
-        let unet_weights = weights(&folders.unet)?;
-        let control_weights = folders.controls.iter().map(weights).collect::<Result<Vec<_>, _>>()?;
-        let mpi_weights = folders.mpi.as_ref().map(weights).transpose()?;
+        if let Some(mpi) = &self.mpi {
+            checks::fit_mpi(&mpi.config, unet)?;
+            MpiEncoder::check(&mpi.config, &mpi.weights)?;
+        }
+        TextEncoder::check(&self.text.config, &self.text.weights)?;
+        Vae::check(&self.vae.config, &self.vae.weights)?;
+        Unet::check(unet, &self.unet.weights)
+    }
+}
+
+impl Pipeline {
+    /// Whether the folders hold a model that can be opened, by configurations, names, shapes and types: quick, whatever the size. Errors
+    /// in one line that names the file.
+    pub fn check(folders: &Folders) -> Result<(), StableError> {
+        Parts::read(folders).map(|_| ())
+    }
+
+    /// Opens all parts of a model, after [`check`](Self::check). The autoencoder and the text encoder always compute in 32 bits. Errors
+    /// in one line that names the file.
+    pub fn open(folders: &Folders, machine: &Machine) -> Result<Self, StableError> {
+        let parts = Parts::read(folders)?;
         let exact = machine.exact();
-        let controls = control_configs.into_iter().zip(&control_weights);
-        let controls = controls.map(|(config, weights)| ControlNet::load(config, weights, machine));
-        let mpi = mpi_config.iter().zip(&mpi_weights).next();
-        let mpi = mpi.map(|(config, weights)| MpiEncoder::load(config, weights, machine));
+        let controls = parts.controls.into_iter();
+        let controls = controls.map(|part| ControlNet::load(part.config, &part.weights, machine));
+        let mpi = parts.mpi.as_ref();
+        let mpi = mpi.map(|part| MpiEncoder::load(&part.config, &part.weights, machine));
         Ok(Self {
-            words,
-            text: TextEncoder::load(text_config, &text_weights, &exact)?,
-            vae: Vae::load(vae_config, &vae_weights, &exact)?,
+            words: parts.words,
+            text: TextEncoder::load(parts.text.config, &parts.text.weights, &exact)?,
+            vae: Vae::load(parts.vae.config, &parts.vae.weights, &exact)?,
             controls: controls.collect::<Result<_, _>>()?,
             control_names: folders.controls.iter().map(|f| name(f)).collect(),
             mpi: mpi.transpose()?,
-            unet: Unet::load(unet_config, &unet_weights, machine)?,
-            scheduler,
+            unet: Unet::load(parts.unet.config, &parts.unet.weights, machine)?,
+            scheduler: parts.scheduler,
             machine: machine.clone(),
         })
     }

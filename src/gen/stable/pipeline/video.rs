@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use super::{Drawn, Pipeline, Request, Start, Step};
+use crate::StableError;
 use crate::noise::{carried, fresh};
 use crate::pictures::Pictures;
-use crate::StableError;
 
 /// The frame before, as the cameras of this one see it. Who calls warps it: depth and motion are known to the renderer, not to
 /// the networks.

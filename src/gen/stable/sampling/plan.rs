@@ -126,7 +126,11 @@ impl Plan {
 fn strides(schedule: &Table, told: &[f64], stride: f64, behind: Level) -> Vec<Call> {
     let call = |t: &f64| {
         let at = schedule.at(*t);
-        let to = if *t < stride { behind } else { schedule.at(t - stride) };
+        let to = if *t < stride {
+            behind
+        } else {
+            schedule.at(t - stride)
+        };
         Call { at, from: at, to }
     };
     told.iter().map(call).collect()

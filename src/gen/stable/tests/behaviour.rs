@@ -7,11 +7,11 @@ use crate::noise::{carried, fresh, with_prior};
 use crate::{Control, Drawn, Onward, Pictures, Pipeline, Planes, Request, StableError, Start};
 use diffusion::solver::Guidance;
 
-fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
+pub(super) fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn request(seed: u64) -> Request<'static> {
+pub(super) fn request(seed: u64) -> Request<'static> {
     Request {
         steps: 4,
         ..Request::new("a road", [16, 24], seed)
@@ -22,23 +22,43 @@ fn drawn(pipeline: &Pipeline, request: &Request<'_>) -> Drawn {
     pipeline.draw(request, go_on).expect("drawn")
 }
 
-fn some_picture(count: usize, size: [usize; 2]) -> Pictures {
-    let bytes: Vec<u8> = (0..count * size[0] * size[1] * 3).map(|i| (i * 37 % 251) as u8).collect();
+pub(super) fn some_picture(count: usize, size: [usize; 2]) -> Pictures {
+    let bytes: Vec<u8> = (0..count * size[0] * size[1] * 3)
+        .map(|i| (i * 37 % 251) as u8)
+        .collect();
     Pictures::from_bytes(count, size, &bytes).expect("pictures")
+}
+
+/// A worker thread may hold a model.
+#[test]
+fn a_model_can_go_to_another_thread() {
+    fn goes<T: Send + Sync>() {}
+    goes::<Pipeline>();
 }
 
 #[test]
 fn the_same_request_gives_the_same_bits_on_any_number_of_threads() {
     let pipeline = opened("sd15");
     let bits = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("a pool");
         let drawn = pool.install(|| drawn(&pipeline, &request(3)));
-        drawn.pictures.rgb().iter().map(|v| v.to_bits()).collect::<Vec<_>>()
+        drawn
+            .pictures
+            .rgb()
+            .iter()
+            .map(|v| v.to_bits())
+            .collect::<Vec<_>>()
     };
     let one = bits(1);
     assert_eq!(one, bits(2));
     assert_eq!(one, bits(16));
-    assert_ne!(drawn(&pipeline, &request(3)).pictures, drawn(&pipeline, &request(4)).pictures);
+    assert_ne!(
+        drawn(&pipeline, &request(3)).pictures,
+        drawn(&pipeline, &request(4)).pictures
+    );
 }
 
 #[test]
@@ -53,7 +73,11 @@ fn pixels_outside_of_the_mask_stay_to_the_bit() {
             mask: Some(&mask),
         });
         let after = drawn(&pipeline, &Request { start, ..request(1) }).pictures;
-        let pairs = after.rgb().chunks_exact(3).zip(before.rgb().chunks_exact(3)).zip(&mask);
+        let pairs = after
+            .rgb()
+            .chunks_exact(3)
+            .zip(before.rgb().chunks_exact(3))
+            .zip(&mask);
         let changed = pairs.clone().filter(|((a, b), anew)| **anew && a != b).count();
         assert!(pairs.clone().all(|((a, b), anew)| *anew || a == b));
         assert!(changed > 60, "{changed}");
@@ -108,7 +132,11 @@ fn strength_keeps_or_leaves_the_picture() {
             ..request(2)
         };
         let after = drawn(&pipeline, &asked).latents;
-        after.iter().zip(&clean).map(|(a, b)| (a - b).powi(2)).sum::<f32>()
+        after
+            .iter()
+            .zip(&clean)
+            .map(|(a, b)| (a - b).powi(2))
+            .sum::<f32>()
     };
     assert!(off(0.1) < off(0.5) && off(0.5) < off(1.0));
 }
@@ -157,7 +185,14 @@ fn a_control_is_heard_as_loud_and_as_long_as_asked() {
             during,
             ..Control::new(0, &picture)
         }];
-        drawn(&pipeline, &Request { controls, ..request(1) }).latents
+        drawn(
+            &pipeline,
+            &Request {
+                controls,
+                ..request(1)
+            },
+        )
+        .latents
     };
     let silent = drawn(&pipeline, &request(1)).latents;
     assert_eq!(with(0.0, [0.0, 1.0]), silent);
@@ -215,11 +250,18 @@ fn the_next_frame_goes_on_from_the_one_before() {
         strength: 0.5,
         frame: 1,
     };
-    let next = pipeline.next_frame(&first, &onward, &request(5), go_on).expect("drawn");
+    let next = pipeline
+        .next_frame(&first, &onward, &request(5), go_on)
+        .expect("drawn");
     assert_eq!(next.noise, first.noise, "nothing moved");
     let nowhere = vec![None; 8 * 12];
-    let onward = Onward { cells: &nowhere, ..onward };
-    let next = pipeline.next_frame(&first, &onward, &request(5), go_on).expect("drawn");
+    let onward = Onward {
+        cells: &nowhere,
+        ..onward
+    };
+    let next = pipeline
+        .next_frame(&first, &onward, &request(5), go_on)
+        .expect("drawn");
     assert_eq!(next.noise, fresh(5, 1, size));
 }
 
@@ -237,8 +279,14 @@ fn noise_that_is_carried_stays_white() {
     let variance = moved.iter().map(|v| v * v).sum::<f32>() / moved.len() as f32;
     assert!((variance - 1.0).abs() < 0.1, "{variance}");
     let error = carried(&before, &vec![Some(600); 600], &new, size).expect_err("no such cell");
-    assert_eq!(error.to_string(), "cell of the frame before is 600, expected less than 600");
-    assert_eq!(with_prior(&[1.0, 2.0], &[10.0, 0.0], 0.03).expect("a prior"), [1.3, 2.0]);
+    assert_eq!(
+        error.to_string(),
+        "cell of the frame before is 600, expected less than 600"
+    );
+    assert_eq!(
+        with_prior(&[1.0, 2.0], &[10.0, 0.0], 0.03).expect("a prior"),
+        [1.3, 2.0]
+    );
     // Fixed by seed, frame and place.
     assert_eq!(fresh(1, 0, [2, 4, 20, 30])[..4 * 600], before);
     assert!(fresh(u64::MAX, u32::MAX, size).iter().all(|v| v.is_finite()));
@@ -254,46 +302,40 @@ fn bytes_come_back_as_they_were() {
     assert!(Pictures::new(usize::MAX, [8192, 8192], vec![]).is_err());
 }
 
+/// Cards compute in 16 bits: the same path on the processor.
 #[test]
-fn requests_that_do_not_fit_are_refused_in_one_line() {
-    let (plain, ring) = (opened("sd15"), opened("ring"));
-    let (picture, numbers) = (some_picture(1, [16, 24]), vec![0.0; 9]);
-    let refused = |pipeline: &Pipeline, request: Request<'_>| {
-        let error = pipeline.draw(&request, go_on).expect_err("refused").to_string();
-        assert!(!error.contains('\n'), "{error}");
-        error
+fn sixteen_bits_stay_near_thirty_two() {
+    let half = crate::Machine {
+        device: candle_core::Device::Cpu,
+        dtype: candle_core::DType::F16,
     };
-    let start = |strength, mask| {
-        Some(Start {
-            pictures: &picture,
-            strength,
-            mask,
-        })
-    };
-    let bad = f64::NAN;
-    for (request, begins) in [
-        (Request { size: [16, 23], ..request(1) }, "side of a picture is 23"),
-        (Request { size: [0, 16], ..request(1) }, "side of a picture is 0"),
-        (Request { views: 0, ..request(1) }, "number of pictures is 0"),
-        (Request { views: usize::MAX, frames: 3, ..request(1) }, "number of pictures is 18446744073709551615"),
-        (Request { prompts: vec![], ..request(1) }, "prompts has 0 values"),
-        (Request { steps: 0, ..request(1) }, "steps is 0"),
-        (Request { steps: 1001, ..request(1) }, "steps is 1001"),
-        (Request { guidance: Guidance { weight: bad, rescale: 0.0 }, ..request(1) }, "guidance is NaN"),
-        (Request { noise: Some(vec![0.0; 3]), ..request(1) }, "noise has 3 values, expected 384"),
-        (Request { noise: Some(vec![f32::NAN; 384]), ..request(1) }, "noise: value 0 is NaN"),
-        (Request { start: start(2.0, None), ..request(1) }, "strength is 2"),
-        (Request { start: start(1.0, Some(&[true])), ..request(1) }, "mask has 1 values, expected 384"),
-        (Request { start: start(1.0, None), size: [16, 16], ..request(1) }, "size of the pictures to go out from"),
-        (Request { controls: vec![Control::new(3, &numbers)], ..request(1) }, "ControlNet is 3"),
-        (Request { controls: vec![Control::new(0, &numbers)], ..request(1) }, "picture of a ControlNet has 9 values"),
-        (Request { planes: Some(Planes { ids: &numbers, scale: 1.0 }), ..request(1) }, "multi-plane images is 9"),
-    ] {
-        let error = refused(&plain, request);
-        assert!(error.starts_with(begins), "{error}");
+    for (model, size, views) in [("sd15", [16, 24], 1), ("ring", [8, 14], 6)] {
+        let folders = crate::Folders::of(&super::folder(model));
+        let rough = Pipeline::open(&folders, &half).expect("a model");
+        let exact = opened(model);
+        let picture: Vec<f32> = (0..3 * 16 * 24).map(|i| (i % 7) as f32 / 7.0).collect();
+        let ids: Vec<f32> = (0..6 * 9 * 4 * 7).map(|i| (i % 17) as f32).collect();
+        let planes = Planes {
+            ids: &ids,
+            scale: 1.0,
+        };
+        let asked = Request {
+            size,
+            views,
+            controls: (views == 1)
+                .then(|| Control::new(0, &picture))
+                .into_iter()
+                .collect(),
+            planes: (views > 1).then_some(planes),
+            guidance: Guidance::NONE,
+            ..request(9)
+        };
+        let (a, b) = (drawn(&rough, &asked).latents, drawn(&exact, &asked).latents);
+        let (off, size) = a.iter().zip(&b).fold((0.0, 0.0), |(off, size), (a, b)| {
+            (off + (a - b).powi(2), size + b * b)
+        });
+        let relative = (off / size).sqrt();
+        println!("| {model} | 16 beside 32 bits, relative | {relative:.1e} |");
+        assert!(relative > 0.0 && relative < 0.02, "{model}: {relative}");
     }
-    let error = refused(&ring, request(1));
-    assert_eq!(error, "number of views is 1, expected 6, those of the UNet");
-    let error = refused(&ring, Request { views: 6, controls: vec![Control::new(0, &numbers)], ..request(1) });
-    assert!(error.starts_with("condition of a ControlNet that takes planes"), "{error}");
 }

@@ -37,7 +37,9 @@ fn parity_of_unet() {
         let (x, context) = (golden.tensor("unet.x"), golden.tensor("unet.context"));
         let around = Around::default();
         let time = unet.time.forward(481.0, &crate::Machine::cpu()).expect("time");
-        let both = time.broadcast_as((2, time.dim(1).expect("two dimensions"))).expect("for two");
+        let both = time
+            .broadcast_as((2, time.dim(1).expect("two dimensions")))
+            .expect("for two");
         golden.compare(model, "unet.time_embedding.out", &both);
         let (residual, transformer, resize) = unet.down[0].parts();
         let given = |name: &str| golden.tensor(&format!("unet.{name}.in"));
@@ -49,17 +51,25 @@ fn parity_of_unet() {
         let name = "down_blocks.0.attentions.0";
         same(name, transformer.forward(&given(name), &context, &around));
         let name = "down_blocks.0.attentions.0.transformer_blocks.0";
-        same(name, transformer.blocks[0].forward(&given(name), &context, &around));
+        same(
+            name,
+            transformer.blocks[0].forward(&given(name), &context, &around),
+        );
         let name = "down_blocks.0.attentions.0.transformer_blocks.0.ff";
         same(name, transformer.blocks[0].gated.forward(&given(name)));
         let name = "down_blocks.0.downsamplers.0";
         same(name, resize.expect("a coarser level").forward(&given(name)));
-        same("mid_block", unet.middle.forward(&given("mid_block"), &time, &context, &around));
+        same(
+            "mid_block",
+            unet.middle.forward(&given("mid_block"), &time, &context, &around),
+        );
         let name = "up_blocks.0.upsamplers.0";
         let (_, _, rows, columns) = golden.tensor(&format!("unet.{name}.out")).dims4().expect("a map");
         let grown = given(name).interpolate2d(rows, columns).expect("grown");
         same(name, unet.up[0].resize().expect("a finer level").forward(&grown));
-        let out = unet.forward(&x, 481.0, &context, &crate::Extra::default(), 1).expect("computed");
+        let out = unet
+            .forward(&x, 481.0, &context, &crate::Extra::default(), 1)
+            .expect("computed");
         golden.compare(model, "unet.out", &out);
     }
 }
@@ -73,7 +83,9 @@ fn parity_of_control() {
     golden.compare("sd15", "control.embedding", &embedded);
     let first = |name: &str| golden.tensor(name).narrow(0, 0, 1).expect("the first");
     let (x, context) = (first("unet.x"), first("unet.context"));
-    let extra = control.forward(&x, 481.0, &context, &embedded, 0.8).expect("computed");
+    let extra = control
+        .forward(&x, 481.0, &context, &embedded, 0.8)
+        .expect("computed");
     for (i, down) in extra.down.iter().enumerate() {
         golden.compare("sd15", &format!("control.down.{i}"), down);
     }

@@ -28,7 +28,10 @@ fn changed(change: impl Fn(&mut HashMap<String, (Dtype, Vec<usize>, Vec<u8>)>)) 
     }
     change(&mut arrays);
     let views = arrays.iter().map(|(name, (dtype, shape, data))| {
-        (name, TensorView::new(*dtype, shape.clone(), data).expect("data of that shape"))
+        (
+            name,
+            TensorView::new(*dtype, shape.clone(), data).expect("data of that shape"),
+        )
     });
     let bytes = safetensors::serialize(views, None).expect("serializable");
     let other = tempfile::tempdir().expect("a folder");
@@ -57,7 +60,10 @@ fn row_62_names_and_shapes() {
     let told = changed(|a| {
         a.insert("conv_in.bias".into(), (Dtype::I64, vec![16], vec![0; 128]));
     });
-    assert_eq!(told, "1 tensor (conv_in.bias is I64) neither f16 nor bf16 nor f32");
+    assert_eq!(
+        told,
+        "1 tensor (conv_in.bias is I64) neither f16 nor bf16 nor f32"
+    );
     for (dtype, size, infinity) in [
         (Dtype::F16, 2, &[0, 0x7c][..]),
         (Dtype::BF16, 2, &[0xc0, 0xff]),
@@ -95,7 +101,9 @@ fn row_62_cut_and_damaged_files() {
         let mut bytes = whole.clone();
         bytes[i] ^= 0x15;
         std::fs::write(&path, &bytes).expect("written");
-        if let Err(error) = Weights::of_folder(at.path()).and_then(|w| Vae::load(config(), &w, &Machine::cpu())) {
+        if let Err(error) =
+            Weights::of_folder(at.path()).and_then(|w| Vae::load(config(), &w, &Machine::cpu()))
+        {
             assert!(!error.to_string().contains('\n'), "{error}");
         }
     }
@@ -118,8 +126,16 @@ fn row_62_shards() {
     let text = std::fs::read_to_string(&index).expect("an index");
     Weights::of_folder(at.path()).expect("all shards");
     for (of, to, told) in [
-        ("conv_in.weight", "conv_in.heavy", "1 tensor (conv_in.heavy) not in the shards it names"),
-        ("diffusion_pytorch_model-00001-of", "../../sd15", "expected names of files beside it"),
+        (
+            "conv_in.weight",
+            "conv_in.heavy",
+            "1 tensor (conv_in.heavy) not in the shards it names",
+        ),
+        (
+            "diffusion_pytorch_model-00001-of",
+            "../../sd15",
+            "expected names of files beside it",
+        ),
         ("diffusion_pytorch_model-00002-of", "nowhere", "No such file"),
         ("weight_map", "weights", "missing field `weight_map`"),
     ] {
@@ -128,7 +144,9 @@ fn row_62_shards() {
         assert!(found.contains(told), "{found}");
     }
     std::fs::write(&index, text).expect("written");
-    let shard = at.path().join("diffusion_pytorch_model-00002-of-00003.safetensors");
+    let shard = at
+        .path()
+        .join("diffusion_pytorch_model-00002-of-00003.safetensors");
     let bytes = std::fs::read(&shard).expect("a shard");
     std::fs::write(&shard, &bytes[..bytes.len() - 2]).expect("written");
     assert!(line(Weights::of_folder(at.path())).contains("00002-of-00003.safetensors: not a usable"));
@@ -146,23 +164,63 @@ fn field(file: &str, name: &str, value: &str) -> tempfile::NamedTempFile {
 
 #[test]
 fn row_62_configurations() {
-    let unet = |name: &str, value: &str| line(UnetConfig::read(field("sd15/unet/config.json", name, value).path()));
+    let unet = |name: &str, value: &str| {
+        line(UnetConfig::read(
+            field("sd15/unet/config.json", name, value).path(),
+        ))
+    };
     for (name, value, told) in [
-        ("act_fn", "\"mish\"", "act_fn is \"mish\", expected \"silu\" or \"swish\""),
-        ("down_block_types", "[\"AttnDownBlock2D\"]", "unknown variant `AttnDownBlock2D`"),
+        (
+            "act_fn",
+            "\"mish\"",
+            "act_fn is \"mish\", expected \"silu\" or \"swish\"",
+        ),
+        (
+            "down_block_types",
+            "[\"AttnDownBlock2D\"]",
+            "unknown variant `AttnDownBlock2D`",
+        ),
         ("block_out_channels", "[]", "number of block_out_channels is 0"),
-        ("block_out_channels", "[16, 18446744073709551615]", "block_out_channels is 18446744073709551615"),
+        (
+            "block_out_channels",
+            "[16, 18446744073709551615]",
+            "block_out_channels is 18446744073709551615",
+        ),
         ("block_out_channels", "[16, -1]", "invalid value"),
-        ("block_out_channels", "[16, 33]", "norm_num_groups is 8, expected a divisor of 33"),
+        (
+            "block_out_channels",
+            "[16, 33]",
+            "norm_num_groups is 8, expected a divisor of 33",
+        ),
         ("norm_num_groups", "0", "norm_num_groups is 0"),
-        ("layers_per_block", "1000000000000", "layers_per_block is 1000000000000"),
+        (
+            "layers_per_block",
+            "1000000000000",
+            "layers_per_block is 1000000000000",
+        ),
         ("attention_head_dim", "0", "attention_head_dim is 0"),
         ("attention_head_dim", "[4]", "expected one number per level"),
         ("attention_head_dim", "\"x\"", "a whole number, or a list of them"),
-        ("transformer_layers_per_block", "99999999", "transformer_layers_per_block is 99999999"),
-        ("up_block_types", "[\"UpBlock2D\"]", "up_block_types has 1 entries, expected 2"),
-        ("class_embed_type", "\"timestep\"", "class_embed_type is \"timestep\", expected null"),
-        ("neighboring_view_pair", "{\"0\": [7]}", "view 0 has [7], expected views below 1"),
+        (
+            "transformer_layers_per_block",
+            "99999999",
+            "transformer_layers_per_block is 99999999",
+        ),
+        (
+            "up_block_types",
+            "[\"UpBlock2D\"]",
+            "up_block_types has 1 entries, expected 2",
+        ),
+        (
+            "class_embed_type",
+            "\"timestep\"",
+            "class_embed_type is \"timestep\", expected null",
+        ),
+        (
+            "neighboring_view_pair",
+            "{\"0\": [7]}",
+            "view 0 has [7], expected views below 1",
+        ),
         ("neighboring_view_pair", "{\"a\": [0]}", "view 0 of 1 is missing"),
         ("neighboring_attn_type", "\"self\"", "unknown variant `self`"),
         ("freq_shift", "8", "freq_shift is 8"),
@@ -172,25 +230,50 @@ fn row_62_configurations() {
         assert!(found.contains(told), "{found}");
     }
     let scheduler = |name: &str, value: &str| {
-        line(SchedulerConfig::read(field("sd15/scheduler/scheduler_config.json", name, value).path()))
+        line(SchedulerConfig::read(
+            field("sd15/scheduler/scheduler_config.json", name, value).path(),
+        ))
     };
     for (name, value, told) in [
-        ("_class_name", "\"LMSDiscreteScheduler\"", "unknown variant `LMSDiscreteScheduler`"),
+        (
+            "_class_name",
+            "\"LMSDiscreteScheduler\"",
+            "unknown variant `LMSDiscreteScheduler`",
+        ),
         ("beta_schedule", "\"sigmoid\"", "unknown variant `sigmoid`"),
         ("prediction_type", "\"sample\"", "unknown variant `sample`"),
-        ("use_karras_sigmas", "true", "use_karras_sigmas is true, expected false"),
-        ("skip_prk_steps", "false", "skip_prk_steps is false, expected true"),
+        (
+            "use_karras_sigmas",
+            "true",
+            "use_karras_sigmas is true, expected false",
+        ),
+        (
+            "skip_prk_steps",
+            "false",
+            "skip_prk_steps is false, expected true",
+        ),
         ("num_train_timesteps", "1", "num_train_timesteps is 1"),
         ("steps_offset", "1000", "steps_offset is 1000"),
     ] {
         let found = scheduler(name, value);
         assert!(found.contains(told), "{found}");
     }
-    let found = line(VaeConfig::read(field("sd15/vae/config.json", "up_block_types", "[]").path()));
-    assert!(found.contains("up_block_types: expected 2 times UpDecoderBlock2D"), "{found}");
-    let found = line(TextConfig::read(field("sd15/text_encoder/config.json", "hidden_act", "\"relu\"").path()));
+    let found = line(VaeConfig::read(
+        field("sd15/vae/config.json", "up_block_types", "[]").path(),
+    ));
+    assert!(
+        found.contains("up_block_types: expected 2 times UpDecoderBlock2D"),
+        "{found}"
+    );
+    let found = line(TextConfig::read(
+        field("sd15/text_encoder/config.json", "hidden_act", "\"relu\"").path(),
+    ));
     assert!(found.contains("unknown variant `relu`"), "{found}");
-    let order = field("sd15/controlnet/config.json", "controlnet_conditioning_channel_order", "\"xyz\"");
+    let order = field(
+        "sd15/controlnet/config.json",
+        "controlnet_conditioning_channel_order",
+        "\"xyz\"",
+    );
     assert!(line(ControlConfig::read(order.path())).contains("\"xyz\", expected"));
 }
 
@@ -201,7 +284,10 @@ fn row_62_folders() {
     assert!(open(at.path()).contains("model_index.json: No such file"));
     let index = at.path().join("model_index.json");
     for (text, told) in [
-        ("{\"_class_name\": \"StableDiffusionXLPipeline\"}", "expected a pipeline of Stable Diffusion 1 or 2"),
+        (
+            "{\"_class_name\": \"StableDiffusionXLPipeline\"}",
+            "expected a pipeline of Stable Diffusion 1 or 2",
+        ),
         ("{}", "missing field `_class_name`"),
         ("[", "EOF"),
         ("\u{feff}", "expected value"),
@@ -227,5 +313,8 @@ fn parts_that_do_not_fit_each_other_are_refused() {
         ..Folders::of(&folder("sd15"))
     };
     let told = line(Pipeline::open(&folders, &Machine::cpu()));
-    assert_eq!(told, "block_out_channels of a ControlNet is [16, 32] x 1, expected [8, 16] x 1");
+    assert_eq!(
+        told,
+        "block_out_channels of a ControlNet is [16, 32] x 1, expected [8, 16] x 1"
+    );
 }

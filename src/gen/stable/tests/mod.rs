@@ -4,9 +4,11 @@
 mod behaviour;
 mod blocks;
 mod damaged;
+mod refusals;
 mod ring;
 mod runs;
 mod schedules;
+mod shapes;
 mod words;
 
 use std::collections::HashMap;
@@ -61,7 +63,9 @@ impl Golden {
     fn compare(&self, model: &str, name: &str, found: &Tensor) {
         let expected = &self.0[name].0;
         assert_eq!(found.dims(), expected.as_slice(), "{name}");
-        let flat = found.to_dtype(DType::F32).and_then(|t| t.contiguous()?.flatten_all()?.to_vec1());
+        let flat = found
+            .to_dtype(DType::F32)
+            .and_then(|t| t.contiguous()?.flatten_all()?.to_vec1());
         self.compare_numbers(model, name, &flat.expect("numbers"));
     }
 
@@ -76,5 +80,8 @@ fn largest_difference(a: &[f32], b: &[f32]) -> f32 {
     assert_eq!(a.len(), b.len());
     let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     // A NaN is never within a tolerance.
-    off.fold(0.0, |most, off| if off > most || off.is_nan() { off } else { most })
+    off.fold(
+        0.0,
+        |most, off| if off > most || off.is_nan() { off } else { most },
+    )
 }

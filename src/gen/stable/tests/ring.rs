@@ -12,7 +12,10 @@ fn request<'a>(golden: &'a Golden) -> Request<'a> {
         negative: "blur".into(),
         steps: 5,
         views: 6,
-        guidance: Guidance { weight: 7.0, rescale: 0.0 },
+        guidance: Guidance {
+            weight: 7.0,
+            rescale: 0.0,
+        },
         noise: Some(golden.numbers("run.noise").to_vec()),
         planes: Some(Planes {
             ids: golden.numbers("mpi"),
@@ -37,7 +40,9 @@ fn parity_of_neighbours() {
         let weights = Weights::of_folder(&at).expect("weights");
         let unet = Unet::load(config, &weights, &Machine::cpu()).expect("a network");
         let x = golden.tensor(&format!("{name}.x"));
-        let out = unet.forward(&x, 300.0, &context, &Extra::default(), frames).expect("computed");
+        let out = unet
+            .forward(&x, 300.0, &context, &Extra::default(), frames)
+            .expect("computed");
         golden.compare("ring", &format!("{name}.out"), &out);
     }
 }
@@ -47,7 +52,11 @@ fn parity_of_planes() {
     let golden = Golden::open("ring/golden.safetensors");
     let pipeline = opened("ring");
     let encoder = pipeline.mpi.as_ref().expect("an encoder");
-    golden.compare("ring", "encoded", &encoder.forward(&golden.tensor("mpi")).expect("encoded"));
+    golden.compare(
+        "ring",
+        "encoded",
+        &encoder.forward(&golden.tensor("mpi")).expect("encoded"),
+    );
 }
 
 /// Both ways in which planes come in: that of the released code, and that of the paper.
@@ -55,7 +64,10 @@ fn parity_of_planes() {
 fn parity_of_six_views() {
     let golden = Golden::open("ring/golden.safetensors");
     let all = Folders::of(&folder("ring"));
-    let released = Folders { mpi: None, ..all.clone() };
+    let released = Folders {
+        mpi: None,
+        ..all.clone()
+    };
     let paper = Folders {
         controls: Vec::new(),
         ..all
@@ -63,7 +75,9 @@ fn parity_of_six_views() {
     for (name, folders) in [("control", released), ("encoder", paper)] {
         let pipeline = Pipeline::open(&folders, &Machine::cpu()).expect("a model");
         assert_eq!((pipeline.plane_channels(), pipeline.unet().views()), (Some(9), 6));
-        let drawn = pipeline.draw(&request(&golden), |_| ControlFlow::Continue(())).expect("drawn");
+        let drawn = pipeline
+            .draw(&request(&golden), |_| ControlFlow::Continue(()))
+            .expect("drawn");
         golden.compare_numbers("ring", &format!("run.{name}.latents"), &drawn.latents);
     }
 }
@@ -75,9 +89,13 @@ fn views_and_frames_hear_their_neighbours_alone() {
     let weights = Weights::of_folder(&at).expect("weights");
     let unet = Unet::load(config, &weights, &Machine::cpu()).expect("a network");
     let golden = Golden::open("ring/golden.safetensors");
-    let (x, context) = (golden.tensor("unet_add_zero_linear_2.x"), golden.tensor("context"));
+    let (x, context) = (
+        golden.tensor("unet_add_zero_linear_2.x"),
+        golden.tensor("context"),
+    );
     let said = |x: &candle_core::Tensor, frames| {
-        unet.forward(x, 300.0, &context, &Extra::default(), frames).expect("computed")
+        unet.forward(x, 300.0, &context, &Extra::default(), frames)
+            .expect("computed")
     };
     // Frames without attention between them are drawn as if alone.
     let alone = said(&x.narrow(0, 0, 6).expect("a frame"), 1);
@@ -90,7 +108,9 @@ fn views_and_frames_hear_their_neighbours_alone() {
     // A batch that does not hold whole frames is refused.
     for (count, frames) in [(5, 1), (7, 1), (6, 2), (12, 0)] {
         let x = x.narrow(0, 0, count).expect("some");
-        let error = unet.forward(&x, 300.0, &context, &Extra::default(), frames).expect_err("refused");
+        let error = unet
+            .forward(&x, 300.0, &context, &Extra::default(), frames)
+            .expect_err("refused");
         assert!(error.to_string().starts_with("number of latents is"), "{error}");
     }
 }

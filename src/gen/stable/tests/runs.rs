@@ -39,7 +39,9 @@ fn parity_of_text_to_picture() {
             scheduler: Some(kind),
             ..request(7.5, 0.0, golden.numbers("run.noise"))
         };
-        let drawn = pipeline.draw(&asked, |_| ControlFlow::Continue(())).expect("drawn");
+        let drawn = pipeline
+            .draw(&asked, |_| ControlFlow::Continue(()))
+            .expect("drawn");
         golden.compare_numbers("sd15", &format!("run.{name}.latents"), &drawn.latents);
         let expected = golden.tensor(&format!("run.{name}.picture"));
         let expected = crate::Pictures::of_tensor(&expected).expect("a picture");
@@ -54,7 +56,9 @@ fn parity_of_v_prediction_with_rescaled_guidance() {
     let golden = Golden::open("sd21/golden.safetensors");
     let pipeline = opened("sd21");
     let asked = request(5.0, 0.7, golden.numbers("run.noise"));
-    let drawn = pipeline.draw(&asked, |_| ControlFlow::Continue(())).expect("drawn");
+    let drawn = pipeline
+        .draw(&asked, |_| ControlFlow::Continue(()))
+        .expect("drawn");
     golden.compare_numbers("sd21", "run.ddim.latents", &drawn.latents);
 }
 
@@ -70,7 +74,9 @@ fn parity_of_control_run() {
         }],
         ..request(7.5, 0.0, golden.numbers("run.noise"))
     };
-    let drawn = pipeline.draw(&asked, |_| ControlFlow::Continue(())).expect("drawn");
+    let drawn = pipeline
+        .draw(&asked, |_| ControlFlow::Continue(()))
+        .expect("drawn");
     golden.compare_numbers("sd15", "run.control.latents", &drawn.latents);
 }
 
@@ -79,9 +85,17 @@ fn parity_of_control_run() {
 fn parity_of_picture_to_picture() {
     let golden = Golden::open("sd15/golden.safetensors");
     let pipeline = opened("sd15");
-    let words = |text: &str| pipeline.words.ids(text, 77).and_then(|ids| pipeline.text.encode(&ids));
+    let words = |text: &str| {
+        pipeline
+            .words
+            .ids(text, 77)
+            .and_then(|ids| pipeline.text.encode(&ids))
+    };
     let (told, negative) = (words(PROMPT).expect("told"), words("blur").expect("told"));
-    let guidance = Guidance { weight: 7.5, rescale: 0.0 };
+    let guidance = Guidance {
+        weight: 7.5,
+        rescale: 0.0,
+    };
     for (name, kind) in KINDS.into_iter().filter(|(name, _)| *name != "pndm") {
         let plan = Plan::new(&pipeline.scheduler, kind, 5, 0.6).expect("a plan");
         assert_eq!(plan.calls.len(), 3);
@@ -93,7 +107,9 @@ fn parity_of_picture_to_picture() {
             let tensor = candle_core::Tensor::from_vec(small, (1, 4, 8, 8), &candle_core::Device::Cpu);
             let tensor = tensor.expect("latents");
             let said = |context| -> Vec<f64> {
-                let said = pipeline.unet.forward(&tensor, call.at.t, context, &Default::default(), 1);
+                let said = pipeline
+                    .unet
+                    .forward(&tensor, call.at.t, context, &Default::default(), 1);
                 let said = said.expect("said").flatten_all().and_then(|t| t.to_vec1::<f32>());
                 said.expect("numbers").into_iter().map(f64::from).collect()
             };

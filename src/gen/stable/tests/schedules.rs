@@ -20,7 +20,10 @@ fn run(plan: &Plan, start: &[f32]) -> Vec<f32> {
     let mut x: Vec<f64> = start.iter().map(|v| f64::from(*v) * plan.spread).collect();
     let mut solver = Solver::new(plan);
     for (k, call) in plan.calls.iter().enumerate() {
-        let said: Vec<f64> = x.iter().map(|x| (x * 1.3 + call.at.t / 1000.0).cos() * 0.7).collect();
+        let said: Vec<f64> = x
+            .iter()
+            .map(|x| (x * 1.3 + call.at.t / 1000.0).cos() * 0.7)
+            .collect();
         x = solver.advance(k, &x, &said).expect("a step");
     }
     x.iter().map(|v| *v as f32).collect()
@@ -54,9 +57,26 @@ fn parity_of_schedulers() {
 fn every_number_of_steps_is_a_plan_or_an_error() {
     let config = &cases()[0].config;
     for kind in SchedulerKind::ALL {
-        for steps in [0, 1, 2, 3, 49, 50, 333, 499, 500, 501, 999, 1000, 1001, usize::MAX] {
+        for steps in [
+            0,
+            1,
+            2,
+            3,
+            49,
+            50,
+            333,
+            499,
+            500,
+            501,
+            999,
+            1000,
+            1001,
+            usize::MAX,
+        ] {
             for strength in [0.0, 0.3, 1.0, -0.1, f64::NAN] {
-                let Ok(plan) = Plan::new(config, kind, steps, strength) else { continue };
+                let Ok(plan) = Plan::new(config, kind, steps, strength) else {
+                    continue;
+                };
                 assert!((0.0..=1.0).contains(&strength) && (1..=1000).contains(&steps));
                 let x = run(&plan, &[0.3, -1.0]);
                 assert!(x.iter().all(|v| v.is_finite()), "{kind:?} {steps} {strength}");
@@ -75,13 +95,24 @@ fn pure_noise_is_survived() {
     for kind in SchedulerKind::ALL {
         for steps in [1, 2, 4, 20] {
             let plan = Plan::new(&config, kind, steps, 1.0).expect("a plan");
-            assert!(run(&plan, &[1.0, -2.0]).iter().all(|v| v.is_finite() && v.abs() < 20.0), "{kind:?} {steps}");
+            assert!(
+                run(&plan, &[1.0, -2.0])
+                    .iter()
+                    .all(|v| v.is_finite() && v.abs() < 20.0),
+                "{kind:?} {steps}"
+            );
         }
     }
     // A noise prediction cannot leave pure noise.
     let text = text.replace("v_prediction", "epsilon");
     let config: SchedulerConfig = serde_json::from_str(&text).expect("a scheduler");
     let plan = Plan::new(&config, SchedulerKind::Ddim, 4, 1.0).expect("a plan");
-    let error = Solver::new(&plan).advance(0, &[1.0], &[1.0]).expect_err("no signal").to_string();
-    assert!(error.starts_with("noise prediction cannot leave t = 999"), "{error}");
+    let error = Solver::new(&plan)
+        .advance(0, &[1.0], &[1.0])
+        .expect_err("no signal")
+        .to_string();
+    assert!(
+        error.starts_with("noise prediction cannot leave t = 999"),
+        "{error}"
+    );
 }

@@ -24,7 +24,11 @@ fn ids_are_those_of_transformers() {
         let words = Words::open(&folder(model).join("tokenizer")).expect("words");
         for (i, text) in texts().iter().enumerate() {
             let ids = words.ids(text, 77).expect("ids");
-            let expected: Vec<u32> = golden.numbers(&format!("ids.{i}")).iter().map(|v| *v as u32).collect();
+            let expected: Vec<u32> = golden
+                .numbers(&format!("ids.{i}"))
+                .iter()
+                .map(|v| *v as u32)
+                .collect();
             assert_eq!(ids, expected, "{model}: {text:?}");
         }
     }
@@ -34,7 +38,14 @@ fn ids_are_those_of_transformers() {
 fn any_text_gives_as_many_ids_as_asked() {
     let words = Words::open(&folder("sd21").join("tokenizer")).expect("words");
     let long = "\u{1f697}".repeat(100_000);
-    for text in ["", "\0", "\u{feff}\u{200b}", long.as_str(), "a'''b", "<|startoftext|>"] {
+    for text in [
+        "",
+        "\0",
+        "\u{feff}\u{200b}",
+        long.as_str(),
+        "a'''b",
+        "<|startoftext|>",
+    ] {
         let ids = words.ids(text, 77).expect("ids");
         assert_eq!(ids.len(), 77);
         assert!(ids.iter().all(|id| *id <= words.largest()));
@@ -45,7 +56,10 @@ fn any_text_gives_as_many_ids_as_asked() {
 fn ids_that_are_no_words_are_refused() {
     let text = opened("sd15").text;
     let error = text.encode(&[1_000_000; 77]).expect_err("no word").to_string();
-    assert_eq!(error, "token id is 1000000, expected less than 96, the words of the encoder");
+    assert_eq!(
+        error,
+        "token id is 1000000, expected less than 96, the words of the encoder"
+    );
     let error = text.encode(&[0; 3]).expect_err("too few").to_string();
     assert_eq!(error, "token ids has 3 values, expected 77");
 }

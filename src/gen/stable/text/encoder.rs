@@ -7,6 +7,9 @@ use crate::layers::{Attention, LayerNorm, Linear, causal_mask, quick_gelu};
 use crate::weights::{Names, Weights};
 use crate::{Machine, StableError, wrong};
 
+/// A table of positions stands in old files, and the projection of the whole network in some.
+const IGNORED: [&str; 2] = ["position_ids", "text_projection.weight"];
+
 struct Layer {
     norms: [LayerNorm; 2],
     attention: Attention,
@@ -28,10 +31,12 @@ pub struct TextEncoder {
 impl TextEncoder {
     /// Of weights, whose names may begin with `text_model.` or not. Errors if they do not fit the configuration.
     pub fn load(config: TextConfig, weights: &Weights, machine: &Machine) -> Result<Self, StableError> {
-        // A table of positions stands in old files, and the projection of the whole network in some.
-        let ignored = ["position_ids", "text_projection.weight"];
-        let config = &config;
-        weights.build(machine, &ignored, |names| Self::of(config, names, machine))
+        weights.build(machine, &IGNORED, |names| Self::of(&config, names, machine))
+    }
+
+    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    pub fn check(config: &TextConfig, weights: &Weights) -> Result<(), StableError> {
+        weights.check(&IGNORED, |names| Self::of(config, names, &Machine::cpu()))
     }
 
     fn of(config: &TextConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
@@ -65,7 +70,9 @@ impl TextEncoder {
         Ok(Self {
             words: at.tensor("token_embedding.weight", &[config.vocab_size, width])?,
             positions: at.tensor("position_embedding.weight", &[tokens, width])?,
-            layers: (0..config.num_hidden_layers).map(layer).collect::<Result<_, StableError>>()?,
+            layers: (0..config.num_hidden_layers)
+                .map(layer)
+                .collect::<Result<_, StableError>>()?,
             norm: LayerNorm::load(&names.at("final_layer_norm"), width, epsilon)?,
             mask: causal_mask(tokens, &machine.device)?,
             device: machine.device.clone(),

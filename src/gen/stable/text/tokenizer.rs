@@ -59,7 +59,9 @@ impl Words {
             && tokenizer.token_to_id(pad).is_some()
         {
             // A mark that fills up texts is one word wherever it stands, as in transformers: "!" in 2.1.
-            tokenizer.add_special_tokens([AddedToken::from(pad.clone(), true)]).map_err(refuse)?;
+            tokenizer
+                .add_special_tokens([AddedToken::from(pad.clone(), true)])
+                .map_err(refuse)?;
         }
         let id = |word: &str| {
             let id = tokenizer.token_to_id(word);
@@ -82,7 +84,9 @@ impl Words {
 
     /// Exactly `length` ids: the text between its ends, cut behind or filled up. Errors if the tokenizer fails.
     pub fn ids(&self, text: &str, length: usize) -> Result<Vec<u32>, StableError> {
-        let end = (0..=MOST_TEXT.min(text.len())).rev().find(|i| text.is_char_boundary(*i));
+        let end = (0..=MOST_TEXT.min(text.len()))
+            .rev()
+            .find(|i| text.is_char_boundary(*i));
         let text = &text[..end.unwrap_or(0)];
         let encoded = self.tokenizer.encode(text, false).map_err(refuse)?;
         let mut ids = vec![self.first];
@@ -99,10 +103,19 @@ fn of_pairs(folder: &Path) -> Result<Tokenizer, StableError> {
     let words: BTreeMap<String, u32> = read_json(&vocab, MOST_BYTES)?;
     let text = String::from_utf8(read_bounded(&merges, MOST_BYTES)?)
         .map_err(|_| refuse(format!("{}: not a text", merges.display())))?;
-    let lines = text.lines().filter(|l| !l.starts_with("#version") && !l.trim().is_empty());
+    let lines = text
+        .lines()
+        .filter(|l| !l.starts_with("#version") && !l.trim().is_empty());
     let pairs = lines.map(|line| {
-        let pair = line.split_once(' ').map(|(a, b)| (a.to_owned(), b.trim().to_owned()));
-        pair.ok_or_else(|| refuse(format!("{}: expected two parts, found {line:?}", merges.display())))
+        let pair = line
+            .split_once(' ')
+            .map(|(a, b)| (a.to_owned(), b.trim().to_owned()));
+        pair.ok_or_else(|| {
+            refuse(format!(
+                "{}: expected two parts, found {line:?}",
+                merges.display()
+            ))
+        })
     });
     let pairs = pairs.collect::<Result<Vec<_>, _>>()?;
     let model = BPE::builder()
@@ -112,14 +125,21 @@ fn of_pairs(folder: &Path) -> Result<Tokenizer, StableError> {
         .build()
         .map_err(refuse)?;
     let mut tokenizer = Tokenizer::new(model);
-    let spaces = Replace::new(tokenizers::normalizers::replace::ReplacePattern::Regex(r"\s+".into()), " ");
+    let spaces = Replace::new(
+        tokenizers::normalizers::replace::ReplacePattern::Regex(r"\s+".into()),
+        " ",
+    );
     let normalizer = Sequence::new(vec![
         NormalizerWrapper::NFC(NFC),
         NormalizerWrapper::Replace(spaces.map_err(refuse)?),
         NormalizerWrapper::Lowercase(Lowercase),
     ]);
     tokenizer.with_normalizer(Some(normalizer)).map_err(refuse)?;
-    let split = Split::new(SplitPattern::Regex(WORDS.into()), SplitDelimiterBehavior::Removed, true);
+    let split = Split::new(
+        SplitPattern::Regex(WORDS.into()),
+        SplitDelimiterBehavior::Removed,
+        true,
+    );
     tokenizer.with_pre_tokenizer(Some(PreSequence::new(vec![
         PreTokenizerWrapper::Split(split.map_err(refuse)?),
         PreTokenizerWrapper::ByteLevel(ByteLevel::new(false, true, false)),

@@ -19,7 +19,14 @@ struct Pairs {
 }
 
 impl Pairs {
-    fn forward(&self, i: usize, x: &Tensor, time: &Tensor, context: &Tensor, around: &Around) -> Result<Tensor> {
+    fn forward(
+        &self,
+        i: usize,
+        x: &Tensor,
+        time: &Tensor,
+        context: &Tensor,
+        around: &Around,
+    ) -> Result<Tensor> {
         let x = self.residuals[i].forward(x, Some(time))?;
         match self.transformers.get(i) {
             Some(transformer) => transformer.forward(&x, context, around),
@@ -57,7 +64,11 @@ impl Down {
 
     #[cfg(test)]
     pub fn parts(&self) -> (&Residual, &Transformer, Option<&Conv>) {
-        (&self.pairs.residuals[0], &self.pairs.transformers[0], self.resize.as_ref())
+        (
+            &self.pairs.residuals[0],
+            &self.pairs.transformers[0],
+            self.resize.as_ref(),
+        )
     }
 }
 
@@ -96,7 +107,9 @@ impl Up {
             let Some(skip) = kept.pop() else {
                 candle_core::bail!("the way up has more levels than the way down");
             };
-            x = self.pairs.forward(i, &Tensor::cat(&[&x, &skip], 1)?, time, context, around)?;
+            x = self
+                .pairs
+                .forward(i, &Tensor::cat(&[&x, &skip], 1)?, time, context, around)?;
         }
         if let (Some(resize), Some(next)) = (&self.resize, kept.last()) {
             let (_, _, rows, columns) = next.dims4()?;
@@ -141,13 +154,7 @@ impl<'a> Levels<'a> {
         Transformer::load(&names.at("attentions").at(i), self.config, sizes)
     }
 
-    fn pairs(
-        &self,
-        names: &Names<'_>,
-        kind: Block,
-        level: usize,
-        inputs: &[usize],
-    ) -> Loaded<Pairs> {
+    fn pairs(&self, names: &Names<'_>, kind: Block, level: usize, inputs: &[usize]) -> Loaded<Pairs> {
         let width = self.config.block_out_channels[level];
         let listening = if kind == Block::Listens { inputs.len() } else { 0 };
         let residuals = inputs.iter().enumerate();

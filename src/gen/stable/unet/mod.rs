@@ -51,6 +51,11 @@ impl Unet {
         weights.build(machine, &[], |names| Self::of(&config, names, machine))
     }
 
+    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    pub fn check(config: &UnetConfig, weights: &Weights) -> Result<(), StableError> {
+        weights.check(&[], |names| Self::of(config, names, &Machine::cpu()))
+    }
+
     fn of(config: &UnetConfig, names: &Names<'_>, machine: &Machine) -> Result<Self, StableError> {
         let levels = Levels::of(config);
         let (finest, groups) = (config.block_out_channels[0], config.norm_num_groups);
@@ -96,7 +101,11 @@ impl Unet {
         let (batch, _, rows, columns) = x.dims4()?;
         if !(1..=MOST_SIDE).contains(&rows) || !(1..=MOST_SIDE).contains(&columns) {
             let sides = format!("{rows} x {columns}");
-            return Err(wrong("size of latents", sides, format!("1 to {MOST_SIDE} a side")));
+            return Err(wrong(
+                "size of latents",
+                sides,
+                format!("1 to {MOST_SIDE} a side"),
+            ));
         }
         let around = Around::of(&self.neighbours, frames, batch)?;
         let dtype = self.machine.dtype;

@@ -23,12 +23,17 @@ pub(crate) struct Around {
 impl Around {
     /// Of a batch of all views of the first frame, then of the next. `neighbours` are those of each view. Errors if the batch does not
     /// hold whole frames.
-    pub fn of(neighbours: &[Vec<usize>], frames: usize, batch: usize) -> std::result::Result<Self, StableError> {
+    pub fn of(
+        neighbours: &[Vec<usize>],
+        frames: usize,
+        batch: usize,
+    ) -> std::result::Result<Self, StableError> {
         let views = match neighbours.len() {
             0 => batch / frames.max(1),
             views => views,
         };
-        if frames == 0 || views == 0 || !batch.is_multiple_of(views) || !batch.is_multiple_of(views * frames) {
+        if frames == 0 || views == 0 || !batch.is_multiple_of(views) || !batch.is_multiple_of(views * frames)
+        {
             let expected = format!("a multiple of {views} views times {frames} frames");
             return Err(wrong("number of latents", batch, expected));
         }
@@ -115,7 +120,8 @@ impl Neighbours {
         let mut heard = x.zeros_like()?;
         for rank in 0..most {
             let with = |(item, others): (usize, &Vec<usize>)| others.get(rank).map(|other| (item, *other));
-            let (items, others): (Vec<usize>, Vec<usize>) = around.iter().enumerate().filter_map(with).unzip();
+            let (items, others): (Vec<usize>, Vec<usize>) =
+                around.iter().enumerate().filter_map(with).unzip();
             let context = picked(x, &others)?;
             if items.len() == around.len() {
                 heard = (heard + self.attention.forward(x, &context, None)?)?;

@@ -117,7 +117,12 @@ impl Transformer {
         let tokens = self.norm.forward(x)?.reshape((batch, width, rows * columns))?;
         let tokens = self.enter.forward(&tokens.transpose(1, 2)?)?;
         let through = |y: Tensor, block: &Block| block.forward(&y, context, around);
-        let tokens = self.leave.forward(&self.blocks.iter().try_fold(tokens, through)?)?;
-        x + tokens.transpose(1, 2)?.contiguous()?.reshape((batch, width, rows, columns))?
+        let tokens = self
+            .leave
+            .forward(&self.blocks.iter().try_fold(tokens, through)?)?;
+        x + tokens
+            .transpose(1, 2)?
+            .contiguous()?
+            .reshape((batch, width, rows, columns))?
     }
 }

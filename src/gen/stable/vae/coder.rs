@@ -38,7 +38,10 @@ impl Everywhere {
         let tokens = self.norm.forward(x)?.reshape((batch, width, rows * columns))?;
         let tokens = tokens.transpose(1, 2)?.contiguous()?;
         let y = self.attention.forward(&tokens, &tokens, None)?;
-        x + y.transpose(1, 2)?.contiguous()?.reshape((batch, width, rows, columns))?
+        x + y
+            .transpose(1, 2)?
+            .contiguous()?
+            .reshape((batch, width, rows, columns))?
     }
 }
 
@@ -82,7 +85,13 @@ impl Level {
     ) -> Loaded<Self> {
         let residual = |i: usize| {
             let inputs = if i == 0 { inputs } else { outputs };
-            Residual::load(&names.at("resnets").at(i), [inputs, outputs], None, groups, EPSILON)
+            Residual::load(
+                &names.at("resnets").at(i),
+                [inputs, outputs],
+                None,
+                groups,
+                EPSILON,
+            )
         };
         let resize = resize.map(|(name, stride)| {
             let padding = 2 - stride;
@@ -95,7 +104,9 @@ impl Level {
     }
 
     fn residuals(&self, x: Tensor) -> Result<Tensor> {
-        self.residuals.iter().try_fold(x, |x, residual| residual.forward(&x, None))
+        self.residuals
+            .iter()
+            .try_fold(x, |x, residual| residual.forward(&x, None))
     }
 }
 
@@ -116,7 +127,13 @@ impl Encoder {
             let inputs = widths[i.saturating_sub(1)];
             let resize = (i + 1 < widths.len()).then_some(("downsamplers.0.conv", 2));
             let names = names.at("down_blocks").at(i);
-            Level::load(&names, [inputs, widths[i]], config.layers_per_block, groups, resize)
+            Level::load(
+                &names,
+                [inputs, widths[i]],
+                config.layers_per_block,
+                groups,
+                resize,
+            )
         };
         Ok(Self {
             first: Conv::load(&names.at("conv_in"), 3, finest)?,
@@ -159,7 +176,13 @@ impl Decoder {
             let inputs = widths[i.saturating_sub(1)];
             let resize = (i + 1 < widths.len()).then_some(("upsamplers.0.conv", 1));
             let names = names.at("up_blocks").at(i);
-            Level::load(&names, [inputs, widths[i]], config.layers_per_block + 1, groups, resize)
+            Level::load(
+                &names,
+                [inputs, widths[i]],
+                config.layers_per_block + 1,
+                groups,
+                resize,
+            )
         };
         Ok(Self {
             first: Conv::load(&names.at("conv_in"), config.latent_channels, coarsest)?,

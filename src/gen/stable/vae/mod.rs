@@ -29,6 +29,11 @@ impl Vae {
         weights.build(machine, &[], |names| Self::of(&config, names))
     }
 
+    /// Whether weights fit a configuration, by names, shapes and types alone. Errors list the first few that do not.
+    pub fn check(config: &VaeConfig, weights: &Weights) -> Result<(), StableError> {
+        weights.check(&[], |names| Self::of(config, names))
+    }
+
     fn of(config: &VaeConfig, names: &Names<'_>) -> Result<Self, StableError> {
         let latent = config.latent_channels;
         Ok(Self {
@@ -51,7 +56,11 @@ impl Vae {
         let cell = self.config.cell();
         for side in [height, width] {
             if side == 0 || !side.is_multiple_of(cell) {
-                return Err(wrong("side of a picture", side, format!("a multiple of {cell} px")));
+                return Err(wrong(
+                    "side of a picture",
+                    side,
+                    format!("a multiple of {cell} px"),
+                ));
             }
         }
         let moments = self.quant.forward(&self.encoder.forward(pictures)?)?;

@@ -51,7 +51,12 @@ impl WeightFile {
             return Err(StableError::Folder {
                 path: path.to_owned(),
                 expected: "a regular file of weights".into(),
-                found: if kind.is_dir() { "a folder" } else { "a device or a pipe" }.into(),
+                found: if kind.is_dir() {
+                    "a folder"
+                } else {
+                    "a device or a pipe"
+                }
+                .into(),
             });
         }
         let found = kind.len();

@@ -144,10 +144,19 @@ impl Weights {
         ignored: &[&str],
         build: impl Fn(&Names<'_>) -> Result<M, StableError>,
     ) -> Result<M, StableError> {
+        self.check(ignored, &build)?;
+        build(&Names::reading(self, machine))
+    }
+
+    /// Whether `build` could be made of the weights, without reading any. Errors as [`build`](Self::build).
+    pub(crate) fn check<M>(
+        &self,
+        ignored: &[&str],
+        build: impl Fn(&Names<'_>) -> Result<M, StableError>,
+    ) -> Result<(), StableError> {
         let asked = Asked::default();
         build(&Names::checking(self, &asked))?;
-        self.compare(&asked, ignored)?;
-        build(&Names::reading(self, machine))
+        self.compare(&asked, ignored)
     }
 
     /// Errors unless what was asked for is what is there.
@@ -167,8 +176,7 @@ impl Weights {
                 Some(_) => {}
             }
         }
-        let is_foreign =
-            |n: &&String| !taken.contains(*n) && !ignored.iter().any(|end| n.ends_with(end));
+        let is_foreign = |n: &&String| !taken.contains(*n) && !ignored.iter().any(|end| n.ends_with(end));
         let foreign: Vec<&String> = self.places.keys().filter(is_foreign).collect();
         let mut reasons = Vec::new();
         if !missing.is_empty() {
@@ -182,7 +190,10 @@ impl Weights {
             reasons.push(format!("{names} neither f16 nor bf16 nor f32"));
         }
         if !foreign.is_empty() {
-            reasons.push(format!("{} not part of this network", counted(&foreign, "tensor")));
+            reasons.push(format!(
+                "{} not part of this network",
+                counted(&foreign, "tensor")
+            ));
         }
         if reasons.is_empty() {
             return Ok(());
