@@ -329,7 +329,11 @@ impl Canvas {
         }
         unsettled_marks::from_above(ui.painter(), map, self.extent, &input.unsettled, input.generating);
         if let Some(marks) = &state.shown.detection_marks {
-            marks.from_above(&painter.with_clip_rect(painter.clip_rect().intersect(map.rect)), map, scene.frame());
+            marks.on_map(
+                &painter.with_clip_rect(painter.clip_rect().intersect(map.rect)),
+                map,
+                scene.frame(),
+            );
         }
         if let Some(marks) = &state.shown.finding_marks {
             let inside = painter.with_clip_rect(painter.clip_rect().intersect(map.rect));

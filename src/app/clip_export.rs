@@ -231,7 +231,11 @@ impl Drawer {
     }
 }
 
-fn pictures(scene: &Scene, options: &ClipOptions, painter: Option<&mut (dyn Paint + 'static)>) -> anyhow::Result<Picture> {
+fn pictures(
+    scene: &Scene,
+    options: &ClipOptions,
+    painter: Option<&mut (dyn Paint + 'static)>,
+) -> anyhow::Result<Picture> {
     let ClipView::Cameras { view, source, camera } = &options.view else {
         bail!("no view of cameras");
     };

@@ -35,7 +35,12 @@ fn color([r, g, b]: [u8; 3]) -> Color32 {
 
 impl std::fmt::Debug for DetectionMarks {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} detections, {} missed", self.detections.len(), self.missed.len())
+        write!(
+            f,
+            "{} detections, {} missed",
+            self.detections.len(),
+            self.missed.len()
+        )
     }
 }
 
@@ -58,9 +63,12 @@ impl DetectionMarks {
     }
 
     /// Draws them on the bird's-eye view.
-    pub(super) fn from_above(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
+    pub(super) fn on_map(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
         if let Some(texture) = &self.stands {
-            let (min, max) = (Extent::WINDOW.min_m().truncate(), Extent::WINDOW.max_m().truncate());
+            let (min, max) = (
+                Extent::WINDOW.min_m().truncate(),
+                Extent::WINDOW.max_m().truncate(),
+            );
             let on_map = |p: DVec2| map.to_screen(self.map_from_vehicle.apply(p.extend(0.0)).truncate());
             // Ahead is up and left is left: the picture's upper left corner is the window's farthest left one.
             let corners = [
@@ -88,7 +96,11 @@ impl DetectionMarks {
             let ring = |z: f64| b.footprint().map(|p| project(p.extend(b.center_m.z + z)));
             let (low, high) = (ring(-half), ring(half));
             for i in 0..4 {
-                let edges = [(low[i], low[(i + 1) % 4]), (high[i], high[(i + 1) % 4]), (low[i], high[i])];
+                let edges = [
+                    (low[i], low[(i + 1) % 4]),
+                    (high[i], high[(i + 1) % 4]),
+                    (low[i], high[i]),
+                ];
                 for (a, b) in edges {
                     if let (Some(a), Some(b)) = (a, b) {
                         stroke(painter, &[a, b], color);
@@ -133,7 +145,7 @@ mod tests {
 
     #[test]
     fn every_box_has_the_colour_of_what_became_of_it() {
-        let mut frame = Frame::default();
+        let mut frame = Frame::new(Default::default(), Default::default(), Default::default());
         let b = |id: u32| SceneBox {
             id: BoxId(id),
             class: Class::Car,

@@ -93,13 +93,19 @@ mod tests {
             ..PaintWish::default()
         };
         let options = wish.options();
-        assert_eq!((options.steps, options.guidance), (50, PaintOptions::default().guidance));
+        assert_eq!(
+            (options.steps, options.guidance),
+            (50, PaintOptions::default().guidance)
+        );
         assert_eq!((options.strength, options.width_px), (0.1, 64));
         let missing = PaintWish {
             weights: Some("no such folder".into()),
             ..PaintWish::default()
         };
-        let error = missing.open().err().expect("no weights").to_string();
-        assert!(error.contains("no such folder") && !error.contains('\n'), "{error}");
+        let error = missing.open().expect_err("no weights").to_string();
+        assert!(
+            error.contains("no such folder") && !error.contains('\n'),
+            "{error}"
+        );
     }
 }

@@ -135,7 +135,9 @@ impl Perceiving {
         for news in self.worker.updates().try_iter().map(|event| event.update) {
             match news {
                 News::Looked(rev, report) => (self.seen, self.problem) = (Some((rev, report)), None),
-                News::Swept(rev, report) => (self.swept, self.problem) = (Some((rev, Arc::new(report))), None),
+                News::Swept(rev, report) => {
+                    (self.swept, self.problem) = (Some((rev, Arc::new(report))), None)
+                }
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
                 News::Searched(found) => (self.searching, self.found) = (None, Some(found)),
                 News::Failed(problem) => (self.searching, self.problem) = (None, Some(problem)),
@@ -177,7 +179,11 @@ mod tests {
     use super::*;
     use crate::open;
 
-    fn wait(perceiving: &mut Perceiving, (scene, by): (&Arc<Scene>, Sensor), until: impl Fn(&Perceiving) -> bool) {
+    fn wait(
+        perceiving: &mut Perceiving,
+        (scene, by): (&Arc<Scene>, Sensor),
+        until: impl Fn(&Perceiving) -> bool,
+    ) {
         let start = Instant::now();
         while !until(perceiving) {
             assert!(start.elapsed() < Duration::from_secs(120), "no news");
@@ -194,7 +200,9 @@ mod tests {
         assert!(perceiving.is_stale(scene.rev, Sensor::Cameras));
         wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
         let by_lidar = (&scene, Sensor::Lidar);
-        wait(&mut perceiving, by_lidar, |p| !p.is_stale(scene.rev, Sensor::Lidar));
+        wait(&mut perceiving, by_lidar, |p| {
+            !p.is_stale(scene.rev, Sensor::Lidar)
+        });
         let (_, swept) = perceiving.swept.as_ref().expect("a report");
         assert!(!swept.detections.is_empty());
         let (_, report) = perceiving.seen.as_ref().expect("a report");

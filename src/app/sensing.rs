@@ -13,6 +13,7 @@ use std::time::Duration;
 use super::camera_views::LidarModel;
 use super::camera_views::{CameraView, LARGE_SIZE, Pictures, Wanted, camera_input};
 use super::graphics::Graphics;
+use super::painting::PaintWish;
 use job::guard::Panicked;
 use job::product::{Ctx, Product, Wake, Worker};
 use language::tf;

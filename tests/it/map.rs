@@ -265,6 +265,7 @@ fn the_window_is_one_part_of_a_larger_map() {
         background: &scene.background,
         conditions: Conditions::default(),
         detail: Detail::Full,
+        paint: None,
     };
     let options = RenderOptions {
         size: [400, 225],

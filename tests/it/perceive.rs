@@ -35,7 +35,11 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
     let lidar = &seen["lidar"];
     assert!(lidar["columns_right"].as_f64() > Some(0.5), "{lidar}");
     let swept = lidar["boxes"].as_array().expect("a list");
-    assert!(swept.iter().any(|b| b["missed"] == false && b["returns"].as_u64() >= Some(5)));
+    assert!(
+        swept
+            .iter()
+            .any(|b| b["missed"] == false && b["returns"].as_u64() >= Some(5))
+    );
     let number = plain["box"].clone();
     let id = number.to_string();
 

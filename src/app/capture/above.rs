@@ -52,7 +52,11 @@ pub(super) fn picture(scene: &Scene, subject: Subject, size: [u32; 2]) -> anyhow
     let [width, height] = size.map(|s| s as usize);
     let mut out = Picture::filled(width, height, BEHIND);
     let middle = |whole: usize, part: usize| whole.saturating_sub(part) / 2;
-    out.put(&fitted, middle(width, fitted.width), middle(height, fitted.height));
+    out.put(
+        &fitted,
+        middle(width, fitted.width),
+        middle(height, fitted.height),
+    );
     Ok(out)
 }
 
@@ -71,7 +75,9 @@ fn map(scene: &Scene, scale: usize) -> Picture {
             out.fill_column(extent, [x, y], scale, scenery_color(class));
         }
     }
-    box_cells(extent, &ego(scene), 0.0, |x, y| out.fill_column(extent, [x, y], scale, EGO_COLOR));
+    box_cells(extent, &ego(scene), 0.0, |x, y| {
+        out.fill_column(extent, [x, y], scale, EGO_COLOR)
+    });
     out
 }
 
@@ -84,7 +90,9 @@ pub(super) fn scenery_color(class: Class) -> [u8; 3] {
 pub(super) fn sceneries(scene: &Scene) -> Vec<Class> {
     let frame = scene.frame();
     let tops = frame.extent().all_columns();
-    let tops: Vec<Class> = tops.filter_map(|[x, y]| scenery(frame.occupancy.column(x, y))).collect();
+    let tops: Vec<Class> = tops
+        .filter_map(|[x, y]| scenery(frame.occupancy.column(x, y)))
+        .collect();
     let mut all = vec![Class::Manmade, Class::Vegetation];
     all.retain(|c| tops.contains(c));
     all

@@ -10,7 +10,7 @@ use sensors::cameras::{DEPTH_M, ViewId};
 use sensors::color::ramp;
 use widgets::{fonts, theme};
 
-use super::{BEHIND, above, CaptureOptions, Subject};
+use super::{BEHIND, CaptureOptions, Subject, above};
 use crate::paint;
 use crate::picture::Picture;
 
@@ -103,10 +103,22 @@ fn entries(scene: &Scene, options: &CaptureOptions) -> Vec<Entry> {
                 .filter_map(|b| Class::OBJECTS.iter().position(|c| *c == b.class))
                 .collect();
             let boxes = classes.into_iter().map(|i| of_class(Class::OBJECTS[i]));
-            let ego = (theme::rgb(above::EGO_COLOR), theme::sentence(t("the ego vehicle")));
+            let ego = (
+                theme::rgb(above::EGO_COLOR),
+                theme::sentence(t("the ego vehicle")),
+            );
             let beside = above::sceneries(scene).into_iter();
-            let beside = beside.map(|c| (theme::rgb(above::scenery_color(c)), theme::sentence(t(&c.label()))));
-            std::iter::once(ego).chain(layers).chain(boxes).chain(beside).collect()
+            let beside = beside.map(|c| {
+                (
+                    theme::rgb(above::scenery_color(c)),
+                    theme::sentence(t(&c.label())),
+                )
+            });
+            std::iter::once(ego)
+                .chain(layers)
+                .chain(boxes)
+                .chain(beside)
+                .collect()
         }
         _ => {
             let grid = &frame.occupancy;

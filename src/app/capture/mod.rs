@@ -13,7 +13,7 @@ use sensors::appearance::Quality;
 use sensors::cameras::{self, Detail, Ready, RenderOptions, SourceId, ViewId, bounds};
 
 use crate::camera_views::{camera_input, camera_label};
-use crate::picture::{self, Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
+use crate::picture::{Picture, SHEET_COLOR, SHOT_BYTES_PER_PIXEL, ShotOptions, View3d};
 
 /// What is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -293,7 +293,9 @@ mod tests {
         let map = capture(&scene, &asked).expect("small");
         let has = |wanted: [u8; 3]| map.rgba.chunks_exact(4).any(|p| p[..3] == wanted);
         assert_eq!(map.rgba[(400 * 800 + 400) * 4..][..3], [235, 238, 242]);
-        let tree = scene::Class::Vegetation.color().map(|c| (u16::from(c) * 150 / 255) as u8);
+        let tree = scene::Class::Vegetation
+            .color()
+            .map(|c| (u16::from(c) * 150 / 255) as u8);
         assert!(has(tree), "no tree");
     }
 

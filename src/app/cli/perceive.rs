@@ -98,13 +98,21 @@ impl Perceive {
             lines.extend(swept.boxes.iter().map(|b| {
                 let class = scene.frame().boxes.get(&b.id).map_or("box", |b| b.class.name());
                 match b.score {
-                    Some(score) => format!("seen by the LiDAR: {class} #{}, {} returns, score {score:.2}", b.id.0, b.returns),
+                    Some(score) => format!(
+                        "seen by the LiDAR: {class} #{}, {} returns, score {score:.2}",
+                        b.id.0, b.returns
+                    ),
                     None => format!("missed by the LiDAR: {class} #{}, {} returns", b.id.0, b.returns),
                 }
             }));
             let ghosts = swept.detections.iter().filter(|d| d.of.is_none()).count();
-            lines.push(format!("boxes of the LiDAR's network where there are none: {ghosts}"));
-            lines.push(format!("what stands right: {:.1} % of the columns", swept.right * 100.0));
+            lines.push(format!(
+                "boxes of the LiDAR's network where there are none: {ghosts}"
+            ));
+            lines.push(format!(
+                "what stands right: {:.1} % of the columns",
+                swept.right * 100.0
+            ));
             lines.join("\n")
         });
         Ok(())
@@ -142,7 +150,9 @@ impl Perceive {
             let lines = search.tried.iter().map(|t| {
                 let (n, percent) = (t.sight.visible, t.sight.share * 100.0);
                 match self.by {
-                    Sensor::Cameras => format!("{}: {n} px, {percent:.0} % of them taken for a thing", t.change),
+                    Sensor::Cameras => {
+                        format!("{}: {n} px, {percent:.0} % of them taken for a thing", t.change)
+                    }
                     Sensor::Lidar => format!("{}: {n} returns, {percent:.0} % sure", t.change),
                 }
             });

@@ -128,7 +128,8 @@ pub(super) fn compared(
     if single && now.stale && now.view == learned::VIEW.id {
         let line = Rect::from_min_max(area.left_bottom() - egui::vec2(0.0, 24.0), area.right_bottom());
         in_rect(ui, line, |ui| {
-            ui.painter().rect_filled(line, 3.0, egui::Color32::from_black_alpha(170));
+            ui.painter()
+                .rect_filled(line, 3.0, egui::Color32::from_black_alpha(170));
             ui.horizontal_centered(|ui| {
                 ui.add_space(6.0);
                 progress(ui, &now, commands);

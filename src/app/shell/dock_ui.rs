@@ -143,7 +143,12 @@ impl Drawer<'_> {
             pane.ui(ui, &mut self.cx, self.commands);
         }
         if self.cx.state.compare.holding_before && pane.shows_before() {
-            tag(ui, area.left_top() + vec2(8.0, 8.0), self.cx.state.compare.names()[0], false);
+            tag(
+                ui,
+                area.left_top() + vec2(8.0, 8.0),
+                self.cx.state.compare.names()[0],
+                false,
+            );
         }
         if ui.rect_contains_pointer(area) {
             self.cx.state.pointed.pane = Some(id);

@@ -215,7 +215,13 @@ fn tool_list(
 /// The workspaces side by side, or as a menu.
 fn workspaces(ui: &mut Ui, current: Workspace, fold: Fold, commands: &mut Vec<Command>) {
     let mut chosen = current;
-    let names = Workspace::ALL.map(|(workspace, name)| (workspace, t(name), t("its panes as they were left; by its key or the menu once more, as they came")));
+    let names = Workspace::ALL.map(|(workspace, name)| {
+        (
+            workspace,
+            t(name),
+            t("its panes as they were left; by its key or the menu once more, as they came"),
+        )
+    });
     if fold >= Fold::Workspaces {
         let name = names.iter().find(|n| n.0 == current).map_or("", |n| n.1);
         let menu = ui.menu_button(name, |ui| {
@@ -226,8 +232,13 @@ fn workspaces(ui: &mut Ui, current: Workspace, fold: Fold, commands: &mut Vec<Co
                 }
             }
         });
-        menu.response
-            .on_hover_ui(|ui| icons::tip(ui, name, t("its panes as they were left; by its key or the menu once more, as they came")));
+        menu.response.on_hover_ui(|ui| {
+            icons::tip(
+                ui,
+                name,
+                t("its panes as they were left; by its key or the menu once more, as they came"),
+            )
+        });
     } else {
         icons::segments(ui, &mut chosen, &names);
     }

@@ -1,7 +1,6 @@
 //! Carries out commands about what the views show, where the panes stand, and which windows are open.
 
 use super::app::SceneloomApp;
-use super::dock::Dock;
 use super::views::BeforeClean;
 use super::workspace::Workspace;
 use crate::command::{ViewCommand, Window};

@@ -42,7 +42,12 @@ pub struct OpenWindows {
 impl OpenWindows {
     /// Closes the one window that a person most likely looks at; false if none is open.
     pub fn close_one(&mut self) -> bool {
-        let all = [&mut self.capture.open, &mut self.settings, &mut self.sensors, &mut self.log];
+        let all = [
+            &mut self.capture.open,
+            &mut self.settings,
+            &mut self.sensors,
+            &mut self.log,
+        ];
         match all.into_iter().find(|open| **open) {
             Some(open) => {
                 *open = false;

@@ -4,13 +4,13 @@ use egui::{Ui, Window};
 
 use crate::command::{Command, FileCommand};
 use crate::painting::PaintWish;
-use sensors::painter::PaintOptions;
 use crate::shell::guests::{Guests, OpenDoor};
 use crate::shell::keymap::{Chords, Keymap, PRESETS};
 use crate::shell::settings::Settings;
 use crate::windows::open::OpenWindows;
 use language::t;
 use scene::classes::Palette;
+use sensors::painter::PaintOptions;
 use widgets::icons::section;
 use widgets::theme::{self, Theme};
 
@@ -219,8 +219,12 @@ fn painting(ui: &mut Ui, painting: &mut PaintWish, commands: &mut Vec<Command>) 
         let options = painting.options();
         ui.label(t("Steps"));
         let mut steps = options.steps;
-        let field = egui::DragValue::new(&mut steps).range(PaintWish::STEPS).speed(0.1);
-        let field = ui.add(field).on_hover_text(t("From noise to a picture; more steps take longer"));
+        let field = egui::DragValue::new(&mut steps)
+            .range(PaintWish::STEPS)
+            .speed(0.1);
+        let field = ui
+            .add(field)
+            .on_hover_text(t("From noise to a picture; more steps take longer"));
         if field.accessible_name(t("Steps")).changed() {
             painting.steps = Some(steps);
         }
@@ -231,7 +235,9 @@ fn painting(ui: &mut Ui, painting: &mut PaintWish, commands: &mut Vec<Command>) 
             .range(PaintWish::GUIDANCE)
             .speed(0.02)
             .fixed_decimals(1);
-        let field = ui.add(field).on_hover_text(t("How strictly the pictures obey what they are told"));
+        let field = ui
+            .add(field)
+            .on_hover_text(t("How strictly the pictures obey what they are told"));
         if field.accessible_name(t("Guidance")).changed() {
             painting.guidance = Some(guidance);
         }
@@ -250,7 +256,9 @@ fn public_weights(ui: &mut Ui, painting: &mut PaintWish, options: &PaintOptions)
         .range(PaintWish::STRENGTH)
         .speed(0.005)
         .fixed_decimals(2);
-    let field = ui.add(field).on_hover_text(t("How much of the rendered picture is painted anew"));
+    let field = ui
+        .add(field)
+        .on_hover_text(t("How much of the rendered picture is painted anew"));
     if field.accessible_name(t("Strength")).changed() {
         painting.strength = Some(strength);
     }

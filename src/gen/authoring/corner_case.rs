@@ -344,12 +344,19 @@ mod tests {
         let edits = found.found.expect("fog hides everything in the end");
         let mut document = Document::new(scene.clone());
         document.apply_all("vary", &edits).expect("edits of the search");
-        assert_eq!(sight(document.scene(), id, Sensor::Cameras).expect("a sight"), last.sight);
+        assert_eq!(
+            sight(document.scene(), id, Sensor::Cameras).expect("a sight"),
+            last.sight
+        );
         // It can be ended, and a box that is not there is named.
-        let ended = search(&scene, id, Vary::Offset, Sensor::Cameras, |_, _| ControlFlow::Break(()));
+        let ended = search(&scene, id, Vary::Offset, Sensor::Cameras, |_, _| {
+            ControlFlow::Break(())
+        });
         let ended = ended.expect("the shipped network");
         assert!(ended.tried.len() == 1 && ended.found.is_none() && ended.stopped);
-        let error = search(&scene, BoxId(9999), Vary::Time, Sensor::Cameras, |_, _| ControlFlow::Continue(()));
+        let error = search(&scene, BoxId(9999), Vary::Time, Sensor::Cameras, |_, _| {
+            ControlFlow::Continue(())
+        });
         assert_eq!(error.expect_err("no box").to_string(), "there is no box 9999");
     }
 
@@ -360,8 +367,15 @@ mod tests {
             let sight = sight(&scene, b.id, Sensor::Lidar).expect("the shipped network");
             sight.is_judged() && !sight.is_missed()
         };
-        let b = scene.frame().boxes.values().find(seen).expect("a box that the LiDAR sees");
-        let found = search(&scene, b.id, Vary::Distance, Sensor::Lidar, |_, _| ControlFlow::Continue(()));
+        let b = scene
+            .frame()
+            .boxes
+            .values()
+            .find(seen)
+            .expect("a box that the LiDAR sees");
+        let found = search(&scene, b.id, Vary::Distance, Sensor::Lidar, |_, _| {
+            ControlFlow::Continue(())
+        });
         let found = found.expect("the shipped network");
         let last = found.tried.last().expect("tries").sight;
         // In the end it is missed, or has too few returns to be judged, or it was moved as far as the search goes.

@@ -162,11 +162,25 @@ mod tests {
         assert!(!seen.is_empty());
         for b in &seen {
             let boxes = &scene.frame().boxes;
-            let detected = report.detections.iter().find(|d| d.of == Some(b.id)).expect("found");
-            assert!(detected.thing.center_m.truncate().distance(boxes[&b.id].center_m.truncate()) < 2.0);
+            let detected = report
+                .detections
+                .iter()
+                .find(|d| d.of == Some(b.id))
+                .expect("found");
+            assert!(
+                detected
+                    .thing
+                    .center_m
+                    .truncate()
+                    .distance(boxes[&b.id].center_m.truncate())
+                    < 2.0
+            );
             assert_eq!(sight(&scene, b.id).expect("seen"), Some(**b));
         }
         assert_eq!(sight(&scene, BoxId(9999)), Ok(None));
-        assert!(seen.iter().any(|b| scene.frame().boxes[&b.id].class == Class::Car));
+        assert!(
+            seen.iter()
+                .any(|b| scene.frame().boxes[&b.id].class == Class::Car)
+        );
     }
 }

@@ -50,7 +50,12 @@ fn keys_are_met_and_nothing_overshoots() {
     assert_eq!(at(&motion, 1.5).velocity_mps, DVec2::ZERO);
     assert_eq!(at(&motion, f64::NAN).at_m, DVec2::ZERO);
     // It stands before and after, but not yet at its ends.
-    for (time_s, mps) in [(-0.01, 0.0), (0.0, 10.0), (4.0, 5.0 * 17f64.sqrt() / 2.0), (4.01, 0.0)] {
+    for (time_s, mps) in [
+        (-0.01, 0.0),
+        (0.0, 10.0),
+        (4.0, 5.0 * 17f64.sqrt() / 2.0),
+        (4.01, 0.0),
+    ] {
         let found = at(&motion, time_s).velocity_mps.length();
         assert!((found - mps).abs() < 1e-9, "{found} m/s at {time_s} s");
     }

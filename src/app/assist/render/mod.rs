@@ -16,8 +16,8 @@ use app::picture::{self, Picture};
 use formats::recipe::Recipe;
 use scene::{Scene, TimeOfDay, Weather};
 use sensors::appearance::Quality;
-use sensors::painter::PaintWith;
 use sensors::cameras::{self, CameraInput, Card, Detail, Ready, RenderOptions, SourceId};
+use sensors::painter::PaintWith;
 
 use plan::{Cameras, Plan};
 use write::Writer;

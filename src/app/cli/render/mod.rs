@@ -77,7 +77,10 @@ impl Render {
         }
         let paints = self.what.iter().any(|w| w == learned::VIEW.id.name());
         let wish = self.painting.wish(self.common.weights.as_deref());
-        let paint = paints.then(|| wish.open()).transpose().map_err(anyhow::Error::new)?;
+        let paint = paints
+            .then(|| wish.open())
+            .transpose()
+            .map_err(anyhow::Error::new)?;
         let rendering = Rendering {
             what: self.what,
             size: self.size,

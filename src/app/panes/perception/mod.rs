@@ -81,7 +81,8 @@ impl Pane for Perception {
                 if let Some((_, report)) = &perceiving.seen {
                     let percent = format!("{:.1}", report.right * 100.0);
                     let text = tf!("Classes right: {percent} % of the pixels", percent = percent);
-                    let what = t("A small camera network that learned from the pictures looks at all cameras.");
+                    let what =
+                        t("A small camera network that learned from the pictures looks at all cameras.");
                     ui.label(RichText::new(text).small().color(theme::text_weak()))
                         .on_hover_text(what);
                 }
@@ -92,8 +93,13 @@ impl Pane for Perception {
             Sensor::Lidar => {
                 if let Some((_, report)) = &perceiving.swept {
                     let percent = format!("{:.1}", report.right * 100.0);
-                    let text = tf!("Ground and things right: {percent} % of the columns", percent = percent);
-                    let what = t("A small network that learned from the sweeps of procedural worlds looks at the exact sweep of the first LiDAR.");
+                    let text = tf!(
+                        "Ground and things right: {percent} % of the columns",
+                        percent = percent
+                    );
+                    let what = t(
+                        "A small network that learned from the sweeps of procedural worlds looks at the exact sweep of the first LiDAR.",
+                    );
                     ui.label(RichText::new(text).small().color(theme::text_weak()))
                         .on_hover_text(what);
                 }
@@ -117,8 +123,13 @@ impl Pane for Perception {
         if !cx.document.is_dragging() {
             perceiving.update(cx.document.scene(), self.by);
         }
-        let swept = perceiving.swept.as_ref().filter(|(rev, _)| *rev == cx.document.scene().rev);
-        let swept = swept.filter(|_| self.by == Sensor::Lidar).map(|(_, report)| report.clone());
+        let swept = perceiving
+            .swept
+            .as_ref()
+            .filter(|(rev, _)| *rev == cx.document.scene().rev);
+        let swept = swept
+            .filter(|_| self.by == Sensor::Lidar)
+            .map(|(_, report)| report.clone());
         show_marks(ui, &mut self.marks, swept, self.stands, cx);
         let (vary, by) = (&mut self.vary, self.by);
         if !by.varies().contains(vary) {
@@ -170,7 +181,8 @@ fn show_marks(
                 missed: missed.collect(),
                 stands: stands.then(|| {
                     let image = from_above(&report);
-                    ui.ctx().load_texture("what stands", image, egui::TextureOptions::NEAREST)
+                    ui.ctx()
+                        .load_texture("what stands", image, egui::TextureOptions::NEAREST)
                 }),
                 map_from_vehicle: report.map_from_vehicle,
             };

@@ -98,10 +98,18 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
             return;
         }
         let n = tried.len();
-        ui.label(tf!("Not missed in {n} tries. In the last that can be judged: {sight}", n = n, sight = sight(last)));
+        ui.label(tf!(
+            "Not missed in {n} tries. In the last that can be judged: {sight}",
+            n = n,
+            sight = sight(last)
+        ));
         return;
     };
-    ui.label(tf!("Missed: {change}. {sight}", change = words(last.change), sight = sight(last)));
+    ui.label(tf!(
+        "Missed: {change}. {sight}",
+        change = words(last.change),
+        sight = sight(last)
+    ));
     if edits.is_empty() {
         return;
     }
@@ -127,7 +135,11 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
         });
     });
     if found.kept {
-        ui.label(RichText::new(t("kept in the list of versions")).small().color(theme::text_weak()));
+        ui.label(
+            RichText::new(t("kept in the list of versions"))
+                .small()
+                .color(theme::text_weak()),
+        );
     }
     if !current {
         ui.label(

@@ -8,6 +8,8 @@ use scene::{Frame, truth};
 
 /// Depths up to this are brightest, m.
 const NEAREST_M: f32 = 2.0;
+/// From one plane of classes to the next, m.
+const STEP_M: f64 = 0.2;
 
 /// `[channel][row][column]` from 0 to 1: the colour of each pixel's class; black where there is nothing.
 pub(super) fn classes(hints: &PictureHints, channels: usize) -> Vec<f32> {
@@ -15,7 +17,12 @@ pub(super) fn classes(hints: &PictureHints, channels: usize) -> Vec<f32> {
         0 => [0; 3],
         class => truth::color(class),
     };
-    let plane = |c: usize| hints.class.iter().map(move |class| f32::from(color(*class)[c % 3]) / 255.0);
+    let plane = |c: usize| {
+        hints
+            .class
+            .iter()
+            .map(move |class| f32::from(color(*class)[c % 3]) / 255.0)
+    };
     (0..channels).flat_map(plane).collect()
 }
 
@@ -39,10 +46,12 @@ pub(super) fn planes(
     channels: usize,
 ) -> Vec<f32> {
     let ids = RenderIds::new(&frame.occupancy, &[]);
-    let count = channels.saturating_sub(1).min(usize::from(u16::MAX)) as u16;
+    let count = channels.saturating_sub(1).min(4096) as u16;
+    // As their code has it: every 0.2 m.
     let layout = Planes {
         count,
-        ..Planes::default()
+        near_m: STEP_M,
+        far_m: STEP_M * f64::from(count + 1),
     };
     let mut out = Vec::with_capacity(views.len() * channels * rows * columns);
     let number = |id: Option<u8>| f32::from(id.unwrap_or(0));

@@ -19,11 +19,11 @@ use rayon::prelude::*;
 
 use crate::appearance::CameraImage;
 use diffusion::inversion::Trajectory;
+pub use model::{Paint, PaintModel, PaintWith};
 use nets::ModelError;
 use nets::picture::{self, Before, PictureNets, RingSize, Sampling};
 use numeric::philox::{Stream, normal_field};
 use ring::Ring;
-pub use model::{Paint, PaintModel, PaintWith};
 pub use ring::native_px;
 use scene::{Conditions, Frame, SensorRig};
 use seen::Seen;

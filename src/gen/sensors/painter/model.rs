@@ -80,7 +80,8 @@ impl PaintModel {
     /// The weights that ship with the program. Errors if they cannot be read.
     pub fn bundled() -> Result<Self, PaintError> {
         let nets = PictureNets::bundled();
-        nets.map(Self::Own).map_err(|e| PaintError::Network(e.to_string()))
+        nets.map(Self::Own)
+            .map_err(|e| PaintError::Network(e.to_string()))
     }
 
     /// The weights of a folder: a public one as diffusers writes it has a `model_index.json`, one of the program's own has
@@ -90,7 +91,9 @@ impl PaintModel {
         if Self::is_public(folder) {
             let machine = Machine::best().map_err(|e| network(e.to_string()))?;
             let pipeline = Pipeline::open(&Folders::of(folder), &machine);
-            return Ok(Self::Public(Arc::new(pipeline.map_err(|e| network(e.to_string()))?)));
+            return Ok(Self::Public(Arc::new(
+                pipeline.map_err(|e| network(e.to_string()))?,
+            )));
         }
         let nets = PictureNets::from_dir(folder).map_err(|e| network(e.to_string()))?;
         Ok(Self::Own(Arc::new(nets)))
@@ -106,7 +109,11 @@ impl PaintModel {
         match self {
             Self::Own(nets) => {
                 let painter = Painter::new(nets.clone(), options);
-                Box::new(if previews { painter } else { painter.without_previews() })
+                Box::new(if previews {
+                    painter
+                } else {
+                    painter.without_previews()
+                })
             }
             Self::Public(pipeline) => Box::new(PublicPainter::new(pipeline.clone(), options)),
         }

@@ -73,7 +73,10 @@ impl PublicPainter {
             let mut picture: Vec<u8> = plain.collect();
             if let Some((images, shares)) = &told.before {
                 let old = images[*view].rgba.chunks_exact(4).zip(&shares[*view]);
-                let kept = picture.chunks_exact_mut(3).zip(old).filter(|(_, (_, share))| **share == 0.0);
+                let kept = picture
+                    .chunks_exact_mut(3)
+                    .zip(old)
+                    .filter(|(_, (_, share))| **share == 0.0);
                 kept.for_each(|(new, (old, _))| new.copy_from_slice(&old[..3]));
             }
             start.extend(picture);
@@ -86,7 +89,13 @@ impl PublicPainter {
         let shown = self.shown(told, views);
         let planes = self.pipeline.plane_channels().map(|channels| {
             let cell = self.pipeline.cell();
-            planes(told.input.frame, told.seen, views, [height / cell, width / cell], channels)
+            planes(
+                told.input.frame,
+                told.seen,
+                views,
+                [height / cell, width / cell],
+                channels,
+            )
         });
         let request = Request {
             prompts: views.iter().map(|view| self.prompt(told, *view)).collect(),
@@ -107,23 +116,35 @@ impl PublicPainter {
                 strength: self.options.strength,
                 mask: mask.as_deref(),
             }),
-            controls: shown.iter().map(|(net, picture)| Control::new(*net, picture)).collect(),
+            controls: shown
+                .iter()
+                .map(|(net, picture)| Control::new(*net, picture))
+                .collect(),
             planes: planes.as_deref().map(|ids| Planes { ids, scale: 1.0 }),
         };
-        let drawn = self.pipeline.draw(&request, |step| watch(step.step, step.steps)).map_err(public)?;
+        let drawn = self
+            .pipeline
+            .draw(&request, |step| watch(step.step, step.steps))
+            .map_err(public)?;
         let rgb = drawn.pictures.to_bytes();
-        let images = views.iter().zip(rgb.chunks_exact(height * width * 3)).map(|(view, rgb)| {
-            let mut image = CameraImage {
-                camera: told.seen.camera_name(*view).to_owned(),
-                width,
-                height,
-                rgba: rgb.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect(),
-            };
-            if let Some((images, shares)) = &told.before {
-                mask::blend(&images[*view].rgba, &mut image.rgba, &shares[*view]);
-            }
-            image
-        });
+        let images = views
+            .iter()
+            .zip(rgb.chunks_exact(height * width * 3))
+            .map(|(view, rgb)| {
+                let mut image = CameraImage {
+                    camera: told.seen.camera_name(*view).to_owned(),
+                    width,
+                    height,
+                    rgba: rgb
+                        .chunks_exact(3)
+                        .flat_map(|p| [p[0], p[1], p[2], 255])
+                        .collect(),
+                };
+                if let Some((images, shares)) = &told.before {
+                    mask::blend(&images[*view].rgba, &mut image.rgba, &shares[*view]);
+                }
+                image
+            });
         Ok(images.collect())
     }
 
@@ -147,12 +168,21 @@ impl PublicPainter {
     /// What is told of a view: the user's words, the light and the camera.
     fn prompt(&self, told: &Told<'_>, view: usize) -> String {
         let conditions = &told.input.conditions;
-        let camera = told.seen.camera_name(view).replace("CAM_", "").replace('_', " ").to_lowercase();
+        let camera = told
+            .seen
+            .camera_name(view)
+            .replace("CAM_", "")
+            .replace('_', " ")
+            .to_lowercase();
         let words = match self.options.prompt.trim() {
             "" => "a photograph of a street",
             words => words,
         };
-        format!("{words}, {}, {}, seen by the {camera} camera of a car", conditions.time.name(), conditions.weather.name())
+        format!(
+            "{words}, {}, {}, seen by the {camera} camera of a car",
+            conditions.time.name(),
+            conditions.weather.name()
+        )
     }
 
     fn painted(
