@@ -5,8 +5,8 @@ pub mod field;
 mod graph;
 pub mod plan;
 mod reading;
-mod recent;
 pub mod recalled;
+mod recent;
 mod typed_text;
 
 use egui::Ui;

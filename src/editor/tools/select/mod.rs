@@ -14,8 +14,8 @@ use scene::{Frame, Members};
 use super::corners::{Corners, Set};
 use super::setting::{self, Control, Setting, Value};
 use super::{
-    Act, ChooseBy, Context, Cursor, Event, Group, Hand, Hint, Mark, Response, Shortcut, Sight, Tool, ToolDef, ToolId,
-    ViewKind, Wants, When, hint_of,
+    Act, ChooseBy, Context, Cursor, Event, Group, Hand, Hint, Mark, Response, Shortcut, Sight, Tool, ToolDef,
+    ToolId, ViewKind, Wants, When, hint_of,
 };
 
 pub use things::thing_under;

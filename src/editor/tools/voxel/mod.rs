@@ -26,8 +26,8 @@ use super::{
     ViewKind, VoxelMode, VoxelTip, VoxelVerb, Wants, hint_of,
 };
 pub use choosing::Joins;
-pub use def::DEF;
 use choosing::{Area, joins};
+pub use def::DEF;
 use pulling::pulled;
 use stamping::{stamp_at, stamped};
 use target::{target, tipped};
@@ -371,7 +371,11 @@ impl Tool for Voxels {
             ],
             VoxelMode::ChooseSphere => vec!["Drag chooses in a sphere", "Shift adds, Ctrl takes out"],
             VoxelMode::ChooseLasso => vec!["Draw around voxels to choose them", "Shift adds, Ctrl takes out"],
-            VoxelMode::ChoosePolygon => vec!["Click sets corners", "Enter chooses", "Shift adds, Ctrl takes out"],
+            VoxelMode::ChoosePolygon => vec![
+                "Click sets corners",
+                "Enter chooses",
+                "Shift adds, Ctrl takes out",
+            ],
             VoxelMode::Extrude => vec!["Drag pulls a face out or in"],
             VoxelMode::Stamp => vec!["Click sets the kept voxels down", "Turn them in the options"],
         })
