@@ -321,7 +321,7 @@ impl SceneloomApp {
                 height: h,
                 rgba,
             };
-            save_png(Some((&scene, made)), &picture, path)?;
+            save_png(Some((&*scene, made)), &picture, path)?;
             Ok([width, height])
         });
         match saved {
