@@ -16,7 +16,7 @@ from export import read, uniform
 from export_layout import write_card
 from models.lidar_perceiver import BOX, GROUPS, PILLAR, STANDS, LidarPerceiver, PerceiverConfig, decode, load_perceiver, pillars
 from perception_data import PerceptionFrames
-from perception_eval import evaluated
+from perception_eval import evaluated_by
 from perception_sheet import sheet
 
 OUT = Path(__file__).resolve().parent / "weights" / "perception"
@@ -101,8 +101,8 @@ def main():
     save_file(small.state_dict(), OUT / "tiny.safetensors", {"kind": "lidar_perceiver", "config": json.dumps(TINY.as_dict())})
     frames = PerceptionFrames(args.data / "val", limit=args.frames)
     sources = [int(a["source"][i]) for a, i in frames.index]
-    kinds = {"all": range(len(frames))} | {name: [i for i, s in enumerate(sources) if s == k] for k, name in enumerate(("surfaces", "learned", "voxels"))}
-    figures = {name: evaluated(net, frames, which) for name, which in kinds.items() if len(which)}
+    kinds = {"all": set(range(len(frames)))} | {name: {i for i, s in enumerate(sources) if s == k} for k, name in enumerate(("surfaces", "learned", "voxels"))}
+    figures = evaluated_by(net, frames, {name: which for name, which in kinds.items() if which})
     (OUT / "figures.json").write_text(json.dumps(figures, indent=1) + "\n")
     (OUT / "CARD.md").write_text(card(meta, figures, args.data_command))
     sheet(net, frames, range(min(3, len(frames)))).save(OUT / "sheet.png")

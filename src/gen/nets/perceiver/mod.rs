@@ -12,6 +12,7 @@ mod tests;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
+use glam::Vec3;
 use serde::Deserialize;
 
 use crate::encoder::{Level, PIECE, levels, steps};
@@ -21,7 +22,7 @@ use nn::map::Map;
 use nn::weights::{self, WeightFile, WeightsError};
 use nn::{Cpu, Ops};
 use pillars::{PILLAR, pillars};
-use scene::LidarSweep;
+use scene::{LidarSweep, Pose};
 use stands::Stands;
 
 /// File name of the weights.
@@ -193,10 +194,16 @@ impl<B: Ops> LidarPerceiver<B> {
         })
     }
 
-    /// The same for a sweep whose points stand in the frame of its vehicle; boxes from [`SCORE`] on.
-    pub fn perceive_sweep(&self, sweep: &LidarSweep) -> Result<Perceived, ModelError> {
+    /// The same for a sweep in the frame of a map, seen from its vehicle; boxes from [`SCORE`] on, in the frame of the vehicle.
+    pub fn perceive_sweep(
+        &self,
+        sweep: &LidarSweep,
+        map_from_vehicle: &Pose,
+    ) -> Result<Perceived, ModelError> {
+        let to_vehicle = map_from_vehicle.inverse();
         let returns = sweep.points.iter().map(|point| {
-            let [x, y, z] = point.position_in_ego;
+            let at = to_vehicle.apply(Vec3::from(point.position_in_ego).as_dvec3());
+            let [x, y, z] = at.as_vec3().to_array();
             [x, y, z, point.intensity]
         });
         self.perceive(returns, SCORE)

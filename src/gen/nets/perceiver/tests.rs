@@ -165,6 +165,34 @@ fn road_with_car(car_m: [f32; 2]) -> Vec<[f32; 4]> {
     returns
 }
 
+/// What a vehicle sees does not depend on where it stands on the map.
+#[test]
+fn a_sweep_is_seen_from_its_vehicle() {
+    let returns = road_with_car([8.0, 3.0]);
+    let map_from_vehicle = Pose::planar(120.0, -40.0, 0.5);
+    let points = returns.iter().map(|[x, y, z, intensity]| {
+        let at = map_from_vehicle.apply(glam::Vec3::new(*x, *y, *z).as_dvec3());
+        LidarPoint {
+            position_in_ego: at.as_vec3().to_array(),
+            intensity: *intensity,
+            ..point(0.0, 0.0)
+        }
+    });
+    let sweep = LidarSweep {
+        points: points.collect(),
+        ..Default::default()
+    };
+    let placed = shipped()
+        .perceive_sweep(&sweep, &map_from_vehicle)
+        .expect("finite");
+    let seen = shipped().perceive(returns, SCORE).expect("finite");
+    // A return on the edge of a column may fall into the next one.
+    let pairs = placed.stands.iter().zip(&seen.stands);
+    let same = pairs.filter(|(a, b)| a == b).count();
+    assert!(same * 100 > 99 * seen.stands.len(), "{same}");
+    assert_eq!(placed.detections.len(), seen.detections.len());
+}
+
 /// The same bytes on one thread and on two; and it is quick.
 #[test]
 fn threads_do_not_change_what_is_seen() {
@@ -185,6 +213,20 @@ fn threads_do_not_change_what_is_seen() {
     assert_eq!(bits(&one.boxes), bits(&two.boxes));
 }
 
+fn point(x: f32, y: f32) -> LidarPoint {
+    LidarPoint {
+        position_in_ego: [x, y, 0.8],
+        range_m: 1.0,
+        ring: 0,
+        azimuth: 0,
+        class: Class::Car,
+        intensity: 0.0,
+        drop_probability: 0.0,
+        time_s: 0.0,
+        velocity_mps: [0.0; 2],
+    }
+}
+
 fn car(id: u32, x: f64, y: f64) -> SceneBox {
     SceneBox {
         id: BoxId(id),
@@ -199,17 +241,6 @@ fn car(id: u32, x: f64, y: f64) -> SceneBox {
 
 #[test]
 fn misses_and_ghosts_are_told_apart() {
-    let point = |x: f32, y: f32| LidarPoint {
-        position_in_ego: [x, y, 0.8],
-        range_m: 1.0,
-        ring: 0,
-        azimuth: 0,
-        class: Class::Car,
-        intensity: 0.0,
-        drop_probability: 0.0,
-        time_s: 0.0,
-        velocity_mps: [0.0; 2],
-    };
     // The vehicle stands 100 m ahead on the map.
     let map_from_vehicle = Pose::planar(100.0, 0.0, 0.0);
     let boxes: BTreeMap<u32, SceneBox> = [(1, 110.0), (2, 120.0), (3, 130.0), (4, 300.0)]
