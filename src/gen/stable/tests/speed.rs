@@ -7,6 +7,7 @@ use candle_core::{Device, Tensor};
 
 use super::shapes;
 use crate::config::UnetConfig;
+use crate::layers::convolution::by_products;
 use crate::{Extra, Machine, Unet, Weights};
 
 #[test]
@@ -56,32 +57,10 @@ fn speed_of_convolutions() {
             y
         };
         let a = timed("candle", &|| x.conv2d(&w, 1, 1, 1, 1).expect("computed"));
-        let b = timed("gemm", &|| banded(&x, &w).expect("computed"));
+        let b = timed("gemm", &|| by_products(&x, &w, 1, 1 << 22).expect("computed"));
         let off = (a - b)
             .and_then(|d| d.abs()?.flatten_all()?.max(0)?.to_scalar::<f32>())
             .expect("a number");
         println!("off {off}");
     }
-}
-
-fn banded(x: &Tensor, w: &Tensor) -> candle_core::Result<Tensor> {
-    let (outputs, inputs, _, _) = w.dims4()?;
-    let (batch, _, rows, columns) = x.dims4()?;
-    let w = w.reshape((outputs, inputs * 9))?;
-    let padded = x.pad_with_zeros(2, 1, 1)?.pad_with_zeros(3, 1, 1)?;
-    let band = ((1 << 22) / (inputs * 9 * columns)).clamp(1, rows);
-    let mut parts = Vec::new();
-    for first in (0..rows).step_by(band) {
-        let count = band.min(rows - first);
-        let mut taps = Vec::new();
-        for dy in 0..3 {
-            for dx in 0..3 {
-                taps.push(padded.narrow(2, first + dy, count)?.narrow(3, dx, columns)?);
-            }
-        }
-        let each = Tensor::stack(&taps, 2)?.reshape((batch, inputs * 9, count * columns))?;
-        let y = w.broadcast_matmul(&each)?;
-        parts.push(y.reshape((batch, outputs, count, columns))?);
-    }
-    Tensor::cat(&parts, 2)
 }
