@@ -7,10 +7,11 @@ use crate::{StableError, wrong};
 
 /// The class of a surface to drive on.
 const DRIVEABLE: u8 = 11;
-/// Largest class id; beyond it are lines on the road, which their data does not have.
+/// Largest class id; behind it come lines on the road, which their data does not have.
 const LAST_CLASS: u8 = 16;
-/// Smallest and largest id of a line on the road.
-const FIRST_LINE: u8 = LAST_CLASS + 1;
+/// First id of a line on the road.
+const LINES_FIRST: u8 = LAST_CLASS + 1;
+/// Last of them.
 const LAST_LINE: u8 = 19;
 
 /// Planes `first` to `end` (not included) of a latent cell show `id`: 1 to 16 classes of Occ3D, 17 to 19 lines on the road, 0
@@ -50,7 +51,7 @@ pub fn of_runs(
         }
         let id = match id {
             0..=LAST_CLASS => id,
-            FIRST_LINE..=LAST_LINE => DRIVEABLE,
+            LINES_FIRST..=LAST_LINE => DRIVEABLE,
             _ => return Err(wrong("id of a run of planes", id, format!("0 to {LAST_LINE}"))),
         };
         if id == 0 || first == end {

@@ -2,7 +2,7 @@
 //! `[batch, tokens, width]`.
 
 mod attention;
-mod convolution;
+pub(crate) mod convolution;
 mod linear;
 mod norm;
 mod residual;

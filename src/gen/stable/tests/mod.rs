@@ -9,6 +9,7 @@ mod ring;
 mod runs;
 mod schedules;
 mod shapes;
+mod speed;
 mod words;
 
 use std::collections::HashMap;

@@ -57,3 +57,11 @@ fn real_models_fit() {
         println!("| {name} | {} tensors | {count} numbers |", listed.shapes.len());
     }
 }
+
+/// The same for one of them: its folder and its configuration.
+pub(super) fn hollow_folder(name: &str) -> (tempfile::TempDir, PathBuf) {
+    let bytes = std::fs::read(folder("shapes.json")).expect("the shapes");
+    let all: BTreeMap<String, Listed> = serde_json::from_slice(&bytes).expect("shapes");
+    let (at, config, _) = hollow(&all[name]);
+    (at, config)
+}
