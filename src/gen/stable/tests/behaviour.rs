@@ -175,6 +175,35 @@ fn guidance_of_one_and_zero_asks_one_branch() {
     assert_eq!([with(1.0, "", "a").calls, with(7.0, "", "a").calls], [5, 10]);
 }
 
+/// A UNet without attention to views draws each as if alone, under its own text.
+#[test]
+fn each_view_has_its_own_text_and_noise() {
+    let pipeline = opened("sd15");
+    let prompts = ["a wet road", "two cars"];
+    let all = drawn(
+        &pipeline,
+        &Request {
+            views: 2,
+            prompts: prompts.map(String::from).to_vec(),
+            ..request(6)
+        },
+    );
+    let half = all.noise.len() / 2;
+    for (i, prompt) in prompts.iter().enumerate() {
+        let part = |numbers: &[f32]| numbers[i * half..][..half].to_vec();
+        let alone = drawn(
+            &pipeline,
+            &Request {
+                prompts: vec![(*prompt).into()],
+                noise: Some(part(&all.noise)),
+                ..request(0)
+            },
+        );
+        let off = super::largest_difference(&part(&all.latents), &alone.latents);
+        assert!(off < 1e-4, "{prompt}: {off}");
+    }
+}
+
 #[test]
 fn a_control_is_heard_as_loud_and_as_long_as_asked() {
     let pipeline = opened("sd15");
