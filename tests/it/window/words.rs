@@ -195,12 +195,12 @@ fn kept_words_stand_first_and_outlive_the_window() {
     let mut bench = Bench::with_settings(&file);
     bench.off();
     bench.click("Go on with this scene");
-    bench.app().views.prompt.star("add a {car|bus} 12 m ahead");
+    bench.app().views.prompt.star("add a {car|bus} 20 m ahead");
     bench.key(Modifiers::NONE, Key::Slash);
-    bench.click("add a {car|bus} 12 m ahead");
+    bench.click("add a {car|bus} 20 m ahead");
     bench.key(Modifiers::NONE, Key::Enter);
     assert_eq!(bench.frame().boxes.len(), 2);
-    let kept = ["add a {car|bus} 12 m ahead"];
+    let kept = ["add a {car|bus} 20 m ahead"];
     bench.wait_until("settings", |_| {
         app::settings::Settings::load(&file).is_ok_and(|s| s.kept_words == kept)
     });
