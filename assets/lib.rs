@@ -90,6 +90,8 @@ pub mod weights {
     pub static LIDAR: &[u8] = include_bytes!("weights/lidar.safetensors");
     /// `lidar_flat.safetensors`.
     pub static LIDAR_FLAT: &[u8] = include_bytes!("weights/lidar_flat.safetensors");
+    /// `lidar_perceiver.safetensors`.
+    pub static LIDAR_PERCEIVER: &[u8] = include_bytes!("weights/lidar_perceiver.safetensors");
     /// `occ_dit.safetensors`.
     pub static OCC_DIT: &[u8] = include_bytes!("weights/occ_dit.safetensors");
     /// `occ_dit_time.safetensors`.

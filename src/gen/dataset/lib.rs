@@ -3,6 +3,7 @@
 pub mod layout;
 pub mod lidar;
 pub mod occupancy;
+pub mod perception;
 pub mod picture_pairs;
 pub mod pictures;
 pub mod shard;

@@ -10,6 +10,7 @@ pub mod layout;
 pub mod lidar;
 pub mod occ_dit;
 pub mod occ_vae;
+pub mod perceiver;
 pub mod picture;
 pub mod pieces;
 pub mod refiner;
@@ -170,6 +171,7 @@ mod tests {
             ("layout", shipped::LAYOUT),
             ("lidar", shipped::LIDAR),
             ("lidar_flat", shipped::LIDAR_FLAT),
+            ("lidar_perceiver", shipped::LIDAR_PERCEIVER),
             ("occ_dit", shipped::OCC_DIT),
             ("occ_vae", shipped::OCC_VAE),
             ("occ_vae_fine", shipped::OCC_VAE_FINE),

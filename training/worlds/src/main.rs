@@ -7,6 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, bail};
 use clap::{Parser, ValueEnum};
 
+use dataset::perception::perception_frame;
 use dataset::picture_pairs::{Look, Quality, picture_pair};
 use dataset::{occupancy_frame, shard};
 
@@ -17,6 +18,8 @@ enum Kind {
     Occupancy,
     /// Two moments of a drive as six cameras see them, and what the voxels tell of each pixel.
     Pictures,
+    /// One LiDAR sweep, the boxes around it, and what stands in each column.
+    Perception,
 }
 
 /// Frames of procedural worlds.
@@ -87,6 +90,7 @@ fn run(args: Args) -> anyhow::Result<()> {
     let made = match args.kind {
         Kind::Occupancy => send(&args, to, |i| occupancy_frame(args.seed, i, |_| None))?,
         Kind::Pictures => send(&args, to, |i| picture_pair(args.seed, i, look, |_| None))?,
+        Kind::Perception => send(&args, to, |i| perception_frame(args.seed, i, |_| None))?,
     };
     let rate = made as f64 / start.elapsed().as_secs_f64();
     let _ = writeln!(std::io::stderr(), "\r{made} frames, {rate:.1} frames/s");
