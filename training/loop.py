@@ -41,14 +41,14 @@ def optimizers(model, kind, lr, betas, weight_decay):
 
 
 class Run:
-    """A training run measured by the wall clock: learning rate, EMA, checkpoints, log."""
+    """A training run measured by a clock, that of the wall if not told: learning rate, EMA, checkpoints, log."""
 
-    def __init__(self, model, args, *, lr, betas, weight_decay, ema, warmup, steady=None):
-        self.steady = steady
+    def __init__(self, model, args, *, lr, betas, weight_decay, ema, warmup, steady=None, clock=time.monotonic):
+        self.steady, self.clock = steady, clock
         self.out, self.minutes, self.lr, self.warmup, self.ema_decay = Path(args.output), args.minutes, lr, warmup, ema
         self.model, self.ema = model, copy.deepcopy(model).requires_grad_(False).eval()
         self.optimizers = optimizers(model, args.optimizer, lr, betas, weight_decay)
-        self.step, self.samples, self.spent, self.started = 0, 0, 0.0, time.monotonic()
+        self.step, self.samples, self.spent, self.started = 0, 0, 0.0, clock()
         self.checkpoint = self.out.with_suffix(".checkpoint.pt")
         self.log = self.out.with_suffix(".csv")
         self.out.parent.mkdir(parents=True, exist_ok=True)
@@ -60,7 +60,7 @@ class Run:
 
     def elapsed(self):
         """Minutes of training so far, earlier runs included."""
-        return self.spent + (time.monotonic() - self.started) / 60
+        return self.spent + (self.clock() - self.started) / 60
 
     def done(self):
         return self.elapsed() >= self.minutes
