@@ -161,7 +161,7 @@ impl PerceptionFrame {
             points.iter().filter(on).count()
         };
         let near = boxes.values().filter(|b| inside(b.center_m)).take(BOXES);
-        let boxes = near.map(|b| (b.clone(), count(b))).collect();
+        let boxes = near.map(|b| (*b, count(b))).collect();
         Self {
             source,
             points,
