@@ -79,7 +79,7 @@ def find_a_corner_case(w):
 
 
 def picture_beside_classes(w):
-    w.palette("Camera: Front")
+    w.palette("Camera 2")
 
 
 FIX_ALL = (1280, 642)
