@@ -110,7 +110,7 @@ impl Perceive {
                 "boxes of the LiDAR's network where there are none: {ghosts}"
             ));
             lines.push(format!(
-                "what stands right: {:.1} % of the columns",
+                "right where the LiDAR sees: {:.1} % of the columns",
                 swept.right * 100.0
             ));
             lines.join("\n")

@@ -63,7 +63,13 @@ impl Painting {
         }
         let painter = match self.painter.take() {
             Some(painter) => painter,
-            None => settings.open().map_err(|e| e.to_string())?.painter(true),
+            None => {
+                let with = settings.open().map_err(|e| match e {
+                    PaintError::Network(problem) => problem,
+                    e => e.to_string(),
+                });
+                with?.painter(true)
+            }
         };
         Ok(&mut **self.painter.insert(painter))
     }

@@ -95,6 +95,12 @@ impl PaintModel {
                 pipeline.map_err(|e| network(e.to_string()))?,
             )));
         }
+        if !folder.join("vae.safetensors").is_file() {
+            return Err(network(format!(
+                "{}: no folder of weights: neither model_index.json (public ones) nor vae.safetensors is there",
+                folder.display()
+            )));
+        }
         let nets = PictureNets::from_dir(folder).map_err(|e| network(e.to_string()))?;
         Ok(Self::Own(Arc::new(nets)))
     }
