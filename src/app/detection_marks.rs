@@ -27,6 +27,8 @@ pub struct DetectionMarks {
     pub stands: Option<TextureHandle>,
     /// Map from the vehicle.
     pub map_from_vehicle: Pose,
+    /// Where those columns lie, in the frame of the vehicle.
+    pub window: Extent,
 }
 
 fn color([r, g, b]: [u8; 3]) -> Color32 {
@@ -65,10 +67,7 @@ impl DetectionMarks {
     /// Draws them on the bird's-eye view.
     pub(super) fn on_map(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
         if let Some(texture) = &self.stands {
-            let (min, max) = (
-                Extent::WINDOW.min_m().truncate(),
-                Extent::WINDOW.max_m().truncate(),
-            );
+            let (min, max) = (self.window.min_m().truncate(), self.window.max_m().truncate());
             let on_map = |p: DVec2| map.to_screen(self.map_from_vehicle.apply(p.extend(0.0)).truncate());
             // Ahead is up and left is left: the picture's upper left corner is the window's farthest left one.
             let corners = [
@@ -162,6 +161,7 @@ mod tests {
             missed: vec![BoxId(1), BoxId(2)],
             stands: None,
             map_from_vehicle: Pose::IDENTITY,
+            window: Extent::WINDOW,
         };
         let colors: Vec<Color32> = marks.boxes(&frame).map(|(_, c)| c).collect();
         assert_eq!(colors, [SEEN, color(GHOST), color(MISSED)]);

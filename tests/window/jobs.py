@@ -13,6 +13,8 @@ from window import EXPORT_ALL, EXPORT_FILES, PROMPT, ROAD_LEFT_M, SIZE, Window, 
 
 
 def paint_a_lane(w):
+    # Over the 3D view the key takes the brush of voxels.
+    w.move(map_point(-20, 20))
     w.key("b")
     w.drag(map_point(-20, 20), map_point(20, 20))
 
@@ -42,7 +44,7 @@ def night_by_words(w):
 
 
 def compare(w):
-    w.click(map_point(20, 0))
+    w.click(map_point(*CAR_M))
     w.key("Delete")
     w.wait()
     w.key("shift+backslash")
@@ -83,6 +85,8 @@ def picture_beside_classes(w):
 
 
 FIX_ALL = (1280, 642)
+# A car of the scene, m ahead of the ego vehicle and to its left.
+CAR_M = (15.4, 3.3)
 # Of the pane of perception.
 FIRST_SEEN, SEARCH = (660, 666), (1130, 666)
 CARS_IN_THE_AIR = [

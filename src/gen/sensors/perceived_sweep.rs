@@ -14,7 +14,7 @@ use scene::{BoxId, Extent, LidarSweep, Pose, Scene, SceneBox};
 const NEAR_COLUMNS: usize = 3;
 
 /// What the network makes of a scene's sweep.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SweepReport {
     /// Boxes with [`LEAST_RETURNS`] returns or more: missed ones first, then those with the most returns first.
     pub boxes: Vec<SeenBySweep>,
@@ -26,6 +26,8 @@ pub struct SweepReport {
     pub stands: Vec<Stands>,
     /// Map from the vehicle.
     pub map_from_vehicle: Pose,
+    /// Where the columns lie, in the frame of the vehicle.
+    pub window: Extent,
 }
 
 /// A box of the scene in the sweep.
@@ -86,6 +88,7 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
         right: if all == 0 { 1.0 } else { right as f64 / all as f64 },
         stands: seen.perceived.stands.clone(),
         map_from_vehicle: seen.map_from_vehicle,
+        window: Extent::WINDOW,
     })
 }
 

@@ -130,9 +130,9 @@ fn a_picture_of_the_map_is_saved_from_the_dialog() {
     let inside = formats::png::notes_inside(&bytes).expect("a PNG");
     assert!(inside.scene.is_some());
     let picture = image::load_from_memory(&bytes).expect("a PNG");
-    assert!(
-        picture.height() > 720,
-        "the map and its legend: {}",
-        picture.height()
+    assert_eq!(
+        [picture.width(), picture.height()],
+        [1280, 720],
+        "map and legend together"
     );
 }

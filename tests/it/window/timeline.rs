@@ -112,7 +112,10 @@ fn a_clip_of_the_map_and_of_cameras_is_saved_at_a_chosen_size() {
         assert!(bytes.starts_with(b"GIF89a"));
         [6, 8].map(|at| u16::from_le_bytes([bytes[at], bytes[at + 1]]))
     };
-    bench.click("Save clip…");
+    let ctx = bench.harness.ctx.clone();
+    let ask = app::command::Command::File(app::command::FileCommand::SaveClip);
+    bench.app().execute(ask, &ctx);
+    bench.steps(3);
     bench.click("Map");
     bench.app().state.windows.capture.options.shot.size = [320, 200];
     assert_eq!(saved(&mut bench, "map.gif"), [320, 200]);

@@ -10,7 +10,6 @@ use egui::{RichText, Ui};
 
 use authoring::corner_case::{Sensor, Vary};
 use language::{t, tf};
-use scene::Extent;
 use sensors::cameras::perceived;
 use sensors::perceived_sweep::SweepReport;
 use widgets::icons::{self, Icon};
@@ -185,6 +184,7 @@ fn show_marks(
                         .load_texture("what stands", image, egui::TextureOptions::NEAREST)
                 }),
                 map_from_vehicle: report.map_from_vehicle,
+                window: report.window,
             };
             (report, stands, Arc::new(marks))
         });
@@ -196,7 +196,7 @@ fn show_marks(
 
 /// What stands in each column, ahead is up.
 fn from_above(report: &SweepReport) -> egui::ColorImage {
-    let [nx, ny] = [Extent::WINDOW.nx(), Extent::WINDOW.ny()];
+    let [nx, ny] = [report.window.nx(), report.window.ny()];
     let at = |x: usize, y: usize| theme::class_color(report.stands[x * ny + y].class());
     let pixels = (0..nx * ny).map(|i| at(nx - 1 - i / ny, ny - 1 - i % ny));
     egui::ColorImage::new([ny, nx], pixels.collect())

@@ -134,9 +134,12 @@ impl Tool for Select {
         }
         match event {
             Event::Press(pointer) => {
-                if self.corners.is_empty() {
-                    self.before = boxes::members(cx.hand);
+                if !self.corners.is_empty() {
+                    // An outline that is begun goes on, over handles and arrows too.
+                    self.corners.add(cx, pointer);
+                    return Response::none();
                 }
+                self.before = boxes::members(cx.hand);
                 self.drag = match cx.from_above() {
                     true => above::press(cx, pointer).map(Drag::Above),
                     false => space::press(cx, pointer).map(Drag::Space),
