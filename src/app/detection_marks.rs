@@ -81,11 +81,8 @@ impl DetectionMarks {
         for (b, color) in self.boxes(frame).filter(|(b, _)| b.problem().is_none()) {
             let mut outline: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
             outline.push(outline[0]);
-            let ahead = b.center_m.truncate() + b.heading() * (b.size_m.x / 2.0);
-            let nose = [b.center_m.truncate(), ahead].map(|p| map.to_screen(p));
-            for line in [&outline[..], &nose[..]] {
-                stroke(painter, line, color);
-            }
+            // No nose: which end of a vehicle is its front the network does not know.
+            stroke(painter, &outline, color);
         }
     }
 

@@ -92,10 +92,7 @@ impl Pane for Perception {
             Sensor::Lidar => {
                 if let Some((_, report)) = &perceiving.swept {
                     let percent = format!("{:.1}", report.right * 100.0);
-                    let text = tf!(
-                        "Ground and things right: {percent} % of the columns",
-                        percent = percent
-                    );
+                    let text = tf!("Right where the LiDAR sees: {percent} %", percent = percent);
                     let what = t(
                         "A small network that learned from the sweeps of procedural worlds looks at the exact sweep of the first LiDAR.",
                     );
