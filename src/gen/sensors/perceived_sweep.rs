@@ -7,7 +7,7 @@ pub use nets::perceiver::against::LEAST_RETURNS;
 use nets::perceiver::against::{Beside, against};
 use nets::perceiver::detection::Detection;
 use nets::perceiver::stands::{Stands, standing};
-use nets::perceiver::{LidarPerceiver, Perceived, SCORE};
+use nets::perceiver::{LidarPerceiver, Perceived};
 use scene::{BoxId, Extent, LidarSweep, Pose, Scene, SceneBox};
 
 /// A return tells of columns so far around it: 1.2 m.
@@ -75,18 +75,27 @@ pub fn report(scene: &Scene) -> Result<SweepReport, PaintError> {
         score: d.score,
         of: of(i),
     };
-    let detections = seen.perceived.detections.iter().enumerate().map(detected);
+    let detections: Vec<Detected> = seen
+        .perceived
+        .detections
+        .iter()
+        .enumerate()
+        .map(detected)
+        .collect();
     // What stands around the vehicle, in its own frame, where returns tell of it.
     let around = scene.in_ego();
     let truth = standing(&around.frame().occupancy.crop(Extent::WINDOW));
-    let told = truth.iter().zip(&seen.perceived.stands).zip(&seen.near);
+    let told = truth
+        .iter()
+        .zip(&seen.perceived.stands)
+        .zip(near(&seen.sweep, &seen.map_from_vehicle));
     let told = told.filter_map(|((truth, said), near)| near.then_some(Stands::of_label(*truth)? == *said));
     let (right, all) = told.fold((0usize, 0usize), |(r, n), ok| (r + usize::from(ok), n + 1));
     Ok(SweepReport {
         boxes,
-        detections: detections.collect(),
+        detections,
         right: if all == 0 { 1.0 } else { right as f64 / all as f64 },
-        stands: seen.perceived.stands.clone(),
+        stands: seen.perceived.stands,
         map_from_vehicle: seen.map_from_vehicle,
         window: Extent::WINDOW,
     })
@@ -104,8 +113,7 @@ struct Seen {
     perceived: Perceived,
     besides: Vec<Beside>,
     map_from_vehicle: Pose,
-    /// Of each column of the window whether a return is near.
-    near: Vec<bool>,
+    sweep: LidarSweep,
 }
 
 impl Seen {
@@ -114,17 +122,15 @@ impl Seen {
         let net = LidarPerceiver::bundled().map_err(|e| network(&e))?;
         let sweep = rolling::exact(&scene.with_rig_in_world());
         let map_from_vehicle = scene.frame().world_from_ego;
-        let returns = || in_vehicle(&sweep, &map_from_vehicle);
-        let near = near(returns());
-        let returns = returns();
-        let perceived = net.perceive(returns, SCORE).map_err(|e| network(&e))?;
+        let perceived = net.perceive_sweep(&sweep, &map_from_vehicle);
+        let perceived = perceived.map_err(|e| network(&e))?;
         let boxes = scene.frame().boxes.values();
         let found = against(&perceived.detections, boxes, &sweep, &map_from_vehicle);
         Ok(Self {
             perceived,
             besides: found.boxes,
             map_from_vehicle,
-            near,
+            sweep,
         })
     }
 
@@ -138,21 +144,14 @@ impl Seen {
     }
 }
 
-/// Returns of a sweep on the map as the vehicle measured them: x, y, z (m) and echo strength.
-fn in_vehicle(sweep: &LidarSweep, map_from_vehicle: &Pose) -> impl Iterator<Item = [f32; 4]> {
+/// Of each column of the window whether a return of a sweep on the map is near.
+fn near(sweep: &LidarSweep, map_from_vehicle: &Pose) -> Vec<bool> {
     let to_vehicle = map_from_vehicle.inverse();
-    sweep.points.iter().map(move |point| {
-        let at = to_vehicle.apply(point.position_in_ego.map(f64::from).into());
-        [at.x as f32, at.y as f32, at.z as f32, point.intensity]
-    })
-}
-
-/// Columns of the window near a return.
-fn near(returns: impl Iterator<Item = [f32; 4]>) -> Vec<bool> {
     let [nx, ny] = [Extent::WINDOW.nx(), Extent::WINDOW.ny()];
     let mut near = vec![false; nx * ny];
-    for [x, y, ..] in returns {
-        let Some([x, y]) = Extent::WINDOW.column_at(f64::from(x), f64::from(y)) else {
+    for point in &sweep.points {
+        let at = to_vehicle.apply(point.position_in_ego.map(f64::from).into());
+        let Some([x, y]) = Extent::WINDOW.column_at(at.x, at.y) else {
             continue;
         };
         for x in x.saturating_sub(NEAR_COLUMNS)..(x + NEAR_COLUMNS + 1).min(nx) {

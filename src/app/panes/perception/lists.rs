@@ -16,6 +16,29 @@ use widgets::theme;
 /// Fewer pixels of things where there are none are not worth a line.
 const LEAST_GHOST_PX: usize = 20;
 
+/// Boxes that are missed, which come first, or those that are seen, or both; none if nothing is known yet.
+fn missed_and_seen<B>(
+    ui: &mut Ui,
+    boxes: Option<&[B]>,
+    is_missed: impl Fn(&B) -> bool,
+    [wrong, right]: [bool; 2],
+    mut row: impl FnMut(&mut Ui, &B),
+) {
+    let all = boxes.unwrap_or_default();
+    let (missed, seen) = all.split_at(all.iter().take_while(|b| is_missed(b)).count());
+    for (title, part, shown) in [(t("Missed"), missed, wrong), (t("Seen"), seen, right)] {
+        if !shown {
+            continue;
+        }
+        section(ui, title);
+        match (boxes, part) {
+            (None, _) => drop(ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()))),
+            (_, []) => drop(ui.label(RichText::new(t("none")).color(theme::text_weak()))),
+            (_, part) => part.iter().for_each(|b| row(ui, b)),
+        }
+    }
+}
+
 /// What the LiDAR's network misses and what it sees where there is nothing, or what it sees, or both.
 pub(super) fn sweep_ui(
     ui: &mut Ui,
@@ -25,20 +48,10 @@ pub(super) fn sweep_ui(
     commands: &mut Vec<Command>,
 ) {
     let report = perceiving.swept.as_ref().map(|(_, report)| report);
-    let boxes = report.map_or(&[][..], |report| &report.boxes);
-    let missed = boxes.iter().take_while(|b| b.is_missed()).count();
-    let (missed, seen) = boxes.split_at(missed);
-    for (title, boxes, shown) in [(t("Missed"), missed, wrong), (t("Seen"), seen, right)] {
-        if !shown {
-            continue;
-        }
-        section(ui, title);
-        match (report, boxes) {
-            (None, _) => drop(ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()))),
-            (_, []) => drop(ui.label(RichText::new(t("none")).color(theme::text_weak()))),
-            (_, boxes) => boxes.iter().for_each(|b| swept_row(ui, b, cx, commands)),
-        }
-    }
+    let boxes = report.map(|report| &report.boxes[..]);
+    missed_and_seen(ui, boxes, SeenBySweep::is_missed, [wrong, right], |ui, b| {
+        swept_row(ui, b, cx, commands);
+    });
     let Some(report) = report.filter(|_| wrong) else {
         return;
     };
@@ -91,20 +104,11 @@ pub(super) fn report_ui(
     commands: &mut Vec<Command>,
 ) {
     let report = perceiving.seen.as_ref().map(|(_, report)| report);
-    let boxes = report.map_or(&[][..], |report| &report.boxes);
-    let missed = boxes.iter().take_while(|b| b.thing.is_missed()).count();
-    let (missed, seen) = boxes.split_at(missed);
-    for (title, boxes, shown) in [(t("Missed"), missed, wrong), (t("Seen"), seen, right)] {
-        if !shown {
-            continue;
-        }
-        section(ui, title);
-        match (report, boxes) {
-            (None, _) => drop(ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()))),
-            (_, []) => drop(ui.label(RichText::new(t("none")).color(theme::text_weak()))),
-            (_, boxes) => boxes.iter().for_each(|b| row(ui, b, cx, commands)),
-        }
-    }
+    let boxes = report.map(|report| &report.boxes[..]);
+    let is_missed = |b: &SeenByRig| b.thing.is_missed();
+    missed_and_seen(ui, boxes, is_missed, [wrong, right], |ui, b| {
+        row(ui, b, cx, commands)
+    });
     let Some(report) = report.filter(|_| wrong) else {
         return;
     };

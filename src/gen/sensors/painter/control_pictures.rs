@@ -5,11 +5,15 @@ use crate::mpi::{self, RenderIds};
 use crate::picture_hints::PictureHints;
 use scene::sensor_data::Planes;
 use scene::{Frame, truth};
+use stable::StableError;
+use stable::planes::{Run, of_runs};
 
 /// Depths up to this are brightest, m.
 const NEAREST_M: f32 = 2.0;
 /// From one plane of classes to the next, m.
 const STEP_M: f64 = 0.2;
+/// Most planes; SyntheOcc has 256.
+const MOST_PLANES: usize = 4096;
 
 /// `[channel][row][column]` from 0 to 1: the colour of each pixel's class; black where there is nothing.
 pub(super) fn classes(hints: &PictureHints, channels: usize) -> Vec<f32> {
@@ -36,33 +40,36 @@ pub(super) fn depths(hints: &PictureHints, channels: usize) -> Vec<f32> {
     plane.repeat(channels)
 }
 
-/// `[view][channel][row][column]`: the label on each plane of some views from the nearest on, 0 where there is nothing; and in the
-/// last channel the label that is seen first (SyntheOcc, arXiv 2410.00337).
+/// What [`stable::Planes`] takes of some views: the label on each plane, at the size of latents.
 pub(super) fn planes(
     frame: &Frame,
     seen: &Seen,
     views: &[usize],
     [rows, columns]: [usize; 2],
     channels: usize,
-) -> Vec<f32> {
+) -> Result<Vec<f32>, StableError> {
     let ids = RenderIds::new(&frame.occupancy, &[]);
-    let count = channels.saturating_sub(1).min(4096) as u16;
+    let count = channels.saturating_sub(1).min(MOST_PLANES) as u16;
     // As their code has it: every 0.2 m.
     let layout = Planes {
         count,
         near_m: STEP_M,
         far_m: STEP_M * f64::from(count + 1),
     };
-    let mut out = Vec::with_capacity(views.len() * channels * rows * columns);
-    let number = |id: Option<u8>| f32::from(id.unwrap_or(0));
-    for view in views {
-        let image = mpi::render(&ids, seen.camera(*view), columns as u32, rows as u32, layout);
-        for plane in 0..count {
-            out.extend(image.slice(plane).into_iter().map(number));
+    let cells = rows * columns;
+    let mut runs = Vec::new();
+    for (view, place) in views.iter().enumerate() {
+        let image = mpi::render(&ids, seen.camera(*place), columns as u32, rows as u32, layout);
+        for cell in 0..cells {
+            runs.extend(image.pixel(cell).iter().map(|run| Run {
+                cell: view * cells + cell,
+                first: run.first.into(),
+                end: run.end.into(),
+                id: run.id,
+            }));
         }
-        out.extend(image.first_visible().into_iter().map(number));
     }
-    out
+    of_runs(views.len(), cells, channels, runs)
 }
 
 #[cfg(test)]

@@ -97,6 +97,7 @@ impl PublicPainter {
                 channels,
             )
         });
+        let planes = planes.transpose().map_err(public)?;
         let request = Request {
             prompts: views.iter().map(|view| self.prompt(told, *view)).collect(),
             negative: String::new(),
