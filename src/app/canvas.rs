@@ -25,6 +25,7 @@ use super::canvas_draw::{
 use super::canvas_tools::{Driver, Seen};
 use super::command::Command;
 use super::marks::{self, Board};
+use super::place_marks;
 use super::pointer::{self, Held, Step};
 pub use super::screen_map::ScreenMap;
 use super::state::{UiState, called, position_text};
@@ -33,6 +34,7 @@ use super::tools::ToolState;
 use super::track_marks;
 use super::unsettled_marks;
 use super::views_shown::Underlay;
+use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;
 use crate::windows::open::SensorChoice;
 use crate::windows::row;
@@ -131,6 +133,8 @@ impl Canvas {
         state.tools.pointer_m = response.hover_pos().map(|p| map.to_ego(p));
         if let Some(at_m) = state.tools.pointer_m {
             state.pointed.readout = readout(input.scene, at_m);
+            let height_m = input.scene.frame().layout.relief.height_m(at_m);
+            place_marks::point(state, PaneId::BEV, at_m.extend(height_m));
         }
         self.driver.drive(
             ui,
@@ -149,6 +153,9 @@ impl Canvas {
         ui.scope(|ui| {
             ui.set_clip_rect(clip);
             self.draw(ui, &response, &map, input, state);
+            if let Some(place_m) = place_marks::elsewhere(state, PaneId::BEV) {
+                place_marks::draw(ui.painter(), map.to_screen(place_m.truncate()));
+            }
         });
         canvas_access::boxes(ui, &map, input.scene, state, commands);
         response
@@ -385,9 +392,11 @@ impl Canvas {
             marks::region(painter, map, tools.region.cells());
         }
         if tools.row_open {
-            for b in row::coming(input.scene.frame(), tools) {
+            let (boxes, things) = row::coming(input.scene, tools);
+            for b in boxes {
                 draw_box(ui, map, &b, b.class.color(), BoxStyle::Ghost);
             }
+            thing_outlines::copies(painter, map, input.scene, &things);
         }
         let (marks, cursor) = self
             .driver

@@ -27,6 +27,8 @@ pub enum ClipView {
         camera: Box<ViewCamera>,
         /// It goes along with the ego vehicle.
         follow: bool,
+        /// With boxes.
+        boxes: bool,
     },
     /// The layout from above, with boxes, a whole number of pixels for each cell.
     Bev,
@@ -138,6 +140,7 @@ enum Drawer {
         follow: bool,
         last: scene::Pose,
         size: [u32; 2],
+        boxes: bool,
     },
     Bev,
     Map([u32; 2]),
@@ -150,7 +153,11 @@ const BEV_PIXELS: usize = 720;
 impl Drawer {
     fn new(scene: &Scene, options: &ClipOptions) -> anyhow::Result<Self> {
         Ok(match &options.view {
-            ClipView::View3d { camera, follow } => {
+            ClipView::View3d {
+                camera,
+                follow,
+                boxes,
+            } => {
                 bounds::check(options.size, SHOT_BYTES_PER_PIXEL, 0)?;
                 Self::View3d {
                     view: Box::new(View3d::new()?),
@@ -158,6 +165,7 @@ impl Drawer {
                     follow: *follow,
                     last: scene.at(options.span_s[0]).frame().world_from_ego,
                     size: options.size,
+                    boxes: *boxes,
                 }
             }
             ClipView::Bev => Self::Bev,
@@ -191,6 +199,7 @@ impl Drawer {
                 follow,
                 last,
                 size,
+                boxes,
             } => {
                 let now = scene.frame().world_from_ego;
                 if *follow {
@@ -205,7 +214,7 @@ impl Drawer {
                         supersample: 1,
                         transparent: false,
                         lidar: false,
-                        boxes: true,
+                        boxes: *boxes,
                     },
                 )
             }

@@ -89,6 +89,8 @@ pub enum ViewCommand {
     FrameAt(glam::DVec3),
     /// Takes a standard viewpoint in the 3D view.
     Preset(ViewPreset),
+    /// Changes the 3D view between perspective and orthographic, from where it is looked.
+    ToggleParallel,
     /// Looks through that camera of the rig in the 3D view.
     LookThrough(usize),
     /// Shows that in the cameras: classes, depth, pictures.

@@ -50,6 +50,14 @@ enum Style {
     Coming,
 }
 
+/// Draws things (world frame) that would be added.
+pub(super) fn copies(painter: &Painter, map: &ScreenMap, scene: &Scene, forms: &[Form]) {
+    let ego_from_world = scene.frame().world_from_ego.inverse();
+    for form in forms {
+        draw_form(painter, map, &form.in_frame(&ego_from_world), Style::Coming);
+    }
+}
+
 fn draw_form(painter: &Painter, map: &ScreenMap, form: &Form, style: Style) {
     let color = color(form);
     let (points, closed) = trace(form, &|p| Some(map.to_screen(p)));

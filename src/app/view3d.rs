@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use egui::accesskit::Role;
-use egui::{Align2, Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
+use egui::{Color32, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2};
 use glam::{DVec2, DVec3};
 
 use editor::pick::{self, Hit, Ray};
@@ -25,10 +25,10 @@ use super::screen_map::{point, pos};
 use super::state::{UiState, called, position_text};
 use super::tools::ToolState;
 use super::views_shown::ViewsShown;
-use super::{detection_marks, fly, thing_outlines, track_marks, unsettled_marks};
+use super::{detection_marks, fly, no_adapter, place_marks, thing_outlines, track_marks, unsettled_marks};
+use crate::panes::id::PaneId;
 use crate::shell::live::Bounds;
 use widgets::software_ui;
-use widgets::theme;
 
 /// Turn per point that the pointer moves, rad.
 const ORBIT_RAD: f64 = 0.006;
@@ -51,6 +51,8 @@ pub struct View3d {
     pub camera: ViewCamera,
     /// What is shown and how.
     pub options: ViewOptions,
+    /// The view stays orthographic when it is turned.
+    pub parallel: bool,
     gpu: Option<Gpu>,
     held: Held,
     driver: Driver,
@@ -104,6 +106,7 @@ impl View3d {
                 point_px: 1.8,
                 ..ViewOptions::default()
             },
+            parallel: false,
             gpu,
             held: Held::default(),
             driver: Driver::default(),
@@ -129,6 +132,13 @@ impl View3d {
     /// Takes a standard viewpoint over a map.
     pub fn preset(&mut self, preset: ViewPreset, extent: Extent) {
         self.camera = ViewCamera::preset_over(preset, extent);
+        self.parallel = false;
+    }
+
+    /// Changes between perspective and orthographic, from where it is looked.
+    pub fn toggle_parallel(&mut self) {
+        self.parallel = !self.camera.ortho;
+        self.camera.ortho = self.parallel;
     }
 
     /// Brings a box into the middle.
@@ -150,7 +160,7 @@ impl View3d {
         self.rect = rect;
         self.pixels_per_point = ui.ctx().pixels_per_point();
         if self.gpu.is_none() {
-            no_adapter(ui, rect);
+            no_adapter::show(ui, rect);
             return response;
         }
         let steps = pointer::steps(ui, &response);
@@ -169,6 +179,7 @@ impl View3d {
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
             state.pointed.readout = readout(input.scene, hit, &pointer.ray);
+            place_marks::point(state, PaneId::VIEW3D, point_of(hit, &pointer.ray));
         }
         let now_s = ui.input(|i| i.time);
         // Where the processor draws, only what a drag or a brush touches is drawn again: that is quick as it is.
@@ -190,6 +201,10 @@ impl View3d {
         detection_marks::in_3d(&painter, &project, input.scene, state);
         let (parts, generating) = input.unsettled;
         unsettled_marks::in_3d(&painter, &project, input.scene.frame(), parts, generating);
+        let elsewhere = place_marks::elsewhere(state, PaneId::VIEW3D);
+        if let Some(at) = elsewhere.and_then(project) {
+            place_marks::draw(&painter, at);
+        }
         let board = Board {
             painter: &painter,
             view: self,
@@ -287,8 +302,8 @@ impl View3d {
             } else if pans {
                 self.camera.pan(DVec2::new(dx, dy) * px, self.size_px());
             } else {
-                // A turned standard view is none any more: back to perspective.
-                self.camera.ortho &= delta == egui::Vec2::ZERO;
+                // A turned standard view is none any more: back to perspective, unless that was not wanted.
+                self.camera.ortho &= self.parallel || delta == egui::Vec2::ZERO;
                 self.camera.orbit(dx * ORBIT_RAD, dy * ORBIT_RAD);
             }
         }
@@ -330,7 +345,7 @@ impl View3d {
         let rect = self.rect;
         if self.frames < 3 {
             // The window comes up first; the pipelines take a moment.
-            hint(ui, rect, t("Preparing the 3D view…"), "");
+            no_adapter::hint(ui, rect, t("Preparing the 3D view…"), "");
             ui.ctx().request_repaint();
             return;
         }
@@ -549,35 +564,4 @@ fn readout(scene: &Scene, hit: &Hit, ray: &Ray) -> String {
         Hit::Ground { .. } => {}
     }
     parts.join("  ·  ")
-}
-
-fn no_adapter(ui: &Ui, rect: Rect) {
-    let hint_text =
-        "Install a Vulkan driver (a software one such as lavapipe will do); editing works without.";
-    hint(ui, rect, t("No GPU adapter"), t(hint_text));
-    ui.interact(rect, ui.scope_id().with("no adapter"), Sense::hover())
-        .widget_info(|| WidgetInfo::labeled(Role::Label, true, t("No GPU adapter")));
-}
-
-/// A title and a line in the middle of an empty pane.
-fn hint(ui: &Ui, rect: Rect, title: &str, text: &str) {
-    let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 0.0, theme::well());
-    let heading = egui::TextStyle::Heading.resolve(ui.style());
-    let body = egui::TextStyle::Body.resolve(ui.style());
-    painter.text(
-        rect.center(),
-        Align2::CENTER_BOTTOM,
-        title,
-        heading,
-        theme::text(),
-    );
-    let galley = painter.layout(
-        text.into(),
-        body,
-        theme::text_weak(),
-        (rect.width() - 40.0).max(60.0),
-    );
-    let at = rect.center() + egui::vec2(-galley.size().x / 2.0, 8.0);
-    painter.galley(at, galley, theme::text_weak());
 }

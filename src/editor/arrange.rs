@@ -1,4 +1,4 @@
-//! Several boxes at once: copied, pasted, put in rows, mirrored, turned, set down. Each function makes the
+//! Several boxes at once: copied, pasted, mirrored, turned, set down. Each function makes the
 //! edits of one undo step; boxes that are not in the frame are left out.
 
 use std::collections::BTreeMap;
@@ -8,12 +8,10 @@ use glam::{DVec2, DVec3};
 use scene::{Arrangement, BoxId, Frame, Motion, Moving, Scene, SceneBox};
 
 use super::Edit;
-use super::lanes::{along, nearest_lane};
+use super::lanes::nearest_lane;
 
 /// How far a lane may be from what is to follow it, m.
 pub const LANE_REACH_M: f64 = 6.0;
-/// Most copies of one row.
-pub const MAX_COPIES: usize = 200;
 
 /// Edits that add boxes, and the names that these get.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -132,7 +130,7 @@ impl Clipboard {
     }
 }
 
-fn shapes_of(frame: &Frame, ids: &[BoxId]) -> Shapes {
+pub(super) fn shapes_of(frame: &Frame, ids: &[BoxId]) -> Shapes {
     let own = ids
         .iter()
         .filter_map(|id| Some((*id, frame.own_shapes.get(id)?.cells())));
@@ -147,39 +145,6 @@ pub enum Pivot {
     Own,
     /// All about the middle between them.
     Middle,
-}
-
-/// Along what a row of copies runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum RowAlong {
-    /// The heading of each box.
-    #[default]
-    Heading,
-    /// The lane under each box; the heading where there is none.
-    Lane,
-    /// To the left of the heading.
-    Side,
-}
-
-/// A row of copies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
-    /// Copies of each box, the original not counted.
-    pub copies: usize,
-    /// From one to the next, centre to centre, m; negative goes backward.
-    pub spacing_m: f64,
-    /// Which way.
-    pub along: RowAlong,
-}
-
-impl Default for Row {
-    fn default() -> Self {
-        Self {
-            copies: 4,
-            spacing_m: 7.0,
-            along: RowAlong::Heading,
-        }
-    }
 }
 
 /// The boxes of those names that are there, in the order of the names.
@@ -277,48 +242,6 @@ pub fn paste(frame: &Frame, clipboard: &Clipboard, at_m: Option<DVec2>) -> Added
         ..*b
     });
     add(frame, copies.collect(), &clipboard.shapes).with(&clipboard.ties)
-}
-
-/// Rows of copies of each box; at most [`MAX_COPIES`] each. A copy along a lane keeps its distance to the
-/// lane's middle and turns with it.
-pub fn row(frame: &Frame, ids: &[BoxId], row: &Row) -> Added {
-    add(frame, row_boxes(frame, ids, row), &shapes_of(frame, ids))
-}
-
-/// The copies of a row, not yet named; those beside the map are left out.
-pub fn row_boxes(frame: &Frame, ids: &[BoxId], row: &Row) -> Vec<SceneBox> {
-    let mut copies = Vec::new();
-    if !row.spacing_m.is_finite() {
-        return copies;
-    }
-    for b in boxes_of(frame, ids) {
-        let lane = (row.along == RowAlong::Lane)
-            .then(|| nearest_lane(&frame.layout, b.center_m.truncate(), LANE_REACH_M))
-            .flatten();
-        for i in 1..=row.copies.min(MAX_COPIES) {
-            let way_m = row.spacing_m * i as f64;
-            let (at_m, yaw_rad) = match (&lane, row.along) {
-                (Some(from), _) => {
-                    let (at_m, yaw_rad) = along(&frame.layout, from, way_m);
-                    let turn = yaw_rad - from.yaw_rad;
-                    let aside = b.center_m.truncate() - from.at_m;
-                    (at_m + DVec2::from_angle(turn).rotate(aside), b.yaw_rad + turn)
-                }
-                (None, RowAlong::Side) => (b.center_m.truncate() + b.heading().perp() * way_m, b.yaw_rad),
-                (None, _) => (b.center_m.truncate() + b.heading() * way_m, b.yaw_rad),
-            };
-            let by = DVec2::from_angle(yaw_rad - b.yaw_rad);
-            copies.push(SceneBox {
-                center_m: at_m.extend(b.center_m.z),
-                yaw_rad,
-                velocity_mps: by.rotate(b.velocity_mps),
-                ..b
-            });
-        }
-    }
-    let on_map = |p: DVec3| frame.extent().column_at(p.x, p.y).is_some();
-    copies.retain(|b| b.problem().is_none() && on_map(b.center_m));
-    copies
 }
 
 /// Mirrors boxes about the ego x axis. With `keep_direction` one that changes sides is turned by 180 degrees,
@@ -437,4 +360,4 @@ pub fn add(frame: &Frame, boxes: Vec<SceneBox>, shapes: &Shapes) -> Added {
 
 #[cfg(test)]
 #[path = "arrange_tests.rs"]
-mod tests;
+pub(crate) mod tests;

@@ -7,7 +7,7 @@ use super::*;
 use crate::Document;
 use scene::{BevLayout, Class, Polyline, PolylineKind, Scene, VoxelGrid};
 
-fn car(id: u32, x: f64, y: f64, yaw_rad: f64) -> SceneBox {
+pub(crate) fn car(id: u32, x: f64, y: f64, yaw_rad: f64) -> SceneBox {
     SceneBox {
         id: BoxId(id),
         class: Class::Car,
@@ -19,7 +19,7 @@ fn car(id: u32, x: f64, y: f64, yaw_rad: f64) -> SceneBox {
     }
 }
 
-fn frame(boxes: &[SceneBox]) -> Frame {
+pub(crate) fn frame(boxes: &[SceneBox]) -> Frame {
     let line = |points: &[[f64; 2]]| Polyline {
         kind: PolylineKind::LaneCenter,
         points_m: points.iter().map(|p| DVec2::from_array(*p)).collect(),
@@ -30,7 +30,7 @@ fn frame(boxes: &[SceneBox]) -> Frame {
     Frame::new(layout, boxes, VoxelGrid::new())
 }
 
-fn after(frame: &Frame, edits: &[Edit]) -> Frame {
+pub(crate) fn after(frame: &Frame, edits: &[Edit]) -> Frame {
     let scene = Scene::single("test", frame.clone(), Arc::default(), 1);
     let mut document = Document::new(scene);
     document.apply_all("test", edits).expect("sound edits");
@@ -133,47 +133,6 @@ fn copies_move_and_are_grouped_as_what_they_are_copies_of() {
     let groups = &scene.arranged.groups;
     assert_eq!(groups[1].members.boxes, added.ids.iter().copied().collect());
     assert_eq!(groups[0].members.boxes.len(), 3);
-}
-
-#[test]
-fn rows_run_along_headings_and_lanes() {
-    let frame = frame(&[car(1, -4.0, 1.0, 0.0)]);
-    let row_of = |along| {
-        let row = super::row(
-            &frame,
-            &[BoxId(1)],
-            &Row {
-                copies: 3,
-                spacing_m: 6.0,
-                along,
-            },
-        );
-        let now = after(&frame, &row.edits);
-        now.boxes.values().skip(1).copied().collect::<Vec<_>>()
-    };
-    let straight = row_of(RowAlong::Heading);
-    assert_eq!(straight.len(), 3);
-    assert_eq!(straight[2].center_m, DVec3::new(14.0, 1.0, 0.85));
-    assert_eq!(row_of(RowAlong::Side)[0].center_m, DVec3::new(-4.0, 7.0, 0.85));
-    // 14 m to the corner, then 4 m up; one metre right of the lane stays one metre right of it.
-    let bent = row_of(RowAlong::Lane)[2];
-    assert!(
-        bent.center_m.distance(DVec3::new(11.0, 6.0, 0.85)) < 1e-9,
-        "{bent:?}"
-    );
-    assert!((bent.yaw_rad - FRAC_PI_2).abs() < 1e-9);
-    assert!(bent.velocity_mps.distance(DVec2::new(-1.0, 5.0)) < 1e-9);
-    let many = Row {
-        copies: usize::MAX,
-        spacing_m: 1e300,
-        along: RowAlong::Lane,
-    };
-    assert!(super::row(&frame, &[BoxId(1)], &many).edits.is_empty());
-    let nan = Row {
-        spacing_m: f64::NAN,
-        ..many
-    };
-    assert!(super::row(&frame, &[BoxId(1)], &nan).edits.is_empty());
 }
 
 #[test]

@@ -25,6 +25,7 @@ pub mod pick;
 pub mod pick_things;
 mod reaching;
 pub mod roads;
+pub mod rows;
 mod things;
 pub mod tools;
 pub mod traffic;

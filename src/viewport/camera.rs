@@ -160,6 +160,20 @@ impl ViewCamera {
         .sane()
     }
 
+    /// Looks from a point to another, both m. Straight up and down the view is turned as ego x lies.
+    pub fn from_to(eye_m: DVec3, look_m: DVec3) -> Self {
+        let way = look_m - eye_m;
+        let level = way.truncate().length();
+        Self {
+            target_m: look_m,
+            distance_m: way.length(),
+            yaw_rad: if level > 1e-9 { way.y.atan2(way.x) } else { 0.0 },
+            pitch_rad: way.z.atan2(level),
+            ..Self::default()
+        }
+        .sane()
+    }
+
     /// The same camera with every field finite and in its range; what is broken comes from the start view.
     pub fn sane(&self) -> Self {
         use std::f64::consts::{FRAC_PI_2, PI};

@@ -6,7 +6,7 @@ use editor::{Document, Edit};
 use glam::{DVec2, DVec3};
 use job::inpaint::InpaintMask;
 use job::pipeline::OccPipeline;
-use job::{GenParams, GenResult, Job, JobCtx, Pipeline, RegionMode};
+use job::{GenParams, GenResult, Job, JobCtx, JobUpdate, Pipeline, RegionMode, Stage};
 use nets::OccModels;
 use scene::raster::box_cells;
 use scene::{BoxId, Class, Frame, Scene, SensorRig, Window};
@@ -117,6 +117,64 @@ fn a_removed_car_goes_and_the_next_edit_needs_no_inversion() {
         (0, 5)
     );
     assert_eq!(second.report.untouched_voxels_changed, 0);
+}
+
+#[test]
+fn an_edit_is_seen_from_its_first_step_on() {
+    let mut document = Document::new(scene());
+    let id = a_car(&document);
+    document.apply("Remove", &Edit::RemoveBox { id }).expect("there");
+    let job = Job {
+        scene: document.scene().clone(),
+        params: params(),
+    };
+    let news = std::sync::Mutex::new(Vec::new());
+    let report = |update| news.lock().expect("one thread").push(update);
+    let ctx = JobCtx::new(&|| false, &report).with_previews();
+    let result = pipeline().run(&job, &ctx).expect("a result");
+    let steps_before_the_first = news
+        .lock()
+        .expect("one thread")
+        .iter()
+        .take_while(|update| !matches!(update, JobUpdate::Preview(_)))
+        .filter(|update| {
+            matches!(
+                update,
+                JobUpdate::Progress {
+                    stage: Stage::Denoise,
+                    ..
+                }
+            )
+        })
+        .count();
+    let news = news.into_inner().expect("one thread");
+    let previews: Vec<_> = news
+        .iter()
+        .filter_map(|update| match update {
+            JobUpdate::Preview(result) => Some(result),
+            _ => None,
+        })
+        .collect();
+    assert!(
+        !previews.is_empty() && steps_before_the_first == 1,
+        "{steps_before_the_first}"
+    );
+    // They show the region alone, and the result does not depend on them.
+    let (source, region) = (
+        &document.scene().frame().source.occupancy,
+        job::inpaint::region_of(document.scene().frame(), &job.params),
+    );
+    for preview in &previews {
+        let other = job::composite::untouched_voxels_changed(
+            source,
+            &preview.occupancy,
+            &region,
+            &document.scene().frame().painted,
+        );
+        assert_eq!(other, 0);
+    }
+    let unseen = pipeline().run(&job, &JobCtx::detached()).expect("a result");
+    assert_eq!(unseen.occupancy, result.occupancy);
 }
 
 #[test]

@@ -162,6 +162,20 @@ impl Queue {
         }
     }
 
+    /// Puts a batch that waits before all others that do. The one that runs goes on.
+    pub fn run_next(&mut self, id: u64) {
+        let waits = |i: &&Item| i.state == State::Waiting;
+        let most = self.items.iter().filter(waits).map(|i| i.priority).max();
+        let at = self.items.iter().position(|i| i.id == id && waits(&i));
+        if let (Some(at), Some(most)) = (at, most) {
+            let item = Item {
+                priority: most,
+                ..self.items.remove(at)
+            };
+            self.items.insert(0, item);
+        }
+    }
+
     /// Stops a batch after the variant at hand until it is resumed.
     pub fn pause(&mut self, id: u64) {
         self.stop(id);
@@ -371,6 +385,30 @@ mod tests {
             .add(plan(2), dir.path(), &dir.path().join("long"))
             .expect_err("taken");
         assert!(line.to_string().contains("another plan"), "{line}");
+    }
+
+    #[test]
+    fn what_is_to_run_next_does() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let mut queue = Queue::default();
+        let mut add = |name: &str, n| {
+            queue
+                .add(plan(n), dir.path(), &dir.path().join(name))
+                .expect("added")
+        };
+        let [first, second, third] = [add("a", 4), add("b", 1), add("c", 1)];
+        queue.set_priority(first, Priority::High);
+        until(&mut queue, "begins", |q| {
+            q.item(first).is_some_and(|i| i.done > 0)
+        });
+        queue.run_next(third);
+        assert_eq!(queue.item(third).map(|i| i.priority), Some(Priority::Normal));
+        // One that runs cannot come next.
+        queue.run_next(first);
+        let ended = until(&mut queue, "all done", |q| {
+            q.items().iter().all(|i| matches!(i.state, State::Done(_)))
+        });
+        assert_eq!(ended, [first, third, second]);
     }
 
     #[test]

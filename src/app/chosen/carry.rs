@@ -6,8 +6,8 @@ use glam::DVec2;
 use crate::panes::id::PaneId;
 use crate::shell::app::SceneloomApp;
 use crate::tools::ToolCommand;
-use editor::arrange::{self, Clipboard, Ties};
-use editor::{Edit, kerb};
+use editor::arrange::{self, Added, Clipboard, Ties};
+use editor::{Edit, kerb, rows};
 use language::{filled, t, tf};
 use scene::{BoxId, Form, Scene, ThingId};
 
@@ -77,6 +77,41 @@ impl SceneloomApp {
                     moved(by_m, 0.0),
                 )
             }
+            ToolCommand::AskRow => {
+                self.state.tools.row_open = true;
+                return true;
+            }
+            ToolCommand::Row(row) => {
+                let named: Vec<&Form> = forms.iter().collect();
+                let added = rows::row(frame, &boxes, row).with(&Ties::of(&scene, &boxes));
+                self.add_copies("Row of {things}", rows::row_forms(&scene, &named, row), added);
+                return true;
+            }
+            ToolCommand::Mirror(copies) => {
+                let keep = self.state.tools.mirror_keeps_direction;
+                let mirrored = |form: &Form| rows::mirrored_form(frame, form, keep);
+                if *copies {
+                    let forms = forms.iter().map(mirrored).collect();
+                    let added = arrange::mirror_copy(frame, &boxes, keep).with(&Ties::of(&scene, &boxes));
+                    self.add_copies("Mirrored copies of {things}", forms, added);
+                } else {
+                    // They are taken out and come back, which locks would do by halves.
+                    let locked = &scene.arranged.locked.things;
+                    let chosen = self.state.tools.things.chosen_in(&scene.background);
+                    let (ids, forms): (Vec<ThingId>, Vec<Form>) = chosen
+                        .filter(|t| !locked.contains(&t.id))
+                        .map(|t| (t.id, mirrored(&t.form)))
+                        .unzip();
+                    if ids.is_empty() {
+                        return false;
+                    }
+                    let mut edits = arrange::mirror(frame, &boxes, keep);
+                    edits.push(Edit::RemoveThings { ids });
+                    self.add_things("Mirror {things}", forms, edits);
+                    self.state.choose(&boxes, crate::tools::Choose::Add);
+                }
+                return true;
+            }
             ToolCommand::Duplicate => {
                 self.duplicate(&scene, &boxes, &forms);
                 return true;
@@ -106,7 +141,15 @@ impl SceneloomApp {
         let by_m = beside_m(forms);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
         let added = arrange::duplicate(scene.frame(), boxes).with(&Ties::of(scene, boxes));
-        self.add_things("Duplicate {things}", copies, added.edits);
+        self.add_copies("Duplicate {things}", copies, added);
+    }
+
+    /// Adds things and boxes as one undo step, and chooses them.
+    fn add_copies(&mut self, label: &str, forms: Vec<Form>, added: Added) {
+        if forms.is_empty() {
+            return self.note(t("All of them would lie outside the map"));
+        }
+        self.add_things(label, forms, added.edits);
         self.state.choose(&added.ids, crate::tools::Choose::Add);
     }
 
@@ -141,8 +184,7 @@ impl SceneloomApp {
         let box_at_m = arrange::middle_m(&boxes.boxes).map(|m| m.truncate());
         let added = arrange::paste(frame, &boxes, box_at_m);
         let copies = forms.iter().map(|f| shifted(f, by_m)).collect();
-        self.add_things("Paste {things}", copies, added.edits);
-        self.state.choose(&added.ids, crate::tools::Choose::Add);
+        self.add_copies("Paste {things}", copies, added);
     }
 }
 

@@ -15,6 +15,7 @@ use crate::tools::{Choose, ToolCommand, ToolState};
 use editor::Edit;
 use editor::arrange::{self, Added, Clipboard, Ties};
 use editor::fit::fit;
+use editor::rows;
 use editor::tools::{Act, road, voxel};
 use language::{t, tf};
 use scene::Extent;
@@ -111,16 +112,19 @@ impl SceneloomApp {
                 self.apply_some(label, arrange::turn(&frame, &ids, degrees, pivot));
             }
             ToolCommand::AskRow => match ids.is_empty() {
-                true => self.note(t("Choose the boxes to copy first")),
+                true => self.note(t("Choose what to copy first")),
                 false => self.state.tools.row_open = true,
             },
             ToolCommand::Row(row) => {
-                self.add_boxes("Row of boxes", arrange::row(&frame, &ids, &row).with(&ties))
+                self.add_boxes("Row of boxes", rows::row(&frame, &ids, &row).with(&ties))
             }
             ToolCommand::Mirror(copies) => {
                 let keep = self.state.tools.mirror_keeps_direction;
                 if copies {
-                    self.add_boxes("Mirrored copies", arrange::mirror_copy(&frame, &ids, keep));
+                    self.add_boxes(
+                        "Mirrored copies",
+                        arrange::mirror_copy(&frame, &ids, keep).with(&ties),
+                    );
                 } else {
                     let label = of(&ids, "Mirror box", "Mirror boxes");
                     self.apply_some(label, arrange::mirror(&frame, &ids, keep));

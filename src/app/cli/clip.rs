@@ -9,10 +9,10 @@ use serde_json::json;
 use super::painting::Painting;
 use super::progress::Progress;
 use super::render::size;
+use super::viewpoint::Viewpoint;
 use super::{Common, Outcome, output};
 use app::capture::{Turntable, turntable};
 use app::clip_export::{ClipOptions, ClipView, clip};
-use app::export::view_camera;
 use app::open;
 use app::picture::ShotOptions;
 use formats::video::VideoKind;
@@ -28,9 +28,8 @@ pub struct ClipCommand {
     /// fits the size), or what cameras see (semantic, depth, picture, normals).
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
-    /// Viewpoint of the 3D view: perspective, top, front, side, ego, or a camera of the rig (CAM_FRONT).
-    #[arg(long, value_name = "NAME", default_value = "perspective")]
-    view: String,
+    #[command(flatten)]
+    viewpoint: Viewpoint,
     /// The 3D view stays where it is and does not go along with the ego vehicle.
     #[arg(long)]
     fixed: bool,
@@ -104,8 +103,9 @@ impl ClipCommand {
     fn turntable(&self, scene: &Scene) -> anyhow::Result<Turntable> {
         Ok(Turntable {
             shot: ShotOptions {
-                camera: view_camera(&scene.at(self.from), &self.view)?,
+                camera: self.viewpoint.camera(&scene.at(self.from))?,
                 size: self.size,
+                boxes: self.viewpoint.boxes(),
                 supersample: 1,
                 ..ShotOptions::default()
             },
@@ -138,8 +138,9 @@ impl ClipCommand {
     fn shown(&self, scene: &Scene) -> anyhow::Result<ClipView> {
         match self.what.as_str() {
             "view" => Ok(ClipView::View3d {
-                camera: Box::new(view_camera(&scene.at(self.from), &self.view)?),
+                camera: Box::new(self.viewpoint.camera(&scene.at(self.from))?),
                 follow: !self.fixed,
+                boxes: self.viewpoint.boxes(),
             }),
             "bev" => Ok(ClipView::Bev),
             "map" => Ok(ClipView::Map),

@@ -7,9 +7,10 @@ use anyhow::{Context, anyhow};
 use serde_json::json;
 
 use super::render::{size, source};
+use super::viewpoint::Viewpoint;
 use super::{Common, Moment, Outcome, output};
 use app::camera_views::LidarModel;
-use app::export::{ExportOptions, ExportProgress, Format, export_all, view_camera};
+use app::export::{ExportOptions, ExportProgress, Format, export_all};
 use app::open;
 use app::picture::ShotOptions;
 use sensors::cameras::SourceId;
@@ -33,9 +34,8 @@ pub struct Export {
     /// How the LiDAR sweep comes about.
     #[arg(long, value_name = "MODEL", value_parser = ["exact", "learned"], default_value = "exact")]
     lidar: String,
-    /// Viewpoint of the 3D view: perspective, top, front, side, ego, or a camera of the rig.
-    #[arg(long, value_name = "NAME", default_value = "perspective")]
-    view: String,
+    #[command(flatten)]
+    viewpoint: Viewpoint,
     /// Size of the 3D view in pixels.
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x720")]
     view_size: [u32; 2],
@@ -95,8 +95,9 @@ impl Export {
                 _ => LidarModel::Exact,
             },
             shot: ShotOptions {
-                camera: view_camera(&scene, &self.view)?,
+                camera: self.viewpoint.camera(&scene)?,
                 size: self.view_size,
+                boxes: self.viewpoint.boxes(),
                 supersample: self.scale,
                 transparent: self.transparent,
                 ..ShotOptions::default()

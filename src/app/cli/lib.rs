@@ -33,6 +33,7 @@ mod session;
 mod shot;
 mod trade;
 mod versions;
+mod viewpoint;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -8,9 +8,9 @@ use anyhow::{Context, bail};
 use serde_json::json;
 
 use super::render::size;
+use super::viewpoint::Viewpoint;
 use super::{Common, Moment, Outcome, output};
 use app::capture::{CaptureOptions, Subject, capture, to_png};
-use app::export::view_camera;
 use app::{open, picture};
 use scene::Scene;
 use sensors::cameras::{self, bounds};
@@ -29,9 +29,8 @@ pub struct Shot {
     /// With names, a legend and a scale.
     #[arg(long)]
     legend: bool,
-    /// Viewpoint: perspective, top, front, side, ego, or a camera of the rig (CAM_FRONT).
-    #[arg(long, value_name = "NAME", default_value = "perspective")]
-    view: String,
+    #[command(flatten)]
+    viewpoint: Viewpoint,
     /// Size in pixels: of the 3D view, of the frame that a map fills, or of each camera (then 800x450 if left out).
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -73,7 +72,7 @@ impl Shot {
         });
         output::report(&self.common, &report, || {
             let shown = match options.subject {
-                Subject::View => &self.view,
+                Subject::View => self.viewpoint.name(),
                 _ => &self.what,
             };
             let on = adapter
@@ -102,12 +101,12 @@ impl Shot {
         };
         let usual = CaptureOptions::default();
         let shot = picture::ShotOptions {
-            camera: view_camera(scene, &self.view)?,
+            camera: self.viewpoint.camera(scene)?,
             size: self.size.unwrap_or(usual.shot.size),
             supersample: self.scale,
             transparent: self.transparent,
             lidar: self.lidar,
-            boxes: true,
+            boxes: self.viewpoint.boxes(),
         };
         bounds::check(shot.size, picture::SHOT_BYTES_PER_PIXEL, 0).context("--size")?;
         Ok(CaptureOptions {

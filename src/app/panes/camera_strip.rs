@@ -9,16 +9,18 @@ use egui::{
 };
 use glam::DVec3;
 
-use super::box_outlines;
+use super::box_outlines::{self, drop_m};
 use super::camera_difference::Differing;
 use super::camera_header::header;
 use super::camera_legend;
+use super::id::PaneId;
 use crate::camera_views::{CameraView, CamerasShown, camera_label, march};
 use crate::command::{Command, ViewCommand};
+use crate::place_marks;
 use crate::sensing::Sensing;
 use crate::state::UiState;
 use language::{t, tf};
-use scene::{Camera, Class, Scene, SceneRev};
+use scene::{Camera, Class, Scene, SceneRev, SensorRig};
 use sensors::cameras::ViewId;
 use sensors::march::{MarchHit, MarchScene};
 use sensors::rays::CameraRays;
@@ -45,6 +47,8 @@ pub struct CameraStrip {
 pub struct CamerasInput<'a> {
     /// The scene shown.
     pub scene: &'a Scene,
+    /// Its sensors where the ego vehicle is, world frame.
+    pub rig: Arc<SensorRig>,
     /// The newest pictures, in the rig's order.
     pub views: Option<&'a Arc<Vec<CameraView>>>,
     /// The pictures belong to an earlier state.
@@ -66,6 +70,7 @@ impl<'a> CamerasInput<'a> {
     pub(crate) fn of(scene: &'a Scene, rev: SceneRev, sensing: &'a Sensing, shown: &CamerasShown) -> Self {
         Self {
             scene,
+            rig: scene.with_rig_in_world().rig.clone(),
             views: sensing.cameras(),
             stale: sensing.cameras_stale(rev),
             step: sensing.step(),
@@ -108,7 +113,7 @@ impl CameraStrip {
     ) {
         self.refresh(ui, input);
         self.note_stale(ui, input.stale);
-        let cameras = &input.scene.rig.cameras;
+        let cameras = &input.rig.cameras;
         let shown: Vec<usize> = (0..cameras.len())
             .filter(|i| !state.cameras.is_hidden(*i))
             .collect();
@@ -124,9 +129,9 @@ impl CameraStrip {
         for (place, &i) in shown.iter().enumerate() {
             let at = pos2(left + place as f32 * (width + gap), top);
             let rect = Rect::from_min_size(at, vec2(width, width * 9.0 / 16.0));
-            let hovered = self.picture(ui, rect, i, input.scene, state, commands);
+            let hovered = self.picture(ui, rect, i, input, state, commands);
             if let Some(part) = hovered {
-                state.pointed.readout = self.pixel_text(input.scene, &cameras[i], part);
+                state.pointed.readout = self.pixel_text(input.scene, &cameras[i], part, state);
             }
         }
         if shown.is_empty() {
@@ -181,7 +186,7 @@ impl CameraStrip {
         self.refresh(ui, input);
         self.note_stale(ui, input.stale);
         let area = ui.available_rect_before_wrap();
-        let Some(camera) = input.scene.rig.cameras.get(index) else {
+        let Some(camera) = input.rig.cameras.get(index) else {
             let text = t("The vehicle has no such camera. Sensors… adds one.");
             ui.label(egui::RichText::new(text).color(theme::text_weak()));
             return;
@@ -189,8 +194,8 @@ impl CameraStrip {
         let aspect = camera.width as f32 / camera.height.max(1) as f32;
         let width = area.width().min(area.height() * aspect).max(40.0);
         let rect = Rect::from_center_size(area.center(), vec2(width, width / aspect));
-        if let Some(part) = self.picture(ui, rect, index, input.scene, state, commands) {
-            let text = self.pixel_text(input.scene, camera, part);
+        if let Some(part) = self.picture(ui, rect, index, input, state, commands) {
+            let text = self.pixel_text(input.scene, camera, part, state);
             // The name of the camera stands in the title.
             let short = text.split_once("  ·  ").map_or(&*text, |(_, rest)| rest);
             beside_pointer(ui, rect, rect.min + part * rect.size(), short);
@@ -257,7 +262,13 @@ impl CameraStrip {
 
     /// What lies behind a place of a picture: class, box, distance from the camera, position. `part` runs from 0 to 1
     /// across the picture.
-    fn pixel_text(&mut self, scene: &Scene, camera: &Camera, part: egui::Vec2) -> String {
+    fn pixel_text(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        part: egui::Vec2,
+        state: &mut UiState,
+    ) -> String {
         let label = camera_label(&camera.name);
         let Some(hit) = self.hit(scene, camera, part) else {
             let blind = ray_of(camera, part) == DVec3::ZERO;
@@ -276,6 +287,7 @@ impl CameraStrip {
         };
         let name = hit.box_id.map_or(name.clone(), |id| format!("{name} #{}", id.0));
         let p = pose.translation_m + ray * hit.t;
+        place_marks::point(state, PaneId::CAMERAS, p);
         let (x, y, z) = (p.x + 0.0, p.y + 0.0, p.z + 0.0);
         let away = tf!("{distance} m away", distance = format!("{:.1}", hit.t));
         format!("{label}  ·  {name}  ·  {away}  ·  {x:.1}, {y:.1}, {z:.1} m")
@@ -286,11 +298,11 @@ impl CameraStrip {
         ui: &Ui,
         rect: Rect,
         index: usize,
-        scene: &Scene,
+        input: &CamerasInput<'_>,
         state: &UiState,
         commands: &mut Vec<Command>,
     ) -> Option<egui::Vec2> {
-        let camera = scene.rig.cameras.get(index)?;
+        let (scene, camera) = (input.scene, input.rig.cameras.get(index)?);
         let label = camera_label(&camera.name);
         let response = ui.interact(rect, ui.scope_id().with(("camera", index)), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, tf!("Camera {name}", name = label)));
@@ -325,6 +337,11 @@ impl CameraStrip {
             painter.vline(left.right(), rect.y_range(), Stroke::new(1.5, Color32::WHITE));
         }
         box_outlines::draw(&painter, rect, camera, scene, state);
+        if let Some(place_m) = place_marks::elsewhere(state, PaneId::CAMERAS)
+            && let Some(at) = place_in(camera, place_m, drop_m(&state.cameras))
+        {
+            place_marks::draw(&painter, rect.min + at * rect.size());
+        }
         let chosen = state.cameras.enlarged == Some(index);
         let edge = match (chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, theme::accent()),
@@ -370,7 +387,7 @@ impl CameraStrip {
         // Without the strip on screen nobody else keeps its pictures up to date.
         self.refresh(ui, input);
         let texture = self.textures.get(index).and_then(Option::as_ref).cloned();
-        let (Some(texture), Some(camera)) = (texture, input.scene.rig.cameras.get(index)) else {
+        let (Some(texture), Some(camera)) = (texture, input.rig.cameras.get(index)) else {
             return;
         };
         let aspect = camera.width as f32 / camera.height.max(1) as f32;
@@ -393,9 +410,8 @@ impl CameraStrip {
                 commands.push(Command::Select(hit));
             }
             ui.horizontal(|ui| {
-                let text = response
-                    .hover_pos()
-                    .map(|p| self.pixel_text(input.scene, camera, (p - rect.min) / rect.size()));
+                let part = response.hover_pos().map(|p| (p - rect.min) / rect.size());
+                let text = part.map(|part| self.pixel_text(input.scene, camera, part, state));
                 ui.label(text.unwrap_or_else(|| {
                     t("Move over the picture to read a pixel; a click chooses the box there").into()
                 }));
@@ -411,6 +427,17 @@ impl CameraStrip {
             state.cameras.enlarged = None;
         }
     }
+}
+
+/// Where in a picture a place of the world is, from 0 to 1 across it; `None` if the camera does not look there.
+fn place_in(camera: &Camera, place_m: DVec3, drop_m: f64) -> Option<egui::Vec2> {
+    let px = CameraRays::new(camera, camera.width, camera.height).project(place_m - DVec3::Z * drop_m);
+    let part = vec2(
+        (px.x / f64::from(camera.width)) as f32,
+        (px.y / f64::from(camera.height)) as f32,
+    );
+    let within = |v: f32| (0.0..=1.0).contains(&v);
+    (px.z > 0.0 && within(part.x) && within(part.y)).then_some(part)
 }
 
 /// The way a place of a picture looks, ego frame, zero where the lens sees nothing; `part` runs from 0 to 1 across it.

@@ -9,7 +9,7 @@ use scene::{Extent, Scene, SceneRev, VoxelGrid};
 
 use super::camera_strip::CameraStrip;
 pub use super::comparing::{CompareMode, Comparing};
-use super::lidar::SweepPicture;
+use super::sweep_picture::SweepPicture;
 use crate::bev_image::from_above;
 use crate::camera_views::Wanted;
 use crate::canvas::Canvas;

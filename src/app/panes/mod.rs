@@ -32,6 +32,7 @@ pub mod prompt;
 mod saved_brushes;
 mod splats;
 mod statistics;
+mod sweep_picture;
 mod thing_list;
 mod things;
 pub(crate) mod timeline;

@@ -4,16 +4,24 @@ use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui::{
-    Color32, PointerButton, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
+    Color32, Painter, PointerButton, Pos2, Rect, Response, Sense, Stroke, TextureHandle, TextureOptions, Ui,
+    WidgetInfo, pos2,
 };
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::baking::{Baking, Seen};
 use crate::command::Command;
 use crate::fly;
+use crate::place_marks;
+use crate::state::{UiState, called};
+use crate::tools::{Choose, ToolCommand};
+use editor::pick::{self, Hit, Ray};
+use editor::tools::point_of;
 use language::{t, tf};
+use scene::Scene;
+use sensors::perspective::EDGES;
 use viewport::ViewCamera;
 use widgets::icons::Icon;
 use widgets::theme;
@@ -75,14 +83,14 @@ impl Pane for Splats {
         }
     }
 
-    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, _commands: &mut Vec<Command>) {
+    fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
         let rect = ui.available_rect_before_wrap();
         let has = self.baking.as_ref().is_some_and(|b| b.baked.is_some());
         if !has {
             self.before(ui, rect, cx);
             return;
         }
-        let response = ui.allocate_rect(rect, Sense::drag());
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("Splats")));
         navigate(ui, &response, &mut cx.view3d.camera);
         self.look(ui, rect, &cx.view3d.camera);
@@ -92,6 +100,16 @@ impl Pane for Splats {
             Some(texture) => painter.image(texture.id(), rect, unit, Color32::WHITE),
             None => painter.rect_filled(rect, 0.0, theme::well()),
         };
+        let looks = Looks {
+            // Splats are drawn in perspective always.
+            camera: ViewCamera {
+                ortho: false,
+                ..cx.view3d.camera
+            },
+            rect,
+        };
+        looks.outline_chosen(&painter, cx.scene, cx.state);
+        looks.answer(ui, &response, cx, commands);
         let busy = self.baking.as_ref().is_some_and(|b| b.busy.is_some());
         let text = match busy {
             true => self.progress(),
@@ -210,6 +228,83 @@ impl Splats {
         if self.asked != Some(seen) {
             self.asked = Some(seen);
             baking.look(seen);
+        }
+    }
+}
+
+/// From where the picture in a rectangle is seen.
+struct Looks {
+    camera: ViewCamera,
+    rect: Rect,
+}
+
+impl Looks {
+    fn size(&self) -> [u32; 2] {
+        let size = self.rect.size();
+        [size.x, size.y].map(|v| v.round().max(1.0) as u32)
+    }
+
+    /// Where a place appears; `None` behind the eye.
+    fn project(&self, p_m: DVec3) -> Option<Pos2> {
+        let at = self.camera.project(p_m, self.size())?;
+        Some(self.rect.min + egui::vec2(at.x as f32, at.y as f32))
+    }
+
+    /// The edges of the chosen boxes.
+    fn outline_chosen(&self, painter: &Painter, scene: &Scene, state: &UiState) {
+        for id in state.chosen() {
+            let Some(b) = scene.frame().boxes.get(&id).filter(|b| b.problem().is_none()) else {
+                continue;
+            };
+            let corner = |i: usize| {
+                let sign = |bit: usize| if i >> bit & 1 == 1 { 0.5 } else { -0.5 };
+                self.project(b.to_ego(DVec3::new(sign(0), sign(1), sign(2)) * b.size_m))
+            };
+            let ends = EDGES.iter().filter_map(|[i, j]| Some([corner(*i)?, corner(*j)?]));
+            let ends: Vec<[Pos2; 2]> = ends.collect();
+            for (width, color) in [(3.0, Color32::from_black_alpha(130)), (1.4, theme::ON_CANVAS)] {
+                for line in &ends {
+                    painter.line_segment(*line, Stroke::new(width, color));
+                }
+            }
+        }
+    }
+
+    /// What is under the pointer is said and marked elsewhere; a click chooses the box there.
+    fn answer(&self, ui: &Ui, response: &Response, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        if let Some(place_m) = place_marks::elsewhere(cx.state, PaneId::SPLATS)
+            && let Some(at) = self.project(place_m)
+        {
+            place_marks::draw(&ui.painter().with_clip_rect(self.rect), at);
+        }
+        let Some(pointer) = response.hover_pos() else {
+            return;
+        };
+        let at = (pointer - self.rect.min).to_pos2();
+        let (from_m, way) = self
+            .camera
+            .ray_in_world(DVec2::new(at.x.into(), at.y.into()), self.size());
+        let Some(ray) = Ray::new(from_m, way) else {
+            return;
+        };
+        let Some(hit) = pick::pick(cx.seen.scene.frame(), &ray) else {
+            return;
+        };
+        place_marks::point(cx.state, PaneId::SPLATS, point_of(&hit, &ray));
+        let found = match hit {
+            Hit::Box { id, .. } => cx.scene.frame().boxes.get(&id),
+            _ => None,
+        };
+        if let Some(b) = found {
+            cx.state.pointed.readout = format!("{} #{}", called(b), b.id.0);
+        }
+        if response.clicked() {
+            let how = match ui.input(|i| i.modifiers.shift) {
+                true => Choose::Toggle,
+                false => Choose::Only,
+            };
+            let ids = found.map(|b| b.id).into_iter().collect();
+            commands.push(Command::Tools(ToolCommand::Choose(ids, how)));
         }
     }
 }

@@ -56,6 +56,13 @@ impl Pane for View3dPane {
                     ui.close();
                 }
             }
+            ui.separator();
+            let mut parallel = cx.view3d.camera.ortho;
+            let tick = ui.checkbox(&mut parallel, t("Orthographic"));
+            if tick.on_hover_text(t("Lines that are parallel stay so")).clicked() {
+                commands.push(Command::View(ViewCommand::ToggleParallel));
+                ui.close();
+            }
         });
     }
 

@@ -166,6 +166,7 @@ impl SceneloomApp {
             scene,
             versions: kept,
             damaged,
+            made: _,
         } = Opened::of(config.scene);
         let mut versions = Versions::default();
         versions.replace(kept);

@@ -137,6 +137,7 @@ impl SceneloomApp {
                 let view = ClipView::View3d {
                     camera: Box::new(camera),
                     follow: playback.follow,
+                    boxes: asked.shot.boxes,
                 };
                 (view, asked.shot.size)
             }

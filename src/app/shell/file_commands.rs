@@ -138,25 +138,26 @@ impl SceneloomApp {
                 let what = tf!("Opening {file}", file = path.display());
                 let own_file = path.extension().is_some_and(|e| e == "loom").then_some(path);
                 let is_import = own_file.is_none();
-                self.load(what, own_file, is_import, ctx, move || open(&file));
+                let opened = move || open(&file).map(|scene| Opened::of(scene).told_by(&file));
+                self.load(what, own_file, is_import, ctx, opened);
             }
         }
     }
 
     /// Makes a scene on a thread of its own; the window goes on meanwhile.
-    pub(crate) fn load(
+    pub(crate) fn load<Read: Into<Opened>>(
         &mut self,
         what: String,
         path: Option<PathBuf>,
         is_import: bool,
         ctx: &Context,
-        make: impl FnOnce() -> anyhow::Result<Scene> + Send + 'static,
+        make: impl FnOnce() -> anyhow::Result<Read> + Send + 'static,
     ) {
         let (send, scene) = bounded(1);
         let wake = ctx.clone();
         let thread = job::guard::spawn(
             "open",
-            move || make().map(Opened::of),
+            move || make().map(Into::into),
             move |scene| {
                 // Nobody listens if something else was opened meanwhile.
                 let _ = send.send(scene.unwrap_or_else(|panic| Err(panic.into())));

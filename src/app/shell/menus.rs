@@ -236,6 +236,10 @@ fn view_menu(ui: &mut Ui, input: &ToolbarInput<'_>, hand: &Hand, on: &mut On<'_>
             Command::View(ViewCommand::Preset(preset)),
         );
     }
+    on(
+        item(ui, t("3D: Orthographic from here"), "9", true),
+        Command::View(ViewCommand::ToggleParallel),
+    );
     ui.separator();
     on(
         item(ui, t("Compare: off, wipe, side, difference"), "Shift+\\", true),

@@ -94,6 +94,7 @@ impl SceneloomApp {
             scene,
             versions,
             damaged,
+            made,
         } = opened;
         self.generation.forget_scene();
         self.views.prompt.opened(&scene);
@@ -121,7 +122,7 @@ impl SceneloomApp {
         let opened = self.document.settled_scene().clone();
         self.generation
             .versions
-            .push(version.into(), String::new(), opened);
+            .push_made(version.into(), String::new(), opened, made.clone());
         self.views.compare.chosen = None;
         if let Some(path) = &opening.path {
             self.preferences.settings.remember(path);
@@ -136,6 +137,9 @@ impl SceneloomApp {
         self.state.tools.region = InpaintMask::default();
         self.state.named = Named::default();
         self.state.seed.value = None;
+        if let Some(made) = made {
+            self.take_knobs(&made);
+        }
         self.note_opened(opening.recovers, true);
         ctx.request_repaint();
     }

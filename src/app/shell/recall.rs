@@ -28,9 +28,13 @@ impl SceneloomApp {
 
     /// Sets the knobs to those of a version.
     pub(crate) fn use_again(&mut self, rev: SceneRev) {
-        let Some(made) = self.generation.versions.made(rev).cloned() else {
-            return;
-        };
+        if let Some(made) = self.generation.versions.made(rev).cloned() {
+            self.take_knobs(&made);
+        }
+    }
+
+    /// Sets the knobs to those that something was made with.
+    pub(crate) fn take_knobs(&mut self, made: &MadeWith) {
         let params = GenParams {
             named: Named::default(),
             strength: 0.0,

@@ -1,6 +1,7 @@
 //! Versions of the scene: what each generation led to, kept to be looked at, compared with and gone back to. They live in the
 //! scene's file, with their names and stars.
 
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use egui::TextureHandle;
@@ -9,6 +10,7 @@ use rayon::prelude::*;
 use super::made_with::MadeWith;
 use editor::checks::Counts;
 use formats::loom;
+use formats::recipe::{self, Recipe};
 use language::{t, tf};
 use scene::{KeptVersion, Scene, SceneRev};
 
@@ -76,6 +78,14 @@ pub struct Opened {
     pub versions: Vec<Version>,
     /// Versions that cannot be read.
     pub damaged: usize,
+    /// What a picture that was opened says its scene was made with.
+    pub made: Option<MadeWith>,
+}
+
+impl From<Scene> for Opened {
+    fn from(scene: Scene) -> Self {
+        Self::of(scene)
+    }
 }
 
 impl Opened {
@@ -104,6 +114,23 @@ impl Opened {
             damaged: scene.kept.versions.len() - versions.len(),
             versions,
             scene,
+            made: None,
+        }
+    }
+
+    /// The same with what the file says that it was made with, if it is a picture that says so.
+    pub fn told_by(self, file: &Path) -> Self {
+        let is_picture = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        let made = || {
+            let bytes = std::fs::read(file).ok()?;
+            let inside = formats::png::notes_inside(&bytes).ok()?;
+            let (_, json) = inside.text.iter().find(|(name, _)| name == recipe::NAME)?;
+            let recipe: Recipe = serde_json::from_str(json).ok()?;
+            serde_json::from_value(recipe.parameters).ok()
+        };
+        Self {
+            made: if is_picture { made() } else { None },
+            ..self
         }
     }
 }

@@ -50,6 +50,7 @@ impl SceneloomApp {
             },
             ViewCommand::FrameAt(p_in_ego) => self.frame_at(p_in_ego),
             ViewCommand::Preset(preset) => self.views.view3d.preset(preset, self.extent()),
+            ViewCommand::ToggleParallel => self.views.view3d.toggle_parallel(),
             ViewCommand::LookThrough(index) => self.look_through(index),
             ViewCommand::Cameras(view) => self.state.cameras.view = view,
             ViewCommand::ShowLight => {
@@ -137,6 +138,7 @@ impl SceneloomApp {
     pub(crate) fn look_through(&mut self, index: usize) {
         if let Some(camera) = self.document.scene().with_rig_in_world().rig.cameras.get(index) {
             self.views.view3d.camera = viewport::ViewCamera::through(camera);
+            self.views.view3d.parallel = false;
         }
     }
 

@@ -173,6 +173,12 @@ impl SceneloomApp {
             .show(ui, |ui| status_ui(ui, &status, &self.state.pointed, commands));
         // The status bar has shown what the last frame found under the pointer.
         self.state.pointed.readout.clear();
+        let place = self.state.pointed.place_now.take();
+        if place != self.state.pointed.place {
+            // Panes that were drawn before the one under the pointer show it in the next frame.
+            ui.ctx().request_repaint();
+        }
+        self.state.pointed.place = place;
     }
 
     pub(crate) fn views(&mut self, ui: &mut Ui, scene: &Arc<Scene>, commands: &mut Vec<Command>) {
@@ -237,7 +243,7 @@ impl SceneloomApp {
             let UiState { windows, cameras, .. } = &mut self.state;
             sensors_ui(ui, &scene.rig, windows, cameras, commands);
         }
-        crate::windows::row::show(ui, scene.frame(), &mut self.state.tools, commands);
+        crate::windows::row::show(ui, scene, &mut self.state.tools, commands);
         let known = Known {
             keymap: &self.preferences.keymap,
             recent: &self.preferences.settings.recent,

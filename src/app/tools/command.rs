@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use editor::arrange::Row;
+use editor::rows::Row;
 use editor::tools::{Act, Choose};
 use scene::{Arrangement, BoxId};
 

@@ -269,6 +269,12 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
         if icons::segments(ui, &mut chosen, &names) {
             queue.set_priority(id, chosen);
         }
+        if state == State::Waiting {
+            let next = ui.button(t("Run next"));
+            if next.on_hover_text(t("before all others that wait")).clicked() {
+                queue.run_next(id);
+            }
+        }
         match &state {
             State::Running | State::Waiting => {
                 if ui

@@ -4,21 +4,27 @@ use egui::{DragValue, Ui};
 
 use crate::command::Command;
 use crate::fields::{caption, number};
-use editor::arrange::{self, MAX_COPIES, RowAlong};
+use editor::rows::{self, MAX_COPIES, RowAlong};
 use language::{t, tf};
-use scene::{Frame, SceneBox};
+use scene::{Form, Scene, SceneBox};
 use widgets::icons;
 use widgets::theme;
 
 use crate::tools::{Hand, ToolCommand};
 
-/// The copies that the row of the dialog would add.
-pub(crate) fn coming(frame: &Frame, hand: &Hand) -> Vec<SceneBox> {
-    arrange::row_boxes(frame, &hand.chosen(), &hand.row)
+/// The copies that the row of the dialog would add: boxes, and things (world frame).
+pub(crate) fn coming(scene: &Scene, hand: &Hand) -> (Vec<SceneBox>, Vec<Form>) {
+    let things: Vec<&Form> = hand
+        .things
+        .chosen_in(&scene.background)
+        .map(|t| &t.form)
+        .collect();
+    let forms = rows::row_forms(scene, &things, &hand.row);
+    (rows::row_boxes(scene.frame(), &hand.chosen(), &hand.row), forms)
 }
 
 /// Draws the windows of the tools that are open.
-pub fn show(ui: &Ui, frame: &Frame, hand: &mut Hand, commands: &mut Vec<Command>) {
+pub fn show(ui: &Ui, scene: &Scene, hand: &mut Hand, commands: &mut Vec<Command>) {
     if !hand.row_open {
         return;
     }
@@ -57,16 +63,29 @@ pub fn show(ui: &Ui, frame: &Frame, hand: &mut Hand, commands: &mut Vec<Command>
                     &mut row.along,
                     &[
                         (RowAlong::Heading, t("Heading"), t("straight ahead")),
-                        (RowAlong::Lane, t("Lane"), t("the lane under each box")),
+                        (RowAlong::Lane, t("Lane"), t("the nearest lane")),
                         (RowAlong::Side, t("Left"), t("to the left of the heading")),
                     ],
                 );
             });
-            let (asked, come) = (hand.row.copies * hand.chosen().len(), coming(frame, hand).len());
+            ui.horizontal(|ui| {
+                caption(ui, t("Rows"));
+                let drag = DragValue::new(&mut row.rows).range(1..=MAX_COPIES);
+                ui.add_sized([86.0, theme::ROW], drag)
+                    .accessible_name(t("Rows"))
+                    .on_hover_text(t("beside each other: a grid"));
+            });
+            if row.rows > 1 {
+                let apart = t("Rows apart");
+                number(ui, apart, apart, &mut row.apart_m, -80.0..=80.0, " m", 2);
+            }
+            let chosen = hand.chosen().len() + hand.things.chosen_in(&scene.background).count();
+            let (boxes, things) = coming(scene, hand);
+            let (asked, come) = (hand.row.asked() * chosen, boxes.len() + things.len());
             let text = match asked - come.min(asked) {
-                0 => tf!("{n} boxes come", n = come),
+                0 => tf!("{n} copies come", n = come),
                 out => tf!(
-                    "{n} boxes come; {out} would lie outside the map and are left out",
+                    "{n} copies come; {out} would lie outside the map and are left out",
                     n = come,
                     out = out
                 ),

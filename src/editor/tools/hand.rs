@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DVec2, DVec3};
 
 use crate::Edit;
-use crate::arrange::{Clipboard, LANE_REACH_M, Pivot, Row};
+use crate::arrange::{Clipboard, LANE_REACH_M, Pivot};
 use crate::flood::FillBounds;
 use crate::lanes::nearest_lane;
 use crate::roads::Street;
+use crate::rows::Row;
 use crate::transform::{Orientation, Snap, TransformKind};
 use crate::voxel_ops::{self, Cell};
 use scene::{

@@ -30,7 +30,7 @@ pub use error::StableError;
 pub(crate) use error::{check_finite, check_length, wrong};
 pub use machine::Machine;
 pub use pictures::Pictures;
-pub use pipeline::{Control, Drawn, Folders, Onward, Pipeline, Planes, Request, Start, Step};
+pub use pipeline::{Control, Drawn, Folders, Pipeline, Planes, Request, Start, Step};
 pub use text::{TextEncoder, Words};
 pub use unet::{Extra, Unet};
 pub use vae::Vae;

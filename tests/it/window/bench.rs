@@ -150,7 +150,7 @@ impl Bench {
                 ..GenParams::default()
             },
             warm_up: false,
-            open: Arc::new(|path| Ok(loom::load(path)?)),
+            open: Arc::new(app::open::scene),
             save: Arc::new(|scene, path| Ok(loom::save(path, scene).map(|_| ())?)),
             new_scene: Arc::new(|| Ok(scene())),
             native_dialogs: false,

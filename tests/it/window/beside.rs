@@ -350,3 +350,54 @@ fn things_are_chosen_raised_and_drawn_in_the_3d_view() {
         .middle_m();
     assert!(tree.distance(place) < 1.5, "{tree}");
 }
+
+#[test]
+fn things_are_put_in_rows_and_mirrored_with_boxes() {
+    let mut bench = Bench::new();
+    bench.tree_row();
+    bench.key(Modifiers::NONE, Key::V);
+    bench.click_ground(-20.0, 22.0, Modifiers::NONE);
+    assert_eq!(bench.things_chosen(), [1]);
+    bench.key(Modifiers::CTRL | Modifiers::SHIFT, Key::D);
+    assert!(bench.harness.query_by_label("4 copies come").is_some());
+    bench.click("Add copies");
+    assert_eq!(bench.things_chosen(), [4, 5, 6, 7]);
+    let at = |b: &Bench, id: u32| b.background().get(ThingId(id)).expect("there").form.middle_m();
+    let step = at(&bench, 5) - at(&bench, 4);
+    assert_eq!(step, DVec2::new(editor::rows::Row::default().spacing_m, 0.0));
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_eq!(bench.background().len(), 3);
+
+    // A tree and the car change sides in one step.
+    bench.click_ground(-20.0, 22.0, Modifiers::NONE);
+    bench.click_ground(14.0, 3.0, Modifiers::SHIFT);
+    bench.key(Modifiers::CTRL, Key::M);
+    let car = bench.frame().boxes[&scene::BoxId(7)].center_m;
+    assert_eq!(car.truncate(), DVec2::new(14.0, -3.0));
+    let mirrored: Vec<u32> = bench.things_chosen();
+    assert_eq!(at(&bench, mirrored[0]), DVec2::new(-20.0, -22.0));
+    assert_eq!(bench.background().len(), 3);
+    assert_eq!(bench.history()[2..], ["Mirror tree"]);
+    bench.key(Modifiers::CTRL, Key::Z);
+    assert_eq!(at(&bench, 1), DVec2::new(-20.0, 22.0));
+
+    // One that is locked stays, and is not doubled.
+    bench.click_ground(-20.0, 22.0, Modifiers::NONE);
+    let ctx = bench.harness.ctx.clone();
+    let how = scene::Arrangement::Lock;
+    let lock = Edit::Arrange {
+        boxes: Vec::new(),
+        things: vec![ThingId(1)],
+        how,
+    };
+    bench.app().execute(Command::Apply("Lock", vec![lock]), &ctx);
+    bench
+        .app()
+        .state
+        .choose_things(&[ThingId(1)], app::tools::Choose::Only);
+    bench
+        .app()
+        .execute(Command::Tools(ToolCommand::Mirror(false)), &ctx);
+    assert_eq!(bench.background().len(), 3);
+    assert_eq!(at(&bench, 1), DVec2::new(-20.0, 22.0));
+}

@@ -208,3 +208,28 @@ fn who_gives_no_name_for_the_edits_stays() {
     bench.steps(20);
     assert!(path.is_file() && bench.frame() == edited);
 }
+
+#[test]
+fn a_picture_brings_its_scene_and_what_that_was_made_with() {
+    let mut bench = Bench::new();
+    bench.off();
+    let scene = bench.app().document.scene().clone();
+    let params = job::GenParams {
+        seed: 4711,
+        steps: 9,
+        ..job::GenParams::default()
+    };
+    let made = serde_json::json!({ "preset": "", "params": params });
+    let picture = app::picture::layout_top(scene.frame(), 1);
+    let bytes = app::capture::to_png_made_with(&scene, &picture, made).expect("a picture");
+    let path = bench.folder.path().join("seen.png");
+    std::fs::write(&path, bytes).expect("written");
+    let open = Command::File(FileCommand::OpenPath(path));
+    let ctx = bench.harness.ctx.clone();
+    bench.app().execute(open, &ctx);
+    bench.wait_until("the scene", |b| b.app().state.seed.value == Some(4711));
+    assert_eq!(bench.app().generation.live.params.steps, 9);
+    let versions = bench.app().generation.versions.list();
+    let kept = versions.last().and_then(|v| v.made.as_ref());
+    assert_eq!(kept.expect("told").params.seed, 4711);
+}

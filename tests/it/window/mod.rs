@@ -9,6 +9,7 @@ mod desk;
 mod editing;
 mod files;
 mod guests;
+mod linked;
 mod objects;
 mod overdraw;
 mod perception;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use app::Command;
 use app::tools::ToolCommand;
 use editor::Edit;
-use editor::arrange::{Row, RowAlong};
+use editor::rows::{Row, RowAlong};
 use editor::tools::voxel::Joins;
 use editor::tools::{brush, circle, measure};
 use egui::{Key, Modifiers};
@@ -145,6 +145,7 @@ fn copies_rows_mirror_images_and_lanes() {
         copies: 2,
         spacing_m: -8.0,
         along: RowAlong::Lane,
+        ..Row::default()
     };
     bench.ask(ToolCommand::Row(row));
     assert_eq!(bench.frame().boxes.len(), 6);

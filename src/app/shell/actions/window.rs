@@ -73,6 +73,14 @@ pub(super) const ACTIONS: &[ActionDef] = &[
         Command::View(ViewCommand::Preset(ViewPreset::Perspective))
     })
     .over_3d(),
+    action(
+        Views,
+        "view_parallel",
+        "3D view orthographic from here, or in perspective again",
+        "9",
+        || Command::View(ViewCommand::ToggleParallel),
+    )
+    .over_3d(),
     action(Views, "view_ego", "3D view from the ego vehicle", "0", || {
         Command::View(ViewCommand::Preset(ViewPreset::Ego))
     })

@@ -251,7 +251,8 @@ impl OccPipeline {
             sampler.sample(start, &mut network, |view| {
                 ctx.progress(Stage::Denoise, view.step, view.steps)?;
                 if ctx.previews() && view.step < view.steps && glimpses.due() {
-                    self.glimpse(job, &condition, &view.clean_estimate(), report, ctx)?;
+                    let seen = (&condition, &region);
+                    self.glimpse(job, seen, &view.clean_estimate(), report, ctx)?;
                     glimpses.shown();
                 }
                 Ok(())
@@ -303,23 +304,23 @@ impl OccPipeline {
         Ok(result)
     }
 
-    /// Sends a preview: the present estimate of the clean latent, decoded.
+    /// Sends a preview: the present estimate of the clean latent, decoded in a region.
     fn glimpse(
         &self,
         job: &Job,
-        condition: &Condition,
+        (condition, region): (&Condition, &Region),
         clean: &[f64],
         report: &GenReport,
         ctx: &JobCtx<'_>,
     ) -> Result<(), GenError> {
         let latent: Vec<f32> = clean.iter().map(|v| *v as f32).collect();
-        let (vae, region) = (&self.models.vae, Region::full());
+        let vae = &self.models.vae;
         let grid = vae.decode_with(&latent, &region.cells, condition.decoder_input());
         let grid = grid.map_err(GenError::failed)?;
         let frame = job.scene.frame();
         ctx.preview(GenResult {
             key: job.key(),
-            occupancy: composite(&frame.source.occupancy, &grid, &region, &frame.painted),
+            occupancy: composite(&frame.source.occupancy, &grid, region, &frame.painted),
             report: report.clone(),
         });
         Ok(())
@@ -391,7 +392,6 @@ impl OccPipeline {
             .enumerate()
             .map(|(i, v)| v * (1.0 - mask[i / CHANNELS]))
             .collect();
-        let models = self.models.clone();
         let local = self.local_tokens(&source, &sampler, &drawn, params);
         // Tokens that are not computed take part with their keys and values from the source.
         let kept = source.keys_values.as_deref().filter(|_| local.is_some());
@@ -404,11 +404,9 @@ impl OccPipeline {
         })?;
         network.keys_values = keys_values;
         report.tokens = network.condition.tokens();
-        let preview_at = if params.quality == Quality::Final {
-            sampler.steps() / 2
-        } else {
-            0
-        };
+        let mut glimpses = Glimpses::default();
+        // A draft is done before a preview of it would be seen.
+        let shows_steps = ctx.previews() && params.quality == Quality::Final;
         let edited = report.timed(Stage::Denoise, |report| {
             edit_with_replay(
                 &sampler,
@@ -418,18 +416,9 @@ impl OccPipeline {
                 &mut network,
                 |view| {
                     ctx.progress(Stage::Denoise, view.step, view.steps)?;
-                    if view.step == preview_at && view.step > 1 {
-                        let clean: Vec<f32> = view.clean_estimate().into_iter().map(|v| v as f32).collect();
-                        let grid = models
-                            .vae
-                            .decode_with(&clean, &region.cells, condition.decoder_input())
-                            .map_err(GenError::failed)?;
-                        let occupancy = composite(before, &grid, &region, &frame.painted);
-                        ctx.preview(GenResult {
-                            key: job.key(),
-                            occupancy,
-                            report: report.clone(),
-                        });
+                    if shows_steps && view.step < view.steps && glimpses.due() {
+                        self.glimpse(job, (&condition, &region), &view.clean_estimate(), report, ctx)?;
+                        glimpses.shown();
                     }
                     Ok(())
                 },

@@ -15,6 +15,8 @@ use nn::{Cpu, Ops};
 const COLOURS: usize = 3;
 /// Numbers of the folded square of 2x2 px that the first layer sees.
 const SQUARE: usize = 4 * COLOURS;
+/// Side of a window of features, cells of 8 px.
+const WINDOW: usize = 8;
 /// What a pixel may show: the classes of `scene::truth`, 0 for sky.
 pub const SHOWN: usize = 22;
 
@@ -109,7 +111,47 @@ impl<B: Ops> PictureSegmenter<B> {
         Ok(logits.chunks_exact(SHOWN).map(likeliest).collect())
     }
 
-    fn of_one(&self, picture: Map) -> Result<Vec<f32>, ModelError> {
+    /// What it sees in one picture: the means of each channel of the coarsest map in windows of about [`WINDOW`] cells (of 8 px)
+    /// a side, row by row. Input and errors as of [`logits`](Self::logits).
+    pub fn features(
+        &self,
+        picture: &[f32],
+        sides @ [height, width]: [usize; 2],
+    ) -> Result<Vec<Vec<f64>>, ModelError> {
+        check_sides(sides, CELL, "a multiple of 8 px up to 8192")?;
+        check_length("picture", picture.len(), height * width * COLOURS)?;
+        check_finite("picture", picture)?;
+        let seen = self.seen(Map {
+            data: picture.to_vec(),
+            rows: height,
+            columns: width,
+            width: COLOURS,
+        })?;
+        let Some(coarse) = seen.into_iter().next_back() else {
+            return Ok(Vec::new());
+        };
+        let map = self.ops.download(coarse)?;
+        check_finite("features", &map.data)?;
+        let parts = [map.rows, map.columns].map(|n| (n / WINDOW).max(1));
+        let mean = |[row, column]: [usize; 2]| {
+            let span = |part: usize, parts: usize, n: usize| part * n / parts..(part + 1) * n / parts;
+            let (rows, columns) = (span(row, parts[0], map.rows), span(column, parts[1], map.columns));
+            let count = (rows.len() * columns.len()) as f64;
+            let mut sums = vec![0.0; map.width];
+            for cell in rows.flat_map(|r| columns.clone().map(move |c| r * map.columns + c)) {
+                let channels = &map.data[cell * map.width..][..map.width];
+                sums.iter_mut()
+                    .zip(channels)
+                    .for_each(|(sum, v)| *sum += f64::from(*v));
+            }
+            sums.iter().map(|sum| sum / count).collect()
+        };
+        let windows = (0..parts[0]).flat_map(|row| (0..parts[1]).map(move |column| [row, column]));
+        Ok(windows.map(mean).collect())
+    }
+
+    /// What the levels on the way down make of a picture, the finest first.
+    fn seen(&self, picture: Map) -> Result<Vec<B::Tensor>, ModelError> {
         let ops = &self.ops;
         let squares = ops.fold(&ops.upload(picture)?)?;
         let mut seen = vec![self.enter[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?];
@@ -117,7 +159,12 @@ impl<B: Ops> PictureSegmenter<B> {
             let map = ops.apply(down, &ops.fold(&seen[i])?, PIECE)?;
             seen.push(self.enter[i + 1].apply(ops, map)?);
         }
-        let mut kept = seen.into_iter().rev();
+        Ok(seen)
+    }
+
+    fn of_one(&self, picture: Map) -> Result<Vec<f32>, ModelError> {
+        let ops = &self.ops;
+        let mut kept = self.seen(picture)?.into_iter().rev();
         // There is always a coarsest level.
         let Some(mut map) = kept.next() else {
             return Ok(Vec::new());

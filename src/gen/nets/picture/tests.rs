@@ -129,6 +129,29 @@ fn vae_against_the_twin() {
 }
 
 #[test]
+fn windows_are_told_apart_by_what_they_show() {
+    let segmenter = PictureSegmenter::bundled().expect("the shipped weights");
+    let sides = [128, 192];
+    let grey = vec![0.1; 128 * 192 * 3];
+    let plain = segmenter.features(&grey, sides).expect("finite");
+    // Two rows and three columns of 8 cells.
+    assert_eq!(plain.len(), 6);
+    let mut marked = grey.clone();
+    for row in 90..100 {
+        for column in 150..160 {
+            marked[(row * 192 + column) * 3] = 0.9;
+        }
+    }
+    let seen = segmenter.features(&marked, sides).expect("finite");
+    let apart = |i: usize| -> f64 { plain[i].iter().zip(&seen[i]).map(|(a, b)| (a - b).abs()).sum() };
+    let most = (0..6).max_by(|a, b| apart(*a).total_cmp(&apart(*b)));
+    assert_eq!(most, Some(5), "the last window shows it");
+    assert_eq!(apart(0), 0.0);
+    assert!(segmenter.features(&grey[1..], sides).is_err());
+    assert!(segmenter.features(&vec![f32::NAN; 128 * 192 * 3], sides).is_err());
+}
+
+#[test]
 fn transformer_against_the_twin() {
     let (golden, nets, size) = (Golden::open(), nets(), size());
     let dit = &nets.dit;

@@ -8,6 +8,7 @@ mod public;
 mod public_tests;
 mod ring;
 mod seen;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 

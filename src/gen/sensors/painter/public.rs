@@ -8,10 +8,12 @@ use std::sync::Arc;
 use super::control_pictures::{classes, depths, planes};
 use super::ring::Ring;
 use super::seen::Seen;
+use super::surfaces::{cells_of, pixels_before, shared_cells};
 use super::{KEPT, PaintError, PaintInput, PaintOptions, Progress, mask};
 use crate::appearance::CameraImage;
 use crate::painter::model::Paint;
 use diffusion::solver::Guidance;
+use stable::noise::{carried, fresh};
 use stable::{Control, Pictures, Pipeline, Planes, Request, StableError, Start};
 
 /// Paints with public weights.
@@ -22,10 +24,23 @@ pub(super) struct PublicPainter {
     kept: VecDeque<Painted>,
 }
 
+/// How much of a picture that goes on from the frame before is painted anew at most: enough to mend what the warp tore.
+const ONWARD: f64 = 0.5;
+
 /// Pictures of one state, in the ring's order.
 struct Painted {
     seen: Seen,
     images: Vec<Arc<CameraImage>>,
+    /// What they were drawn from, `[view][channel][row][column]`.
+    noise: Vec<f32>,
+    /// Counts frames that go on from each other.
+    frame: u32,
+}
+
+/// The frame before, and for each pixel `[view][row][column]` the one that showed the same surface there.
+struct Onward<'a> {
+    images: &'a [Arc<CameraImage>],
+    pixels: Vec<Option<u32>>,
 }
 
 /// The pictures before an edit, and of each view the share of each pixel that is new.
@@ -37,6 +52,36 @@ struct Told<'a> {
     seen: &'a Seen,
     ring: &'a Ring,
     before: Option<Before<'a>>,
+    onward: Option<Onward<'a>>,
+    /// Of all views.
+    noise: &'a [f32],
+}
+
+impl Told<'_> {
+    /// The picture that a view is drawn over: the rendered one, and what is known of it from before.
+    fn start(&self, view: usize) -> Vec<u8> {
+        let plain = self.seen.pixels(view).1.iter().flatten().copied();
+        let mut picture: Vec<u8> = plain.collect();
+        if let Some((images, shares)) = &self.before {
+            let old = images[view].rgba.chunks_exact(4).zip(&shares[view]);
+            let kept = picture
+                .chunks_exact_mut(3)
+                .zip(old)
+                .filter(|(_, (_, share))| **share == 0.0);
+            kept.for_each(|(new, (old, _))| new.copy_from_slice(&old[..3]));
+        }
+        if let Some(onward) = &self.onward {
+            let count = picture.len() / 3;
+            let pixels = picture.chunks_exact_mut(3).zip(&onward.pixels[view * count..]);
+            for (new, from) in pixels {
+                if let Some(from) = from.map(|f| f as usize) {
+                    let old = &onward.images[from / count].rgba[from % count * 4..];
+                    new.copy_from_slice(&old[..3]);
+                }
+            }
+        }
+        picture
+    }
 }
 
 impl PublicPainter {
@@ -67,20 +112,15 @@ impl PublicPainter {
         watch: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Result<Vec<CameraImage>, PaintError> {
         let [height, width] = told.ring.size.pixels();
-        let mut start: Vec<u8> = Vec::new();
-        for view in views {
-            let plain = told.seen.pixels(*view).1.iter().flatten().copied();
-            let mut picture: Vec<u8> = plain.collect();
-            if let Some((images, shares)) = &told.before {
-                let old = images[*view].rgba.chunks_exact(4).zip(&shares[*view]);
-                let kept = picture
-                    .chunks_exact_mut(3)
-                    .zip(old)
-                    .filter(|(_, (_, share))| **share == 0.0);
-                kept.for_each(|(new, (old, _))| new.copy_from_slice(&old[..3]));
-            }
-            start.extend(picture);
-        }
+        let start: Vec<u8> = views.iter().flat_map(|view| told.start(*view)).collect();
+        let of_view = told.noise.len() / told.ring.size.views();
+        let noise = views
+            .iter()
+            .flat_map(|view| &told.noise[view * of_view..][..of_view]);
+        let strength = match told.onward {
+            Some(_) => self.options.strength.min(ONWARD),
+            None => self.options.strength,
+        };
         let start = Pictures::from_bytes(views.len(), [height, width], &start).map_err(public)?;
         let mask: Option<Vec<bool>> = told.before.as_ref().map(|(_, shares)| {
             let all = views.iter().flat_map(|view| &shares[*view]);
@@ -111,10 +151,10 @@ impl PublicPainter {
             },
             scheduler: None,
             seed: told.seen.seed(),
-            noise: None,
+            noise: Some(noise.copied().collect()),
             start: Some(Start {
                 pictures: &start,
-                strength: self.options.strength,
+                strength,
                 mask: mask.as_deref(),
             }),
             controls: shown
@@ -202,6 +242,33 @@ impl PublicPainter {
         }
         let source = self.kept.iter().rfind(|p| p.seen.differs_in_scene_alone(&seen));
         let [_, width] = ring.size.pixels();
+        let earlier = match source {
+            None => {
+                let mut kept = self.kept.iter();
+                kept.rfind(|p| seen.motion_since(&p.seen, ring.size).is_some())
+            }
+            Some(_) => None,
+        };
+        let onward = earlier.map(|earlier| Onward {
+            images: &earlier.images,
+            pixels: pixels_before(&seen, &earlier.seen, count),
+        });
+        let frame = earlier.map_or(0, |e| e.frame + 1);
+        let noise = match source {
+            Some(source) => source.noise.clone(),
+            None => {
+                let size = self.pipeline.latent_size(count, ring.size.pixels());
+                let (cell, new) = (self.pipeline.cell(), fresh(seen.seed(), frame, size));
+                let noise = match (earlier, &onward) {
+                    (Some(earlier), Some(onward)) => {
+                        let cells = cells_of(&onward.pixels, ring.size.pixels(), cell);
+                        carried(&earlier.noise, &cells, &new, size)
+                    }
+                    _ => carried(&new, &shared_cells(&seen, &ring.front_first(), cell), &new, size),
+                };
+                noise.map_err(public)?
+            }
+        };
         let before = source.map(|source| {
             let changed = mask::changed(&source.seen, &seen, ring.size);
             let shares = changed.iter().map(|c| mask::shares(c, width)).collect();
@@ -212,6 +279,8 @@ impl PublicPainter {
             seen: &seen,
             ring,
             before,
+            onward,
+            noise: &noise,
         };
         let touched = |view: &usize| match &told.before {
             Some((_, shares)) => shares[*view].iter().any(|share| *share > 0.0),
@@ -253,6 +322,8 @@ impl PublicPainter {
         Ok(Painted {
             images: images.into_iter().flatten().collect(),
             seen,
+            noise,
+            frame,
         })
     }
 }

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use super::surfaces::{pixels_before, shared_cells};
 use super::tests::{input, with_and_without_a_car};
 use super::*;
-use scene::SensorRig;
+use scene::{Pose, SensorRig};
 
 fn folder(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -125,4 +126,98 @@ fn a_painting_is_stopped_and_folders_without_weights_are_one_line() {
             .expect("nothing")
             .is_empty()
     );
+}
+
+/// Mean difference between bytes.
+fn apart(a: &[u8], b: &[u8]) -> f64 {
+    let sum: u64 = a.iter().zip(b).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / a.len().max(1) as f64
+}
+
+#[test]
+fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
+    let (frame, ..) = with_and_without_a_car();
+    let rig = SensorRig::default();
+    let ring = Ring::sized(&rig.cameras, [72, 128])
+        .expect("a ring")
+        .expect("cameras");
+    let then = Seen::of(&input(&frame, &rig), &ring);
+    let same = pixels_before(&then, &then, 6);
+    let still = same
+        .iter()
+        .enumerate()
+        .filter(|(i, from)| **from == Some(*i as u32));
+    assert!(still.count() * 1000 >= same.len() * 999, "nothing moved");
+
+    let ahead_rig = rig.placed(&Pose::planar(1.0, 0.0, 0.02));
+    let now = Seen::of(&input(&frame, &ahead_rig), &ring);
+    let from = pixels_before(&now, &then, 6);
+    let known = from.iter().flatten().count();
+    assert!(known * 10 > from.len() * 7, "{known} of {}", from.len());
+    // Moved along, the colours of then are nearer to those of now than where they were.
+    let colors = |seen: &Seen| -> Vec<[u8; 3]> { (0..6).flat_map(|v| seen.pixels(v).1.to_vec()).collect() };
+    let (old, new) = (colors(&then), colors(&now));
+    let pairs: Vec<(usize, usize)> = from
+        .iter()
+        .enumerate()
+        .filter_map(|(i, f)| Some((i, (*f)? as usize)))
+        .collect();
+    let bytes = |of: &dyn Fn(&(usize, usize)) -> [u8; 3]| -> Vec<u8> { pairs.iter().flat_map(of).collect() };
+    let here = bytes(&|(i, _)| new[*i]);
+    let (moved, left) = (bytes(&|(_, f)| old[*f]), bytes(&|(i, _)| old[*i]));
+    let (a, b) = (apart(&here, &moved), apart(&here, &left));
+    assert!(a < b * 0.6, "{a} {b}");
+
+    // Cameras overlap: their cells share noise, and within one view no noise comes twice.
+    let shared = shared_cells(&then, &ring.front_first(), 8);
+    assert_eq!(shared.len(), 6 * 9 * 16);
+    let found = shared.iter().flatten().count();
+    assert!(found > 20, "{found}");
+    let first = ring.front_first()[0];
+    assert!(shared[first * 144..][..144].iter().all(Option::is_none));
+    for (to, from) in shared.iter().enumerate() {
+        let other = from.map_or(usize::MAX, |from| from as usize / 144);
+        assert_ne!(other, to / 144, "not from its own view");
+    }
+}
+
+#[test]
+fn a_drive_keeps_what_it_saw() {
+    let (frame, ..) = with_and_without_a_car();
+    let rig = SensorRig::default();
+    let ahead = rig.placed(&Pose::planar(0.5, 0.0, 0.0));
+    let mut painter = painter("sd15");
+    let first = painter.paint(&input(&frame, &rig), &mut go_on).expect("pictures");
+    let next = painter
+        .paint(&input(&frame, &ahead), &mut go_on)
+        .expect("pictures");
+    let alone = self::painter("sd15")
+        .paint(&input(&frame, &ahead), &mut go_on)
+        .expect("pictures");
+    // Against the first pictures, moved along.
+    let [height, width] = [first[0].height, first[0].width];
+    let ring = Ring::sized(&rig.cameras, [height, width])
+        .expect("a ring")
+        .expect("cameras");
+    let seen = |rig: &SensorRig| Seen::of(&input(&frame, rig), &ring);
+    let from = pixels_before(&seen(&ahead), &seen(&rig), 6);
+    let differs = |images: &[Arc<CameraImage>]| {
+        let rgb = |images: &[Arc<CameraImage>], i: usize| {
+            let (place, at) = (i / (height * width), i % (height * width));
+            <[u8; 3]>::try_from(&images[ring.camera(place)].rgba[at * 4..][..3]).expect("three")
+        };
+        let known = from
+            .iter()
+            .enumerate()
+            .filter_map(|(i, f)| Some((i, (*f)? as usize)));
+        let (now, then): (Vec<_>, Vec<_>) = known.map(|(i, f)| (rgb(images, i), rgb(&first, f))).unzip();
+        apart(now.as_flattened(), then.as_flattened())
+    };
+    let (onward, anew) = (differs(&next), differs(&alone));
+    assert!(onward < anew, "{onward} {anew}");
+    // The same drive gives the same pictures.
+    let mut again = self::painter("sd15");
+    again.paint(&input(&frame, &rig), &mut go_on).expect("pictures");
+    let same = again.paint(&input(&frame, &ahead), &mut go_on).expect("pictures");
+    assert!(next.iter().zip(&same).all(|(a, b)| a.rgba == b.rgba));
 }

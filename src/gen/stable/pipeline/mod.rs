@@ -4,7 +4,6 @@ mod checks;
 mod draw;
 mod open;
 mod request;
-mod video;
 
 use candle_core::{DType, Device, Tensor};
 
@@ -20,7 +19,6 @@ use crate::{Machine, StableError, check_finite, check_length};
 pub use draw::{Drawn, Step};
 pub use open::Folders;
 pub use request::{Control, Planes, Request, Start};
-pub use video::Onward;
 
 /// All networks of a model, checked against each other.
 pub struct Pipeline {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::opened;
 use crate::noise::{carried, fresh, with_prior};
-use crate::{Control, Drawn, Onward, Pictures, Pipeline, Planes, Request, StableError, Start};
+use crate::{Control, Drawn, Pictures, Pipeline, Planes, Request, StableError, Start};
 use diffusion::solver::Guidance;
 
 pub(super) fn go_on(_: &crate::Step<'_>) -> ControlFlow<()> {
@@ -265,33 +265,6 @@ fn a_reference_frame_comes_back_and_is_heard() {
     let half = 6 * 8 * 14 * 3;
     assert_eq!(a.pictures.rgb()[..half], one.rgb()[..half]);
     assert_ne!(a.pictures.rgb()[half..], b.pictures.rgb()[half..]);
-}
-
-#[test]
-fn the_next_frame_goes_on_from_the_one_before() {
-    let pipeline = opened("sd15");
-    let first = drawn(&pipeline, &request(5));
-    let size = pipeline.latent_size(1, [16, 24]);
-    let still: Vec<Option<u32>> = (0..8 * 12).map(Some).collect();
-    let onward = Onward {
-        pictures: &first.pictures,
-        cells: &still,
-        strength: 0.5,
-        frame: 1,
-    };
-    let next = pipeline
-        .next_frame(&first, &onward, &request(5), go_on)
-        .expect("drawn");
-    assert_eq!(next.noise, first.noise, "nothing moved");
-    let nowhere = vec![None; 8 * 12];
-    let onward = Onward {
-        cells: &nowhere,
-        ..onward
-    };
-    let next = pipeline
-        .next_frame(&first, &onward, &request(5), go_on)
-        .expect("drawn");
-    assert_eq!(next.noise, fresh(5, 1, size));
 }
 
 #[test]

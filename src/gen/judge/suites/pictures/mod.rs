@@ -1,5 +1,8 @@
 //! `eval pictures`: learned pictures of held-out worlds. Does a segmenter see in them what they should show, do they stay the
-//! same from moment to moment and from camera to camera, what does an edit change, and how long does it take.
+//! same from moment to moment and from camera to camera, how like rendered ones are they, what does an edit change, and how
+//! long does it take.
+
+mod likeness;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -8,6 +11,7 @@ use std::time::Instant;
 use anyhow::Context;
 use serde_json::json;
 
+use self::likeness::{Likeness, light_of};
 use crate::Progress;
 use crate::held_out::TEST_SEED;
 use crate::suite::{Found, Options, with_interval};
@@ -18,7 +22,7 @@ use metrics::stats::mean_ci95;
 use nets::picture::{PictureNets, PictureSegmenter};
 use numeric::quantile::median;
 use scene::truth::OUTSIDE;
-use scene::{Camera, Class, Conditions, Frame, SceneBox, SensorRig, TimeOfDay, TruthPixel, Weather};
+use scene::{Camera, Class, Conditions, Frame, SceneBox, SensorRig, TruthPixel};
 use sensors::appearance::{Appearance, CameraImage, Quality};
 use sensors::painter::{PaintInput, PaintOptions, Painter, native_px};
 use sensors::picture_hints::{HintedFrame, PictureHints};
@@ -48,6 +52,7 @@ struct Figures {
     elsewhere_px: usize,
     first_s: Vec<f64>,
     edit_s: Vec<f64>,
+    likeness: Likeness,
 }
 
 /// What the renderer makes of the cameras of a rig: pictures and truths, and the cameras at that size.
@@ -117,15 +122,19 @@ impl Rendered {
 fn agreement(net: &PictureSegmenter, rendered: &Rendered, images: &[&CameraImage]) -> anyhow::Result<f64> {
     let (mut right, mut all) = (0usize, 0usize);
     for (image, truth) in images.iter().zip(&rendered.pixels) {
-        let colors = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
-        let colors: Vec<f32> = colors.map(|c| f32::from(c) / 127.5 - 1.0).collect();
-        let classes = net.classes(&colors, [image.height, image.width])?;
+        let classes = net.classes(&colours(image), [image.height, image.width])?;
         for (pixel, class) in truth.iter().zip(classes).filter(|(p, _)| p.class != OUTSIDE) {
             all += 1;
             right += usize::from(pixel.class == class);
         }
     }
     Ok(right as f64 / all.max(1) as f64)
+}
+
+/// Colours of a picture as networks take them, -1 to 1.
+fn colours(image: &CameraImage) -> Vec<f32> {
+    let colors = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
+    colors.map(|c| f32::from(c) / 127.5 - 1.0).collect()
 }
 
 fn frame_of(world: &World) -> Frame {
@@ -184,6 +193,10 @@ fn refs(images: &[Arc<CameraImage>]) -> Vec<&CameraImage> {
     images.iter().map(|i| &**i).collect()
 }
 
+fn refs_of(images: &[CameraImage]) -> Vec<&CameraImage> {
+    images.iter().collect()
+}
+
 impl Figures {
     fn add(
         &mut self,
@@ -195,8 +208,7 @@ impl Figures {
         let frame = frame_of(&world);
         let places = poses(&frame, &mut Draw::new(seed, "learned pictures"));
         let [rig, rig_ahead] = places.map(|pose| SensorRig::default().placed(&pose));
-        let time = TimeOfDay::ALL[index as usize % TimeOfDay::ALL.len()];
-        let weather = Weather::ALL[index as usize / 2 % Weather::ALL.len()];
+        let (time, weather) = light_of(index);
         let input = PaintInput {
             frame: &frame,
             rig: &rig,
@@ -208,7 +220,8 @@ impl Figures {
         let first = memory.paint(&input, go_on)?;
         self.first_s.push(start.elapsed().as_secs_f64());
         let rendered = Rendered::of(&input);
-        let renders: Vec<&CameraImage> = rendered.images.iter().collect();
+        let renders = refs_of(&rendered.images);
+        self.likeness.add(segmenter, &renders, &refs(&first))?;
         self.rendered.push(agreement(segmenter, &rendered, &renders)?);
         self.learned.push(agreement(segmenter, &rendered, &refs(&first))?);
         self.sides.push(rendered.between(&refs(&first)));
@@ -225,9 +238,8 @@ impl Figures {
         self.after.push(after);
         self.alone.push(without);
         self.gain.push(without - after);
-        let renders_now: Vec<&CameraImage> = now.images.iter().collect();
         self.rendered_after
-            .push(now.since(&rendered, [&renders_now, &renders]));
+            .push(now.since(&rendered, [&refs_of(&now.images), &renders]));
 
         let is_near = |b: &&SceneBox| {
             let away_m = (b.center_m - rig.vehicle.translation_m).truncate().length();
@@ -261,6 +273,8 @@ impl Options {
         for i in 0..self.frames {
             progress.at("pictures", i, self.frames);
             found.add(i as u64, &nets, &segmenter)?;
+            let other = (self.frames + i) as u64;
+            found.likeness.add_other(&segmenter, other, i as u64)?;
         }
         let mean = |values: &[f64]| mean_ci95(values).0;
         let share = mean(&found.learned) / mean(&found.rendered);
@@ -274,6 +288,7 @@ impl Options {
                 "gain": with_interval(&found.gain),
             },
             "between_cameras": { "rendered": with_interval(&found.rendered_sides), "learned": with_interval(&found.sides) },
+            "likeness": found.likeness.report()?,
             "edit": {
                 "painted_share": with_interval(&found.painted_share),
                 "pixels_changed_elsewhere": found.elsewhere_px,

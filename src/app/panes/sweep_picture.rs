@@ -1,0 +1,289 @@
+//! A sweep as a picture: azimuth from left to right as the driver sees it, beams from top to bottom. A click chooses the box
+//! that returned the light.
+
+use std::sync::Arc;
+
+use egui::accesskit::Role;
+use egui::{
+    Color32, ColorImage, Rect, Sense, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2,
+};
+use glam::DVec3;
+
+use super::id::PaneId;
+use crate::command::Command;
+use crate::place_marks;
+use crate::state::{UiState, called};
+use crate::tools::{Choose, ToolCommand};
+use language::{t, tf};
+use scene::{LidarPattern, LidarPoint, LidarSweep, Pose, Scene, SceneBox};
+use viewport::{LidarColorMode, lidar_colors};
+use widgets::theme;
+
+/// Columns of the picture.
+pub const COLUMNS: usize = 1080;
+/// Returns this far outside a box are still of it, m: the sides of voxels stand out.
+const MARGIN_M: f64 = 0.25;
+
+/// Where a sensor is: it sees directions as the vehicle does, while returns are in the world frame.
+pub struct Mount {
+    ego_from_world: Pose,
+    at_m: DVec3,
+}
+
+impl Mount {
+    /// Of a sensor of the scene's vehicle.
+    pub fn of(scene: &Scene, lidar: &LidarPattern) -> Self {
+        Self {
+            ego_from_world: scene.frame().world_from_ego.inverse(),
+            at_m: DVec3::from_array(lidar.translation_m),
+        }
+    }
+
+    /// Azimuth of a place of the world as seen from the sensor, degrees, counter-clockwise from forward.
+    pub fn azimuth_deg(&self, p_m: DVec3) -> f64 {
+        let d = self.ego_from_world.apply(p_m) - self.at_m;
+        d.y.atan2(d.x).to_degrees()
+    }
+
+    /// The column of the picture in which a return is.
+    pub fn column(&self, point: &LidarPoint) -> usize {
+        column(self.azimuth_deg(place_of(point)))
+    }
+}
+
+fn place_of(point: &LidarPoint) -> DVec3 {
+    DVec3::from_array(point.position_in_ego.map(f64::from))
+}
+
+fn column(azimuth_deg: f64) -> usize {
+    (((180.0 - azimuth_deg) / 360.0 * COLUMNS as f64) as usize).min(COLUMNS - 1)
+}
+
+/// The picture and what it was made from.
+#[derive(Default)]
+pub struct SweepPicture {
+    texture: Option<(Arc<LidarSweep>, LidarColorMode, usize, TextureHandle)>,
+}
+
+impl SweepPicture {
+    /// Draws the sweep into all the space there is, and answers the pointer.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene,
+        sweep: Option<&Arc<LidarSweep>>,
+        state: &mut UiState,
+        commands: &mut Vec<Command>,
+    ) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click());
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, t("LiDAR sweep")));
+        ui.painter().rect_filled(rect, 0.0, theme::well());
+        let (Some(sweep), Some(lidar)) = (sweep, scene.rig.lidars.first()) else {
+            let text = t("This vehicle has no LiDAR. Sensors… adds one.");
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let painter = ui.painter();
+            painter.text(
+                rect.center(),
+                egui::Align2::CENTER_CENTER,
+                text,
+                font,
+                theme::text_weak(),
+            );
+            return;
+        };
+        let (rings, mount) = (lidar.elevations_deg.len().max(1), Mount::of(scene, lidar));
+        let mode = state.lidar.colors;
+        let known = |(of, m, n, _): &(Arc<LidarSweep>, LidarColorMode, usize, _)| {
+            Arc::ptr_eq(of, sweep) && *m == mode && *n == rings
+        };
+        if !self.texture.as_ref().is_some_and(known) {
+            let image = picture(sweep, mode, rings, &mount);
+            let options = TextureOptions::NEAREST;
+            let handle = ui.ctx().load_texture("sweep", image, options);
+            self.texture = Some((sweep.clone(), mode, rings, handle));
+        }
+        let Some((.., handle)) = &self.texture else { return };
+        let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+        painter.image(handle.id(), rect, unit, Color32::WHITE);
+        for id in state.chosen() {
+            let chosen = scene.frame().boxes.get(&id);
+            for outline in chosen.map_or_else(Vec::new, |b| outlines(sweep, &mount, rings, b)) {
+                let at = |part: [f64; 2]| rect.min + egui::vec2(part[0] as f32, part[1] as f32) * rect.size();
+                let around = Rect::from_two_pos(at(outline[0]), at(outline[1])).expand(2.0);
+                let dark = Stroke::new(3.5, Color32::from_black_alpha(150));
+                painter.rect_stroke(around, 2.0, dark, StrokeKind::Middle);
+                let light = Stroke::new(1.5, Color32::WHITE);
+                painter.rect_stroke(around, 2.0, light, StrokeKind::Middle);
+            }
+        }
+        let Some(p) = response.hover_pos() else {
+            return;
+        };
+        let part = (p - rect.min) / rect.size();
+        let azimuth_deg = 180.0 - f64::from(part.x) * 360.0;
+        let ring = ((f64::from(1.0 - part.y) * rings as f64) as usize).min(rings - 1);
+        let near = nearest(sweep, &mount, ring, azimuth_deg);
+        let hit = near.and_then(|point| box_of(scene, point));
+        state.pointed.readout = match near {
+            Some(point) => tf!(
+                "azimuth {azimuth}°  ·  beam {beam}  ·  {range} m  ·  {class}",
+                azimuth = format!("{azimuth_deg:.0}"),
+                beam = ring,
+                range = format!("{:.2}", point.range_m),
+                class = match hit {
+                    Some(b) => format!("{} #{}", called(b), b.id.0),
+                    None => t(&point.class.label()).to_owned(),
+                }
+            ),
+            None => tf!(
+                "azimuth {azimuth}°  ·  beam {beam}  ·  no return",
+                azimuth = format!("{azimuth_deg:.0}"),
+                beam = ring
+            ),
+        };
+        if let Some(point) = near {
+            place_marks::point(state, PaneId::LIDAR, place_of(point));
+        }
+        if response.clicked() {
+            let how = match ui.input(|i| i.modifiers.shift) {
+                true => Choose::Toggle,
+                false => Choose::Only,
+            };
+            let ids = hit.map(|b| b.id).into_iter().collect();
+            commands.push(Command::Tools(ToolCommand::Choose(ids, how)));
+        }
+    }
+}
+
+/// The box that a return is of; of several the smallest.
+fn box_of<'a>(scene: &'a Scene, point: &LidarPoint) -> Option<&'a SceneBox> {
+    let hidden = &scene.arranged.hidden.boxes;
+    let holds = |b: &&SceneBox| !hidden.contains(&b.id) && b.contains(place_of(point), MARGIN_M);
+    let volume = |b: &SceneBox| b.size_m.element_product();
+    let all = scene.frame().boxes.values().filter(holds);
+    all.min_by(|a, b| volume(a).total_cmp(&volume(b)))
+}
+
+/// Rectangles around the returns of a box, two opposite corners as parts of the picture: none without returns, two where it lies
+/// across the edge of the picture.
+fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Vec<[[f64; 2]; 2]> {
+    let middle_deg = mount.azimuth_deg(b.center_m);
+    let mut low = [f64::INFINITY; 2];
+    let mut high = [f64::NEG_INFINITY; 2];
+    for point in sweep.points.iter().filter(|p| b.contains(place_of(p), MARGIN_M)) {
+        let turn = mount.azimuth_deg(place_of(point)) - middle_deg;
+        let off_deg = (turn + 180.0).rem_euclid(360.0) - 180.0;
+        let down = 1.0 - (f64::from(point.ring) + 0.5) / rings as f64;
+        let at = [(180.0 - middle_deg - off_deg) / 360.0, down];
+        for axis in 0..2 {
+            low[axis] = low[axis].min(at[axis]);
+            high[axis] = high[axis].max(at[axis]);
+        }
+    }
+    if low[0] > high[0] {
+        return Vec::new();
+    }
+    let moved = |by: f64| [[low[0] + by, low[1]], [high[0] + by, high[1]]];
+    let mut out = vec![moved(0.0)];
+    if low[0] < 0.0 {
+        out.push(moved(1.0));
+    }
+    if high[0] > 1.0 {
+        out.push(moved(-1.0));
+    }
+    out
+}
+
+fn picture(sweep: &LidarSweep, mode: LidarColorMode, rings: usize, mount: &Mount) -> ColorImage {
+    let mut image = ColorImage::filled([COLUMNS, rings], theme::well());
+    for (point, [r, g, b, _]) in sweep.points.iter().zip(lidar_colors(sweep, mode)) {
+        let ring = usize::from(point.ring);
+        if ring < rings {
+            image[(mount.column(point), rings - 1 - ring)] = Color32::from_rgb(r, g, b);
+        }
+    }
+    image
+}
+
+/// The return of a beam that is nearest to an azimuth, within a degree.
+fn nearest<'a>(sweep: &'a LidarSweep, mount: &Mount, ring: usize, at_deg: f64) -> Option<&'a LidarPoint> {
+    let off = |p: &LidarPoint| (mount.azimuth_deg(place_of(p)) - at_deg).abs();
+    let found = sweep
+        .points
+        .iter()
+        .filter(|p| usize::from(p.ring) == ring)
+        .min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    (off(found) <= 1.0).then_some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::{BoxId, Class};
+
+    fn mount(at_m: DVec3, world_from_ego: Pose) -> Mount {
+        Mount {
+            ego_from_world: world_from_ego.inverse(),
+            at_m,
+        }
+    }
+
+    #[test]
+    fn the_sweep_is_unrolled_as_the_driver_sees_it() {
+        let here = mount(DVec3::new(1.0, 0.0, 1.8), Pose::IDENTITY);
+        let at = |mount: &Mount, x: f64, y: f64| column(mount.azimuth_deg(DVec3::new(x, y, 0.0)));
+        assert_eq!(at(&here, 11.0, 0.0), COLUMNS / 2, "forward is in the middle");
+        assert_eq!(at(&here, 1.0, 10.0), COLUMNS / 4, "left is left");
+        assert_eq!(at(&here, 1.0, -10.0), COLUMNS * 3 / 4, "right is right");
+        // The vehicle has driven on and turned to the left.
+        let turned = Pose {
+            translation_m: DVec3::new(20.0, 5.0, 0.0),
+            rotation: glam::DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2),
+        };
+        let later = mount(DVec3::ZERO, turned);
+        assert_eq!(at(&later, 20.0, 15.0), COLUMNS / 2, "forward is in the middle");
+    }
+
+    #[test]
+    fn a_box_behind_is_outlined_at_both_edges() {
+        let here = mount(DVec3::ZERO, Pose::IDENTITY);
+        let b = SceneBox {
+            id: BoxId(1),
+            class: Class::Car,
+            center_m: DVec3::new(-10.0, 0.0, 0.0),
+            size_m: DVec3::new(4.0, 2.0, 2.0),
+            yaw_rad: 0.0,
+            velocity_mps: glam::DVec2::ZERO,
+            label: Default::default(),
+        };
+        let point = |x: f32, y: f32, ring: u16| LidarPoint {
+            position_in_ego: [x, y, 0.0],
+            range_m: x.hypot(y),
+            ring,
+            azimuth: 0,
+            class: Class::Car,
+            intensity: 0.0,
+            drop_probability: 0.0,
+            time_s: 0.0,
+            velocity_mps: [0.0; 2],
+        };
+        let mut sweep = LidarSweep {
+            points: vec![point(-8.0, 1.0, 3), point(-8.0, -1.0, 5), point(9.0, 0.0, 0)],
+            rays: 3,
+            physical: true,
+        };
+        let found = outlines(&sweep, &here, 10, &b);
+        assert_eq!(found.len(), 2, "{found:?}");
+        let wide = found.iter().map(|[a, b]| b[0] - a[0]);
+        assert!(wide.into_iter().all(|w| w < 0.1), "{found:?}");
+        assert!(
+            found
+                .iter()
+                .all(|[a, b]| a[1] == 1.0 - 0.55 && b[1] == 1.0 - 0.35)
+        );
+        sweep.points.truncate(0);
+        assert!(outlines(&sweep, &here, 10, &b).is_empty());
+    }
+}

@@ -1,0 +1,93 @@
+//! How like rendered pictures the learned ones are as a whole: Fréchet distance (FID) and kernel distance (KID) of what the
+//! program's own segmenter sees in windows of both. Its weights ship, so the figures can be made again anywhere; they are not
+//! comparable with those of other networks' features.
+
+use anyhow::Context;
+use serde_json::{Value, json};
+
+use super::{Rendered, refs_of};
+use dataset::picture_pairs::poses;
+use dataset::world_of;
+use metrics::scenewise::{frechet, kernel, standardised};
+use nets::picture::PictureSegmenter;
+use scene::{Conditions, SensorRig, TimeOfDay, Weather};
+use sensors::appearance::CameraImage;
+use sensors::painter::PaintInput;
+use world::draw::Draw;
+
+use crate::held_out::TEST_SEED;
+
+/// Features of windows of all pictures of a world.
+type Windows = Vec<Vec<f64>>;
+
+/// What is seen in pictures of each world, and in rendered ones of other worlds.
+#[derive(Default)]
+pub(super) struct Likeness {
+    rendered: Vec<Windows>,
+    learned: Vec<Windows>,
+    others: Vec<Windows>,
+}
+
+impl Likeness {
+    /// Adds a world: its pictures by the renderer and by the network.
+    pub(super) fn add(
+        &mut self,
+        net: &PictureSegmenter,
+        rendered: &[&CameraImage],
+        learned: &[&CameraImage],
+    ) -> anyhow::Result<()> {
+        self.rendered.push(windows(net, rendered)?);
+        self.learned.push(windows(net, learned)?);
+        Ok(())
+    }
+
+    /// Adds rendered pictures of another held-out world, in the light and weather of that number.
+    pub(super) fn add_other(&mut self, net: &PictureSegmenter, index: u64, light: u64) -> anyhow::Result<()> {
+        let (world, seed) = world_of(TEST_SEED, index, |_| None);
+        let frame = super::frame_of(&world);
+        let [pose, _] = poses(&frame, &mut Draw::new(seed, "learned pictures"));
+        let rig = SensorRig::default().placed(&pose);
+        let (time, weather) = light_of(light);
+        let rendered = Rendered::of(&PaintInput {
+            frame: &frame,
+            rig: &rig,
+            conditions: Conditions::usual(time, weather, seed),
+        });
+        self.others.push(windows(net, &refs_of(&rendered.images))?);
+        Ok(())
+    }
+
+    /// Distances to rendered pictures of other worlds, of the learned and of the rendered ones: these are the floor.
+    /// Null of fewer than two worlds.
+    pub(super) fn report(&self) -> anyhow::Result<Value> {
+        if self.others.len() < 2 {
+            return Ok(Value::Null);
+        }
+        let of = |set: &[Windows]| {
+            let [others, set] = standardised(&self.others, set)?;
+            let (fid, kid) = (frechet(&others, &set)?, kernel(&others, &set)?);
+            Ok(json!({ "fid": fid, "kid": kid }))
+        };
+        let of = |set: &[Windows]| of(set).map_err(|e: metrics::MetricError| anyhow::anyhow!("{e}"));
+        Ok(json!({
+            "rendered": of(&self.rendered).context("rendered pictures")?,
+            "learned": of(&self.learned).context("learned pictures")?,
+        }))
+    }
+}
+
+/// Time of day and weather of the world of a number.
+pub(super) fn light_of(index: u64) -> (TimeOfDay, Weather) {
+    (
+        TimeOfDay::ALL[index as usize % TimeOfDay::ALL.len()],
+        Weather::ALL[index as usize / 2 % Weather::ALL.len()],
+    )
+}
+
+fn windows(net: &PictureSegmenter, images: &[&CameraImage]) -> anyhow::Result<Windows> {
+    let mut all = Windows::new();
+    for image in images {
+        all.extend(net.features(&super::colours(image), [image.height, image.width])?);
+    }
+    Ok(all)
+}
