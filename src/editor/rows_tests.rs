@@ -63,12 +63,12 @@ fn rows_beside_each_other_make_a_grid() {
     };
     let mut found: Vec<_> = row_boxes(&frame, &[BoxId(1)], &grid)
         .iter()
-        .map(|b| [b.center_m.x.round(), b.center_m.y.round()])
+        .map(|b| [b.center_m.x, b.center_m.y].map(|v| (v * 2.0).round() / 2.0))
         .collect();
     // It looks to the left; to the right of that is ahead.
     let mut wanted = Vec::new();
-    for x in [-4.0, -1.5, 1.0_f64] {
-        wanted.extend([-8.0, -2.0, 4.0].map(|y| [x.round(), y]));
+    for x in [-4.0, -1.5, 1.0] {
+        wanted.extend([-8.0, -2.0, 4.0].map(|y| [x, y]));
     }
     wanted.remove(0);
     found.sort_by(|a, b| a.partial_cmp(b).expect("finite"));

@@ -17,6 +17,8 @@ const AWAY_M: (f64, usize) = (1.0, 40);
 const ASIDE_M: (f64, f64) = (0.5, 8.0);
 /// Visibility falls to this share at each step, down to this, m.
 const FOG: (f64, f64) = (0.8, 8.0);
+/// Faster by so much at each step, up to so much, m/s.
+const FASTER_MPS: (f64, f64) = (2.5, 40.0);
 /// Where fog begins, m.
 const CLEAR_M: f64 = 250.0;
 /// Cameras that see the object at its edge look this much farther, rad.
@@ -35,11 +37,20 @@ pub enum Vary {
     Time,
     /// The weather.
     Weather,
+    /// How fast the object drives: a sweep takes time, so that it is drawn out or pressed together.
+    Speed,
 }
 
 impl Vary {
     /// All of them.
-    pub const ALL: [Vary; 5] = [Vary::Distance, Vary::Offset, Vary::Fog, Vary::Time, Vary::Weather];
+    pub const ALL: [Vary; 6] = [
+        Vary::Distance,
+        Vary::Offset,
+        Vary::Fog,
+        Vary::Time,
+        Vary::Weather,
+        Vary::Speed,
+    ];
 
     /// What it varies, for a person.
     pub fn title(self) -> &'static str {
@@ -49,6 +60,7 @@ impl Vary {
             Vary::Fog => "Fog",
             Vary::Time => "Time of day",
             Vary::Weather => "Weather",
+            Vary::Speed => "Speed",
         }
     }
 }
@@ -67,11 +79,11 @@ impl Sensor {
     /// Both, with what they are called.
     pub const ALL: [(Self, &'static str); 2] = [(Self::Cameras, "Cameras"), (Self::Lidar, "LiDAR")];
 
-    /// What can be varied: light and air mean nothing to the LiDAR of the program.
+    /// What can be varied: light and air mean nothing to the LiDAR of the program, and pictures are taken in a moment.
     pub fn varies(self) -> &'static [Vary] {
         match self {
-            Self::Cameras => &Vary::ALL,
-            Self::Lidar => &[Vary::Distance, Vary::Offset],
+            Self::Cameras => Vary::ALL.split_at(5).0,
+            Self::Lidar => &[Vary::Distance, Vary::Offset, Vary::Speed],
         }
     }
 
@@ -122,6 +134,8 @@ pub enum Change {
     Time(TimeOfDay),
     /// It is another weather.
     Weather(Weather),
+    /// The object drives so fast, m/s.
+    Speed(f64),
 }
 
 impl std::fmt::Display for Change {
@@ -134,6 +148,7 @@ impl std::fmt::Display for Change {
             Change::Visibility(m) => write!(f, "visibility {m:.0} m"),
             Change::Time(time) => write!(f, "{}", time.name()),
             Change::Weather(weather) => write!(f, "{}", weather.name()),
+            Change::Speed(mps) => write!(f, "{mps:.1} m/s"),
         }
     }
 }
@@ -306,7 +321,29 @@ fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
             .filter(|weather| *weather != now.weather)
             .map(|weather| (Change::Weather(weather), lit(now.under(weather))))
             .collect(),
+        // What follows a motion drives as that says.
+        Vary::Speed if scene.clip().motion(Some(b.id)).is_some() => Vec::new(),
+        Vary::Speed => {
+            let now_mps = b.velocity_mps.length();
+            let faster = (1..).map(|k| now_mps + FASTER_MPS.0 * f64::from(k));
+            let faster = faster.take_while(|mps| *mps <= FASTER_MPS.1);
+            faster.map(|mps| (Change::Speed(mps), driving(b, mps))).collect()
+        }
     }
+}
+
+/// Edits that let a box drive so fast where it is, m/s.
+fn driving(b: &SceneBox, mps: f64) -> Vec<Edit> {
+    let again = Edit::AddBox {
+        class: b.class,
+        center_m: b.center_m,
+        size_m: b.size_m,
+        yaw_deg: b.yaw_rad.to_degrees(),
+        velocity_mps: Some(b.heading() * mps),
+        id: Some(b.id),
+        label: b.label,
+    };
+    vec![Edit::RemoveBox { id: b.id }, again]
 }
 
 #[cfg(test)]
@@ -405,6 +442,15 @@ mod tests {
         assert_eq!(steps(&scene, b, Vary::Time).len(), 3);
         assert_eq!(steps(&scene, b, Vary::Weather).len(), Weather::ALL.len() - 1);
         assert!(steps(&scene, b, Vary::Offset)[1].0.to_string() == "0.5 m to the right");
+        let speed = steps(&scene, b, Vary::Speed);
+        assert!(speed.len() > 5 && speed.windows(2).all(|p| p[0].0 != p[1].0));
+        let mut document = Document::new(scene.clone());
+        let (change, edits) = speed.last().expect("faster");
+        document.apply_all("vary", edits).expect("it can drive");
+        let after = document.scene().frame().boxes[&b.id];
+        let driven = |change: Change| matches!(change, Change::Speed(mps) if (mps - after.velocity_mps.length()).abs() < 1e-6);
+        assert!(driven(*change), "{change:?}");
+        assert_eq!((after.center_m, after.label), (b.center_m, b.label));
         let fog = steps(&scene, b, Vary::Fog);
         assert!(fog.len() > 10 && fog[0].0.to_string() == "visibility 250 m");
     }
