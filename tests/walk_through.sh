@@ -80,4 +80,7 @@ xdotool mouseup 1
 sleep 1
 shot 150
 convert -loop 0 "${frames[@]}" +dither -colors "${COLORS:-96}" -layers optimize "$out"
+if command -v gifsicle >/dev/null; then
+    gifsicle --batch -O3 --lossy=80 --colors 64 "$out" # an eighth of the bytes
+fi
 ls -l "$out"

@@ -181,7 +181,13 @@ impl Driver {
                 ];
                 let count = if wants == Wants::Escape { 1 } else { keys.len() };
                 for (pressed, key) in &keys[..count] {
-                    if ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, *pressed)) {
+                    // Who held Ctrl to take out still holds it as the outline is closed.
+                    let held = [
+                        egui::Modifiers::NONE,
+                        egui::Modifiers::COMMAND,
+                        egui::Modifiers::SHIFT,
+                    ];
+                    if ui.input_mut(|i| held.iter().any(|held| i.consume_key(*held, *pressed))) {
                         let event = Event::Key(*key, false, Modifiers::default());
                         tell(seen, tools, event, commands);
                     }

@@ -22,6 +22,8 @@ use super::windows::open::OpenWindows;
 /// State of the window.
 #[derive(Clone, Debug, Default)]
 pub struct UiState {
+    /// Counts the scenes that were opened.
+    pub opened: u64,
     /// The tools and what they hold: the state is a [`Hand`] with more.
     pub tools: ToolState,
     /// Brushes that the user keeps.

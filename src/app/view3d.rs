@@ -144,6 +144,22 @@ impl View3d {
     /// Brings a box into the middle.
     pub fn frame_box(&mut self, b: &SceneBox) {
         self.camera.focus(b.center_m, b.size_m.length() * 0.9);
+        self.step_back();
+    }
+
+    /// Fits a whole map in.
+    pub fn frame_map(&mut self, extent: Extent) {
+        self.camera.focus_map(extent);
+        self.step_back();
+    }
+
+    /// What fits in by its height must also do so by its width, in a pane that is narrow.
+    fn step_back(&mut self) {
+        let aspect = f64::from(self.rect.width() / self.rect.height());
+        if (0.05..1.0).contains(&aspect) {
+            self.camera.distance_m /= aspect;
+            self.camera = self.camera.sane();
+        }
     }
 
     /// Draws the view into all the space there is, and answers the pointer.

@@ -95,20 +95,15 @@ impl SceneloomApp {
                     let added = arrange::mirror_copy(frame, &boxes, keep).with(&Ties::of(&scene, &boxes));
                     self.add_copies("Mirrored copies of {things}", forms, added);
                 } else {
-                    // They are taken out and come back, which locks would do by halves.
-                    let locked = &scene.arranged.locked.things;
                     let chosen = self.state.tools.things.chosen_in(&scene.background);
-                    let (ids, forms): (Vec<ThingId>, Vec<Form>) = chosen
-                        .filter(|t| !locked.contains(&t.id))
-                        .map(|t| (t.id, mirrored(&t.form)))
-                        .unzip();
-                    if ids.is_empty() {
-                        return false;
-                    }
                     let mut edits = arrange::mirror(frame, &boxes, keep);
-                    edits.push(Edit::RemoveThings { ids });
-                    self.add_things("Mirror {things}", forms, edits);
-                    self.state.choose(&boxes, crate::tools::Choose::Add);
+                    edits.extend(chosen.map(|t| Edit::ChangeThing {
+                        id: t.id,
+                        form: mirrored(&t.form),
+                    }));
+                    let named: Vec<&Form> = forms.iter().collect();
+                    let things = self.named(&named, &boxes);
+                    self.apply(tf!("Mirror {things}", things = things), &edits);
                 }
                 return true;
             }
@@ -128,12 +123,17 @@ impl SceneloomApp {
         };
         edits.push(of_things);
         let named: Vec<&Form> = forms.iter().collect();
-        let things = match boxes.is_empty() {
-            true => words::count(&named),
-            false => tf!("{n} boxes and things", n = boxes.len() + forms.len()),
-        };
+        let things = self.named(&named, &boxes);
         self.apply(filled(t(label), &[("things", &things)]), &edits);
         true
+    }
+
+    /// What is done something to, for the name of its step.
+    fn named(&self, forms: &[&Form], boxes: &[BoxId]) -> String {
+        match boxes.is_empty() {
+            true => words::count(forms),
+            false => tf!("{n} boxes and things", n = boxes.len() + forms.len()),
+        }
     }
 
     /// Copies beside the originals.

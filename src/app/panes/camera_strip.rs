@@ -112,7 +112,8 @@ impl CameraStrip {
         commands: &mut Vec<Command>,
     ) {
         self.refresh(ui, input);
-        self.note_stale(ui, input.stale);
+        // Pictures of a clip that plays follow as fast as they can.
+        self.note_stale(ui, input.stale && !state.playback.playing);
         let cameras = &input.rig.cameras;
         let shown: Vec<usize> = (0..cameras.len())
             .filter(|i| !state.cameras.is_hidden(*i))
@@ -184,7 +185,8 @@ impl CameraStrip {
         commands: &mut Vec<Command>,
     ) {
         self.refresh(ui, input);
-        self.note_stale(ui, input.stale);
+        // Pictures of a clip that plays follow as fast as they can.
+        self.note_stale(ui, input.stale && !state.playback.playing);
         let area = ui.available_rect_before_wrap();
         let Some(camera) = input.rig.cameras.get(index) else {
             let text = t("The vehicle has no such camera. Sensors… adds one.");

@@ -56,6 +56,7 @@ pub fn label_ui(ui: &mut Ui, boxes: &[SceneBox], commands: &mut Vec<Command>) {
         let combo = egui::ComboBox::from_id_salt("paint")
             .width(ui.available_width().clamp(48.0, 110.0))
             .height(400.0)
+            .truncate()
             .selected_text(shown);
         let mut picked = false;
         combo

@@ -55,6 +55,7 @@ pub(super) fn listing_ui(ui: &mut Ui) -> Listing {
             .map_or("", |(_, name)| t(name));
         egui::ComboBox::from_id_salt("order of objects")
             .width(ui.available_width())
+            .truncate()
             .selected_text(name)
             .show_ui(ui, |ui| {
                 for (order, name) in ORDERS {

@@ -71,6 +71,14 @@ pub fn objects_ui(ui: &mut Ui, document: &Document, state: &mut UiState, command
             inferred(ui, frame, &mut state.correcting, commands);
             section(ui, t("Inspector"));
             let things: Vec<&Thing> = state.tools.things.chosen_in(&scene.background).collect();
+            let chosen = state.chosen().len();
+            if chosen > 0 && !things.is_empty() {
+                // The things are below the numbers of the boxes, mostly out of sight.
+                let text = tf!("{n} boxes and things", n = chosen + things.len());
+                ui.label(egui::RichText::new(text).color(theme::text_strong()));
+                let text = t("Move, delete, copy, mirror and rows take all of them.");
+                ui.label(egui::RichText::new(text).small().color(theme::text_weak()));
+            }
             match state.selected.and_then(|id| frame.boxes.get(&id)) {
                 Some(_) if state.chosen().len() > 1 => several(ui, frame, &state.tools, commands),
                 Some(b) => {

@@ -52,6 +52,7 @@ impl Pane for Prompt {
                         "Words change only what lies there, and what they add comes there. Roads, time and weather are the whole scene's.",
                     ));
             }
+            cx.prompt.last_step = cx.document.undo_label().map(str::to_owned);
             cx.prompt.show(ui, scene, commands);
         });
     }

@@ -37,6 +37,8 @@ const SETTLE_S: f64 = 0.25;
 /// The pane.
 #[derive(Default)]
 pub struct Splats {
+    /// Counts scenes that were opened: what was baked of another one goes.
+    opened: u64,
     baking: Option<Baking>,
     texture: Option<TextureHandle>,
     shown: Option<Seen>,
@@ -84,6 +86,12 @@ impl Pane for Splats {
     }
 
     fn ui(&mut self, ui: &mut Ui, cx: &mut PaneContext<'_>, commands: &mut Vec<Command>) {
+        if self.opened != cx.state.opened {
+            *self = Self {
+                opened: cx.state.opened,
+                ..Self::default()
+            };
+        }
         let rect = ui.available_rect_before_wrap();
         let has = self.baking.as_ref().is_some_and(|b| b.baked.is_some());
         if !has {
@@ -124,13 +132,10 @@ impl Pane for Splats {
         };
         let font = egui::TextStyle::Small.resolve(ui.style());
         let at = rect.left_bottom() + egui::vec2(8.0, -8.0);
-        painter.text(
-            at,
-            egui::Align2::LEFT_BOTTOM,
-            text,
-            font,
-            Color32::from_white_alpha(200),
-        );
+        let galley = painter.layout_no_wrap(text, font, theme::ON_CANVAS);
+        let place = egui::Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
+        painter.rect_filled(place.expand(3.0), 3.0, Color32::from_black_alpha(150));
+        painter.galley(place.min, galley, theme::ON_CANVAS);
         if busy {
             ui.ctx()
                 .request_repaint_after(std::time::Duration::from_millis(500));

@@ -23,6 +23,8 @@ use widgets::theme;
 pub const COLUMNS: usize = 1080;
 /// Returns this far outside a box are still of it, m: the sides of voxels stand out.
 const MARGIN_M: f64 = 0.25;
+/// So far below it they are if they are of its class, m: labels have the ground, and what stands on it, two voxels lower.
+const BELOW_M: f64 = 0.8;
 
 /// Where a sensor is: it sees directions as the vehicle does, while returns are in the world frame.
 pub struct Mount {
@@ -43,6 +45,18 @@ impl Mount {
     pub fn azimuth_deg(&self, p_m: DVec3) -> f64 {
         let d = self.ego_from_world.apply(p_m) - self.at_m;
         d.y.atan2(d.x).to_degrees()
+    }
+
+    /// Where in the picture a place of the world is, 0 to 1 from the left and from the top: at the beam that points there, or the
+    /// nearest one.
+    pub fn part_of(&self, p_m: DVec3, elevations_deg: &[f64]) -> [f64; 2] {
+        let d = self.ego_from_world.apply(p_m) - self.at_m;
+        let up_deg = d.z.atan2(d.truncate().length()).to_degrees();
+        let off = |i: &usize| (elevations_deg[*i] - up_deg).abs();
+        let ring = (0..elevations_deg.len()).min_by(|a, b| off(a).total_cmp(&off(b)));
+        let rings = elevations_deg.len().max(1) as f64;
+        let down = 1.0 - (ring.unwrap_or(0) as f64 + 0.5) / rings;
+        [(180.0 - self.azimuth_deg(p_m)) / 360.0, down]
     }
 
     /// The column of the picture in which a return is.
@@ -118,6 +132,10 @@ impl SweepPicture {
                 painter.rect_stroke(around, 2.0, light, StrokeKind::Middle);
             }
         }
+        if let Some(place_m) = place_marks::elsewhere(state, PaneId::LIDAR) {
+            let [x, y] = mount.part_of(place_m, &lidar.elevations_deg).map(|v| v as f32);
+            place_marks::draw(&painter, rect.min + egui::vec2(x, y) * rect.size());
+        }
         let Some(p) = response.hover_pos() else {
             return;
         };
@@ -157,10 +175,16 @@ impl SweepPicture {
     }
 }
 
+/// True if a return is of a box.
+fn is_of(b: &SceneBox, point: &LidarPoint) -> bool {
+    let p_m = place_of(point);
+    b.contains(p_m, MARGIN_M) || point.class == b.class && b.contains(p_m + DVec3::Z * BELOW_M, MARGIN_M)
+}
+
 /// The box that a return is of; of several the smallest.
 fn box_of<'a>(scene: &'a Scene, point: &LidarPoint) -> Option<&'a SceneBox> {
     let hidden = &scene.arranged.hidden.boxes;
-    let holds = |b: &&SceneBox| !hidden.contains(&b.id) && b.contains(place_of(point), MARGIN_M);
+    let holds = |b: &&SceneBox| !hidden.contains(&b.id) && is_of(b, point);
     let volume = |b: &SceneBox| b.size_m.element_product();
     let all = scene.frame().boxes.values().filter(holds);
     all.min_by(|a, b| volume(a).total_cmp(&volume(b)))
@@ -172,7 +196,7 @@ fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Ve
     let middle_deg = mount.azimuth_deg(b.center_m);
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
-    for point in sweep.points.iter().filter(|p| b.contains(place_of(p), MARGIN_M)) {
+    for point in sweep.points.iter().filter(|p| is_of(b, p)) {
         let turn = mount.azimuth_deg(place_of(point)) - middle_deg;
         let off_deg = (turn + 180.0).rem_euclid(360.0) - 180.0;
         let down = 1.0 - (f64::from(point.ring) + 0.5) / rings as f64;
@@ -251,6 +275,21 @@ mod tests {
             at(&later, 25.0, 5.1) > COLUMNS * 7 / 10,
             "world x lies on its right"
         );
+    }
+
+    #[test]
+    fn places_are_where_a_beam_looks() {
+        let here = mount(DVec3::new(0.0, 0.0, 2.0), Pose::IDENTITY);
+        let beams = [-20.0, -10.0, 0.0, 10.0];
+        // 10 m to the left and 1.8 m lower: ten degrees down, the second beam from below.
+        let [x, y] = here.part_of(DVec3::new(0.0, 10.0, 0.2), &beams);
+        assert!(
+            (x - 0.25).abs() < 1e-9 && (y - (1.0 - 1.5 / 4.0)).abs() < 1e-9,
+            "{x} {y}"
+        );
+        let above = here.part_of(DVec3::new(1.0, 0.0, 30.0), &beams);
+        assert_eq!(above, [0.5, 1.0 - 3.5 / 4.0]);
+        assert!(here.part_of(DVec3::ONE, &[]).iter().all(|v| v.is_finite()));
     }
 
     #[test]

@@ -149,7 +149,7 @@ fn density_row(ui: &mut Ui, name: &str, value: &mut Option<f32>, typical: f32) {
 
 /// The seed of what is generated on request.
 fn seed_row(ui: &mut Ui, wish: &mut SeedWish, scene_seed: u64) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(t("Seed"));
         let mut seed = wish.of(scene_seed);
         let field = egui::DragValue::new(&mut seed).speed(1.0);

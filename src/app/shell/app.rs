@@ -46,6 +46,8 @@ pub struct AppConfig {
     pub scene: Scene,
     /// Its file, if it has one.
     pub path: Option<PathBuf>,
+    /// The picture that it was in, if it was in one.
+    pub picture: Option<PathBuf>,
     /// Makes the pipeline.
     pub build_pipeline: BuildPipeline,
     /// How to generate what was edited.
@@ -155,7 +157,10 @@ impl SceneloomApp {
         let state = UiState {
             brushes: settings.brushes.clone(),
             windows: OpenWindows {
-                start: settings.start_screen && config.settings_file.is_some() && config.path.is_none(),
+                start: settings.start_screen
+                    && config.settings_file.is_some()
+                    && config.path.is_none()
+                    && config.picture.is_none(),
                 ..OpenWindows::default()
             },
             ..UiState::default()
@@ -166,11 +171,15 @@ impl SceneloomApp {
             scene,
             versions: kept,
             damaged,
-            made: _,
-        } = Opened::of(config.scene);
+            made,
+        } = match &config.picture {
+            Some(picture) => Opened::of(config.scene).told_by(picture),
+            None => Opened::of(config.scene),
+        };
         let mut versions = Versions::default();
         versions.replace(kept);
-        versions.push("As opened".into(), String::new(), Arc::new(scene.clone()));
+        let shown = Arc::new(scene.clone());
+        versions.push_made("As opened".into(), String::new(), shown, made.clone());
         let (between_frames_s, sensing_grace) = match view3d.is_software() {
             true => (0.15, Duration::from_millis(25)),
             false => (0.015, Duration::ZERO),
@@ -223,6 +232,9 @@ impl SceneloomApp {
             ctx: ctx.clone(),
         };
         app.tell_damaged(damaged);
+        if let Some(made) = made {
+            app.take_knobs(&made);
+        }
         Ok(app)
     }
 

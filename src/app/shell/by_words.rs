@@ -84,7 +84,7 @@ fn changed_boxes(before: &Frame, after: &Frame) -> Vec<BoxId> {
 }
 
 /// What the history calls an edit by words: the words.
-fn step_name(words: &str) -> String {
+pub(crate) fn step_name(words: &str) -> String {
     const LONGEST: usize = 60;
     let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
     let mut name: String = words.chars().take(LONGEST).collect();

@@ -232,7 +232,8 @@ impl FileDialogs {
         let path = with_extension(PathBuf::from(field.text.trim()), field.purpose);
         match problem(&path, field) {
             Some(text) => {
-                field.error = Some(text);
+                // Enter took the focus away: the next one is for this field, too.
+                (field.error, field.focus) = (Some(text), 3);
                 None
             }
             None => self.field.take().map(|field| (field.purpose, path)),

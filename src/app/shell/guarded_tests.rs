@@ -23,6 +23,7 @@ fn app() -> SceneloomApp {
     let config = AppConfig {
         scene: open::from_template("straight", 3).expect("a template"),
         path: None,
+        picture: None,
         build_pipeline: Box::new(|| Err(GenError::failed("no pipeline here"))),
         params: GenParams::default(),
         full_params: GenParams::default(),

@@ -97,6 +97,7 @@ impl SceneloomApp {
             made,
         } = opened;
         self.generation.forget_scene();
+        self.state.opened += 1;
         self.views.prompt.opened(&scene);
         if opening.is_import {
             let text = tf!(
@@ -129,7 +130,7 @@ impl SceneloomApp {
         }
         // What the camera looked at is not there any more.
         let extent = self.extent();
-        self.views.view3d.camera.focus_map(extent);
+        self.views.view3d.frame_map(extent);
         // Saving must not replace the file of another scene without asking.
         self.files.path = opening.path;
         self.state.choose(&[], crate::tools::Choose::Only);

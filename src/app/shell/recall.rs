@@ -41,7 +41,14 @@ impl SceneloomApp {
             ..made.params.clone()
         };
         match made.params.region {
-            RegionMode::Full => self.generation.live.full_params = params,
+            RegionMode::Full => {
+                self.generation.live.full_params = params;
+                // Its quality is that of edits, too.
+                let mut presets = self.generation.tuning.presets.all.iter();
+                if let Some(preset) = presets.position(|p| p.name == made.preset) {
+                    self.set_quality(preset);
+                }
+            }
             RegionMode::Auto => {
                 self.generation.live.params = params;
                 self.preferences.settings.quality.clone_from(&made.preset);

@@ -24,6 +24,9 @@ pub fn run_window(
     priority::workers_give_way();
     let config = AppConfig {
         scene,
+        picture: path
+            .clone()
+            .filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"))),
         path: path.filter(|p| p.extension().is_some_and(|e| e == "loom")),
         build_pipeline: Box::new(|| Ok(Box::new(pipeline::WarmPipeline::bundled()?))),
         params: GenParams::default(),

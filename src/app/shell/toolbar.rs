@@ -203,6 +203,11 @@ fn tool_list(
     commands: &mut Vec<Command>,
 ) {
     let button = icons::button(ui, Icon::named(shown.icon), name, hint, chosen, true);
+    // That there are more of them behind it.
+    let corner = button.rect.right_bottom() - vec2(4.0, 4.0);
+    let points = vec![corner, corner - vec2(6.0, 0.0), corner - vec2(0.0, 6.0)];
+    let more = egui::Shape::convex_polygon(points, theme::text_weak(), egui::Stroke::NONE);
+    ui.painter().add(more);
     egui::Popup::menu(&button).show(|ui| {
         for tool in list {
             if item(ui, t(tool.title), short(tool.key), true) {

@@ -44,7 +44,7 @@ impl SceneloomApp {
             }
             ViewCommand::FrameSelection => self.frame_selection(),
             ViewCommand::FrameAll => match self.state.pointed.pane {
-                Some(PaneId::VIEW3D) => self.views.view3d.camera.focus_map(self.extent()),
+                Some(PaneId::VIEW3D) => self.views.view3d.frame_map(self.extent()),
                 Some(PaneId::BEV) => self.views.canvas.frame_all_again(),
                 _ => self.views.frame_all(self.extent()),
             },

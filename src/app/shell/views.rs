@@ -93,7 +93,7 @@ impl Views {
 
     /// Brings everything into both large views.
     pub(crate) fn frame_all(&mut self, extent: Extent) {
-        self.view3d.camera.focus_map(extent);
+        self.view3d.frame_map(extent);
         self.canvas.frame_all_again();
     }
 }

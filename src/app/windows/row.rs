@@ -76,7 +76,7 @@ pub fn show(ui: &Ui, scene: &Scene, hand: &mut Hand, commands: &mut Vec<Command>
                     .on_hover_text(t("beside each other: a grid"));
             });
             if row.rows > 1 {
-                let apart = t("Rows apart");
+                let apart = t("Apart");
                 number(ui, apart, apart, &mut row.apart_m, -80.0..=80.0, " m", 2);
             }
             let chosen = hand.chosen().len() + hand.things.chosen_in(&scene.background).count();

@@ -4,6 +4,9 @@ use glam::DVec2;
 
 use super::{At, CLICK_SLACK, Context, Event, Key, Mark, Modifiers, Pointer, Role, Sight, ViewKind};
 
+/// A click so near to the first corner closes the outline, points of the screen.
+const CORNER: f64 = 8.0;
+
 /// The corners set so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Corners {
@@ -40,14 +43,14 @@ impl Corners {
         self.view.filter(|_| !self.is_empty())
     }
 
-    /// A click sets a corner; one in another view begins anew.
-    pub(super) fn add(&mut self, cx: &Context<'_>, pointer: &Pointer) {
+    /// A click sets a corner; one in another view begins anew, and one on the first corner closes the outline.
+    pub(super) fn add(&mut self, cx: &Context<'_>, pointer: &Pointer) -> Set {
         let from_above = cx.from_above();
         let Some(at) = (match from_above {
             true => cx.ground_m(pointer.at),
             false => Some(pointer.at),
         }) else {
-            return;
+            return Set::Not;
         };
         if self.view != Some(cx.view.kind()) {
             self.clear();
@@ -56,9 +59,22 @@ impl Corners {
             (self.view, self.held) = (Some(cx.view.kind()), pointer.held);
         }
         // The second half of a double click is no corner.
-        let near = CLICK_SLACK / if from_above { cx.view.scale() } else { 1.0 };
+        let per_point = if from_above { cx.view.scale() } else { 1.0 };
+        let (near, on_it) = (CLICK_SLACK / per_point, CORNER / per_point);
+        if self.points.len() >= 3 && self.points[0].distance(at) <= on_it {
+            return self.close();
+        }
         if self.points.last().is_none_or(|last| last.distance(at) > near) {
             self.points.push(at);
+        }
+        Set::Taken
+    }
+
+    fn close(&mut self) -> Set {
+        let points = std::mem::take(&mut self.points);
+        match points.len() {
+            0..3 => Set::Taken,
+            _ => Set::Closed(points, self.held),
         }
     }
 
@@ -68,13 +84,7 @@ impl Corners {
             return Set::Not;
         }
         match event {
-            Event::DoubleClick | Event::Key(Key::Enter, ..) => {
-                let points = std::mem::take(&mut self.points);
-                match points.len() {
-                    0..3 => Set::Taken,
-                    _ => Set::Closed(points, self.held),
-                }
-            }
+            Event::DoubleClick | Event::Key(Key::Enter, ..) => self.close(),
             Event::Key(Key::Escape, ..) => {
                 self.clear();
                 Set::Taken
@@ -87,11 +97,11 @@ impl Corners {
         }
     }
 
-    /// The outline with the pointer as its next corner, in the view in which it was begun.
-    pub(super) fn marks(&self, sight: &Sight<'_>) -> Option<Mark> {
+    /// The outline with the pointer as its next corner, and its corners, in the view in which it was begun.
+    pub(super) fn marks(&self, sight: &Sight<'_>) -> Vec<Mark> {
         let from_above = sight.from_above();
         if self.view() != Some(sight.view.kind()) {
-            return None;
+            return Vec::new();
         }
         let next = match from_above {
             true => sight.ground_m(),
@@ -103,6 +113,8 @@ impl Corners {
             true => At::from(p),
             false => At::Screen(p),
         };
-        Some(Mark::Dashed(closed.map(at).collect(), Role::Choose))
+        let mut out = vec![Mark::Dashed(closed.map(at).collect(), Role::Choose)];
+        out.extend(self.points.iter().map(|p| Mark::Dot(at(*p), Role::Choose)));
+        out
     }
 }

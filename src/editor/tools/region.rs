@@ -8,8 +8,8 @@ use scene::{Extent, Frame};
 use super::corners::{Corners, Set};
 use super::setting::{self, Setting, Value};
 use super::{
-    Act, Area, Context, Cursor, Event, Group, Hand, Hint, Mark, Pointer, RegionShape, Response, Role,
-    Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
+    Act, Area, Context, Cursor, Event, Group, Hand, Hint, Mark, Modifiers, Pointer, RegionShape, Response,
+    Role, Shortcut, Sight, Tool, ToolDef, ToolId, ViewKind, Wants, When, hint_of,
 };
 
 /// Its name.
@@ -107,6 +107,11 @@ impl Marker {
     }
 }
 
+/// True if what is drawn is marked; with Shift, and with Ctrl as where boxes are chosen, the mark is taken away.
+fn marks(held: Modifiers) -> bool {
+    !(held.shift || held.ctrl)
+}
+
 impl Tool for Marker {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match self.corners.event(event) {
@@ -114,7 +119,7 @@ impl Tool for Marker {
             Set::Taken => return Response::taken(),
             Set::Closed(points_m, held) => {
                 let area = Area::Outline(points_m);
-                return Response::taken().and(Act::Mark(area, !held.shift));
+                return Response::taken().and(Act::Mark(area, marks(held)));
             }
         }
         match event {
@@ -130,11 +135,15 @@ impl Tool for Marker {
                     RegionShape::Lasso => Drag::Outline(vec![at_m]),
                     RegionShape::Brush => Drag::Stroke(at_m),
                     RegionShape::Polygon => {
-                        self.corners.add(cx, pointer);
-                        return Response::none();
+                        return match self.corners.add(cx, pointer) {
+                            Set::Closed(points_m, held) => {
+                                Response::act(Act::Mark(Area::Outline(points_m), marks(held)))
+                            }
+                            _ => Response::none(),
+                        };
                     }
                 };
-                self.drag = Some((drag, !pointer.held.shift));
+                self.drag = Some((drag, marks(pointer.held)));
                 Response::hold()
             }
             Event::Drag(pointer) => self.drag(cx, pointer),

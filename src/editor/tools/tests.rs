@@ -159,7 +159,12 @@ fn regions_are_marked_and_points_measured() {
     table.drag(tool, 4.0, -2.0);
     let marked = table.release(tool, 4.0, -2.0);
     let corners = Area::Rect(DVec2::new(-0.2, -2.2), DVec2::new(4.2, 0.2));
-    assert_eq!(marked.acts, [Act::Mark(corners, false)]);
+    assert_eq!(marked.acts, [Act::Mark(corners.clone(), false)]);
+    // Ctrl takes away here, too.
+    let ctrl = Modifiers { ctrl: true, ..NONE };
+    table.press(tool, 0.0, 0.0, ctrl);
+    table.drag(tool, 4.0, -2.0);
+    assert_eq!(table.release(tool, 4.0, -2.0).acts, [Act::Mark(corners, false)]);
     table.hand.region_shape = RegionShape::Brush;
     table.press(tool, 0.0, 0.0, NONE);
     let on_its_way = table.drag(tool, 1.0, 0.0);
@@ -258,6 +263,16 @@ fn a_polygon_chooses_boxes_and_marks_regions_corner_by_corner() {
     }
     table.key(tool, Key::Enter);
     assert_eq!(table.hand.chosen(), [BoxId(2)]);
+    // A click on the first corner closes it, too; each corner is marked.
+    for (x, y) in [(-5.0, -5.0), (14.0, -5.0), (14.0, 5.0), (-5.0, 5.0)] {
+        table.click(tool, x, y, NONE);
+    }
+    let dots = tool.overlay(&table.sight(0.0, 0.0));
+    assert_eq!(dots.iter().filter(|m| matches!(m, Mark::Dot(..))).count(), 4);
+    table.click(tool, -5.1, -5.0, NONE);
+    assert_eq!(tool.wants(), Wants::Nothing);
+    assert_eq!(table.hand.chosen(), [BoxId(2), BoxId(1)]);
+    table.hand.choose(&[BoxId(2)], Choose::Only);
     // Fewer than three corners are no outline.
     table.click(tool, 1.0, 9.0, NONE);
     assert!(table.key(tool, Key::Enter).taken);

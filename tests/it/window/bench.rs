@@ -138,6 +138,7 @@ impl Bench {
         let config = AppConfig {
             scene: scene(),
             path: None,
+            picture: None,
             build_pipeline: Box::new(move || {
                 Ok(Box::new(Scripted {
                     orders: orders_in.clone(),

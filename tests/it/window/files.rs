@@ -233,3 +233,18 @@ fn a_picture_brings_its_scene_and_what_that_was_made_with() {
     let kept = versions.last().and_then(|v| v.made.as_ref());
     assert_eq!(kept.expect("told").params.seed, 4711);
 }
+
+#[test]
+fn a_second_enter_replaces_a_file() {
+    let mut bench = Bench::new();
+    bench.off();
+    let path = bench.open_path();
+    std::fs::write(&path, "old").expect("written");
+    bench.key(Modifiers::CTRL, Key::S);
+    bench.give_path(&path, "Save file");
+    assert!(bench.harness.query_by_label("Replace file").is_some());
+    bench.steps(4);
+    assert!(bench.harness.get_by_label("File path").is_focused());
+    bench.key(Modifiers::NONE, Key::Enter);
+    assert!(loom::load(&path).is_ok(), "replaced");
+}

@@ -2,6 +2,7 @@
 
 use app::command::{Command, TimeCommand, ViewCommand};
 use app::panes::id::PaneId;
+use app::tools::ToolCommand;
 use egui::{Key, Modifiers, Pos2, Rect};
 use egui_kittest::kittest::Queryable;
 use glam::DVec2;
@@ -130,4 +131,26 @@ fn places_in_cameras_and_sweep_go_along_with_the_vehicle() {
     let (later_m, driven_m) = ahead(&mut bench);
     assert!(driven_m.length() > 3.0, "{driven_m}");
     assert!(first_m.distance(later_m) < 1.0, "{first_m} {later_m}");
+}
+
+/// Who held Ctrl to take out still holds it when Enter closes the outline: nothing is generated.
+#[test]
+fn enter_closes_an_outline_whatever_is_held() {
+    let mut bench = Bench::new();
+    bench.off();
+    let ctx = bench.harness.ctx.clone();
+    let all = Command::Tools(ToolCommand::ChooseAll);
+    bench.app().execute(all, &ctx);
+    let polygon = Command::Tools(ToolCommand::Shortcut("polygon_select"));
+    bench.app().execute(polygon, &ctx);
+    bench.steps(2);
+    for [x, y] in [[8.0, -2.0], [22.0, -2.0], [22.0, 9.0], [8.0, 9.0]] {
+        let at = bench.bev(x, y);
+        bench.drag(&[at], Modifiers::CTRL);
+        bench.steps(30);
+    }
+    bench.key(Modifiers::CTRL, Key::Enter);
+    assert!(!bench.app().state.any_chosen());
+    bench.steps(10);
+    assert!(bench.started.is_empty(), "nothing is generated");
 }

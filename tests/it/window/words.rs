@@ -208,3 +208,39 @@ fn kept_words_stand_first_and_outlive_the_window() {
     let mut again = Bench::with_settings(&file);
     assert_eq!(again.app().views.prompt.favourites, kept);
 }
+
+#[test]
+fn a_change_is_drawn_again_by_the_next_seed_and_takes_no_scene_away() {
+    let mut bench = Bench::new();
+    bench.off();
+    let before = bench.frame().boxes.len();
+    say(&mut bench, "add {2|3|4|5} cars");
+    bench.key(Modifiers::NONE, Key::Enter);
+    bench.steps(3);
+    let name = bench.app().document.scene().name.clone();
+    let added = |b: &Bench| b.frame().boxes.len() - before;
+    assert_eq!(bench.history().len(), 2);
+    let mut counts = std::collections::BTreeSet::from([added(&bench)]);
+    for _ in 0..8 {
+        bench.click("Re-roll");
+        bench.steps(4);
+        assert_eq!(bench.history().len(), 2, "in place of the one before");
+        counts.insert(added(&bench));
+    }
+    assert!(
+        counts.len() > 1 && counts.iter().all(|n| (1..6).contains(n)),
+        "{counts:?}"
+    );
+    assert_eq!(bench.app().document.scene().name, name);
+    // With something after it there is a word about it.
+    let ctx = bench.harness.ctx.clone();
+    let id = BoxId(7);
+    let remove = app::Command::Apply("Remove", vec![editor::Edit::RemoveBox { id }]);
+    bench.app().execute(remove, &ctx);
+    let after = bench.frame();
+    bench.click("Re-roll");
+    bench.steps(4);
+    assert_eq!(bench.frame(), after);
+    let told = "Something came after this change: take that back first, or type the change anew.";
+    assert!(bench.harness.query_by_label(told).is_some());
+}

@@ -9,6 +9,7 @@ use super::completion::Completion;
 use super::plan::{Plan, Told};
 use super::typed_text::Both;
 use crate::command::{Command, FileCommand};
+use crate::shell::by_words::step_name;
 use crate::text::doubts;
 use crate::wildcards;
 use language::{t, tf};
@@ -49,6 +50,12 @@ pub struct PromptField {
     pub(super) wants_focus: bool,
     pub(super) offered: Option<Completion>,
     pub(super) is_sent: bool, // and not changed since
+    /// The words that last changed the scene on screen.
+    changed: Option<String>,
+    /// The last step of the document.
+    pub(crate) last_step: Option<String>,
+    /// The change was taken back and is to be drawn again by another seed.
+    redraws: bool,
     pub(super) plan: Plan,
 }
 
@@ -198,12 +205,11 @@ impl PromptField {
         // In one flow: what they take is missed by the history and the examples below.
         ui.horizontal_wrapped(|ui| {
             let some = !self.prompt.trim().is_empty();
-            let dice = ui
-                .button(t("Re-roll"))
-                .on_hover_text(t("Another scene of the same words"));
+            let dice = ui.button(t("Re-roll")).on_hover_text(t(
+                "The same words by the next seed: another scene, or the change drawn again",
+            ));
             if some && dice.clicked() {
-                self.seed = self.seed.wrapping_add(1) % 100_000;
-                make = true;
+                make |= self.roll(commands);
             }
             let seed = egui::DragValue::new(&mut self.seed)
                 .range(0..=99_999)
@@ -212,6 +218,7 @@ impl PromptField {
                 .on_hover_text(t("The same words and seed give the same scene"));
             self.plan.switches(ui);
         });
+        change |= std::mem::take(&mut self.redraws);
         if change || make {
             self.offers = false;
             self.sent(ui.ctx());
@@ -222,6 +229,26 @@ impl PromptField {
             self.remember();
             self.make(self.seed, scene, commands);
         }
+    }
+
+    /// Draws the same words by the next seed: true for a new scene. A change is taken back and drawn again.
+    fn roll(&mut self, commands: &mut Vec<Command>) -> bool {
+        let said = self.said();
+        let is_change = self.changed.as_ref() == Some(&said);
+        let is_last = self.last_step.as_deref() == Some(&*step_name(&said));
+        if is_change && !is_last {
+            self.notes = vec![
+                t("Something came after this change: take that back first, or type the change anew.")
+                    .to_owned(),
+            ];
+            return false;
+        }
+        self.seed = self.seed.wrapping_add(1) % 100_000;
+        if is_change {
+            commands.push(Command::Undo);
+            self.redraws = true;
+        }
+        !is_change
     }
 
     /// Makes a new scene of words that were typed elsewhere.
@@ -308,6 +335,7 @@ impl PromptField {
                 self.done = Some(prompted.answer());
                 (self.asks, self.notes) = (false, doubts(&prompted.heard));
                 self.plan.makes(&said, seed);
+                self.changed = None;
                 commands.push(Command::File(FileCommand::NewFromPrompt(Box::new(ask))));
             }
             Some(Err(error)) => self.notes = vec![error.clone()],
@@ -408,6 +436,7 @@ impl PromptField {
         self.notes = doubts(&edited.heard);
         if !edits.is_empty() && !self.asks {
             commands.push(Command::ApplyWords(self.said(), edits));
+            self.changed = Some(self.said());
             // (carried out again, the words are read again)
             self.read = None;
         }

@@ -109,6 +109,17 @@ pub struct Select {
 }
 
 impl Select {
+    /// Chooses what lies in an outline that was closed.
+    fn closed(&mut self, cx: &mut Context<'_>, set: Set) {
+        if let Set::Closed(points, held) = set {
+            match cx.from_above() {
+                true => above::outline(cx, &points, above::how(held)),
+                false => space::chosen_in(cx, &points, above::how(held)),
+            }
+            self.with_groups(cx);
+        }
+    }
+
     /// Who takes one out of a group that was chosen wants that one.
     fn with_groups(&self, cx: &mut Context<'_>) {
         let now = boxes::members(cx.hand);
@@ -122,13 +133,8 @@ impl Tool for Select {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match self.corners.event(event) {
             Set::Not => {}
-            Set::Taken => return Response::taken(),
-            Set::Closed(points, held) => {
-                match cx.from_above() {
-                    true => above::outline(cx, &points, above::how(held)),
-                    false => space::chosen_in(cx, &points, above::how(held)),
-                }
-                self.with_groups(cx);
+            set => {
+                self.closed(cx, set);
                 return Response::taken();
             }
         }
@@ -136,7 +142,8 @@ impl Tool for Select {
             Event::Press(pointer) => {
                 if !self.corners.is_empty() {
                     // An outline that is begun goes on, over handles and arrows too.
-                    self.corners.add(cx, pointer);
+                    let set = self.corners.add(cx, pointer);
+                    self.closed(cx, set);
                     return Response::none();
                 }
                 self.before = boxes::members(cx.hand);

@@ -135,7 +135,8 @@ impl Voxels {
             return stamped(cx, pointer);
         }
         if mode == VoxelMode::ChoosePolygon {
-            self.corners.add(cx, pointer);
+            let set = self.corners.add(cx, pointer);
+            closed(cx, set);
             return Response::none();
         }
         if mode.chooses() && mode != VoxelMode::Wand {
@@ -316,13 +317,19 @@ fn flood(cells: Vec<Cell>, class: Class) -> Response {
     Response::act(Act::Apply(label.into(), vec![Edit::PaintVoxels { cells, class }]))
 }
 
+/// Chooses the voxels in an outline that was closed.
+fn closed(cx: &mut Context<'_>, set: Set) {
+    if let Set::Closed(points, held) = set {
+        Area::Lasso { points }.take(cx, joins(held));
+    }
+}
+
 impl Tool for Voxels {
     fn event(&mut self, cx: &mut Context<'_>, event: &Event) -> Response {
         match self.corners.event(event) {
             Set::Not => {}
-            Set::Taken => return Response::taken(),
-            Set::Closed(points, held) => {
-                Area::Lasso { points }.take(cx, joins(held));
+            set => {
+                closed(cx, set);
                 return Response::taken();
             }
         }
