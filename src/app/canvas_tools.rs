@@ -181,13 +181,7 @@ impl Driver {
                 ];
                 let count = if wants == Wants::Escape { 1 } else { keys.len() };
                 for (pressed, key) in &keys[..count] {
-                    // Who held Ctrl to take out still holds it as the outline is closed.
-                    let held = [
-                        egui::Modifiers::NONE,
-                        egui::Modifiers::COMMAND,
-                        egui::Modifiers::SHIFT,
-                    ];
-                    if ui.input_mut(|i| held.iter().any(|held| i.consume_key(*held, *pressed))) {
+                    if ui.input_mut(|i| took(&mut i.events, *pressed)) {
                         let event = Event::Key(*key, false, Modifiers::default());
                         tell(seen, tools, event, commands);
                     }
@@ -258,6 +252,22 @@ fn icon(cursor: Cursor) -> CursorIcon {
         Cursor::Move => CursorIcon::Move,
         Cursor::Turn => CursorIcon::Alias,
     }
+}
+
+/// Takes a press of a key out of events: Enter whatever is held, since who held Ctrl to take out still holds it as the outline
+/// is closed; other keys alone.
+fn took(events: &mut Vec<egui::Event>, wanted: Pressed) -> bool {
+    let is_it = |event: &egui::Event| match event {
+        egui::Event::Key {
+            key,
+            pressed: true,
+            modifiers,
+            ..
+        } => *key == wanted && (wanted == Pressed::Enter || modifiers.is_none()),
+        _ => false,
+    };
+    let at = events.iter().position(is_it);
+    at.map(|at| events.remove(at)).is_some()
 }
 
 fn steering(key: Pressed) -> Option<Key> {

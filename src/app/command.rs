@@ -291,3 +291,14 @@ pub enum Verdict {
     /// Only this part of it stays.
     Take(Taken),
 }
+
+/// What the history calls an edit by words: the words.
+pub(crate) fn step_name(words: &str) -> String {
+    const LONGEST: usize = 60;
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut name: String = words.chars().take(LONGEST).collect();
+    if name.len() < words.len() {
+        name.push('…');
+    }
+    format!("“{name}”")
+}

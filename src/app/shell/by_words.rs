@@ -4,6 +4,7 @@ use egui::Context;
 
 use super::app::SceneloomApp;
 use super::toasts::Level;
+use crate::command::step_name;
 use crate::prompting::Ask;
 use crate::tools::Choose;
 use editor::Edit;
@@ -81,15 +82,4 @@ fn changed_boxes(before: &Frame, after: &Frame) -> Vec<BoxId> {
         .iter()
         .filter(|(id, b)| before.boxes.get(id) != Some(b));
     changed.map(|(id, _)| *id).collect()
-}
-
-/// What the history calls an edit by words: the words.
-pub(crate) fn step_name(words: &str) -> String {
-    const LONGEST: usize = 60;
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut name: String = words.chars().take(LONGEST).collect();
-    if name.len() < words.len() {
-        name.push('…');
-    }
-    format!("“{name}”")
 }

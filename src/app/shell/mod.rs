@@ -4,7 +4,7 @@ pub mod actions;
 pub mod app;
 pub mod batching;
 pub mod bookmarks;
-pub(crate) mod by_words;
+mod by_words;
 pub mod checking;
 pub mod dock;
 mod dock_ui;

@@ -6,7 +6,7 @@ use job::pipeline::OccPipeline;
 use nets::OccModels;
 
 /// All suites, in the order of `eval all`.
-pub static SUITES: [Suite; 11] = [
+pub static SUITES: [Suite; 12] = [
     Suite {
         name: "world",
         title: "Procedural worlds beside what is known of real drives",
@@ -267,6 +267,29 @@ pub static SUITES: [Suite; 11] = [
         quick: |options| options.frames = 3,
         table: None,
         run: |options, progress| options.pictures(progress),
+    },
+    Suite {
+        name: "downstream",
+        title: "Generated scenes as a LiDAR network sees them that learned from worlds",
+        figures: &[
+            ("cars found, worlds", "/worlds/cars_found"),
+            ("cars found, generated", "/generated/cars_found"),
+            ("other boxes found, worlds", "/worlds/other_boxes_found"),
+            ("other boxes found, generated", "/generated/other_boxes_found"),
+            ("ghosts a scene, worlds", "/worlds/ghosts_per_scene"),
+            ("ghosts a scene, generated", "/generated/ghosts_per_scene"),
+            (
+                "columns near returns told rightly, worlds",
+                "/worlds/columns_right",
+            ),
+            (
+                "columns near returns told rightly, generated",
+                "/generated/columns_right",
+            ),
+        ],
+        quick: |options| options.frames = 3,
+        table: None,
+        run: |options, progress| with_pipeline(options, |pipeline| options.downstream(pipeline, progress)),
     },
     Suite {
         name: "layout",

@@ -1,5 +1,6 @@
 //! The suites, one folder or file each.
 
+pub mod downstream;
 pub mod editing;
 pub mod forecast;
 pub mod gaussians;

@@ -1,0 +1,112 @@
+//! `eval downstream`: are generated scenes, to a network that learned from worlds, like worlds? The shipped network of the LiDAR
+//! looks at sweeps of held-out worlds and of what is generated from their layouts: what it loses there is what generation gets
+//! wrong where a LiDAR looks. Whether generated scenes are worth anything as training data is what `training/downstream.py` asks.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use crate::Progress;
+use crate::held_out::scene;
+use crate::suite::{Found, Options, with_interval};
+use editor::Document;
+use job::pipeline::OccPipeline;
+use job::{GenParams, Job, JobCtx, Pipeline};
+use scene::{Class, Scene};
+use sensors::perceived_sweep::report;
+
+/// What the network makes of scenes, a value per scene.
+#[derive(Default)]
+struct Seen {
+    cars: Vec<f64>,
+    others: Vec<f64>,
+    ghosts: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Seen {
+    fn add(&mut self, scene: &Scene) -> anyhow::Result<()> {
+        let report = report(scene)?;
+        let boxes = &scene.frame().boxes;
+        let share = |is_car: bool| {
+            let asked = report.boxes.iter();
+            let asked = asked.filter(|b| (boxes.get(&b.id).map(|b| b.class) == Some(Class::Car)) == is_car);
+            let found: Vec<bool> = asked.map(|b| !b.is_missed()).collect();
+            let seen = found.iter().filter(|f| **f).count();
+            // Where there is none to see nothing is missed.
+            if found.is_empty() {
+                1.0
+            } else {
+                seen as f64 / found.len() as f64
+            }
+        };
+        self.cars.push(share(true));
+        self.others.push(share(false));
+        let ghosts = report.detections.iter().filter(|d| d.of.is_none()).count();
+        self.ghosts.push(ghosts as f64);
+        self.right.push(report.right);
+        Ok(())
+    }
+
+    fn named(&self) -> [(&'static str, &[f64]); 4] {
+        [
+            ("cars_found", &self.cars),
+            ("other_boxes_found", &self.others),
+            ("ghosts_per_scene", &self.ghosts),
+            ("columns_right", &self.right),
+        ]
+    }
+
+    fn report(&self) -> Value {
+        let pairs = self.named();
+        pairs
+            .into_iter()
+            .map(|(name, values)| (name.to_owned(), with_interval(values)))
+            .collect()
+    }
+
+    /// How much more than `other`, scene by scene.
+    fn more_than(&self, other: &Self) -> Value {
+        let pairs = self.named().into_iter().zip(other.named());
+        let more = pairs.map(|((name, a), (_, b))| {
+            let each: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            (name.to_owned(), with_interval(&each))
+        });
+        more.collect()
+    }
+}
+
+impl Options {
+    /// The shipped network of the LiDAR on held-out worlds and on scenes from their layouts.
+    pub(crate) fn downstream(
+        &self,
+        pipeline: &mut OccPipeline,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Found> {
+        let [mut worlds, mut generated] = [Seen::default(), Seen::default()];
+        for i in 0..self.frames {
+            progress.at("downstream", i, self.frames);
+            let world = scene(i as u64);
+            worlds.add(&world)?;
+            let job = Job {
+                scene: Arc::new(world),
+                params: GenParams {
+                    // As it is shown.
+                    keep_objects: true,
+                    seed: self.scene_params.seed.wrapping_add(i as u64),
+                    ..self.scene_params.clone()
+                },
+            };
+            let result = pipeline.run(&job, &JobCtx::detached())?;
+            let mut document = Document::new(Scene::clone(&job.scene));
+            document.adopt(result.rev(), result.occupancy.clone())?;
+            generated.add(document.scene())?;
+        }
+        let report = json!({
+            "worlds": worlds.report(),
+            "generated": generated.report(),
+            "generated_more_than_worlds": generated.more_than(&worlds),
+        });
+        Ok((report, Vec::new()))
+    }
+}
