@@ -274,6 +274,7 @@ pub static SUITES: [Suite; 12] = [
         figures: &[
             ("cars found, worlds", "/worlds/cars_found"),
             ("cars found, generated", "/generated/cars_found"),
+            ("cars found, the network's own output", "/own_output/cars_found"),
             ("other boxes found, worlds", "/worlds/other_boxes_found"),
             ("other boxes found, generated", "/generated/other_boxes_found"),
             ("ghosts a scene, worlds", "/worlds/ghosts_per_scene"),

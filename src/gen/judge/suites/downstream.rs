@@ -1,6 +1,7 @@
 //! `eval downstream`: are generated scenes, to a network that learned from worlds, like worlds? The shipped network of the LiDAR
-//! looks at sweeps of held-out worlds and of what is generated from their layouts: what it loses there is what generation gets
-//! wrong where a LiDAR looks. Whether generated scenes are worth anything as training data is what `training/downstream.py` asks.
+//! looks at sweeps of held-out worlds and of what is generated from their layouts: as the window shows it, where boxes keep what
+//! they need, and as the networks give it. What it loses there is what generation gets wrong where a LiDAR looks. What generated
+//! scenes are worth as training data is what `training/downstream.py` asks.
 
 use std::sync::Arc;
 
@@ -83,29 +84,35 @@ impl Options {
         pipeline: &mut OccPipeline,
         progress: &dyn Progress,
     ) -> anyhow::Result<Found> {
-        let [mut worlds, mut generated] = [Seen::default(), Seen::default()];
+        let mut worlds = Seen::default();
+        let mut made = [true, false].map(|keeps_objects| (keeps_objects, Seen::default()));
         for i in 0..self.frames {
             progress.at("downstream", i, self.frames);
             let world = scene(i as u64);
             worlds.add(&world)?;
-            let job = Job {
-                scene: Arc::new(world),
-                params: GenParams {
-                    // As it is shown.
-                    keep_objects: true,
-                    seed: self.scene_params.seed.wrapping_add(i as u64),
-                    ..self.scene_params.clone()
-                },
-            };
-            let result = pipeline.run(&job, &JobCtx::detached())?;
-            let mut document = Document::new(Scene::clone(&job.scene));
-            document.adopt(result.rev(), result.occupancy.clone())?;
-            generated.add(document.scene())?;
+            let world = Arc::new(world);
+            for (keep_objects, seen) in &mut made {
+                let job = Job {
+                    scene: world.clone(),
+                    params: GenParams {
+                        keep_objects: *keep_objects,
+                        seed: self.scene_params.seed.wrapping_add(i as u64),
+                        ..self.scene_params.clone()
+                    },
+                };
+                let result = pipeline.run(&job, &JobCtx::detached())?;
+                let mut document = Document::new(Scene::clone(&world));
+                document.adopt(result.rev(), result.occupancy.clone())?;
+                seen.add(document.scene())?;
+            }
         }
+        let [shown, own] = made.map(|(_, seen)| seen);
         let report = json!({
             "worlds": worlds.report(),
-            "generated": generated.report(),
-            "generated_more_than_worlds": generated.more_than(&worlds),
+            "generated": shown.report(),
+            "generated_more_than_worlds": shown.more_than(&worlds),
+            "own_output": own.report(),
+            "own_output_more_than_worlds": own.more_than(&worlds),
         });
         Ok((report, Vec::new()))
     }
