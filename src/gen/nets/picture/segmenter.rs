@@ -111,7 +111,7 @@ impl<B: Ops> PictureSegmenter<B> {
         Ok(logits.chunks_exact(SHOWN).map(likeliest).collect())
     }
 
-    /// What it sees in one picture: the means of each channel of the coarsest map in windows of about [`WINDOW`] cells (of 8 px)
+    /// What it sees in one picture: the means of each channel of the coarsest map in windows of about 8 cells (of 8 px)
     /// a side, row by row. Input and errors as of [`logits`](Self::logits).
     pub fn features(
         &self,
