@@ -61,10 +61,13 @@ impl Row {
     /// Ways along and across the row to each copy, m.
     fn places(&self) -> impl Iterator<Item = DVec2> + '_ {
         let sound = self.spacing_m.is_finite() && self.apart_m.is_finite();
-        let across =
-            (0..self.rows.clamp(1, MAX_COPIES)).flat_map(|row| (0..=self.copies).map(move |i| [i, row]));
+        let [copies, rows] = match sound {
+            true => [self.copies, self.rows].map(|n| n.min(MAX_COPIES)),
+            false => [0, 1],
+        };
+        let across = (0..rows.max(1)).flat_map(move |row| (0..=copies).map(move |i| [i, row]));
         across
-            .filter(move |at| sound && *at != [0, 0])
+            .filter(|at| *at != [0, 0])
             .take(MAX_COPIES)
             .map(|[i, row]| DVec2::new(self.spacing_m * i as f64, self.apart_m * row as f64))
     }
