@@ -146,8 +146,12 @@ impl SceneloomApp {
 
     /// Adds things and boxes as one undo step, and chooses them.
     fn add_copies(&mut self, label: &str, forms: Vec<Form>, added: Added) {
-        if forms.is_empty() {
+        if forms.is_empty() && added.ids.is_empty() {
             return self.note(t("All of them would lie outside the map"));
+        }
+        if forms.is_empty() {
+            // The things would lie outside, the boxes do not.
+            return self.add_boxes("Row of boxes", added);
         }
         self.add_things(label, forms, added.edits);
         self.state.choose(&added.ids, crate::tools::Choose::Add);

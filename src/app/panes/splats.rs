@@ -16,7 +16,7 @@ use crate::command::Command;
 use crate::fly;
 use crate::place_marks;
 use crate::state::{UiState, called};
-use crate::tools::{Choose, ToolCommand};
+use crate::tools::ToolCommand;
 use editor::pick::{self, Hit, Ray};
 use editor::tools::point_of;
 use language::{t, tf};
@@ -304,12 +304,9 @@ impl Looks {
             cx.state.pointed.readout = format!("{} #{}", called(b), b.id.0);
         }
         if response.clicked() {
-            let how = match ui.input(|i| i.modifiers.shift) {
-                true => Choose::Toggle,
-                false => Choose::Only,
-            };
-            let ids = found.map(|b| b.id).into_iter().collect();
-            commands.push(Command::Tools(ToolCommand::Choose(ids, how)));
+            let shift = ui.input(|i| i.modifiers.shift);
+            let choose = ToolCommand::clicked(found.map(|b| b.id), shift);
+            commands.push(Command::Tools(choose));
         }
     }
 }

@@ -13,9 +13,9 @@ use super::id::PaneId;
 use crate::command::Command;
 use crate::place_marks;
 use crate::state::{UiState, called};
-use crate::tools::{Choose, ToolCommand};
+use crate::tools::ToolCommand;
 use language::{t, tf};
-use scene::{LidarPattern, LidarPoint, LidarSweep, Pose, Scene, SceneBox};
+use scene::{BoxId, LidarPattern, LidarPoint, LidarSweep, Pose, Scene, SceneBox, SceneRev};
 use viewport::{LidarColorMode, lidar_colors};
 use widgets::theme;
 
@@ -77,6 +77,17 @@ fn column(azimuth_deg: f64) -> usize {
 #[derive(Default)]
 pub struct SweepPicture {
     texture: Option<(Arc<LidarSweep>, LidarColorMode, usize, TextureHandle)>,
+    /// Outlines of the chosen boxes, and what they were made from.
+    outlined: Option<(OutlinesOf, Vec<Outline>)>,
+}
+
+/// Opposite corners of a rectangle, parts of the picture.
+type Outline = [[f64; 2]; 2];
+/// The sweep, the state of the scene and the chosen boxes.
+type OutlinesOf = (Arc<LidarSweep>, SceneRev, Vec<BoxId>);
+
+fn same(a: &OutlinesOf, b: &OutlinesOf) -> bool {
+    Arc::ptr_eq(&a.0, &b.0) && (a.1, &a.2) == (b.1, &b.2)
 }
 
 impl SweepPicture {
@@ -121,16 +132,20 @@ impl SweepPicture {
         let unit = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
         painter.image(handle.id(), rect, unit, Color32::WHITE);
-        for id in state.chosen() {
-            let chosen = scene.frame().boxes.get(&id);
-            for outline in chosen.map_or_else(Vec::new, |b| outlines(sweep, &mount, rings, b)) {
-                let at = |part: [f64; 2]| rect.min + egui::vec2(part[0] as f32, part[1] as f32) * rect.size();
-                let around = Rect::from_two_pos(at(outline[0]), at(outline[1])).expand(2.0);
-                let dark = Stroke::new(3.5, Color32::from_black_alpha(150));
-                painter.rect_stroke(around, 2.0, dark, StrokeKind::Middle);
-                let light = Stroke::new(1.5, Color32::WHITE);
-                painter.rect_stroke(around, 2.0, light, StrokeKind::Middle);
-            }
+        // Each box is looked for in all returns: not again in every frame.
+        let of = (sweep.clone(), scene.rev, state.chosen());
+        if self.outlined.as_ref().is_none_or(|(known, _)| !same(known, &of)) {
+            let boxes = of.2.iter().filter_map(|id| scene.frame().boxes.get(id));
+            let found = boxes.flat_map(|b| outlines(sweep, &mount, rings, b)).collect();
+            self.outlined = Some((of, found));
+        }
+        for outline in self.outlined.iter().flat_map(|(_, found)| found) {
+            let at = |part: [f64; 2]| rect.min + egui::vec2(part[0] as f32, part[1] as f32) * rect.size();
+            let around = Rect::from_two_pos(at(outline[0]), at(outline[1])).expand(2.0);
+            let dark = Stroke::new(3.5, Color32::from_black_alpha(150));
+            painter.rect_stroke(around, 2.0, dark, StrokeKind::Middle);
+            let light = Stroke::new(1.5, Color32::WHITE);
+            painter.rect_stroke(around, 2.0, light, StrokeKind::Middle);
         }
         if let Some(place_m) = place_marks::elsewhere(state, PaneId::LIDAR) {
             let [x, y] = mount.part_of(place_m, &lidar.elevations_deg).map(|v| v as f32);
@@ -165,12 +180,9 @@ impl SweepPicture {
             place_marks::point(state, PaneId::LIDAR, place_of(point));
         }
         if response.clicked() {
-            let how = match ui.input(|i| i.modifiers.shift) {
-                true => Choose::Toggle,
-                false => Choose::Only,
-            };
-            let ids = hit.map(|b| b.id).into_iter().collect();
-            commands.push(Command::Tools(ToolCommand::Choose(ids, how)));
+            let shift = ui.input(|i| i.modifiers.shift);
+            let choose = ToolCommand::clicked(hit.map(|b| b.id), shift);
+            commands.push(Command::Tools(choose));
         }
     }
 }
@@ -192,7 +204,7 @@ fn box_of<'a>(scene: &'a Scene, point: &LidarPoint) -> Option<&'a SceneBox> {
 
 /// Rectangles around the returns of a box, two opposite corners as parts of the picture: none without returns, two where it lies
 /// across the edge of the picture.
-fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Vec<[[f64; 2]; 2]> {
+fn outlines(sweep: &LidarSweep, mount: &Mount, rings: usize, b: &SceneBox) -> Vec<Outline> {
     let middle_deg = mount.azimuth_deg(b.center_m);
     let mut low = [f64::INFINITY; 2];
     let mut high = [f64::NEG_INFINITY; 2];
@@ -245,7 +257,7 @@ fn nearest<'a>(sweep: &'a LidarSweep, mount: &Mount, ring: usize, at_deg: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{BoxId, Class};
+    use scene::Class;
 
     fn mount(at_m: DVec3, world_from_ego: Pose) -> Mount {
         Mount {

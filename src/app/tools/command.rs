@@ -60,3 +60,11 @@ pub enum ToolCommand {
     /// Of the tools for things.
     Thing(super::things::ThingCommand),
 }
+
+impl ToolCommand {
+    /// Chooses the box that was clicked, or nothing; with Shift it joins what is chosen, or leaves it.
+    pub fn clicked(id: Option<BoxId>, shift: bool) -> Self {
+        let how = if shift { Choose::Toggle } else { Choose::Only };
+        Self::Choose(id.into_iter().collect(), how)
+    }
+}
