@@ -112,6 +112,8 @@ pub mod weights {
     pub static REFINER: &[u8] = include_bytes!("weights/refiner.safetensors");
     /// `scenery.safetensors`.
     pub static SCENERY: &[u8] = include_bytes!("weights/scenery.safetensors");
+    /// `sensor_occupancy.safetensors`.
+    pub static SENSOR_OCCUPANCY: &[u8] = include_bytes!("weights/sensor_occupancy.safetensors");
     /// `text.safetensors`.
     pub static TEXT: &[u8] = include_bytes!("weights/text.safetensors");
     /// `time_decoder.safetensors`.

@@ -11,7 +11,7 @@ import torch
 
 from models.lidar_perceiver import BOX, CELL_M, COLUMN_M, COLUMNS, GROUPS, HALF_M, pillars
 
-DTYPES = {"U8": np.uint8, "I16": np.int16, "I32": np.int32, "F32": np.float32}
+DTYPES = {"U8": np.uint8, "U16": np.uint16, "I16": np.int16, "I32": np.int32, "F32": np.float32}
 NAMES = ("source", "returns", "points", "intensity", "box_count", "boxes", "standing")
 POINT_M = 0.005
 IGNORED = 255
@@ -21,15 +21,15 @@ GROUP_OF = np.array([-1, 4, 3, 1, 0, 1, 3, 2, 4, 1, 1] + [-1] * 7)
 CELLS = COLUMNS // 2
 
 
-def mapped(path):
+def mapped(path, names=NAMES, kind="perception"):
     """The arrays of a shard by name, memory-mapped."""
     with open(path, "rb") as f:
         length = int.from_bytes(f.read(8), "little")
         header = json.loads(f.read(length))
-    if any(n not in header for n in NAMES):
-        raise SystemExit(f"{path}: expected the arrays of `sceneloom-worlds --kind perception`: {', '.join(NAMES)}")
+    if any(n not in header for n in names):
+        raise SystemExit(f"{path}: expected the arrays of `sceneloom-worlds --kind {kind}`: {', '.join(names)}")
     return {n: np.memmap(path, DTYPES[header[n]["dtype"]], "r", 8 + length + header[n]["data_offsets"][0], tuple(header[n]["shape"]))
-            for n in NAMES}
+            for n in names}
 
 
 class PerceptionFrames:

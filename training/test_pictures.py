@@ -10,7 +10,7 @@ import numpy as np
 import torch
 
 import train_pictures
-from models.picture_dit import PictureDit, PictureDitConfig, rows, seen_then, warp
+from models.picture_dit import PictureDit, PictureDitConfig, Told, rows, seen_then, warp
 from models.picture_vae import Critic, PictureVae, PictureVaeConfig
 from models.segmenter import Segmenter, SegmenterConfig
 from picture_data import MIRRORED, Pool, as_bytes, as_pictures, camera_numbers, mirrored_facing, planes_of, ways
@@ -49,6 +49,15 @@ def networks_keep_their_shapes():
     table = torch.randn(5, 3)
     index = torch.randint(5, (4, 6), dtype=torch.uint8)
     assert torch.equal(rows(index, table), table[index.int()])
+
+
+def planes_are_summed_as_they_are_convolved():
+    for kernel in (1, 3):
+        told = Told(PictureDitConfig(told=(4, 8, 16), cells=16, planes=12, plane_kernel=kernel))
+        planes = torch.randint(0, 18, (2, 12, 8, 10), dtype=torch.uint8)
+        summed = told.of_planes(planes)
+        convolved = told.planes[0](rows(planes, told.plane_table.weight).permute(0, 1, 4, 2, 3).flatten(1, 2))
+        assert torch.allclose(summed, convolved, atol=1e-5), kernel
 
 
 def a_surface_is_found_where_it_was():
@@ -124,6 +133,7 @@ def toy_run(worlds):
 
 if __name__ == "__main__":
     networks_keep_their_shapes()
+    planes_are_summed_as_they_are_convolved()
     a_surface_is_found_where_it_was()
     neighbours_hear_each_other()
     a_mirror_is_a_mirror()

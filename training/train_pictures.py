@@ -33,6 +33,7 @@ ABLATIONS = {"all": {}, "no_cross_view": dict(across=()), "no_depth": dict(depth
              "planes_1": dict(planes=32), "planes_3": dict(planes=32, plane_kernel=3)}
 OBJECTS = 11  # classes 1 to 10 are objects
 OBJECT_WEIGHT = 2.0
+FAR_M = 50.0  # where depth-aware weights are largest
 SAVE_S = 60.0
 
 
@@ -345,8 +346,22 @@ class Trainer:
         depths = (cell_depth(part[name]).flatten(0, 1) for name in ("depth_m", "depth_before_m"))
         return warp(latent.flatten(0, 1), *depths, intrinsic, part["way"].flatten(0, 1)).view(*latent.shape[:4], -1)
 
-    def v_loss(self, model, part, random, told=1.0, before=None):
-        """Error of v of a batch: weighed for learning, and plain. `before` says which frames hear the frame before (bool [B])."""
+    def heavy(self, part, how, done):
+        """Weights of cells [B,6,h,w,1] whose pixels show objects: all `plain`, `objects` twice as heavy, or as in SyntheOcc's code (2410.00337) by `depth` 1.1 to 2.1,
+        by `progress` of the training 1.2 to 2.2, or `both` multiplied."""
+        objects = ((part["classes"] > 0) & (part["classes"] < OBJECTS)).float()
+        if how == "plain":
+            return torch.ones((), device=self.device)
+        if how == "objects":
+            pixels = objects * (OBJECT_WEIGHT - 1)
+        else:
+            deep = (part["depth_m"] / FAR_M).clamp(max=1.0)
+            pixels = objects * ((1.1 + deep if how != "progress" else 1.0) * (1.2 + done if how != "depth" else 1.0) - 1)
+        return 1 + F.max_pool2d(pixels, CELL)[..., None]
+
+    def v_loss(self, model, part, random, told=1.0, before=None, how="objects", done=0.0):
+        """Error of v of a batch: weighed for learning, and plain. `before` says which frames hear the frame before (bool [B]), `how` cells are weighed `heavy`
+        says."""
         target, b = part["latent"], len(part["latent"])
         u = (torch.arange(b, device=self.device) + torch.rand(b, device=self.device, generator=random)) / b
         t = (u * STEPS).long().clamp(max=STEPS - 1)
@@ -363,9 +378,7 @@ class Trainer:
         error = (guess - v).square()
         snr1 = 1 / (1 - self.abar[t])
         weight = (snr1.clamp(max=5.0) / snr1).float().view(b, 1, 1, 1, 1)
-        objects = ((part["classes"] > 0) & (part["classes"] < OBJECTS)).float()
-        heavy = 1 + (OBJECT_WEIGHT - 1) * F.max_pool2d(objects, CELL)[..., None]
-        return (error * weight * heavy).mean(), error.mean()
+        return (error * weight * self.heavy(part, how, done)).mean(), error.mean()
 
     def dit_step(self, name, n, mirrored):
         """A step of the transformer, or of an ablation by its name, on n frames."""

@@ -177,7 +177,7 @@ impl Drawer {
                 }
                 bounds::check(
                     options.size,
-                    cameras::source_of(*view, *source).bytes_per_pixel(),
+                    cameras::source_of(*view, *source).about().bytes_per_pixel,
                     0,
                 )?;
                 // Painted pictures go on from those of the frame before.

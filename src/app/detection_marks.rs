@@ -1,5 +1,7 @@
-//! What the LiDAR's network sees, over the large views: its boxes, those of the scene that it misses, and what it takes the
-//! ground for.
+//! What the network of the LiDAR or of both sensors sees, over the large views: its boxes, those of the scene that it misses, and
+//! what it takes the ground for.
+
+use std::sync::Arc;
 
 use egui::epaint::{Mesh, Vertex};
 use egui::{Color32, Painter, Pos2, Shape, Stroke, TextureHandle, pos2};
@@ -25,6 +27,8 @@ pub struct DetectionMarks {
     pub missed: Vec<BoxId>,
     /// What stands in each column of the window around the vehicle, seen from above, ahead is up.
     pub stands: Option<TextureHandle>,
+    /// The scene with the voxels that the network tells in place of its own.
+    pub told: Option<Arc<Scene>>,
     /// Map from the vehicle.
     pub map_from_vehicle: Pose,
     /// Where those columns lie, in the frame of the vehicle.
@@ -54,6 +58,16 @@ impl DetectionMarks {
             (color(MISSED), t("missed").to_owned()),
             (color(GHOST), t("a thing where there is none").to_owned()),
         ]
+    }
+
+    /// The same where its voxels are shown in place of the scene's.
+    pub(crate) fn told_legend() -> Vec<(Color32, String)> {
+        let [_, missed, ghost] = Self::legend();
+        let voxels = (
+            Color32::TRANSPARENT,
+            t("voxels as the network tells them").to_owned(),
+        );
+        vec![voxels, missed, ghost]
     }
 
     /// Each box with its colour.
@@ -156,6 +170,7 @@ mod tests {
             detections: vec![(b(5), false), (b(6), true)],
             // One of them is gone since.
             missed: vec![BoxId(1), BoxId(2)],
+            told: None,
             stands: None,
             map_from_vehicle: Pose::IDENTITY,
             window: Extent::WINDOW,

@@ -120,7 +120,7 @@ impl ExportProgress {
             bail!("the rig {:?} has no camera", rig.name);
         }
         let source = cameras::source_of(view, options.source);
-        bounds::check(options.camera_size, source.bytes_per_pixel(), 0)?;
+        bounds::check(options.camera_size, source.about().bytes_per_pixel, 0)?;
         let ready = Ready::new(source, &camera_input(scene, Detail::Full));
         let options = RenderOptions {
             size: options.camera_size,

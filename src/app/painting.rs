@@ -63,6 +63,7 @@ impl PaintWish {
             strength: within(self.strength, Self::STRENGTH, usual.strength),
             width_px: whole(self.width_px, Self::WIDTH_PX, usual.width_px),
             prompt: self.prompt.clone(),
+            ..usual
         }
     }
 

@@ -1,4 +1,4 @@
-//! What small networks see of the scene in its cameras and its LiDAR, and searches for what they miss: on a thread of its own.
+//! What small networks see of the scene in its cameras, its LiDAR and both, and searches for what they miss: on a thread of its own.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -9,6 +9,7 @@ use job::product::{Ctx, Product, Wake, Worker};
 use scene::{BoxId, Scene, SceneRev};
 use sensors::perceived::{self, Report};
 use sensors::perceived_sweep::{self, SweepReport};
+use sensors::perceived_voxels::{self, Hears, VoxelReport};
 
 /// What is asked for.
 enum Request {
@@ -19,6 +20,7 @@ enum Request {
 enum News {
     Looked(SceneRev, Report),
     Swept(SceneRev, SweepReport),
+    Told(SceneRev, VoxelReport),
     Tried(Tried, [usize; 2]),
     Searched(Found),
     Failed(String),
@@ -55,6 +57,10 @@ impl Product for Perceiver {
         match request {
             Request::Look(scene, Sensor::Lidar) => match perceived_sweep::report(scene) {
                 Ok(report) => News::Swept(scene.rev, report),
+                Err(error) => News::Failed(error.to_string()),
+            },
+            Request::Look(scene, Sensor::Both) => match perceived_voxels::report(scene, Hears::Both) {
+                Ok(report) => News::Told(scene.rev, report),
                 Err(error) => News::Failed(error.to_string()),
             },
             Request::Look(scene, Sensor::Cameras) => {
@@ -108,6 +114,8 @@ pub struct Perceiving {
     pub seen: Option<(SceneRev, Report)>,
     /// What is seen in the LiDAR's sweep, and of which state.
     pub swept: Option<(SceneRev, Arc<SweepReport>)>,
+    /// Which voxels are told from both, and of which state.
+    pub told: Option<(SceneRev, Arc<VoxelReport>)>,
     /// A search that runs: what was tried last, its number and how many there are at most.
     pub searching: Option<(Change, [usize; 2])>,
     /// The last search.
@@ -124,6 +132,7 @@ impl Perceiving {
             asked: None,
             seen: None,
             swept: None,
+            told: None,
             searching: None,
             found: None,
             problem: None,
@@ -138,6 +147,7 @@ impl Perceiving {
                 News::Swept(rev, report) => {
                     (self.swept, self.problem) = (Some((rev, Arc::new(report))), None)
                 }
+                News::Told(rev, report) => (self.told, self.problem) = (Some((rev, Arc::new(report))), None),
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
                 News::Searched(found) => (self.searching, self.found) = (None, Some(found)),
                 News::Failed(problem) => (self.searching, self.problem) = (None, Some(problem)),
@@ -168,6 +178,7 @@ impl Perceiving {
         match by {
             Sensor::Cameras => self.seen.as_ref().is_none_or(|(of, _)| *of != rev),
             Sensor::Lidar => self.swept.as_ref().is_none_or(|(of, _)| *of != rev),
+            Sensor::Both => self.told.as_ref().is_none_or(|(of, _)| *of != rev),
         }
     }
 }
@@ -205,6 +216,11 @@ mod tests {
         });
         let (_, swept) = perceiving.swept.as_ref().expect("a report");
         assert!(!swept.detections.is_empty());
+        wait(&mut perceiving, (&scene, Sensor::Both), |p| {
+            !p.is_stale(scene.rev, Sensor::Both)
+        });
+        let (_, told) = perceiving.told.as_ref().expect("a report");
+        assert!(told.voxels.count_set() > 1000);
         let (_, report) = perceiving.seen.as_ref().expect("a report");
         assert!(!report.boxes.is_empty() && report.right > 0.5);
         let id = report.boxes.last().expect("a box").thing.id;

@@ -501,7 +501,7 @@ fn sense(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
         Some(views) => views,
         None => {
             // Camera pictures take their time: a coarse one comes first.
-            if (*preview || source.previews())
+            if (*preview || source.about().previews)
                 && let Some(views) = render(true)
             {
                 ctx.tell(News::Cameras(scene.rev, *wanted, views));
@@ -573,7 +573,7 @@ fn other_sources(request: &Request, kept: &mut Kept, ctx: &Ctx<'_, News>) {
             }
             Some(views)
         };
-        if (*preview || source.previews())
+        if (*preview || source.about().previews)
             && let Some(views) = render(true)
         {
             ctx.tell(News::Other(scene.rev, id, views));

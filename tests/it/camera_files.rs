@@ -141,17 +141,17 @@ fn a_run_takes_the_memory_that_its_source_states() {
             };
             let per_pixel = |mb: f64| mb * f64::from(1 << 20) / pixels;
             let (taken, more) = (per_pixel(single - small), per_pixel(all - single));
-            let stated = source.bytes_per_pixel() as f64;
+            let stated = source.about().bytes_per_pixel as f64;
             println!(
                 "{} from {}: {taken:.0} bytes a pixel of {stated}, {more:.0} more for five other cameras",
                 view.title,
-                source.title()
+                source.about().title
             );
             // The sheet of pictures in colours has one camera here.
-            assert!(taken <= stated + 8.0, "{}: {taken} of {stated}", source.title());
+            assert!(taken <= stated + 8.0, "{}: {taken} of {stated}", source.about().title);
             // What is kept of a camera is its place in the sheet, 4 bytes, and what the allocator does not give back; all
             // maps of five cameras would be 85.
-            assert!(more <= 60.0, "{}: {more} for five cameras", source.title());
+            assert!(more <= 60.0, "{}: {more} for five cameras", source.about().title);
         }
     }
 }

@@ -100,11 +100,37 @@ class Told(nn.Module):
         nn.init.normal_(self.classes.weight, std=0.5)
         nn.init.normal_(self.facings.weight, std=0.5)
 
+    def of_planes(self, planes):
+        """The first convolution over embedded labels u8 [B,P,h,w] -> [B,two,h,w]. On a processor as sums of rows of one table: a row for each plane, label and
+        place of the kernel; most planes hold nothing there, which is counted once for all."""
+        first = self.planes[0]
+        if planes.is_cuda:
+            return first(rows(planes, self.plane_table.weight).permute(0, 1, 4, 2, 3).flatten(1, 2))
+        b, count, h, w = planes.shape
+        weight = first.weight.unflatten(1, (count, 4))  # [two,P,4,k,k]
+        table = torch.einsum("oprij,lr->ijplo", weight, self.plane_table.weight)
+        empty = table[:, :, :, NOTHING]
+        # At the rim the kernel sees fewer places, and those outside are 0.
+        inside = F.conv2d(torch.ones(1, 1, h, w), torch.eye(empty.shape[0] ** 2).view(-1, 1, *empty.shape[:2]), padding=empty.shape[0] // 2)
+        out = torch.einsum("knhw,kpo->nohw", inside.transpose(0, 1).reshape(-1, 1, h, w), empty.flatten(0, 1)) + first.bias[:, None, None]
+        table = (table - empty[:, :, :, None]).flatten(2, 3)
+        reach = empty.shape[0] // 2
+        total = 0.0
+        for i in range(-reach, reach + 1):
+            for j in range(-reach, reach + 1):
+                moved = (shifted(planes, i, j) if reach else planes).permute(0, 2, 3, 1).reshape(-1, count)
+                filled = moved != NOTHING
+                where = filled.view(-1).nonzero().squeeze(1)
+                codes = where % count * 18 + moved.reshape(-1)[where].long()
+                offsets = torch.zeros(len(moved), dtype=torch.long)
+                torch.cumsum(filled.sum(1)[:-1], 0, out=offsets[1:])
+                total = total + F.embedding_bag(codes, table[i + reach, j + reach], offsets, mode="sum")
+        return out + total.view(b, h, w, -1).permute(0, 3, 1, 2)
+
     def forward(self, classes, depth_m, facing, planes=None):
         """u8 [B,h,w], f32 [B,h,w], u8 [B,h,w]; planes u8 [B,P,h/2,w/2] where a network hears those -> [B,W,h/8,w/8]."""
         if self.config.planes:
-            x = rows(planes, self.plane_table.weight)
-            x = self.planes(x.permute(0, 1, 4, 2, 3).flatten(1, 2))
+            x = self.planes[2](self.planes[1](self.of_planes(planes)))
         else:
             x = rows(classes, self.classes.weight) + rows(facing & (EDGE - 1), self.facings.weight)
             x = x + (facing >= EDGE)[..., None].to(x.dtype) * self.edge.to(x.dtype)
@@ -115,6 +141,15 @@ class Told(nn.Module):
         for down, level in zip(self.down[1:], self.levels[1:]):
             x = level(down(fold(x)))
         return x
+
+
+NOTHING = 17  # label of a plane where nothing is
+
+
+def shifted(labels, dy, dx):
+    """What lies so far below and to the right u8 [...,h,w]; nothing from outside."""
+    h, w = labels.shape[-2:]
+    return F.pad(labels, (1, 1, 1, 1), value=NOTHING)[..., 1 + dy : 1 + dy + h, 1 + dx : 1 + dx + w]
 
 
 def rows(index, table):

@@ -157,7 +157,7 @@ fn sheet(scene: &Scene, options: &CaptureOptions) -> anyhow::Result<Picture> {
     }
     let [w, h] = options.camera_size;
     let rows = all.len().div_ceil(COLUMNS) as u32;
-    bounds::check(options.camera_size, source.bytes_per_pixel(), 0)?;
+    bounds::check(options.camera_size, source.about().bytes_per_pixel, 0)?;
     bounds::check([w.saturating_mul(COLUMNS as u32), h.saturating_mul(rows)], 16, 0)?;
     let ready = Ready::new(source, &camera_input(scene, Detail::Full));
     let render = RenderOptions {

@@ -1,4 +1,4 @@
-//! `sceneloom perceive`: what small networks see of a scene in the cameras and in the LiDAR; and a search for a change after
+//! `sceneloom perceive`: what small networks see of a scene in the cameras, in the LiDAR and in both; and a search for a change after
 //! which one misses an object.
 
 use std::ops::ControlFlow;
@@ -14,6 +14,7 @@ use authoring::corner_case::{self, Sensor, Vary};
 use editor::Document;
 use formats::loom;
 use scene::{BoxId, Scene};
+use sensors::perceived_voxels::{self, Heard, Hears, VoxelReport};
 use sensors::{perceived, perceived_sweep};
 
 /// Arguments.
@@ -52,6 +53,9 @@ impl Perceive {
         let placed = scene.with_rig_in_world();
         let found = perceived::report(placed.frame(), &placed.rig, &placed.conditions)?;
         let swept = perceived_sweep::report(scene)?;
+        let heard = Heard::of(scene)?;
+        let told = |hears| perceived_voxels::report_of(scene, &heard, hears);
+        let (both, alone) = (told(Hears::Both)?, [told(Hears::Lidar)?, told(Hears::Cameras)?]);
         let name = |camera: usize| &placed.rig.cameras[camera].name;
         let boxes = found.boxes.iter().map(|b| {
             json!({
@@ -73,6 +77,7 @@ impl Perceive {
             "ghost_px": ghosts.collect::<serde_json::Map<_, _>>(),
             "pixels_right": round(found.right),
             "lidar": of_sweep(scene, &swept),
+            "voxels": of_voxels(scene, &both, &alone),
         });
         output::report(&self.common, &report, || {
             let line = |b: &perceived::SeenByRig| {
@@ -113,6 +118,24 @@ impl Perceive {
                 "right where the LiDAR sees: {:.1} % of the columns",
                 swept.right * 100.0
             ));
+            lines.extend(both.boxes.iter().map(|b| {
+                let class = scene.frame().boxes.get(&b.id).map_or("box", |b| b.class.name());
+                let missed = if b.is_missed() { "missed" } else { "seen" };
+                format!(
+                    "{missed} among the voxels told from both: {class} #{}, {:.0} % of {} voxels",
+                    b.id.0,
+                    b.share * 100.0,
+                    b.voxels
+                )
+            }));
+            lines.push(format!(
+                "things among them where there are none: {}",
+                both.ghosts.len()
+            ));
+            lines.push(format!(
+                "voxels told from both, IoU where the LiDAR sees: {:.3}; from the LiDAR alone {:.3}, from the cameras alone {:.3}",
+                both.iou, alone[0].iou, alone[1].iou
+            ));
             lines.join("\n")
         });
         Ok(())
@@ -142,6 +165,7 @@ impl Perceive {
             "box": id.0,
             "missed": edits.is_some(),
             "at": last.change.to_string(),
+            "time_s": round(search.at_s),
             "edits": edits,
             "tried": tried.collect::<Vec<_>>(),
             "file": self.output.as_ref().filter(|_| edits.is_some()),
@@ -154,6 +178,7 @@ impl Perceive {
                         format!("{}: {n} px, {percent:.0} % of them taken for a thing", t.change)
                     }
                     Sensor::Lidar => format!("{}: {n} returns, {percent:.0} % sure", t.change),
+                    Sensor::Both => format!("{}: {percent:.0} % of {n} voxels taken for a thing", t.change),
                 }
             });
             let mut lines: Vec<String> = lines.collect();
@@ -201,11 +226,41 @@ fn of_sweep(scene: &Scene, swept: &perceived_sweep::SweepReport) -> serde_json::
     })
 }
 
+/// What the network of both sensors tells, and how well it does with one of them.
+fn of_voxels(scene: &Scene, both: &VoxelReport, [lidar, cameras]: &[VoxelReport; 2]) -> serde_json::Value {
+    let class = |id| scene.frame().boxes.get(&id).map(|b| b.class.name());
+    let boxes = both.boxes.iter().map(|b| {
+        json!({
+            "box": b.id.0,
+            "class": class(b.id),
+            "voxels": b.voxels,
+            "share_seen": round(b.share),
+            "missed": b.is_missed(),
+        })
+    });
+    let ghosts = both.ghosts.iter().map(|g| {
+        json!({
+            "class": g.thing.class.name(),
+            "center_m": g.thing.center_m.to_array().map(round),
+            "voxels": g.voxels,
+        })
+    });
+    let figures = |r: &VoxelReport| json!({ "iou": round(r.iou), "classes_right": round(r.right) });
+    json!({
+        "boxes": boxes.collect::<Vec<_>>(),
+        "ghosts": ghosts.collect::<Vec<_>>(),
+        "both": figures(both),
+        "lidar_alone": figures(lidar),
+        "cameras_alone": figures(cameras),
+    })
+}
+
 /// What the report calls that of which there must be enough.
 fn visible(by: Sensor) -> &'static str {
     match by {
         Sensor::Cameras => "visible_px",
         Sensor::Lidar => "returns",
+        Sensor::Both => "voxels",
     }
 }
 

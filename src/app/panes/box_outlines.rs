@@ -15,7 +15,7 @@ use widgets::theme;
 /// How far below the physical ground the picture shows what stands on it, m: pictures of voxels have the ground where
 /// labels have it.
 pub fn drop_m(shown: &CamerasShown) -> f64 {
-    match shown.shown_source().ground() {
+    match shown.shown_source().about().ground {
         GroundHeight::Physical => 0.0,
         GroundHeight::AsLabelled => -GROUND_TOP_M,
     }

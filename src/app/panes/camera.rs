@@ -123,7 +123,7 @@ impl Pane for Camera {
             .response
             .accessible_name(t("Camera picture"));
         let source = cameras::source_of(view, cx.state.cameras.source);
-        if source.needs().conditions {
+        if source.about().needs.conditions {
             // Where there is no room the title of the pane comes first.
             let short = ui.available_width() < LIGHT_POINTS;
             let name = if short { "☀" } else { t("Light…") };

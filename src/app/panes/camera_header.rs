@@ -75,11 +75,11 @@ pub fn header(
         if sources.len() > 1 {
             let choices: Vec<_> = sources
                 .iter()
-                .map(|s| (s.id(), t(s.title()), t(s.hint())))
+                .map(|s| (s.id(), t(s.about().title), t(s.about().hint)))
                 .collect();
             icons::choice(ui, &mut shown.source, &choices, t("From"));
         }
-        if shown.shown_source().needs().conditions {
+        if shown.shown_source().about().needs.conditions {
             conditions(ui, input.scene, commands);
         }
         match views.iter().find(|v| v.id == shown.view).and_then(|v| v.knob) {

@@ -9,6 +9,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::camera_views::{LidarModel, LidarShown};
 use crate::command::{Command, FileCommand, ViewCommand};
+use crate::detection_marks::DetectionMarks;
 use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use crate::views_shown::ViewsShown;
@@ -80,9 +81,13 @@ impl Pane for View3dPane {
         };
         let entries = difference.map(|d| d.legend());
         let marked = difference.map(|d| d.marked());
+        let marks = cx.state.shown.detection_marks.as_ref();
+        let told = marks
+            .and_then(|m| m.told.clone())
+            .filter(|_| mode == CompareMode::Off);
         let input = View3dInput {
-            scene: &cx.seen.scene,
-            settled: &cx.seen.settled,
+            scene: told.as_ref().unwrap_or(&cx.seen.scene),
+            settled: told.as_ref().unwrap_or(&cx.seen.settled),
             lidar: cx.sensing.lidar(),
             dragging: cx.document.is_dragging(),
             marked: marked.as_ref().map_or(&[], |m| &m[..]),
@@ -103,6 +108,7 @@ impl Pane for View3dPane {
                 under(view, input.scene, at)
             });
         });
+        let entries = entries.or_else(|| told.as_ref().map(|_| DetectionMarks::told_legend()));
         if let Some(entries) = entries {
             legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
         }

@@ -47,7 +47,7 @@ fn the_newest_scene_is_sensed_in_the_end() {
             assert!(
                 start.elapsed() < Duration::from_secs(120),
                 "no news of {}",
-                source.title()
+                source.about().title
             );
             std::thread::sleep(Duration::from_millis(5));
             sensing.drain();

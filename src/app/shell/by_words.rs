@@ -48,7 +48,7 @@ impl SceneloomApp {
         if !changed.is_empty() && changed.len() <= MOST_CHOSEN {
             self.state.choose(&changed, Choose::Only);
         }
-        if other_light && !self.state.cameras.shown_source().needs().conditions {
+        if other_light && !self.state.cameras.shown_source().about().needs.conditions {
             self.state.cameras.view = pictures::VIEW.id;
             let now_s = self.now_s();
             let text = t("Time and weather changed: the cameras show pictures now").to_owned();

@@ -54,7 +54,7 @@ impl SceneloomApp {
             ViewCommand::LookThrough(index) => self.look_through(index),
             ViewCommand::Cameras(view) => self.state.cameras.view = view,
             ViewCommand::ShowLight => {
-                if !self.state.cameras.shown_source().needs().conditions {
+                if !self.state.cameras.shown_source().about().needs.conditions {
                     self.state.cameras.view = pictures::VIEW.id;
                 }
             }

@@ -1,15 +1,17 @@
-//! A corner case: one change of a scene, varied step by step until a network of cameras or LiDAR misses an object.
+//! A corner case: one change of a scene, varied step by step until a network of cameras, LiDAR or both misses an object.
 
 use std::ops::ControlFlow;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use glam::{DVec2, DVec3};
 
 use editor::{Document, Edit};
-use scene::{BoxId, Camera, Conditions, Scene, SceneBox, TimeOfDay, Weather};
+use scene::clip::{Path, Speed};
+use scene::{BoxId, Camera, Conditions, Motion, Scene, SceneBox, TimeOfDay, Weather};
 use sensors::appearance::Appearance;
 use sensors::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
 use sensors::perceived_sweep::{self, LEAST_RETURNS};
+use sensors::perceived_voxels::{self, LEAST_VOXELS};
 
 /// Distance of one step, m, and how many there are.
 const AWAY_M: (f64, usize) = (1.0, 40);
@@ -73,25 +75,33 @@ pub enum Sensor {
     Cameras,
     /// The LiDAR's.
     Lidar,
+    /// That which tells voxels from both.
+    Both,
 }
 
 impl Sensor {
-    /// Both, with what they are called.
-    pub const ALL: [(Self, &'static str); 2] = [(Self::Cameras, "Cameras"), (Self::Lidar, "LiDAR")];
+    /// All, with what they are called.
+    pub const ALL: [(Self, &'static str); 3] = [
+        (Self::Cameras, "Cameras"),
+        (Self::Lidar, "LiDAR"),
+        (Self::Both, "Both"),
+    ];
 
     /// What can be varied: light and air mean nothing to the LiDAR of the program, and pictures are taken in a moment.
     pub fn varies(self) -> &'static [Vary] {
         match self {
             Self::Cameras => Vary::ALL.split_at(5).0,
             Self::Lidar => &[Vary::Distance, Vary::Offset, Vary::Speed],
+            Self::Both => &Vary::ALL,
         }
     }
 
-    /// Pixels or returns that an object needs to be judged.
+    /// Pixels, returns or voxels that an object needs to be judged.
     pub fn least(self) -> usize {
         match self {
             Self::Cameras => LEAST_PX,
             Self::Lidar => LEAST_RETURNS,
+            Self::Both => LEAST_VOXELS,
         }
     }
 }
@@ -101,9 +111,10 @@ impl Sensor {
 pub struct Sight {
     /// By what.
     pub by: Sensor,
-    /// Pixels that show it in the camera that shows most of it, or returns on it.
+    /// Pixels that show it in the camera that shows most of it, returns on it, or its voxels if a sensor plainly sees it.
     pub visible: usize,
-    /// Share of the pixels that the network takes for a thing, in the camera where that is most; or how sure it is of the box.
+    /// Share of the pixels that the network takes for a thing, in the camera where that is most; how sure it is of the box; or that share of
+    /// the voxels.
     pub share: f64,
 }
 
@@ -165,6 +176,8 @@ pub struct Tried {
 /// What a search found.
 #[derive(Debug)]
 pub struct Search {
+    /// The moment that was looked at, s.
+    pub at_s: f64,
     /// Everything that was tried, in order; the first is the scene as it is.
     pub tried: Vec<Tried>,
     /// The last one misses the object: the edits that lead there, none for the scene as it is.
@@ -184,9 +197,17 @@ pub fn search(
 ) -> Result<Search> {
     let b = scene.frame().boxes.get(&id);
     let b = b.with_context(|| format!("there is no box {}", id.0))?;
+    let at_s = match vary {
+        Vary::Speed => match speed_problem(scene, id) {
+            Some(problem) => bail!(problem),
+            None => after_a_sweep(scene),
+        },
+        _ => scene.time_s(),
+    };
     let steps = steps(scene, b, vary);
     let most = steps.len() + 1;
     let mut out = Search {
+        at_s,
         tried: Vec::new(),
         found: None,
         stopped: false,
@@ -200,7 +221,7 @@ pub fn search(
         }
         let tried = Tried {
             change,
-            sight: sight(document.scene(), id, by)?,
+            sight: sight(&document.scene().at(at_s), id, by)?,
         };
         let (missed, ends) = (
             tried.sight.is_missed(),
@@ -225,7 +246,7 @@ pub fn search(
     Ok(out)
 }
 
-/// How a scene's cameras or its LiDAR see a box. Errors if the network fails.
+/// How a scene's cameras, its LiDAR or both see a box. Errors if the network fails.
 pub fn sight(scene: &Scene, id: BoxId, by: Sensor) -> Result<Sight> {
     match by {
         Sensor::Cameras => in_cameras(scene, id),
@@ -235,6 +256,14 @@ pub fn sight(scene: &Scene, id: BoxId, by: Sensor) -> Result<Sight> {
                 by,
                 visible: seen.map_or(0, |s| s.returns),
                 share: seen.and_then(|s| s.score).map_or(0.0, f64::from),
+            })
+        }
+        Sensor::Both => {
+            let seen = perceived_voxels::sight(scene, id)?;
+            Ok(Sight {
+                by,
+                visible: seen.map_or(0, |s| s.voxels),
+                share: seen.map_or(0.0, |s| s.share),
             })
         }
     }
@@ -321,29 +350,63 @@ fn steps(scene: &Scene, b: &SceneBox, vary: Vary) -> Vec<(Change, Vec<Edit>)> {
             .filter(|weather| *weather != now.weather)
             .map(|weather| (Change::Weather(weather), lit(now.under(weather))))
             .collect(),
-        // What follows a motion drives as that says.
-        Vary::Speed if scene.clip().motion(Some(b.id)).is_some() => Vec::new(),
         Vary::Speed => {
             let now_mps = b.velocity_mps.length();
             let faster = (1..).map(|k| now_mps + FASTER_MPS.0 * f64::from(k));
             let faster = faster.take_while(|mps| *mps <= FASTER_MPS.1);
-            faster.map(|mps| (Change::Speed(mps), driving(b, mps))).collect()
+            faster
+                .map(|mps| (Change::Speed(mps), driving(scene, b, mps)))
+                .collect()
         }
     }
 }
 
-/// Edits that let a box drive so fast where it is, m/s.
-fn driving(b: &SceneBox, mps: f64) -> Vec<Edit> {
-    let again = Edit::AddBox {
-        class: b.class,
-        center_m: b.center_m,
-        size_m: b.size_m,
-        yaw_deg: b.yaw_rad.to_degrees(),
-        velocity_mps: Some(b.heading() * mps),
-        id: Some(b.id),
-        label: b.label,
+/// When a scene is looked at whose speeds are varied, s: once a whole sweep has been measured.
+fn after_a_sweep(scene: &Scene) -> f64 {
+    let spin_hz = scene.rig.lidars.first().map_or(0.0, |l| l.spin_hz);
+    let sweep_s = if spin_hz > 0.0 { 1.0 / spin_hz } else { 0.0 };
+    scene.time_s().max(sweep_s)
+}
+
+/// True if the LiDAR of a scene turns while it measures, so that what drives is drawn out or pressed together.
+pub fn speed_matters(scene: &Scene) -> bool {
+    scene.rig.lidars.first().is_some_and(|l| l.spin_hz > 0.0)
+}
+
+/// Why the speed of a box cannot be varied, if it cannot.
+fn speed_problem(scene: &Scene, id: BoxId) -> Option<String> {
+    if !speed_matters(scene) {
+        return Some(
+            "the LiDAR measures everything at one moment (spin_hz is 0 in the rig): speed changes nothing"
+                .to_owned(),
+        );
+    }
+    let follows = scene.clip().motion(Some(id)).is_some();
+    follows.then(|| format!("box {} follows a motion: its speed is set there", id.0))
+}
+
+/// Edits that let a box drive so fast, m/s: it is where it is now [`after_a_sweep`], and goes on for as long.
+fn driving(scene: &Scene, b: &SceneBox, mps: f64) -> Vec<Edit> {
+    let at_s = after_a_sweep(scene);
+    let (here, way) = (b.center_m.truncate(), b.heading() * mps * at_s);
+    let path = Path {
+        points_m: vec![here - way, here + way],
+        start_m: 0.0,
+        speeds: vec![Speed { time_s: 0.0, mps }],
+        rear_first: false,
     };
-    vec![Edit::RemoveBox { id: b.id }, again]
+    vec![
+        Edit::SetLength {
+            length_s: scene.clip().length_s.max(2.0 * at_s),
+            rate_hz: None,
+        },
+        Edit::SetMotion {
+            id: Some(b.id),
+            motion: Some(Motion::Path(path)),
+            from_s: None,
+            to_s: None,
+        },
+    ]
 }
 
 #[cfg(test)]
@@ -442,12 +505,26 @@ mod tests {
         assert_eq!(steps(&scene, b, Vary::Time).len(), 3);
         assert_eq!(steps(&scene, b, Vary::Weather).len(), Weather::ALL.len() - 1);
         assert!(steps(&scene, b, Vary::Offset)[1].0.to_string() == "0.5 m to the right");
+        let go_on = |_: &Tried, _| ControlFlow::Continue(());
+        let error = search(&scene, b.id, Vary::Speed, Sensor::Lidar, go_on).expect_err("it stands");
+        assert!(error.to_string().contains("spin_hz is 0"), "{error}");
+        let mut scene = scene.clone();
+        let mut rig = (*scene.rig).clone();
+        rig.lidars[0].spin_hz = 10.0;
+        scene.rig = rig.into();
         let speed = steps(&scene, b, Vary::Speed);
         assert!(speed.len() > 5 && speed.windows(2).all(|p| p[0].0 != p[1].0));
         let mut document = Document::new(scene.clone());
         let (change, edits) = speed.last().expect("faster");
         document.apply_all("vary", edits).expect("it can drive");
-        let after = document.scene().frame().boxes[&b.id];
+        let then = document.scene().at(after_a_sweep(&scene));
+        let after = then.frame().boxes[&b.id];
+        assert!(after.center_m.distance(b.center_m) < 0.05, "{}", after.center_m);
+        // Now that it moves while the LiDAR turns the sweep differs.
+        let sweep = |scene: &Scene| sensors::rolling::exact(&scene.with_rig_in_world()).points.len();
+        assert!(sensors::rolling::is_rolling(&then) && sweep(&then) != sweep(&scene));
+        let error = search(&then, b.id, Vary::Speed, Sensor::Lidar, go_on).expect_err("it follows");
+        assert!(error.to_string().contains("follows a motion"), "{error}");
         let driven = |change: Change| matches!(change, Change::Speed(mps) if (mps - after.velocity_mps.length()).abs() < 1e-6);
         assert!(driven(*change), "{change:?}");
         assert_eq!((after.center_m, after.label), (b.center_m, b.label));

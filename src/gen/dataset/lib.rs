@@ -6,6 +6,7 @@ pub mod occupancy;
 pub mod perception;
 pub mod picture_pairs;
 pub mod pictures;
+pub mod sensors_pair;
 pub mod shard;
 pub mod text;
 

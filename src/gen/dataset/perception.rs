@@ -65,18 +65,23 @@ pub struct PerceptionFrame {
 pub fn perception_frame(seed: u64, index: u64, roads: impl Fn(u64) -> Option<BevLayout>) -> PerceptionFrame {
     let (world, seed) = world_of(seed, index, roads);
     let grid = complete(&world, Vertical::Occ3d);
+    swept(&world, &grid, seed)
+}
+
+/// A world as one of the program's LiDARs sees it, its voxels being `grid`.
+pub(super) fn swept(world: &World, grid: &VoxelGrid, seed: u64) -> PerceptionFrame {
     let mut draw = Draw::new(seed, "perception");
     let rig = mounted(&mut draw);
     let wanted = [Source::Surfaces, Source::Learned, Source::Voxels][draw.weighted(&[0.5, 0.33, 0.17])];
     let (source, points) = match wanted {
-        Source::Surfaces => (wanted, surfaces(&world, &rig.lidars[0], seed)),
-        Source::Voxels => (wanted, voxels(&grid, &rig)),
-        Source::Learned => match learned_returns(&grid, &rig, seed) {
+        Source::Surfaces => (wanted, surfaces(world, &rig.lidars[0], seed)),
+        Source::Voxels => (wanted, voxels(grid, &rig)),
+        Source::Learned => match learned_returns(grid, &rig, seed) {
             Some(points) => (wanted, points),
-            None => (Source::Voxels, voxels(&grid, &rig)),
+            None => (Source::Voxels, voxels(grid, &rig)),
         },
     };
-    PerceptionFrame::new(source, points, &world.boxes, &grid)
+    PerceptionFrame::new(source, points, &world.boxes, grid)
 }
 
 /// The default rig, in every other frame with its LiDAR mounted a little differently.
@@ -169,23 +174,11 @@ impl PerceptionFrame {
             standing: standing(&grid.crop(Extent::WINDOW)),
         }
     }
-}
 
-impl Shard for PerceptionFrame {
-    const ARRAYS: &'static [&'static str] = &[
-        "source",
-        "returns",
-        "points",
-        "intensity",
-        "box_count",
-        "boxes",
-        "standing",
-    ];
-
-    /// u8 `source` `[N]`; i32 `returns` `[N]`: how many of the points are used; i16 `points` `[N,P,3]` (5 mm, ego frame) and u8
-    /// `intensity` `[N,P]`; i32 `box_count` `[N]`; f32 `boxes` `[N,128,9]`: centre, length, width, height (m), yaw (rad), class
+    /// Arrays of frames: u8 `source` `[N]`; i32 `returns` `[N]`: how many of the points are used; i16 `points` `[N,P,3]` (5 mm,
+    /// ego frame) and u8 `intensity` `[N,P]`; i32 `box_count` `[N]`; f32 `boxes` `[N,128,9]`: centre, length, width, height (m), yaw (rad), class
     /// and number of returns on it; u8 `standing` `[N,200,200]`.
-    fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
+    pub(super) fn columns(frames: &[&Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         let most = frames.iter().map(|f| f.points.len()).max().unwrap_or(0);
         let step = |v: f64| ((v / POINT_STEP_M).round() as i16).to_le_bytes();
         let (mut points, mut intensity, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
@@ -222,6 +215,23 @@ impl Shard for PerceptionFrame {
                 frames.iter().flat_map(|f| f.standing.iter().copied()).collect(),
             ),
         ]
+    }
+}
+
+impl Shard for PerceptionFrame {
+    const ARRAYS: &'static [&'static str] = &[
+        "source",
+        "returns",
+        "points",
+        "intensity",
+        "box_count",
+        "boxes",
+        "standing",
+    ];
+
+    /// See [`Self::columns`].
+    fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
+        Self::columns(&frames.iter().collect::<Vec<_>>())
     }
 }
 

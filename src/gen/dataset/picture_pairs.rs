@@ -66,9 +66,7 @@ pub fn picture_pair(
     let frame = frame_of(&world);
     let teller = HintedFrame::new(&frame);
     let mut draw = Draw::new(seed, "picture pairs");
-    let time = TimeOfDay::ALL[draw.weighted(&[0.16, 0.46, 0.16, 0.22])];
-    let weather = Weather::ALL[draw.weighted(&[0.32, 0.18, 0.2, 0.14, 0.1, 0.06])];
-    let conditions = Conditions::usual(time, weather, seed);
+    let conditions = conditions_of(&mut draw, seed);
     let poses = poses(&frame, &mut draw);
     PicturePair {
         moments: poses.map(|pose| moment(&frame, &teller, &conditions, &pose, look)),
@@ -83,6 +81,13 @@ fn frame_of(world: &World) -> Frame {
         world.boxes.clone(),
         complete(world, Vertical::Occ3d),
     )
+}
+
+/// Light and air of a frame.
+pub(super) fn conditions_of(draw: &mut Draw, seed: u64) -> Conditions {
+    let time = TimeOfDay::ALL[draw.weighted(&[0.16, 0.46, 0.16, 0.22])];
+    let weather = Weather::ALL[draw.weighted(&[0.32, 0.18, 0.2, 0.14, 0.1, 0.06])];
+    Conditions::usual(time, weather, seed)
 }
 
 fn moment(

@@ -255,6 +255,18 @@ pub static SUITES: [Suite; 12] = [
                 "/between_cameras/rendered",
             ),
             ("difference between cameras, learned", "/between_cameras/learned"),
+            (
+                "less difference over time by noise of surfaces than of each frame, alone",
+                "/over_time/noise/alone/gain_by_surfaces",
+            ),
+            (
+                "the same, told the frame before",
+                "/over_time/noise/after_the_frame_before/gain_by_surfaces",
+            ),
+            (
+                "less difference between cameras by shared noise",
+                "/between_cameras/gain_by_sharing",
+            ),
             ("FID to rendered pictures, rendered", "/likeness/rendered/fid"),
             ("FID to rendered pictures, learned", "/likeness/learned/fid"),
             ("KID to rendered pictures, rendered", "/likeness/rendered/kid"),
@@ -270,7 +282,7 @@ pub static SUITES: [Suite; 12] = [
     },
     Suite {
         name: "downstream",
-        title: "Generated scenes as a LiDAR network sees them that learned from worlds",
+        title: "Generated scenes as networks of LiDAR and cameras see them that learned from worlds",
         figures: &[
             ("cars found, worlds", "/worlds/cars_found"),
             ("cars found, generated", "/generated/cars_found"),
@@ -286,6 +298,26 @@ pub static SUITES: [Suite; 12] = [
             (
                 "columns near returns told rightly, generated",
                 "/generated/columns_right",
+            ),
+            ("IoU of voxels from both, worlds", "/voxels/worlds/both/iou"),
+            ("IoU of voxels from the LiDAR, worlds", "/voxels/worlds/lidar/iou"),
+            ("IoU of voxels from cameras, worlds", "/voxels/worlds/cameras/iou"),
+            ("IoU of voxels from both, generated", "/voxels/generated/both/iou"),
+            (
+                "boxes found among voxels from both, worlds",
+                "/voxels/worlds/both/boxes_found",
+            ),
+            (
+                "boxes found among voxels from both, generated",
+                "/voxels/generated/both/boxes_found",
+            ),
+            (
+                "boxes found by cameras in fog more than in clear air",
+                "/voxels/cameras_by_weather/fog/more_than_clear/boxes_found",
+            ),
+            (
+                "boxes found by cameras at night more than in clear air",
+                "/voxels/cameras_by_weather/night/more_than_clear/boxes_found",
             ),
         ],
         quick: |options| options.frames = 3,

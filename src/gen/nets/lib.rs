@@ -15,8 +15,10 @@ pub mod picture;
 pub mod pieces;
 pub mod refiner;
 pub mod scenery;
+pub mod sensor_occupancy;
 pub mod text;
 mod time_decoder;
+pub mod unet;
 
 #[cfg(test)]
 #[path = "../nn/golden.rs"]
@@ -178,6 +180,7 @@ mod tests {
             ("reader", shipped::READER),
             ("refiner", shipped::REFINER),
             ("scenery", shipped::SCENERY),
+            ("sensor_occupancy", shipped::SENSOR_OCCUPANCY),
             ("text", shipped::TEXT),
         ] {
             let refusal = |bytes: &[u8]| match WeightFile::parse(name, bytes) {

@@ -23,6 +23,7 @@ pub mod own_body;
 pub mod painter;
 pub mod perceived;
 pub mod perceived_sweep;
+pub mod perceived_voxels;
 pub mod perspective;
 pub mod picture_hints;
 mod plots;

@@ -145,7 +145,7 @@ impl Seen {
 }
 
 /// Of each column of the window whether a return of a sweep on the map is near.
-fn near(sweep: &LidarSweep, map_from_vehicle: &Pose) -> Vec<bool> {
+pub(crate) fn near(sweep: &LidarSweep, map_from_vehicle: &Pose) -> Vec<bool> {
     let to_vehicle = map_from_vehicle.inverse();
     let [nx, ny] = [Extent::WINDOW.nx(), Extent::WINDOW.ny()];
     let mut near = vec![false; nx * ny];

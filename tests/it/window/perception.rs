@@ -1,5 +1,7 @@
 //! What a camera network sees, in the window: the list, a search, a corner case taken and one kept.
 
+use std::sync::Arc;
+
 use app::command::{Command, ViewCommand};
 use app::panes::id::PaneId;
 use egui::accesskit::Role;
@@ -68,4 +70,32 @@ fn a_box_is_listed_and_a_change_is_found_after_which_it_is_missed() {
     bench.wait_until("what it sees in fog", |b| {
         rows(b).iter().any(|now| *now != row) && !shows(b, &row)
     });
+}
+
+#[test]
+fn what_both_sensors_tell_is_shown_in_place_of_the_scene() {
+    let mut bench = Bench::new();
+    bench.off();
+    let pane = PaneId::named("perception");
+    command(&mut bench, Command::View(ViewCommand::ShowPane(pane)));
+    bench.wait_until("what the cameras see", |b| !rows(b).is_empty());
+    // The map's control of the same name is above it.
+    let all = bench.harness.query_all_by_label("Both");
+    let lowest = all.max_by(|a, b| a.rect().top().total_cmp(&b.rect().top()));
+    lowest.expect("the choice").click();
+    bench.steps(3);
+    bench.wait_until("what both tell", |b| {
+        b.app().state.shown.detection_marks.is_some() && shows(b, "voxels as the network tells them")
+    });
+    let told = |b: &mut Bench| {
+        let marks = b.app().state.shown.detection_marks.clone();
+        marks.expect("marks").told.clone()
+    };
+    let of = bench.app().document.scene().clone();
+    let shown = told(&mut bench).expect("voxels that are told");
+    assert!(shown.frame().occupancy.count_set() > 1000);
+    assert!(shown.frame().occupancy.count_different(&of.frame().occupancy) > 0);
+    assert!(Arc::ptr_eq(&of, bench.app().document.scene()), "the scene stays");
+    bench.click("Its voxels in the 3D view");
+    assert!(told(&mut bench).is_none() && !shows(&bench, "voxels as the network tells them"));
 }

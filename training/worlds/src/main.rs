@@ -9,6 +9,7 @@ use clap::{Parser, ValueEnum};
 
 use dataset::perception::perception_frame;
 use dataset::picture_pairs::{Look, Quality, picture_pair};
+use dataset::sensors_pair::sensors_pair;
 use dataset::{occupancy_frame, shard};
 
 /// What the frames hold.
@@ -20,6 +21,8 @@ enum Kind {
     Pictures,
     /// One LiDAR sweep, the boxes around it, and what stands in each column.
     Perception,
+    /// One LiDAR sweep, six pictures, and every voxel.
+    Sensors,
 }
 
 /// Frames of procedural worlds.
@@ -91,6 +94,7 @@ fn run(args: Args) -> anyhow::Result<()> {
         Kind::Occupancy => send(&args, to, |i| occupancy_frame(args.seed, i, |_| None))?,
         Kind::Pictures => send(&args, to, |i| picture_pair(args.seed, i, look, |_| None))?,
         Kind::Perception => send(&args, to, |i| perception_frame(args.seed, i, |_| None))?,
+        Kind::Sensors => send(&args, to, |i| sensors_pair(args.seed, i, look, |_| None))?,
     };
     let rate = made as f64 / start.elapsed().as_secs_f64();
     let _ = writeln!(std::io::stderr(), "\r{made} frames, {rate:.1} frames/s");

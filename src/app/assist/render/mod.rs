@@ -132,7 +132,7 @@ impl Rendering {
             }
         }
         writer.finish_sheet(&cameras.views)?;
-        *out.wall_s.entry(cameras.source.report_key()).or_default() += time_s;
+        *out.wall_s.entry(cameras.source.about().report_key).or_default() += time_s;
         Ok(())
     }
 

@@ -67,7 +67,7 @@ impl Plan {
         }
         for of in &cameras {
             let sheet = sheet_bytes(wanted.size, count);
-            bounds::check(wanted.size, of.source.bytes_per_pixel(), sheet).context("--size")?;
+            bounds::check(wanted.size, of.source.about().bytes_per_pixel, sheet).context("--size")?;
         }
         if truth {
             bounds::check(wanted.size, app::truth::BYTES_PER_PIXEL, 0).context("--size")?;

@@ -10,6 +10,7 @@ use language::{t, tf};
 use sensors::cameras::perceived;
 use sensors::perceived::SeenByRig;
 use sensors::perceived_sweep::SeenBySweep;
+use sensors::perceived_voxels::SeenInVoxels;
 use widgets::icons::section;
 use widgets::theme;
 
@@ -66,6 +67,49 @@ pub(super) fn sweep_ui(
             "{class}: {percent} % sure, {distance} m from the ego vehicle",
             class = theme::sentence(t(&ghost.thing.class.label())),
             percent = format!("{:.0}", ghost.score * 100.0),
+            distance = format!("{:.0}", (ghost.thing.center_m - ego_m).truncate().length())
+        );
+        if ui.selectable_label(false, text).clicked() {
+            commands.push(Command::View(ViewCommand::FrameAt(ghost.thing.center_m)));
+        }
+    }
+}
+
+/// What the network of both sensors misses and what it sees where there is nothing, or what it sees, or both.
+pub(super) fn told_ui(
+    ui: &mut Ui,
+    perceiving: &Perceiving,
+    cx: &PaneContext<'_>,
+    [wrong, right]: [bool; 2],
+    commands: &mut Vec<Command>,
+) {
+    let report = perceiving.told.as_ref().map(|(_, report)| report);
+    let boxes = report.map(|report| &report.boxes[..]);
+    missed_and_seen(ui, boxes, SeenInVoxels::is_missed, [wrong, right], |ui, b| {
+        let Some(of) = cx.document.scene().frame().boxes.get(&b.id) else {
+            return;
+        };
+        let text = tf!(
+            "{name}: {percent} % of {n} voxels",
+            name = format!("{} #{}", theme::sentence(t(&of.class.label())), b.id.0),
+            n = b.voxels,
+            percent = format!("{:.0}", b.share * 100.0)
+        );
+        let chosen = cx.state.selected == Some(b.id);
+        if ui.selectable_label(chosen, text).clicked() {
+            commands.push(Command::Select(Some(b.id)));
+        }
+    });
+    let Some(report) = report.filter(|r| wrong && !r.ghosts.is_empty()) else {
+        return;
+    };
+    section(ui, t("Things where there are none"));
+    let ego_m = report.map_from_vehicle.translation_m;
+    for ghost in &report.ghosts {
+        let text = tf!(
+            "{class}: {n} voxels, {distance} m from the ego vehicle",
+            class = theme::sentence(t(&ghost.thing.class.label())),
+            n = ghost.voxels,
             distance = format!("{:.0}", (ghost.thing.center_m - ego_m).truncate().length())
         );
         if ui.selectable_label(false, text).clicked() {

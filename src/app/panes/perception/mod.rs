@@ -1,4 +1,4 @@
-//! What small networks see of the scene in its cameras and its LiDAR: boxes that they miss, things where there are none, and a
+//! What small networks see of the scene in its cameras, its LiDAR and both: boxes that they miss, things where there are none, and a
 //! search for a change after which one misses the chosen box.
 
 mod lists;
@@ -10,8 +10,11 @@ use egui::{RichText, Ui};
 
 use authoring::corner_case::{Sensor, Vary};
 use language::{t, tf};
+use nets::perceiver::stands::{Stands, standing};
+use scene::{Extent, Scene, SceneRev};
 use sensors::cameras::perceived;
 use sensors::perceived_sweep::SweepReport;
+use sensors::perceived_voxels::{VoxelReport, on_map};
 use widgets::icons::{self, Icon};
 use widgets::theme;
 
@@ -20,7 +23,7 @@ use super::pane::{Pane, PaneContext, Place};
 use crate::command::{Command, ViewCommand};
 use crate::detection_marks::DetectionMarks;
 use crate::perceiving::Perceiving;
-use lists::{report_ui, sweep_ui};
+use lists::{report_ui, sweep_ui, told_ui};
 use search::search_ui;
 
 /// From this width on there are columns, points.
@@ -33,8 +36,9 @@ pub struct Perception {
     by: Sensor,
     /// What stands is shown over the map.
     stands: bool,
-    /// The marks that are shown, and of which report.
-    marks: Option<(Arc<SweepReport>, bool, Arc<DetectionMarks>)>,
+    /// The voxels that are told are shown in the 3D view.
+    told: bool,
+    marks: Kept,
 }
 
 impl Default for Perception {
@@ -44,6 +48,7 @@ impl Default for Perception {
             vary: Vary::Distance,
             by: Sensor::Cameras,
             stands: false,
+            told: true,
             marks: None,
         }
     }
@@ -101,6 +106,22 @@ impl Pane for Perception {
                 }
                 ui.checkbox(&mut self.stands, t("What stands where, over the map"));
             }
+            Sensor::Both => {
+                if let Some((_, report)) = &perceiving.told {
+                    let text = tf!(
+                        "Voxels where the LiDAR sees: IoU {iou}, classes right {percent} %",
+                        iou = format!("{:.2}", report.iou),
+                        percent = format!("{:.1}", report.right * 100.0)
+                    );
+                    let what = t(
+                        "A small network that learned from procedural worlds tells voxels from the exact sweep of the first LiDAR and from what the camera network sees.",
+                    );
+                    ui.label(RichText::new(text).small().color(theme::text_weak()))
+                        .on_hover_text(what);
+                }
+                ui.checkbox(&mut self.told, t("Its voxels in the 3D view"));
+                ui.checkbox(&mut self.stands, t("What stands where, over the map"));
+            }
         }
         if perceiving.is_stale(cx.document.scene().rev, self.by) {
             ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
@@ -119,14 +140,13 @@ impl Pane for Perception {
         if !cx.document.is_dragging() {
             perceiving.update(cx.document.scene(), self.by);
         }
-        let swept = perceiving
-            .swept
-            .as_ref()
-            .filter(|(rev, _)| *rev == cx.document.scene().rev);
-        let swept = swept
-            .filter(|_| self.by == Sensor::Lidar)
-            .map(|(_, report)| report.clone());
-        show_marks(ui, &mut self.marks, swept, self.stands, cx);
+        let now = cx.document.scene().rev;
+        let shown = match self.by {
+            Sensor::Cameras => None,
+            Sensor::Lidar => of_now(&perceiving.swept, now).map(Shown::Swept),
+            Sensor::Both => of_now(&perceiving.told, now).map(Shown::Told),
+        };
+        show_marks(ui, &mut self.marks, shown, [self.stands, self.told], cx);
         let (vary, by) = (&mut self.vary, self.by);
         if !by.varies().contains(vary) {
             *vary = Vary::Distance;
@@ -141,6 +161,7 @@ impl Pane for Perception {
                 let report = match by {
                     Sensor::Cameras => report_ui,
                     Sensor::Lidar => sweep_ui,
+                    Sensor::Both => told_ui,
                 };
                 if !wide {
                     report(ui, perceiving, cx, [true, true], commands);
@@ -157,33 +178,61 @@ impl Pane for Perception {
     }
 }
 
-/// Has the marks of a report drawn over the views, or none.
+/// A report if it is of the present state.
+fn of_now<R>(report: &Option<(SceneRev, Arc<R>)>, now: SceneRev) -> Option<Arc<R>> {
+    let of = report.as_ref().filter(|(rev, _)| *rev == now);
+    of.map(|(_, report)| report.clone())
+}
+
+/// What is shown in the large views.
+#[derive(Clone)]
+enum Shown {
+    Swept(Arc<SweepReport>),
+    Told(Arc<VoxelReport>),
+}
+
+impl Shown {
+    fn is(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Swept(a), Self::Swept(b)) => Arc::ptr_eq(a, b),
+            (Self::Told(a), Self::Told(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+/// The marks that are shown, of what and how.
+type Kept = Option<(Shown, [bool; 2], Arc<DetectionMarks>)>;
+
+/// Has the marks of a report drawn over the views, or none; with what stands over the map, with what is told in the 3D view.
 fn show_marks(
     ui: &Ui,
-    kept: &mut Option<(Arc<SweepReport>, bool, Arc<DetectionMarks>)>,
-    report: Option<Arc<SweepReport>>,
-    stands: bool,
+    kept: &mut Kept,
+    report: Option<Shown>,
+    with @ [stands, told]: [bool; 2],
     cx: &mut PaneContext<'_>,
 ) {
-    let known = |(of, with, _): &(Arc<SweepReport>, bool, _)| {
-        *with == stands && report.as_ref().is_some_and(|r| Arc::ptr_eq(r, of))
+    let known = |(of, with_, _): &(Shown, [bool; 2], _)| {
+        *with_ == with && report.as_ref().is_some_and(|report| report.is(of))
     };
     if !kept.as_ref().is_some_and(known) {
         *kept = report.map(|report| {
-            let detections = report.detections.iter().map(|d| (d.thing, d.of.is_none()));
-            let missed = report.boxes.iter().filter(|b| b.is_missed()).map(|b| b.id);
-            let marks = DetectionMarks {
-                detections: detections.collect(),
-                missed: missed.collect(),
-                stands: stands.then(|| {
-                    let image = from_above(&report);
-                    ui.ctx()
-                        .load_texture("what stands", image, egui::TextureOptions::NEAREST)
-                }),
-                map_from_vehicle: report.map_from_vehicle,
-                window: report.window,
+            let mut marks = match &report {
+                Shown::Swept(report) => of_sweep(report),
+                Shown::Told(report) => of_voxels(report),
             };
-            (report, stands, Arc::new(marks))
+            marks.stands = stands.then(|| {
+                let image = match &report {
+                    Shown::Swept(report) => from_above(&report.stands),
+                    Shown::Told(report) => from_above(&standing_of(report)),
+                };
+                let options = egui::TextureOptions::NEAREST;
+                ui.ctx().load_texture("what stands", image, options)
+            });
+            if let (Shown::Told(report), true) = (&report, told) {
+                marks.told = Some(with_told(cx.document.scene(), report));
+            }
+            (report, with, Arc::new(marks))
         });
         // The views are drawn before this pane or after it.
         ui.ctx().request_repaint();
@@ -191,10 +240,51 @@ fn show_marks(
     cx.state.shown.detection_marks = kept.as_ref().map(|(.., marks)| marks.clone());
 }
 
-/// What stands in each column, ahead is up.
-fn from_above(report: &SweepReport) -> egui::ColorImage {
-    let [nx, ny] = [report.window.nx(), report.window.ny()];
-    let at = |x: usize, y: usize| theme::class_color(report.stands[x * ny + y].class());
+fn of_sweep(report: &SweepReport) -> DetectionMarks {
+    let detections = report.detections.iter().map(|d| (d.thing, d.of.is_none()));
+    let missed = report.boxes.iter().filter(|b| b.is_missed()).map(|b| b.id);
+    DetectionMarks {
+        detections: detections.collect(),
+        missed: missed.collect(),
+        stands: None,
+        told: None,
+        map_from_vehicle: report.map_from_vehicle,
+        window: report.window,
+    }
+}
+
+fn of_voxels(report: &VoxelReport) -> DetectionMarks {
+    let missed = report.boxes.iter().filter(|b| b.is_missed()).map(|b| b.id);
+    DetectionMarks {
+        detections: report.ghosts.iter().map(|g| (g.thing, true)).collect(),
+        missed: missed.collect(),
+        stands: None,
+        told: None,
+        map_from_vehicle: report.map_from_vehicle,
+        window: Extent::WINDOW,
+    }
+}
+
+/// What stands in each column of what is told.
+fn standing_of(report: &VoxelReport) -> Vec<Stands> {
+    let labels = standing(&report.voxels).into_iter();
+    labels
+        .map(|label| Stands::of_label(label).unwrap_or(Stands::OtherGround))
+        .collect()
+}
+
+/// The scene with the voxels that are told in place of its own.
+fn with_told(scene: &Scene, report: &VoxelReport) -> Arc<Scene> {
+    let mut still = scene.still();
+    let told = on_map(&report.voxels, scene.frame().extent(), &report.map_from_vehicle);
+    still.change_canvas(|canvas| canvas.occupancy = told);
+    Arc::new(still)
+}
+
+/// What stands in each column of the window, ahead is up.
+fn from_above(stands: &[Stands]) -> egui::ColorImage {
+    let [nx, ny] = [Extent::WINDOW.nx(), Extent::WINDOW.ny()];
+    let at = |x: usize, y: usize| theme::class_color(stands[x * ny + y].class());
     let pixels = (0..nx * ny).map(|i| at(nx - 1 - i / ny, ny - 1 - i % ny));
     egui::ColorImage::new([ny, nx], pixels.collect())
 }

@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use egui::{RichText, Ui};
 
-use authoring::corner_case::{Change, Sensor, Tried, Vary};
+use authoring::corner_case::{Change, Sensor, Tried, Vary, speed_matters};
 use editor::Document;
 use language::{t, tf};
 use scene::{BoxId, Scene};
 use widgets::icons::section;
 use widgets::theme;
 
-use crate::command::{Command, ViewCommand};
+use crate::command::{Command, TimeCommand, ViewCommand};
 use crate::panes::id::PaneId;
 use crate::panes::pane::PaneContext;
 use crate::perceiving::{Found, Perceiving};
@@ -50,7 +50,8 @@ pub(super) fn search_ui(
         egui::ComboBox::from_id_salt("vary")
             .selected_text(t(vary.title()))
             .show_ui(ui, |ui| {
-                for value in by.varies() {
+                let matters = |v: &&Vary| **v != Vary::Speed || speed_matters(cx.document.scene());
+                for value in by.varies().iter().filter(matters) {
                     ui.selectable_value(vary, *value, t(value.title()));
                 }
             })
@@ -72,6 +73,7 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
     let Some(last) = found.search.tried.last() else {
         return;
     };
+    let (id, at_s) = (found.id, found.search.at_s);
     let (n, least) = (last.sight.visible, last.sight.by.least());
     if found.search.tried.len() == 1 && !last.sight.is_judged() {
         ui.label(match last.sight.by {
@@ -82,6 +84,11 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
             ),
             Sensor::Lidar => tf!(
                 "Too few returns to be judged: {n}, at least {least} are needed",
+                n = n,
+                least = least
+            ),
+            Sensor::Both => tf!(
+                "Too few voxels to be judged: {n}, at least {least} are needed",
                 n = n,
                 least = least
             ),
@@ -122,13 +129,14 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
                 .clicked()
             {
                 commands.push(Command::Apply("Corner case", edits.clone()));
+                commands.push(Command::Time(TimeCommand::Show(at_s)));
             }
             let keep = ui.button(t("Keep as a version"));
             if keep
                 .on_hover_text(t("The scene stays; the corner case is in the list of versions"))
                 .clicked()
             {
-                keep_version(cx.document.scene(), found.id, last.change, edits, cx.versions);
+                keep_version(cx.document.scene(), (id, at_s), last.change, edits, cx.versions);
                 found.kept = true;
                 commands.push(Command::View(ViewCommand::ShowPane(PaneId::VERSIONS)));
             }
@@ -152,7 +160,7 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
 
 fn keep_version(
     scene: &Arc<Scene>,
-    id: BoxId,
+    (id, at_s): (BoxId, f64),
     change: Change,
     edits: &[editor::Edit],
     versions: &mut crate::shell::versions::Versions,
@@ -161,7 +169,8 @@ fn keep_version(
     // The search applied the same edits to the same state.
     if document.apply_all("Corner case", edits).is_ok() {
         let note = format!("#{}: {}", id.0, words(change));
-        versions.push("Corner case".into(), note, document.scene().clone());
+        let scene = Arc::new(document.scene().at(at_s));
+        versions.push("Corner case".into(), note, scene);
     }
 }
 
@@ -171,6 +180,7 @@ fn sight(tried: &Tried) -> String {
     match tried.sight.by {
         Sensor::Cameras => tf!("{percent} % of {n} pixels are seen.", percent = percent, n = n),
         Sensor::Lidar => tf!("{n} returns, {percent} % sure.", percent = percent, n = n),
+        Sensor::Both => tf!("{percent} % of {n} voxels are seen.", percent = percent, n = n),
     }
 }
 

@@ -15,7 +15,8 @@ use std::sync::{Arc, OnceLock};
 use glam::Vec3;
 use serde::Deserialize;
 
-use crate::encoder::{Level, PIECE, levels, steps};
+use crate::encoder::{Level, PIECE};
+use crate::unet::UNet;
 use crate::{ModelError, check_finite};
 use detection::{BOX, Detection, Group, decode};
 use nn::map::Map;
@@ -75,11 +76,7 @@ pub struct Perceived {
 /// The network with its weights, on a backend.
 pub struct LidarPerceiver<B: Ops = Cpu> {
     ops: B,
-    stem: B::Linear,
-    enter: Vec<Level<B>>, // finest first
-    down: Vec<B::Linear>,
-    leave: Vec<Level<B>>, // coarsest first
-    up: Vec<B::Linear>,
+    net: UNet<B>,
     norm: B::Norm,
     head: B::Linear,
     boxes: Level<B>,
@@ -121,14 +118,9 @@ impl<B: Ops> LidarPerceiver<B> {
         config
             .check()
             .map_err(|reason| file.config_error("config", reason))?;
-        let [fine, middle, coarse] = config.widths;
-        let (w, point) = (&mut file, &[1, 1]);
+        let (w, point, fine) = (&mut file, &[1, 1], config.widths[0]);
         let net = Self {
-            stem: ops.linear(w, "stem", [4 * PILLAR, fine], point)?,
-            enter: levels(&ops, w, "enter", &config.widths, &config.kernels)?,
-            down: steps(&ops, w, "down", vec![[4 * fine, middle], [4 * middle, coarse]])?,
-            leave: levels(&ops, w, "leave", &[middle, fine], &[vec![3], vec![3]])?,
-            up: steps(&ops, w, "up", vec![[coarse, 4 * middle], [middle, 4 * fine]])?,
+            net: UNet::new(&ops, w, PILLAR, config.widths, &config.kernels)?,
             norm: ops.load_norm(w, "norm", fine)?,
             head: ops.linear(w, "head", [fine, 4 * Stands::ALL.len()], point)?,
             boxes: Level::new(&ops, w, "boxes", fine, &[3])?,
@@ -156,16 +148,7 @@ impl<B: Ops> LidarPerceiver<B> {
         crate::check_length("pillars", pillars.data.len(), expected)?;
         check_finite("pillars", &pillars.data)?;
         let ops = &self.ops;
-        let squares = ops.fold(&ops.upload(pillars)?)?;
-        let first = self.enter[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?;
-        let map = ops.apply(&self.down[0], &ops.fold(&first)?, PIECE)?;
-        let second = self.enter[1].apply(ops, map)?;
-        let map = ops.apply(&self.down[1], &ops.fold(&second)?, PIECE)?;
-        let mut map = self.enter[2].apply(ops, map)?;
-        for ((up, level), before) in self.up.iter().zip(&self.leave).zip([&second, &first]) {
-            let wide = ops.unfold(&ops.apply(up, &map, PIECE)?)?;
-            map = level.apply(ops, ops.add(wide, before)?)?;
-        }
+        let map = self.net.apply(ops, pillars)?;
         let stands = ops.apply(&self.head, &ops.norm(&self.norm, map.clone())?, PIECE)?;
         let near = self.boxes.apply(ops, map)?;
         let boxes = ops.apply(&self.box_head, &ops.norm(&self.box_norm, near)?, PIECE)?;

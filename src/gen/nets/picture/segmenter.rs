@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 use rayon::prelude::*;
 
 use super::{CELL, PictureSegmenterConfig, check_kind, check_sides};
-use crate::encoder::{Level, PIECE, levels, steps};
+use crate::encoder::PIECE;
+use crate::unet::UNet;
 use crate::{ModelError, check_finite, check_length};
 use nn::map::Map;
 use nn::weights::{WeightFile, WeightsError};
@@ -13,8 +14,6 @@ use nn::{Cpu, Ops};
 
 /// Red, green, blue.
 const COLOURS: usize = 3;
-/// Numbers of the folded square of 2x2 px that the first layer sees.
-const SQUARE: usize = 4 * COLOURS;
 /// Side of a window of features, cells of 8 px.
 const WINDOW: usize = 8;
 /// What a pixel may show: the classes of `scene::truth`, 0 for sky.
@@ -23,11 +22,7 @@ pub const SHOWN: usize = 22;
 /// The network with its weights, on a backend.
 pub struct PictureSegmenter<B: Ops = Cpu> {
     ops: B,
-    stem: B::Linear,
-    enter: Vec<Level<B>>, // finest first
-    down: Vec<B::Linear>,
-    leave: Vec<Level<B>>, // coarsest first
-    up: Vec<B::Linear>,
+    net: UNet<B>,
     norm: B::Norm,
     head: B::Linear,
 }
@@ -56,16 +51,11 @@ impl<B: Ops> PictureSegmenter<B> {
         config
             .check()
             .map_err(|reason| file.config_error("config", reason))?;
-        let [fine, middle, coarse] = config.widths;
-        let (w, point) = (&mut file, &[1, 1]);
+        let (w, fine) = (&mut file, config.widths[0]);
         let net = Self {
-            stem: ops.linear(w, "stem", [SQUARE, fine], point)?,
-            enter: levels(&ops, w, "enter", &config.widths, &config.kernels)?,
-            down: steps(&ops, w, "down", vec![[4 * fine, middle], [4 * middle, coarse]])?,
-            leave: levels(&ops, w, "leave", &[middle, fine], &[vec![3], vec![3]])?,
-            up: steps(&ops, w, "up", vec![[coarse, 4 * middle], [middle, 4 * fine]])?,
+            net: UNet::new(&ops, w, COLOURS, config.widths, &config.kernels)?,
             norm: ops.load_norm(w, "norm", fine)?,
-            head: ops.linear(w, "head", [fine, 4 * SHOWN], point)?,
+            head: ops.linear(w, "head", [fine, 4 * SHOWN], &[1, 1])?,
             ops,
         };
         file.finish()?;
@@ -121,15 +111,13 @@ impl<B: Ops> PictureSegmenter<B> {
         check_sides(sides, CELL, "a multiple of 8 px up to 8192")?;
         check_length("picture", picture.len(), height * width * COLOURS)?;
         check_finite("picture", picture)?;
-        let seen = self.seen(Map {
+        let picture = Map {
             data: picture.to_vec(),
             rows: height,
             columns: width,
             width: COLOURS,
-        })?;
-        let Some(coarse) = seen.into_iter().next_back() else {
-            return Ok(Vec::new());
         };
+        let [.., coarse] = self.net.seen(&self.ops, picture)?;
         let map = self.ops.download(coarse)?;
         check_finite("features", &map.data)?;
         let parts = [map.rows, map.columns].map(|n| (n / WINDOW).max(1));
@@ -150,29 +138,9 @@ impl<B: Ops> PictureSegmenter<B> {
         Ok(windows.map(mean).collect())
     }
 
-    /// What the levels on the way down make of a picture, the finest first.
-    fn seen(&self, picture: Map) -> Result<Vec<B::Tensor>, ModelError> {
-        let ops = &self.ops;
-        let squares = ops.fold(&ops.upload(picture)?)?;
-        let mut seen = vec![self.enter[0].apply(ops, ops.apply(&self.stem, &squares, PIECE)?)?];
-        for (i, down) in self.down.iter().enumerate() {
-            let map = ops.apply(down, &ops.fold(&seen[i])?, PIECE)?;
-            seen.push(self.enter[i + 1].apply(ops, map)?);
-        }
-        Ok(seen)
-    }
-
     fn of_one(&self, picture: Map) -> Result<Vec<f32>, ModelError> {
         let ops = &self.ops;
-        let mut kept = self.seen(picture)?.into_iter().rev();
-        // There is always a coarsest level.
-        let Some(mut map) = kept.next() else {
-            return Ok(Vec::new());
-        };
-        for ((up, level), before) in self.up.iter().zip(&self.leave).zip(kept) {
-            let wide = ops.unfold(&ops.apply(up, &map, PIECE)?)?;
-            map = level.apply(ops, ops.add(wide, &before)?)?;
-        }
+        let map = self.net.apply(ops, picture)?;
         let logits = ops.apply(&self.head, &ops.norm(&self.norm, map)?, PIECE)?;
         Ok(ops.download(ops.unfold(&logits)?)?.data)
     }

@@ -1,9 +1,10 @@
 //! Boxes and lanes in perspective, hidden or not.
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
-    SourceId, View, ViewId,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
+    RenderOptions, SourceId, View, ViewId,
 };
+use crate::march::GroundHeight;
 use crate::perspective;
 use scene::{Camera, Frame};
 
@@ -14,40 +15,29 @@ pub const VIEW: View = View::new(
     "in perspective, hidden or not",
 );
 
+/// Name of the source.
+const ID: SourceId = SourceId::new("layout");
+
 /// The source.
 pub struct LayoutMaps;
 
 impl CameraSource for LayoutMaps {
-    fn id(&self) -> SourceId {
-        SourceId::new("layout")
-    }
-
-    fn title(&self) -> &'static str {
-        "Layout"
-    }
-
-    fn hint(&self) -> &'static str {
-        "boxes and lanes as image models take them"
-    }
-
-    fn views(&self) -> &'static [View] {
-        &[VIEW]
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            layout: true,
-            boxes: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Layout",
+            hint: "boxes and lanes as image models take them",
+            views: &[VIEW],
+            needs: Needs {
+                layout: true,
+                boxes: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "perspective",
+            previews: false,
+            bytes_per_pixel: 24,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "perspective"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        24
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

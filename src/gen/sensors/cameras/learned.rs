@@ -7,10 +7,11 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
-    SourceId, View, ViewId,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
+    RenderOptions, SourceId, View, ViewId,
 };
 use crate::appearance::CameraImage;
+use crate::march::GroundHeight;
 use crate::painter::{PaintError, PaintInput, PaintModel, PaintOptions, PaintWith};
 use scene::{Camera, SensorRig};
 
@@ -28,38 +29,24 @@ pub const ID: SourceId = SourceId::new("learned");
 pub struct Learned;
 
 impl CameraSource for Learned {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "Learned"
-    }
-
-    fn hint(&self) -> &'static str {
-        "drawn by a network that learned from the pictures, or by the weights chosen in the settings"
-    }
-
-    fn views(&self) -> &'static [View] {
-        &[VIEW]
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            boxes: true,
-            conditions: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Learned",
+            hint: "drawn by a network that learned from the pictures, or by the weights chosen in the settings",
+            views: &[VIEW],
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                boxes: true,
+                conditions: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "learned",
+            previews: false,
+            bytes_per_pixel: 64,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "learned"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        64
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

@@ -91,6 +91,17 @@ pub struct Needs {
     pub conditions: bool,
 }
 
+impl Needs {
+    /// Nothing of a scene.
+    pub const NONE: Self = Self {
+        occupancy: false,
+        layout: false,
+        boxes: false,
+        background: false,
+        conditions: false,
+    };
+}
+
 /// Which part of the scene is prepared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Detail {
@@ -163,38 +174,43 @@ impl RenderContext<'_> {
     }
 }
 
+/// What a source is and what it needs.
+#[derive(Debug)]
+pub struct About {
+    /// Its name, unique in the table.
+    pub id: SourceId,
+    /// Name on a button.
+    pub title: &'static str,
+    /// What it does, for the tip of the button.
+    pub hint: &'static str,
+    /// The views that one rendering gives, at least one.
+    pub views: &'static [View],
+    /// What of the scene decides its pictures.
+    pub needs: Needs,
+    /// At which height its pictures show the ground.
+    pub ground: GroundHeight,
+    /// Name of its time in the report of `sceneloom render`.
+    pub report_key: &'static str,
+    /// True if the window shows a coarse picture first, because a full one takes its time.
+    pub previews: bool,
+    /// Memory that rendering one picture and writing its files take at most, bytes per pixel.
+    pub bytes_per_pixel: u64,
+}
+
 /// One way to make camera pictures of a scene.
 pub trait CameraSource: Sync {
+    /// What it is and what it needs.
+    fn about(&self) -> &'static About;
+
     /// Its name, unique in the table.
-    fn id(&self) -> SourceId;
-
-    /// Name on a button.
-    fn title(&self) -> &'static str;
-
-    /// What it does, for the tip of the button.
-    fn hint(&self) -> &'static str;
+    fn id(&self) -> SourceId {
+        self.about().id
+    }
 
     /// The views that one rendering gives, at least one.
-    fn views(&self) -> &'static [View];
-
-    /// What of the scene decides its pictures.
-    fn needs(&self) -> Needs;
-
-    /// At which height its pictures show the ground.
-    fn ground(&self) -> GroundHeight {
-        GroundHeight::Physical
+    fn views(&self) -> &'static [View] {
+        self.about().views
     }
-
-    /// Name of its time in the report of `sceneloom render`.
-    fn report_key(&self) -> &'static str;
-
-    /// True if the window shows a coarse picture first, because a full one takes its time.
-    fn previews(&self) -> bool {
-        false
-    }
-
-    /// Memory that rendering one picture and writing its files take at most, bytes per pixel.
-    fn bytes_per_pixel(&self) -> u64;
 
     /// Makes a scene ready for any number of cameras.
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a>;
@@ -249,7 +265,7 @@ impl<'a> Ready<'a> {
         options: &RenderOptions,
         context: RenderContext<'_>,
     ) -> Result<CameraPicture, CameraError> {
-        bounds::check(options.size, self.source.bytes_per_pixel(), 0)?;
+        bounds::check(options.size, self.source.about().bytes_per_pixel, 0)?;
         if (context.cancelled)() {
             return Err(CameraError::Cancelled);
         }
@@ -258,7 +274,7 @@ impl<'a> Ready<'a> {
 
     /// How many cameras [`Self::render_all`] is best given at once, at least one.
     pub fn side_by_side(&self, options: &RenderOptions) -> usize {
-        bounds::side_by_side(options.size, self.source.bytes_per_pixel())
+        bounds::side_by_side(options.size, self.source.about().bytes_per_pixel)
     }
 
     /// What each of these cameras shows, by the card if there is one, else by the processor side by side: one small

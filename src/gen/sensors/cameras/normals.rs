@@ -7,10 +7,11 @@ use glam::{DQuat, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
-    SourceId, View, ViewId,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
+    RenderOptions, SourceId, View, ViewId,
 };
 use crate::appearance::{Appearance, CameraImage};
+use crate::march::GroundHeight;
 use crate::rays::CameraRays;
 use scene::Camera;
 use scene::Conditions;
@@ -25,41 +26,30 @@ pub const VIEW: View = View::new(
 /// Colour of the sky.
 pub const SKY: [u8; 3] = [128; 3];
 
+/// Name of the source.
+const ID: SourceId = SourceId::new("normals");
+
 /// The source.
 pub struct Normals;
 
 impl CameraSource for Normals {
-    fn id(&self) -> SourceId {
-        SourceId::new("normals")
-    }
-
-    fn title(&self) -> &'static str {
-        "Normals"
-    }
-
-    fn hint(&self) -> &'static str {
-        "the surfaces of the pictures, without light"
-    }
-
-    fn views(&self) -> &'static [View] {
-        &[VIEW]
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            boxes: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Normals",
+            hint: "the surfaces of the pictures, without light",
+            views: &[VIEW],
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                boxes: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "normals",
+            previews: false,
+            bytes_per_pixel: 24,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "normals"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        24
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

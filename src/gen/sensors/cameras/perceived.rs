@@ -2,10 +2,11 @@
 
 use super::learned::sized;
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
-    SourceId, View, ViewId,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
+    RenderOptions, SourceId, View, ViewId,
 };
 use crate::appearance::Appearance;
+use crate::march::GroundHeight;
 use crate::perceived::Perceived;
 use scene::{Camera, Frame};
 
@@ -23,38 +24,24 @@ pub const ID: SourceId = SourceId::new("perceived");
 pub struct PerceivedClasses;
 
 impl CameraSource for PerceivedClasses {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "Perceived"
-    }
-
-    fn hint(&self) -> &'static str {
-        "a segmenter that learned from the pictures, at 256 x 144"
-    }
-
-    fn views(&self) -> &'static [View] {
-        &[VIEW]
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            boxes: true,
-            conditions: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Perceived",
+            hint: "a segmenter that learned from the pictures, at 256 x 144",
+            views: &[VIEW],
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                boxes: true,
+                conditions: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "perceived",
+            previews: false,
+            bytes_per_pixel: 64,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "perceived"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        64
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

@@ -1,10 +1,11 @@
 //! What a camera would see, by day or night and in any weather: the analytic renderer.
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
-    SourceId, View, ViewId,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
+    RenderOptions, SourceId, View, ViewId,
 };
 use crate::appearance::Appearance;
+use crate::march::GroundHeight;
 use scene::Camera;
 
 /// What it shows.
@@ -17,42 +18,24 @@ pub const ID: SourceId = SourceId::new("pictures");
 pub struct Pictures;
 
 impl CameraSource for Pictures {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "Pictures"
-    }
-
-    fn hint(&self) -> &'static str {
-        "materials, light and weather, ray marched"
-    }
-
-    fn views(&self) -> &'static [View] {
-        &[VIEW]
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            boxes: true,
-            conditions: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Pictures",
+            hint: "materials, light and weather, ray marched",
+            views: &[VIEW],
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                boxes: true,
+                conditions: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "appearance",
+            previews: true,
+            bytes_per_pixel: 64,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "appearance"
-    }
-
-    fn previews(&self) -> bool {
-        true
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        64
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

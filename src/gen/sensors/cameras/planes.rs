@@ -1,8 +1,8 @@
 //! Semantic multi-plane images.
 
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras, RenderOptions,
-    SourceId, View, ViewId,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Knob, Needs, PreparedCameras,
+    RenderOptions, SourceId, View, ViewId,
 };
 use crate::march::GroundHeight;
 use crate::mpi::{self, RenderIds};
@@ -15,44 +15,29 @@ pub const VIEW: View = View {
     ..View::new(ViewId::new("mpi"), "Planes", "one plane of the multi-plane image")
 };
 
+/// Name of the source.
+const ID: SourceId = SourceId::new("planes");
+
 /// The source.
 pub struct PlaneStacks;
 
 impl CameraSource for PlaneStacks {
-    fn id(&self) -> SourceId {
-        SourceId::new("planes")
-    }
-
-    fn title(&self) -> &'static str {
-        "Planes"
-    }
-
-    fn hint(&self) -> &'static str {
-        "classes of the voxels at fixed depths"
-    }
-
-    fn views(&self) -> &'static [View] {
-        &[VIEW]
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Planes",
+            hint: "classes of the voxels at fixed depths",
+            views: &[VIEW],
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::AsLabelled,
+            report_key: "mpi",
+            previews: false,
+            bytes_per_pixel: 120,
         }
-    }
-
-    fn ground(&self) -> GroundHeight {
-        GroundHeight::AsLabelled
-    }
-
-    fn report_key(&self) -> &'static str {
-        "mpi"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        120
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

@@ -1,7 +1,8 @@
 //! Classes and depths by exact rays to the voxels, boxes as the shapes that they stand for.
 
 use super::view::MAP_VIEWS;
-use super::{CameraInput, CameraSource, Needs, PreparedCameras, SourceId, View, marched};
+use super::{About, CameraInput, CameraSource, Needs, PreparedCameras, SourceId, marched};
+use crate::march::GroundHeight;
 
 /// Name of the source.
 pub const ID: SourceId = SourceId::new("shapes");
@@ -10,37 +11,23 @@ pub const ID: SourceId = SourceId::new("shapes");
 pub struct Shapes;
 
 impl CameraSource for Shapes {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "Shapes"
-    }
-
-    fn hint(&self) -> &'static str {
-        "exact rays; boxes as the shapes they stand for"
-    }
-
-    fn views(&self) -> &'static [View] {
-        MAP_VIEWS
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            boxes: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Shapes",
+            hint: "exact rays; boxes as the shapes they stand for",
+            views: MAP_VIEWS,
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                boxes: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "cameras",
+            previews: false,
+            bytes_per_pixel: 80,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "cameras"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        80
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

@@ -2,8 +2,8 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras,
-    RenderOptions, SourceId, View,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Detail, Needs, PreparedCameras,
+    RenderOptions, SourceId,
 };
 use crate::cloud::GaussianCloud;
 use crate::march::GroundHeight;
@@ -20,40 +20,22 @@ const SHELL_LAYERS: usize = 2;
 pub struct Splats;
 
 impl CameraSource for Splats {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "Splats"
-    }
-
-    fn hint(&self) -> &'static str {
-        "Gaussians at voxel centres, as the papers render"
-    }
-
-    fn views(&self) -> &'static [View] {
-        MAP_VIEWS
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Splats",
+            hint: "Gaussians at voxel centres, as the papers render",
+            views: MAP_VIEWS,
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::AsLabelled,
+            report_key: "cameras",
+            previews: false,
+            bytes_per_pixel: 80,
         }
-    }
-
-    fn ground(&self) -> GroundHeight {
-        GroundHeight::AsLabelled
-    }
-
-    fn report_key(&self) -> &'static str {
-        "cameras"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        80
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

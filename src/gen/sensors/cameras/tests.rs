@@ -115,7 +115,7 @@ fn sources_need_what_they_say() {
             background: false,
             conditions: differs(&frame, dusk),
         };
-        assert_eq!(source.needs(), found, "{}", source.id().name());
+        assert_eq!(source.about().needs, found, "{}", source.id().name());
     }
 }
 
@@ -132,7 +132,7 @@ fn every_source_keeps_the_bounds_and_stops_when_cancelled() {
         assert!(line.contains("67108864") && line.contains("33554432"), "{line}");
         // Every source can draw 4K.
         assert_eq!(
-            bounds::check([3840, 2160], source.bytes_per_pixel(), 0),
+            bounds::check([3840, 2160], source.about().bytes_per_pixel, 0),
             Ok(()),
             "{name}"
         );

@@ -2,10 +2,11 @@
 
 use super::view::MAP_VIEWS;
 use super::{
-    CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras, RenderOptions,
-    SourceId, View,
+    About, CameraError, CameraInput, CameraPicture, CameraSource, Card, Needs, PreparedCameras,
+    RenderOptions, SourceId,
 };
 use crate::appearance::Appearance;
+use crate::march::GroundHeight;
 use scene::truth::{OUTSIDE, STOP_LINE};
 use scene::{Camera, CameraMaps, CameraTruth, Class, Frame};
 
@@ -16,37 +17,23 @@ pub const ID: SourceId = SourceId::new("truth");
 pub struct Told;
 
 impl CameraSource for Told {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "As pictures"
-    }
-
-    fn hint(&self) -> &'static str {
-        "what the pictures show, pixel by pixel: paint, crowns and the skyline too"
-    }
-
-    fn views(&self) -> &'static [View] {
-        MAP_VIEWS
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            boxes: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "As pictures",
+            hint: "what the pictures show, pixel by pixel: paint, crowns and the skyline too",
+            views: MAP_VIEWS,
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                boxes: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::Physical,
+            report_key: "truth",
+            previews: false,
+            bytes_per_pixel: 80,
         }
-    }
-
-    fn report_key(&self) -> &'static str {
-        "truth"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        80
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

@@ -1,7 +1,7 @@
 //! Classes and depths by exact rays to the voxels.
 
 use super::view::MAP_VIEWS;
-use super::{CameraInput, CameraSource, Needs, PreparedCameras, SourceId, View, marched};
+use super::{About, CameraInput, CameraSource, Needs, PreparedCameras, SourceId, marched};
 use crate::march::GroundHeight;
 
 /// Name of the source.
@@ -11,40 +11,22 @@ pub const ID: SourceId = SourceId::new("voxels");
 pub struct Voxels;
 
 impl CameraSource for Voxels {
-    fn id(&self) -> SourceId {
-        ID
-    }
-
-    fn title(&self) -> &'static str {
-        "Voxels"
-    }
-
-    fn hint(&self) -> &'static str {
-        "exact rays to the voxels"
-    }
-
-    fn views(&self) -> &'static [View] {
-        MAP_VIEWS
-    }
-
-    fn needs(&self) -> Needs {
-        Needs {
-            occupancy: true,
-            layout: true,
-            ..Needs::default()
+    fn about(&self) -> &'static About {
+        &About {
+            id: ID,
+            title: "Voxels",
+            hint: "exact rays to the voxels",
+            views: MAP_VIEWS,
+            needs: Needs {
+                occupancy: true,
+                layout: true,
+                ..Needs::NONE
+            },
+            ground: GroundHeight::AsLabelled,
+            report_key: "cameras",
+            previews: false,
+            bytes_per_pixel: 80,
         }
-    }
-
-    fn ground(&self) -> GroundHeight {
-        GroundHeight::AsLabelled
-    }
-
-    fn report_key(&self) -> &'static str {
-        "cameras"
-    }
-
-    fn bytes_per_pixel(&self) -> u64 {
-        80
     }
 
     fn prepare<'a>(&self, input: &CameraInput<'a>) -> Box<dyn PreparedCameras + 'a> {

@@ -3,6 +3,7 @@
 mod control_pictures;
 mod mask;
 mod model;
+mod noise;
 mod public;
 #[cfg(test)]
 mod public_tests;
@@ -22,8 +23,8 @@ use crate::appearance::CameraImage;
 use diffusion::inversion::Trajectory;
 pub use model::{Paint, PaintModel, PaintWith};
 use nets::ModelError;
-use nets::picture::{self, Before, PictureNets, RingSize, Sampling};
-use numeric::philox::{Stream, normal_field};
+use nets::picture::{self, Before, Motion, PictureNets, RingSize, Sampling};
+pub use noise::NoisePrior;
 use ring::Ring;
 pub use ring::native_px;
 use scene::{Conditions, Frame, SensorRig};
@@ -39,6 +40,10 @@ pub struct PaintOptions {
     pub steps: usize,
     /// How much more than in training the pictures obey what they are told; 1 is as in training.
     pub guidance: f64,
+    /// Shipped weights alone: where the noise of a frame comes from.
+    pub noise: NoisePrior,
+    /// Shipped weights alone: pictures are told of those painted before, where the cameras stood near.
+    pub hears_before: bool,
     /// Public weights alone: how much of the rendered picture is painted anew, 0 (nothing) to 1 (all).
     pub strength: f64,
     /// Public weights alone: width of a picture, px.
@@ -64,6 +69,8 @@ impl Default for PaintOptions {
         Self {
             steps: 4,
             guidance: 2.0,
+            noise: NoisePrior::default(),
+            hears_before: true,
             strength: 0.6,
             width_px: 512,
             prompt: String::new(),
@@ -118,6 +125,9 @@ pub struct Painter {
 struct Painted {
     seen: Seen,
     trajectory: Trajectory,
+    /// What the trajectory began with, and how many frames of a drive came before.
+    noise: Vec<f32>,
+    number: u32,
     /// In the ring's order.
     images: Vec<Arc<CameraImage>>,
 }
@@ -193,9 +203,24 @@ impl Painter {
         let order = ring.order(&brush);
         let condition = seen.condition(ring.size);
         let told = self.nets.dit.tell(&condition).map_err(network)?;
-        let before = match source {
-            None => self.before(&seen, ring.size)?,
+        let earlier = match source {
+            None => self.earlier(&seen, ring.size),
             Some(_) => None,
+        };
+        let before = match &earlier {
+            Some((painted, motions)) if self.options.hears_before => {
+                Some(before(painted, motions, &seen, ring.size)?)
+            }
+            _ => None,
+        };
+        let number = earlier.as_ref().map_or(0, |(painted, _)| painted.number + 1);
+        let noise = match source {
+            Some(source) => source.noise.clone(),
+            None => {
+                let earlier = earlier.as_ref().map(|(p, _)| (&p.noise[..], &p.seen));
+                let latent = self.nets.dit.config().latent;
+                self.options.noise.of(&seen, ring, earlier, number, latent)?
+            }
         };
         let sampling = Sampling {
             told: &told,
@@ -228,10 +253,7 @@ impl Painter {
                     .dit
                     .resample(&source.trajectory, &cells, &sampling, on_step)
             }
-            _ => {
-                let noise = noise(seen.seed(), ring.size, self.nets.dit.config().latent);
-                self.nets.dit.sample(&noise, &sampling, on_step)
-            }
+            _ => self.nets.dit.sample(&noise, &sampling, on_step),
         };
         let trajectory = trajectory.map_err(network)?;
         let latents = trajectory.latent_f32();
@@ -260,24 +282,24 @@ impl Painter {
                 .filter_map(|(view, image)| image.or_else(|| kept(view)))
                 .collect(),
             trajectory,
+            noise,
+            number,
             seen,
         })
     }
 
-    /// The newest frame that was painted, if these cameras stood near by then, as their cells see it.
-    fn before(&self, seen: &Seen, size: RingSize) -> Result<Option<Before>, PaintError> {
-        let near = self
-            .kept
-            .iter()
-            .rev()
-            .find_map(|p| Some((p, seen.motion_since(&p.seen, size)?)));
-        let Some((painted, motions)) = near else {
-            return Ok(None);
-        };
-        let depths = [&seen.depth_m()[..], &painted.seen.depth_m()];
-        let before = picture::warp(size, &painted.trajectory.latent_f32(), depths, &motions);
-        before.map(Some).map_err(network)
+    /// The newest frame that was painted while these cameras stood near, and how they moved since.
+    fn earlier(&self, seen: &Seen, size: RingSize) -> Option<(&Painted, Vec<Motion>)> {
+        let mut kept = self.kept.iter().rev();
+        kept.find_map(|p| Some((p, seen.motion_since(&p.seen, size)?)))
     }
+}
+
+/// A frame that was painted as the cells of another see it.
+fn before(painted: &Painted, motions: &[Motion], seen: &Seen, size: RingSize) -> Result<Before, PaintError> {
+    let depths = [&seen.depth_m()[..], &painted.seen.depth_m()];
+    let before = picture::warp(size, &painted.trajectory.latent_f32(), depths, motions);
+    before.map_err(network)
 }
 
 /// From latents to pictures.
@@ -330,13 +352,6 @@ impl Brush<'_> {
         }
         Ok(image)
     }
-}
-
-/// Noise that belongs to the seed and to the places of the ring.
-fn noise(seed: u64, size: RingSize, latent: usize) -> Vec<f32> {
-    let [rows, columns] = size.cells();
-    let field = normal_field(seed, Stream::Pictures, size.views() * rows * columns, latent);
-    field.into_iter().map(|v| v as f32).collect()
 }
 
 fn network(error: ModelError) -> PaintError {

@@ -263,3 +263,49 @@ fn seconds_of_a_painting() {
         timed("look and paint an edit", start);
     }
 }
+
+/// Noise that belongs to surfaces is that of another place in the next frame, and unlike noise of its own each time where surfaces are
+/// found again; what is told the frame before differs from what is not.
+#[test]
+fn noise_goes_along_with_surfaces() {
+    let world = World::random(3);
+    let frame = frame(&world);
+    let [here, ahead] = [0.0, 1.0].map(|x| SensorRig::default().placed(&Pose::planar(x, 0.0, 0.0)));
+    let run = |noise, hears_before| {
+        let options = PaintOptions {
+            noise,
+            hears_before,
+            steps: 1,
+            ..PaintOptions::default()
+        };
+        let mut painter = Painter::new(PictureNets::bundled().expect("the shipped weights"), options);
+        let go_on = |_: Progress<'_>| ControlFlow::Continue(());
+        let last = [&here, &ahead].map(|rig| painter.paint(&input(&frame, rig), go_on).expect("painted"));
+        let noise: Vec<Vec<f32>> = painter.kept.iter().map(|p| p.noise.clone()).collect();
+        (noise, last)
+    };
+    let same = |noise: &[Vec<f32>]| {
+        let cells = noise[0].as_chunks::<8>().0;
+        let known: std::collections::BTreeSet<[u32; 8]> = cells.iter().map(|c| c.map(f32::to_bits)).collect();
+        let then = noise[1].as_chunks::<8>().0.iter().map(|c| c.map(f32::to_bits));
+        then.filter(|c| known.contains(c)).count() as f64 / cells.len() as f64
+    };
+    let (places, painted) = run(NoisePrior::Places, true);
+    assert_eq!(places[0], places[1]);
+    let (frames, _) = run(NoisePrior::Frames, true);
+    assert!(frames[0] == places[0] && same(&frames) == 0.0);
+    let (surfaces, _) = run(NoisePrior::Surfaces, true);
+    let share = same(&surfaces);
+    assert!(
+        surfaces[0] != surfaces[1] && (0.4..0.99).contains(&share),
+        "{share}"
+    );
+    let mean = surfaces[1].iter().map(|v| f64::from(*v)).sum::<f64>() / surfaces[1].len() as f64;
+    let square = surfaces[1].iter().map(|v| f64::from(v * v)).sum::<f64>() / surfaces[1].len() as f64;
+    assert!(
+        mean.abs() < 0.05 && (square - 1.0).abs() < 0.05,
+        "{mean} {square}"
+    );
+    let (_, silent) = run(NoisePrior::Places, false);
+    assert!(silent[0][0].rgba == painted[0][0].rgba && silent[1][0].rgba != painted[1][0].rgba);
+}

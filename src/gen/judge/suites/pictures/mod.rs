@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::Context;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use self::likeness::{Likeness, light_of};
 use crate::Progress;
@@ -24,7 +24,7 @@ use numeric::quantile::median;
 use scene::truth::OUTSIDE;
 use scene::{Camera, Class, Conditions, Frame, SceneBox, SensorRig, TruthPixel};
 use sensors::appearance::{Appearance, CameraImage, Quality};
-use sensors::painter::{PaintInput, PaintOptions, Painter, native_px};
+use sensors::painter::{NoisePrior, PaintInput, PaintOptions, Painter, native_px};
 use sensors::picture_hints::{HintedFrame, PictureHints};
 use world::World;
 use world::draw::Draw;
@@ -37,6 +37,16 @@ const AGREEMENT: f64 = 0.85;
 /// Longest time for six pictures that is wanted, s.
 const LONGEST_S: f64 = 3.0;
 
+/// Whether a frame is told the one before, and where its noise comes from.
+const PRIORS: [(bool, NoisePrior); 6] = [
+    (false, NoisePrior::Frames),
+    (false, NoisePrior::Places),
+    (false, NoisePrior::Surfaces),
+    (true, NoisePrior::Frames),
+    (true, NoisePrior::Places),
+    (true, NoisePrior::Surfaces),
+];
+
 /// Figures, one value per world.
 #[derive(Default)]
 struct Figures {
@@ -46,7 +56,11 @@ struct Figures {
     alone: Vec<f64>,
     rendered_after: Vec<f64>,
     gain: Vec<f64>,
+    /// Each frame alone, and told the frame before: with noise of the frame, of the places and of the surfaces.
+    priors: [Vec<f64>; 6],
     sides: Vec<f64>,
+    sides_shared: Vec<f64>,
+    learned_shared: Vec<f64>,
     rendered_sides: Vec<f64>,
     painted_share: Vec<f64>,
     elsewhere_px: usize,
@@ -238,6 +252,22 @@ impl Figures {
         self.after.push(after);
         self.alone.push(without);
         self.gain.push(without - after);
+        for (values, (hears_before, noise)) in self.priors.iter_mut().zip(PRIORS) {
+            let options = PaintOptions {
+                noise,
+                hears_before,
+                ..PaintOptions::default()
+            };
+            let mut painter = Painter::new(nets.clone(), options);
+            let start = painter.paint(&input, go_on)?;
+            let then = painter.paint(&ahead, go_on)?;
+            values.push(now.since(&rendered, [&refs(&then), &refs(&start)]));
+            if (hears_before, noise) == (false, NoisePrior::Surfaces) {
+                self.sides_shared.push(rendered.between(&refs(&start)));
+                let shared = agreement(segmenter, &rendered, &refs(&start))?;
+                self.learned_shared.push(shared);
+            }
+        }
         self.rendered_after
             .push(now.since(&rendered, [&refs_of(&now.images), &renders]));
 
@@ -264,6 +294,33 @@ impl Figures {
     }
 }
 
+/// How much less the second is, world by world.
+fn less(a: &[f64], b: &[f64]) -> Value {
+    let each: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    with_interval(&each)
+}
+
+impl Figures {
+    /// Differences over time by where the noise comes from, and how much less they are than with noise of the frame's own.
+    fn by_noise(&self) -> Value {
+        let [frames, places, surfaces, told_frames, told_places, told_surfaces] = &self.priors;
+        let of = |[frames, places, surfaces]: [&[f64]; 3]| {
+            json!({
+                "frames": with_interval(frames),
+                "places": with_interval(places),
+                "surfaces": with_interval(surfaces),
+                "gain_by_places": less(frames, places),
+                "gain_by_surfaces": less(frames, surfaces),
+                "surfaces_less_than_places": less(places, surfaces),
+            })
+        };
+        json!({
+            "alone": of([frames, places, surfaces]),
+            "after_the_frame_before": of([told_frames, told_places, told_surfaces]),
+        })
+    }
+}
+
 impl Options {
     /// Agreement, likeness over time and between cameras, edits and times.
     pub(crate) fn pictures(&self, progress: &dyn Progress) -> anyhow::Result<Found> {
@@ -286,8 +343,15 @@ impl Options {
                 "after_the_frame_before": with_interval(&found.after),
                 "alone": with_interval(&found.alone),
                 "gain": with_interval(&found.gain),
+                "noise": found.by_noise(),
             },
-            "between_cameras": { "rendered": with_interval(&found.rendered_sides), "learned": with_interval(&found.sides) },
+            "between_cameras": {
+                "rendered": with_interval(&found.rendered_sides),
+                "learned": with_interval(&found.sides),
+                "learned_noise_shared": with_interval(&found.sides_shared),
+                "gain_by_sharing": less(&found.sides, &found.sides_shared),
+                "agreement_noise_shared": with_interval(&found.learned_shared),
+            },
             "likeness": found.likeness.report()?,
             "edit": {
                 "painted_share": with_interval(&found.painted_share),

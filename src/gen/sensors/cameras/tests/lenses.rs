@@ -73,7 +73,7 @@ fn what_is_seen_in_a_direction_does_not_depend_on_the_lens() {
                     (i / SIZE[0] as usize) as f64 + 0.5,
                 );
                 if ray.direction == DVec3::ZERO {
-                    assert_eq!(*label, 0, "{}: seen outside the lens", source.title());
+                    assert_eq!(*label, 0, "{}: seen outside the lens", source.about().title);
                     continue;
                 }
                 let Some(px) = straight.seen_at(ray.origin + ray.direction, DVec3::ZERO) else {
@@ -87,11 +87,15 @@ fn what_is_seen_in_a_direction_does_not_depend_on_the_lens() {
                 }
             }
             let share = same as f64 / f64::from(all.max(1));
-            println!("{} {} {share:.3} of {all}", source.title(), camera.lens.name());
+            println!(
+                "{} {} {share:.3} of {all}",
+                source.about().title,
+                camera.lens.name()
+            );
             assert!(
                 all > 2000 && share > 0.85,
                 "{} {}: {share:.3} of {all}",
-                source.title(),
+                source.about().title,
                 camera.lens.name()
             );
         }

@@ -1,7 +1,10 @@
 //! `eval downstream`: are generated scenes, to a network that learned from worlds, like worlds? The shipped network of the LiDAR
 //! looks at sweeps of held-out worlds and of what is generated from their layouts: as the window shows it, where boxes keep what
-//! they need, and as the networks give it. What it loses there is what generation gets wrong where a LiDAR looks. What generated
+//! they need, and as the networks give it. What it loses there is what generation gets wrong where a LiDAR looks. The network that
+//! tells voxels from LiDAR and cameras looks at the same, and at the worlds in other light and weather. What generated
 //! scenes are worth as training data is what `training/downstream.py` asks.
+
+mod voxels;
 
 use std::sync::Arc;
 
@@ -15,6 +18,7 @@ use job::pipeline::OccPipeline;
 use job::{GenParams, Job, JobCtx, Pipeline};
 use scene::{Class, Scene};
 use sensors::perceived_sweep::report;
+use voxels::Voxels;
 
 /// What the network makes of scenes, a value per scene.
 #[derive(Default)]
@@ -78,13 +82,14 @@ impl Seen {
 }
 
 impl Options {
-    /// The shipped network of the LiDAR on held-out worlds and on scenes from their layouts.
+    /// The shipped networks of the LiDAR, and of LiDAR and cameras, on held-out worlds and on scenes from their layouts.
     pub(crate) fn downstream(
         &self,
         pipeline: &mut OccPipeline,
         progress: &dyn Progress,
     ) -> anyhow::Result<Found> {
         let mut worlds = Seen::default();
+        let mut voxels = Voxels::default();
         let mut made = [true, false].map(|keeps_objects| (keeps_objects, Seen::default()));
         for i in 0..self.frames {
             progress.at("downstream", i, self.frames);
@@ -104,6 +109,9 @@ impl Options {
                 let mut document = Document::new(Scene::clone(&world));
                 document.adopt(result.rev(), result.occupancy.clone())?;
                 seen.add(document.scene())?;
+                if *keep_objects {
+                    voxels.add(&world, document.scene())?;
+                }
             }
         }
         let [shown, own] = made.map(|(_, seen)| seen);
@@ -113,6 +121,7 @@ impl Options {
             "generated_more_than_worlds": shown.more_than(&worlds),
             "own_output": own.report(),
             "own_output_more_than_worlds": own.more_than(&worlds),
+            "voxels": voxels.report(),
         });
         Ok((report, Vec::new()))
     }

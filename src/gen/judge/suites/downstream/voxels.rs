@@ -1,0 +1,115 @@
+//! Which voxels the network of LiDAR and cameras tells in worlds and in what is generated from their layouts, from both and from either
+//! alone; and from the cameras alone in other light and weather.
+
+use serde_json::{Map, Value, json};
+
+use crate::suite::with_interval;
+use scene::{Conditions, Scene, TimeOfDay, Weather};
+use sensors::perceived_voxels::{Heard, Hears, VoxelReport, report, report_of};
+
+/// What is heard, by name.
+const ARMS: [(&str, Hears); 3] = [
+    ("both", Hears::Both),
+    ("lidar", Hears::Lidar),
+    ("cameras", Hears::Cameras),
+];
+/// Light and weather that cameras are judged in, by name; the first is what the others are held against.
+const AIR: [(&str, TimeOfDay, Weather); 7] = [
+    ("clear", TimeOfDay::Day, Weather::Clear),
+    ("rain", TimeOfDay::Day, Weather::Rain),
+    ("snow", TimeOfDay::Day, Weather::Snow),
+    ("fog", TimeOfDay::Day, Weather::Fog),
+    ("sandstorm", TimeOfDay::Day, Weather::Sandstorm),
+    ("dusk", TimeOfDay::Dusk, Weather::Clear),
+    ("night", TimeOfDay::Night, Weather::Clear),
+];
+
+/// Figures of some scenes, a value per scene: IoU where the LiDAR sees, share of voxels told rightly, share of the boxes found.
+#[derive(Default)]
+struct Told([Vec<f64>; 3]);
+
+const NAMES: [&str; 3] = ["iou", "classes_right", "boxes_found"];
+
+impl Told {
+    fn add(&mut self, report: &VoxelReport) {
+        let boxes = report.boxes.len();
+        let found = report.boxes.iter().filter(|b| !b.is_missed()).count();
+        // Where there is none to see nothing is missed.
+        let found = if boxes == 0 {
+            1.0
+        } else {
+            found as f64 / boxes as f64
+        };
+        let values = self.0.iter_mut().zip([report.iou, report.right, found]);
+        values.for_each(|(list, value)| list.push(value));
+    }
+
+    fn report(&self) -> Value {
+        let pairs = NAMES.iter().zip(&self.0);
+        pairs
+            .map(|(name, values)| ((*name).to_owned(), with_interval(values)))
+            .collect()
+    }
+
+    /// How much more than `other`, scene by scene.
+    fn more_than(&self, other: &Self) -> Value {
+        let pairs = NAMES.iter().zip(self.0.iter().zip(&other.0));
+        let more = pairs.map(|(name, (a, b))| {
+            let each: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+            ((*name).to_owned(), with_interval(&each))
+        });
+        more.collect()
+    }
+}
+
+/// Worlds and generated scenes.
+#[derive(Default)]
+pub(super) struct Voxels {
+    worlds: [Told; 3],
+    generated: [Told; 3],
+    air: [Told; AIR.len()],
+}
+
+impl Voxels {
+    /// Looks at a world, also under other light and weather, and at what was generated from its layout.
+    pub fn add(&mut self, world: &Scene, generated: &Scene) -> anyhow::Result<()> {
+        for (scene, told) in [(world, &mut self.worlds), (generated, &mut self.generated)] {
+            let heard = Heard::of(scene)?;
+            for ((_, hears), told) in ARMS.iter().zip(told) {
+                told.add(&report_of(scene, &heard, *hears)?);
+            }
+        }
+        for ((_, time, weather), told) in AIR.iter().zip(&mut self.air) {
+            let mut scene = world.clone();
+            scene.conditions = Conditions::usual(*time, *weather, scene.seed);
+            told.add(&report(&scene, Hears::Cameras)?);
+        }
+        Ok(())
+    }
+
+    pub fn report(&self) -> Value {
+        let arms = |told: &[Told; 3]| -> Map<String, Value> {
+            let each = ARMS.iter().zip(told);
+            each.map(|((name, _), told)| ((*name).to_owned(), told.report()))
+                .collect()
+        };
+        let more = ARMS.iter().zip(self.generated.iter().zip(&self.worlds));
+        let more: Map<String, Value> = more
+            .map(|((name, _), (generated, world))| ((*name).to_owned(), generated.more_than(world)))
+            .collect();
+        let air = AIR.iter().zip(&self.air);
+        let air: Map<String, Value> = air
+            .map(|((name, ..), told)| {
+                let report =
+                    json!({ "told": told.report(), "more_than_clear": told.more_than(&self.air[0]) });
+                ((*name).to_owned(), report)
+            })
+            .collect();
+        json!({
+            "worlds": arms(&self.worlds),
+            "generated": arms(&self.generated),
+            "generated_more_than_worlds": more,
+            "cameras_by_weather": air,
+        })
+    }
+}

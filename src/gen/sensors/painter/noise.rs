@@ -1,0 +1,50 @@
+//! The noise that pictures of the shipped networks begin with.
+
+use super::PaintError;
+use super::ring::Ring;
+use super::seen::Seen;
+use super::surfaces::{cells_of, pixels_before, shared_cells};
+use nets::picture::CELL;
+use stable::noise::{carried, fresh};
+
+/// Where the noise of a frame comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NoisePrior {
+    /// It belongs to the places of the pictures, whatever they show.
+    #[default]
+    Places,
+    /// It belongs to the surfaces that are seen: it goes along with them from frame to frame, and cameras that see one share it.
+    Surfaces,
+    /// Each frame has its own.
+    Frames,
+}
+
+impl NoisePrior {
+    /// Noise `[view][row][column][latent]` of a frame that is the `number`th of a drive, after an earlier one with its noise if there is one near.
+    pub(super) fn of(
+        self,
+        seen: &Seen,
+        ring: &Ring,
+        earlier: Option<(&[f32], &Seen)>,
+        number: u32,
+        latent: usize,
+    ) -> Result<Vec<f32>, PaintError> {
+        let ([rows, columns], views) = (ring.size.cells(), ring.size.views());
+        let size = [views * rows * columns, latent, 1, 1];
+        let of_frame = |number| fresh(seen.seed(), number, size);
+        let (from, noise, new) = match (self, earlier) {
+            (Self::Places, _) => return Ok(of_frame(0)),
+            (Self::Frames, _) => return Ok(of_frame(number)),
+            (Self::Surfaces, Some((noise, then))) => {
+                let pixels = pixels_before(seen, then, views);
+                let cells = cells_of(&pixels, ring.size.pixels(), CELL);
+                (cells, noise.to_vec(), of_frame(number))
+            }
+            (Self::Surfaces, None) => {
+                let cells = shared_cells(seen, &ring.front_first(), CELL);
+                (cells, of_frame(0), of_frame(0))
+            }
+        };
+        carried(&noise, &from, &new, size).map_err(|e| PaintError::Network(e.to_string()))
+    }
+}

@@ -1,0 +1,488 @@
+//! Which voxels a small network tells from the LiDAR sweep and the camera pictures of a scene, beside those that are there:
+//! boxes that it misses, and things that it sees where there are none.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::appearance::Appearance;
+use crate::painter::PaintError;
+use crate::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
+use crate::perceived_sweep::{LEAST_RETURNS, near};
+use crate::project::View;
+use crate::rolling;
+use nets::perceiver::against::returns_on;
+use nets::sensor_occupancy::{SensorOccupancy, UNSEEN};
+use scene::raster::box_cells;
+use scene::truth::TruthClass;
+use scene::{BoxId, BoxLabel, Camera, Class, Extent, LidarSweep, Pose, Scene, SceneBox, VoxelGrid, Window};
+
+/// A box of fewer voxels is too small to be missed.
+pub const LEAST_VOXELS: usize = 2;
+/// Voxels that stand together where no thing is count as one from so many on.
+pub const LEAST_GHOST: usize = 3;
+/// What a camera shows nearer than this it does not see, m.
+const NEAR_M: f64 = 0.5;
+/// A thing that is told beside a box within so many columns belongs to it.
+const BESIDE: usize = 2;
+
+/// Which sensors the network hears.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Hears {
+    /// LiDAR and cameras.
+    #[default]
+    Both,
+    /// The LiDAR alone.
+    Lidar,
+    /// The cameras alone.
+    Cameras,
+}
+
+/// What the network makes of a scene's sensors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VoxelReport {
+    /// The voxels that it tells, in the window around the vehicle, in the vehicle's frame.
+    pub voxels: VoxelGrid,
+    /// Of the columns within 1.2 m of a return: solid voxels that it tells and that are there, as a share of those that are either.
+    pub iou: f64,
+    /// Share of the voxels which are both whose class it tells rightly.
+    pub right: f64,
+    /// Boxes that a sensor plainly sees, missed ones first, then the largest first.
+    pub boxes: Vec<SeenInVoxels>,
+    /// Things where there are none, the largest first.
+    pub ghosts: Vec<Ghost>,
+    /// Map from the vehicle.
+    pub map_from_vehicle: Pose,
+}
+
+/// A box of the scene among the voxels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenInVoxels {
+    /// The box.
+    pub id: BoxId,
+    /// Voxels that are its own; 0 if neither LiDAR nor cameras see enough of it to tell.
+    pub voxels: usize,
+    /// Share of them that the network takes for a thing.
+    pub share: f64,
+}
+
+impl SeenInVoxels {
+    /// True if there is enough of it to be judged.
+    pub fn is_judged(&self) -> bool {
+        self.voxels >= LEAST_VOXELS
+    }
+
+    /// True if it is plain to see and the network takes it for no thing.
+    pub fn is_missed(&self) -> bool {
+        self.is_judged() && self.share < MISSED_BELOW
+    }
+}
+
+/// A thing that the network sees where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ghost {
+    /// A box on the map around its voxels, of the class that it is taken for.
+    pub thing: SceneBox,
+    /// How many they are.
+    pub voxels: usize,
+}
+
+/// What the sensors of a scene give the network.
+pub struct Heard {
+    /// Returns in the vehicle's frame with their echo strengths.
+    returns: Vec<[f32; 4]>,
+    painted: Vec<u8>,
+    sweep: LidarSweep,
+    /// Pixels of the boxes in the camera that shows most of each.
+    pixels: BTreeMap<BoxId, usize>,
+}
+
+impl Heard {
+    /// Sweeps and draws a scene. Errors if the segmenter cannot be read.
+    pub fn of(scene: &Scene) -> Result<Self, PaintError> {
+        let placed = scene.with_rig_in_world();
+        let sweep = rolling::exact(&placed);
+        let to_vehicle = scene.frame().world_from_ego.inverse();
+        let returns = sweep.points.iter().map(|point| {
+            let at = to_vehicle.apply(glam::Vec3::from(point.position_in_ego).as_dvec3());
+            let [x, y, z] = at.as_vec3().to_array();
+            [x, y, z, point.intensity]
+        });
+        let appearance = Appearance::new(placed.frame(), &placed.rig, &placed.conditions);
+        let look = |camera: &Camera| Perceived::of(&appearance, placed.frame(), camera);
+        let seen: Result<Vec<Perceived>, PaintError> = placed.rig.cameras.par_iter().map(look).collect();
+        let seen = seen?;
+        let mut pixels: BTreeMap<BoxId, usize> = BTreeMap::new();
+        for thing in seen.iter().flat_map(Perceived::boxes) {
+            let most = pixels.entry(thing.id).or_default();
+            *most = thing.visible_px.max(*most);
+        }
+        let shown = scene.rig.cameras.iter().zip(&seen);
+        let shown: Vec<Shown<'_>> = shown
+            .map(|(camera, seen)| Shown {
+                camera,
+                size_px: [seen.image.width, seen.image.height].map(|n| n as usize),
+                classes: &seen.classes,
+            })
+            .collect();
+        Ok(Self {
+            returns: returns.collect(),
+            painted: painted(&shown),
+            sweep,
+            pixels,
+        })
+    }
+
+    /// The voxels that the network tells from some of it, in the vehicle's frame. Errors if the network cannot be read.
+    pub fn voxels(&self, hears: Hears) -> Result<VoxelGrid, PaintError> {
+        let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
+        let net = SensorOccupancy::bundled().map_err(|e| network(&e))?;
+        let returns = self.returns.iter().filter(|_| hears != Hears::Cameras).copied();
+        let told = match hears {
+            Hears::Lidar => net.voxels(returns, &vec![UNSEEN; Window::VOXELS]),
+            _ => net.voxels(returns, &self.painted),
+        };
+        told.map_err(|e| network(&e))
+    }
+}
+
+/// What a camera shows.
+pub struct Shown<'a> {
+    /// The camera, in the vehicle's frame.
+    pub camera: &'a Camera,
+    /// Width and height of the picture, px.
+    pub size_px: [usize; 2],
+    /// Class of each pixel.
+    pub classes: &'a [TruthClass],
+}
+
+/// What cameras show at the middle of each voxel of the window around the vehicle, `[x][y][16]`: of the camera that sees it nearest to its axis; of
+/// two that see it equally near the first one counts. Twin of `painted` in `training/models/sensor_occupancy.py`.
+pub fn painted(shown: &[Shown<'_>]) -> Vec<u8> {
+    let views = shown.iter().map(|s| {
+        let [w, h] = s.size_px;
+        (View::new(s.camera, w as u32, h as u32, 1.0), s)
+    });
+    let views: Vec<_> = views.collect();
+    let at = |place: DVec3| {
+        let (mut best, mut class) = (0.0, UNSEEN);
+        for (view, shown) in &views {
+            let p = view.to_camera(place);
+            let straight = p.z / p.length();
+            let Some(seen) = view
+                .project(place, 0.0, NEAR_M, f64::INFINITY)
+                .filter(|_| straight > best)
+            else {
+                continue;
+            };
+            let [u, v] = seen.mean_px.map(f64::floor);
+            let [w, h] = shown.size_px;
+            if u >= 0.0 && v >= 0.0 && u < w as f64 && v < h as f64 {
+                (best, class) = (straight, shown.classes[v as usize * w + u as usize]);
+            }
+        }
+        class
+    };
+    let column = |i: usize| {
+        let [x, y] = [i / Window::NY, i % Window::NY];
+        (0..Window::NZ).map(move |z| (x, y, z))
+    };
+    (0..Window::COLUMNS)
+        .into_par_iter()
+        .flat_map_iter(|i| column(i).map(|(x, y, z)| at(Window::center(x, y, z))))
+        .collect()
+}
+
+/// Looks at a scene's LiDAR and cameras. Errors if a network cannot be read.
+pub fn report(scene: &Scene, hears: Hears) -> Result<VoxelReport, PaintError> {
+    let heard = Heard::of(scene)?;
+    report_of(scene, &heard, hears)
+}
+
+/// The same of what was heard already.
+pub fn report_of(scene: &Scene, heard: &Heard, hears: Hears) -> Result<VoxelReport, PaintError> {
+    let voxels = heard.voxels(hears)?;
+    let map_from_vehicle = scene.frame().world_from_ego;
+    let around = scene.in_ego();
+    let truth = around.frame().occupancy.crop(Extent::WINDOW);
+    let near = near(&heard.sweep, &map_from_vehicle);
+    let [mut both, mut either, mut right] = [0usize; 3];
+    for (i, _) in near.iter().enumerate().filter(|(_, near)| **near) {
+        let (x, y) = (i / Window::NY, i % Window::NY);
+        for (told, true_) in voxels.column(x, y).iter().zip(truth.column(x, y)) {
+            let solid = [told, true_].map(|l| *l != Class::FREE);
+            both += usize::from(solid == [true; 2]);
+            either += usize::from(solid != [false; 2]);
+            right += usize::from(solid == [true; 2] && told == true_);
+        }
+    }
+    let share = |n: usize, of: usize| if of == 0 { 1.0 } else { n as f64 / of as f64 };
+    let inside = |b: &&SceneBox| Window::column_at(b.center_m.x, b.center_m.y).is_some();
+    let boxes = around.frame().boxes.values().filter(inside);
+    let mut boxes: Vec<SeenInVoxels> = boxes
+        .map(|b| seen(b, scene, heard, [&truth, &voxels]))
+        .filter(SeenInVoxels::is_judged)
+        .collect();
+    boxes.sort_by_key(|b| (!b.is_missed(), std::cmp::Reverse(b.voxels)));
+    Ok(VoxelReport {
+        iou: share(both, either),
+        right: share(right, both),
+        boxes,
+        ghosts: ghosts(&truth, &voxels, &map_from_vehicle),
+        voxels,
+        map_from_vehicle,
+    })
+}
+
+/// How the network sees one box; none if it is not in the window.
+pub fn sight(scene: &Scene, id: BoxId) -> Result<Option<SeenInVoxels>, PaintError> {
+    let around = scene.in_ego();
+    let inside = |b: &&SceneBox| Window::column_at(b.center_m.x, b.center_m.y).is_some();
+    let Some(b) = around.frame().boxes.get(&id).filter(inside) else {
+        return Ok(None);
+    };
+    let heard = Heard::of(scene)?;
+    let truth = around.frame().occupancy.crop(Extent::WINDOW);
+    Ok(Some(seen(
+        b,
+        scene,
+        &heard,
+        [&truth, &heard.voxels(Hears::Both)?],
+    )))
+}
+
+/// A box of the vehicle's frame among true and told voxels.
+fn seen(b: &SceneBox, scene: &Scene, heard: &Heard, [truth, told]: [&VoxelGrid; 2]) -> SeenInVoxels {
+    let returns = scene
+        .frame()
+        .boxes
+        .get(&b.id)
+        .map_or(0, |b| returns_on(b, &heard.sweep));
+    let pixels = heard.pixels.get(&b.id).copied().unwrap_or(0);
+    let (mut voxels, mut found) = (0, 0);
+    if returns >= LEAST_RETURNS || pixels >= LEAST_PX {
+        box_cells(Extent::WINDOW, b, 0.0, |x, y| {
+            for (label, told) in truth.column(x, y).iter().zip(told.column(x, y)) {
+                if *label == b.class.id() {
+                    voxels += 1;
+                    found += usize::from(is_thing(*told));
+                }
+            }
+        });
+    }
+    SeenInVoxels {
+        id: b.id,
+        voxels,
+        share: found as f64 / voxels.max(1) as f64,
+    }
+}
+
+/// Voxels of things that stand together, farther than 0.8 m from any thing that is there.
+fn ghosts(truth: &VoxelGrid, told: &VoxelGrid, map_from_vehicle: &Pose) -> Vec<Ghost> {
+    let things =
+        |grid: &VoxelGrid, x: usize, y: usize| grid.column(x, y).iter().filter(|l| is_thing(**l)).count();
+    let reach = |v: usize, side: usize, by: usize| v.saturating_sub(by)..(v + by + 1).min(side);
+    let around = |x: usize, y: usize, by: usize| {
+        reach(x, Window::NX, by).flat_map(move |x| reach(y, Window::NY, by).map(move |y| (x, y)))
+    };
+    let stray = |x: usize, y: usize| {
+        things(told, x, y) > 0 && around(x, y, BESIDE).all(|(x, y)| things(truth, x, y) == 0)
+    };
+    let columns = (0..Window::COLUMNS).into_par_iter();
+    let mut open: Vec<bool> = columns.map(|i| stray(i / Window::NY, i % Window::NY)).collect();
+    let mut out = Vec::new();
+    for first in 0..open.len() {
+        if !std::mem::take(&mut open[first]) {
+            continue;
+        }
+        let (mut next, mut classes) = (vec![first], [0usize; Class::COUNT]);
+        let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
+        while let Some(i) = next.pop() {
+            let (x, y) = (i / Window::NY, i % Window::NY);
+            for (z, label) in told
+                .column(x, y)
+                .iter()
+                .enumerate()
+                .filter(|(_, l)| is_thing(**l))
+            {
+                classes[usize::from(*label)] += 1;
+                let middle = Window::center(x, y, z);
+                (low, high) = (low.min(middle), high.max(middle));
+            }
+            for (x, y) in around(x, y, 1) {
+                let beside = x * Window::NY + y;
+                if std::mem::take(&mut open[beside]) {
+                    next.push(beside);
+                }
+            }
+        }
+        let voxels: usize = classes.iter().sum();
+        let most = (0..Class::COUNT).max_by_key(|c| classes[*c]).unwrap_or_default();
+        if let (Some(class), true) = (Class::from_id(most as u8), voxels >= LEAST_GHOST) {
+            out.push(Ghost {
+                thing: around_ghost(class, (low + high) / 2.0, high - low, map_from_vehicle),
+                voxels,
+            });
+        }
+    }
+    out.sort_by_key(|g| std::cmp::Reverse(g.voxels));
+    out
+}
+
+/// A box on the map from the middle of its voxels in the vehicle's frame and how far apart the outer ones are, m.
+fn around_ghost(class: Class, center_m: DVec3, apart_m: DVec3, map_from_vehicle: &Pose) -> SceneBox {
+    let there = SceneBox {
+        id: BoxId(0),
+        class,
+        center_m,
+        size_m: apart_m + DVec3::splat(Window::VOXEL_M),
+        yaw_rad: 0.0,
+        velocity_mps: DVec2::ZERO,
+        label: BoxLabel::default(),
+    };
+    there.in_frame(map_from_vehicle)
+}
+
+/// Classes of boxes: barrier to truck.
+fn is_thing(label: u8) -> bool {
+    Class::from_id(label).is_some_and(Class::is_object)
+}
+
+/// What is told around a vehicle, as voxels of a map: each takes the voxel of the window in which its middle lies, at the same height.
+pub fn on_map(voxels: &VoxelGrid, extent: Extent, map_from_vehicle: &Pose) -> VoxelGrid {
+    let mut out = VoxelGrid::over(extent);
+    let to_vehicle = map_from_vehicle.inverse();
+    for x in 0..extent.nx() {
+        for y in 0..extent.ny() {
+            let at = extent.center(x, y, 0);
+            let there = to_vehicle.apply(DVec3::new(at.x, at.y, map_from_vehicle.translation_m.z));
+            if let Some([i, j]) = Window::column_at(there.x, there.y) {
+                let column = voxels.column(i, j);
+                if column.iter().any(|l| *l != Class::FREE) {
+                    out.column_mut(x, y).copy_from_slice(column);
+                }
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use safetensors::SafeTensors;
+    use scene::{Frame, SensorRig};
+    use world::World;
+    use world::voxelize::{Vertical, complete};
+
+    fn scene() -> Scene {
+        let world = World::random(3);
+        let grid = complete(&world, Vertical::Occ3d);
+        let frame = Frame::new(world.layout.clone(), world.boxes.clone(), grid);
+        Scene::single("t", frame, std::sync::Arc::default(), 1)
+    }
+
+    /// Pictures of the default rig that any language makes alike, put on voxels as the twin does.
+    #[test]
+    fn voxels_are_painted_as_the_twin_paints_them() {
+        let path = "../../../training/weights/sensor_occupancy/golden.safetensors";
+        let bytes = std::fs::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path)).expect("the golden");
+        let file = SafeTensors::deserialize(&bytes).expect("a safetensors file");
+        let expected = file.tensor("painted").expect("a tensor").data().to_vec();
+        let number = |i: u64| {
+            let h = (i * 2_654_435_761 + 6 * 40_503 + 12_345) % (1 << 32);
+            let h = (h ^ (h >> 15)) * 2_246_822_519 % (1 << 32);
+            let u = (h as f64 / 4_294_967_296.0 * 3.5 - 1.75) as f32;
+            (((u + 1.75) / 3.5 * 23.0).floor() as u8).min(21)
+        };
+        let rig = SensorRig::default();
+        let px = 256 * 144;
+        let classes: Vec<u8> = (0..(rig.cameras.len() * px) as u64).map(number).collect();
+        let shown: Vec<Shown<'_>> = rig
+            .cameras
+            .iter()
+            .zip(classes.chunks_exact(px))
+            .map(|(camera, classes)| Shown {
+                camera,
+                size_px: [256, 144],
+                classes,
+            })
+            .collect();
+        let found = painted(&shown);
+        let every = (0..Window::NX).step_by(8).flat_map(|x| {
+            (0..Window::NY)
+                .step_by(8)
+                .flat_map(move |y| (x * Window::NY + y) * Window::NZ..(x * Window::NY + y + 1) * Window::NZ)
+        });
+        let found: Vec<u8> = every.map(|i| found[i]).collect();
+        assert_eq!(found.len(), expected.len());
+        let same = found.iter().zip(&expected).filter(|(a, b)| a == b).count();
+        // A middle on the edge of a pixel may fall into the next one.
+        assert!(1000 * same >= 999 * found.len(), "{same} of {}", found.len());
+    }
+
+    #[test]
+    fn both_sensors_tell_most_of_what_is_there() {
+        let scene = scene();
+        let heard = Heard::of(&scene).expect("the shipped networks");
+        let both = report_of(&scene, &heard, Hears::Both).expect("the shipped network");
+        let blind = Heard {
+            returns: Vec::new(),
+            painted: vec![UNSEEN; Window::VOXELS],
+            ..heard
+        };
+        let none = report_of(&scene, &blind, Hears::Both).expect("the shipped network");
+        assert!(both.iou > 0.4 && both.right > 0.7, "{} {}", both.iou, both.right);
+        assert!(both.iou > none.iou + 0.1, "{} {}", both.iou, none.iou);
+        let missed = both.boxes.iter().filter(|b| b.is_missed()).count();
+        assert!(3 * missed <= both.boxes.len(), "{missed} of {}", both.boxes.len());
+        assert!(both.boxes.is_sorted_by_key(|b| !b.is_missed()));
+        let id = both.boxes.last().expect("a box").id;
+        let alone = sight(&scene, id)
+            .expect("the shipped network")
+            .expect("in the window");
+        assert_eq!(Some(&alone), both.boxes.last());
+        assert_eq!(sight(&scene, BoxId(9999)).expect("a network"), None);
+    }
+
+    #[test]
+    fn what_stands_where_nothing_is_counts_as_one() {
+        let (truth, mut told) = (VoxelGrid::new(), VoxelGrid::new());
+        for (x, y, z) in [(10, 10, 1), (11, 11, 1), (11, 11, 2), (60, 60, 1)] {
+            told.set(x, y, z, Class::Car.id());
+        }
+        told.set(12, 12, 1, Class::Truck.id());
+        told.set(90, 90, 1, Class::Manmade.id());
+        let map = Pose::planar(100.0, 0.0, 0.0);
+        let found = ghosts(&truth, &told, &map);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_eq!((found[0].thing.class, found[0].voxels), (Class::Car, 4));
+        let thing = found[0].thing;
+        assert!((thing.center_m.x - (100.0 + Window::center(11, 0, 0).x)).abs() < 1e-9);
+        assert!(thing.size_m.distance(DVec3::new(1.2, 1.2, 0.8)) < 1e-9);
+        let mut near = truth.clone();
+        near.set(12, 10, 0, Class::Pedestrian.id());
+        assert_eq!(ghosts(&near, &told, &map), []);
+    }
+
+    #[test]
+    fn what_is_told_lies_around_the_vehicle_on_the_map() {
+        let mut told = VoxelGrid::new();
+        told.set(150, 100, 3, Class::Car.id());
+        let pose = Pose::planar(200.0, 40.0, std::f64::consts::FRAC_PI_2);
+        let extent = Extent::new([0, 0], [800, 400]).expect("an extent");
+        let map = on_map(&told, extent, &pose);
+        assert_eq!(map.count_set(), 1);
+        let (x, y, z, label) = map.iter_set().next().expect("a voxel");
+        let expected = pose.apply(Window::center(150, 100, 3));
+        let found = extent.center(x, y, z);
+        assert!(
+            found.truncate().distance(expected.truncate()) < 0.4,
+            "{found} {expected}"
+        );
+        assert_eq!((z, label), (3, Class::Car.id()));
+    }
+}
