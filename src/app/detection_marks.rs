@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use super::canvas::ScreenMap;
 use super::state::UiState;
 use language::t;
-use scene::{BoxId, Extent, Frame, Pose, Scene, SceneBox};
+use scene::{BoxId, Extent, Frame, Pose, Scene, SceneBox, SceneRev};
 use sensors::perceived::{GHOST, MISSED};
 
 /// Colour of a box of the network that belongs to one of the scene.
@@ -21,6 +21,8 @@ const STANDS: u8 = 150;
 /// The marks of one sweep.
 #[derive(Clone)]
 pub struct DetectionMarks {
+    /// The state that the network looked at.
+    pub of: SceneRev,
     /// Boxes on the map, and true of each for which there is none in the scene.
     pub detections: Vec<(SceneBox, bool)>,
     /// Boxes of the scene that are missed.
@@ -51,23 +53,26 @@ impl std::fmt::Debug for DetectionMarks {
 }
 
 impl DetectionMarks {
-    /// What the colours mean.
-    pub(crate) fn legend() -> [(Color32, String); 3] {
-        [
+    /// What the colours mean; `now` is the state on screen.
+    pub(crate) fn legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
+        let mut entries = vec![
             (SEEN, t("seen by the network").to_owned()),
             (color(MISSED), t("missed").to_owned()),
             (color(GHOST), t("a thing where there is none").to_owned()),
-        ]
+        ];
+        if self.of != now {
+            let text = t("of the state before: the network is looking");
+            entries.push((Color32::GRAY, text.to_owned()));
+        }
+        entries
     }
 
     /// The same where its voxels are shown in place of the scene's.
-    pub(crate) fn told_legend() -> Vec<(Color32, String)> {
-        let [_, missed, ghost] = Self::legend();
-        let voxels = (
-            Color32::TRANSPARENT,
-            t("voxels as the network tells them").to_owned(),
-        );
-        vec![voxels, missed, ghost]
+    pub(crate) fn told_legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
+        let mut entries = self.legend(now);
+        let text = t("voxels as the network tells them, to look at alone");
+        entries.insert(0, (Color32::WHITE, text.to_owned()));
+        entries
     }
 
     /// Each box with its colour.
@@ -167,6 +172,7 @@ mod tests {
         };
         frame.boxes.insert(BoxId(1), b(1));
         let marks = DetectionMarks {
+            of: SceneRev::fresh(),
             detections: vec![(b(5), false), (b(6), true)],
             // One of them is gone since.
             missed: vec![BoxId(1), BoxId(2)],

@@ -79,6 +79,8 @@ pub struct View3dInput<'a> {
     pub marked: &'a [BrushCells<'a>],
     /// What is still to be generated, and whether it is being generated.
     pub unsettled: (&'a [Bounds], bool),
+    /// The voxels are those that a network tells: brushes do nothing to them.
+    pub is_told: bool,
 }
 
 /// Voxels that are marked at most; more would only hide each other.
@@ -182,16 +184,18 @@ impl View3d {
         let steps = pointer::steps(ui, &response);
         let moved = self.navigate(ui, &response, &steps, input, &mut state.tools);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
-        let mut driver = self.driver;
-        driver.drive(
-            ui,
-            &response,
-            &steps,
-            &self.seen(input),
-            &mut state.tools,
-            commands,
-        );
-        self.driver = driver;
+        if !input.is_told || state.tool == select::ID {
+            let mut driver = self.driver;
+            driver.drive(
+                ui,
+                &response,
+                &steps,
+                &self.seen(input),
+                &mut state.tools,
+                commands,
+            );
+            self.driver = driver;
+        }
         let hit = pointer.and_then(|p| pick::pick(input.scene.frame(), &p.ray));
         if let (Some(hit), Some(pointer)) = (&hit, &pointer) {
             state.pointed.readout = readout(input.scene, hit, &pointer.ray);

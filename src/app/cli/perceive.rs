@@ -143,7 +143,13 @@ impl Perceive {
 
     fn search(&self, scene: &Scene, id: BoxId, vary: Vary) -> Outcome {
         if !self.by.varies().contains(&vary) {
-            return Err(anyhow!("light and air mean nothing to the LiDAR: vary distance or offset").into());
+            let problem = match self.by {
+                Sensor::Cameras => {
+                    "speed means nothing to cameras that take pictures in a moment: vary distance, offset, fog, time or weather"
+                }
+                _ => "light and air mean nothing to the LiDAR: vary distance, offset or speed",
+            };
+            return Err(anyhow!(problem).into());
         }
         let progress = Progress::new(&self.common);
         let search = corner_case::search(scene, id, vary, self.by, |_, [k, most]| {
@@ -184,6 +190,9 @@ impl Perceive {
             let mut lines: Vec<String> = lines.collect();
             lines.push(match edits {
                 Some(_) => format!("box {} is missed: {}", id.0, last.change),
+                None if search.tried.iter().all(|t| !t.sight.is_judged()) => {
+                    format!("box {} is hidden, too small or too far away to be judged", id.0)
+                }
                 None => format!("box {} is never missed while it is plain to see", id.0),
             });
             lines.join("\n")

@@ -23,7 +23,7 @@ pub struct Shot {
     /// What is shown: view (the 3D view), map, occupancy, cameras (all on one sheet) or lidar.
     #[arg(long, value_name = "WHAT", default_value = "view")]
     what: String,
-    /// What cameras show: semantic, depth, picture, normals and so on.
+    /// What cameras show: semantic, depth, appearance, learned, perceived, normals and so on.
     #[arg(long, value_name = "VIEW", default_value = "semantic")]
     show: String,
     /// With names, a legend and a scale.

@@ -9,7 +9,6 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::canvas::CanvasInput;
 use crate::command::Command;
-use crate::detection_marks::DetectionMarks;
 use crate::map_edges;
 use crate::views_shown::Underlay;
 use editor::pick;
@@ -94,12 +93,9 @@ impl Pane for Bev {
         if let (true, Some(last), Some(map)) = (cx.tuning.show_modelled, &cx.tuning.last, &cx.canvas.map) {
             super::modelled::draw(ui, rect, map, last, cx.sensing.sampled());
         }
-        if mode == CompareMode::Off && cx.state.shown.detection_marks.is_some() {
-            legend(
-                ui,
-                area.left_top() + egui::vec2(8.0, 8.0),
-                &DetectionMarks::legend(),
-            );
+        if let (CompareMode::Off, Some(marks)) = (mode, &cx.state.shown.detection_marks) {
+            let entries = marks.legend(scene.rev);
+            legend(ui, area.left_top() + egui::vec2(8.0, 8.0), &entries);
         }
         let (Some(before), Some(map)) = (cx.compare.before.clone(), cx.canvas.map) else {
             return;

@@ -9,7 +9,6 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::camera_views::{LidarModel, LidarShown};
 use crate::command::{Command, FileCommand, ViewCommand};
-use crate::detection_marks::DetectionMarks;
 use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use crate::views_shown::ViewsShown;
@@ -81,10 +80,9 @@ impl Pane for View3dPane {
         };
         let entries = difference.map(|d| d.legend());
         let marked = difference.map(|d| d.marked());
-        let marks = cx.state.shown.detection_marks.as_ref();
-        let told = marks
-            .and_then(|m| m.told.clone())
-            .filter(|_| mode == CompareMode::Off);
+        let marks = cx.state.shown.detection_marks.clone();
+        let marks = marks.filter(|m| m.told.is_some() && mode == CompareMode::Off);
+        let told = marks.as_ref().and_then(|m| m.told.clone());
         let input = View3dInput {
             scene: told.as_ref().unwrap_or(&cx.seen.scene),
             settled: told.as_ref().unwrap_or(&cx.seen.settled),
@@ -92,6 +90,7 @@ impl Pane for View3dPane {
             dragging: cx.document.is_dragging(),
             marked: marked.as_ref().map_or(&[], |m| &m[..]),
             unsettled: (cx.unsettled, cx.generating),
+            is_told: told.is_some(),
         };
         let (view, state) = (&mut *cx.view3d, &mut *cx.state);
         if shows_before {
@@ -108,7 +107,7 @@ impl Pane for View3dPane {
                 under(view, input.scene, at)
             });
         });
-        let entries = entries.or_else(|| told.as_ref().map(|_| DetectionMarks::told_legend()));
+        let entries = entries.or_else(|| marks.map(|m| m.told_legend(scene.rev)));
         if let Some(entries) = entries {
             legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
         }
@@ -129,6 +128,7 @@ impl Pane for View3dPane {
             lidar,
             dragging: false,
             marked: &[],
+            is_told: false,
             unsettled: (&[], false),
         };
         let seen_from = (&cx.view3d.camera, &cx.view3d.options);

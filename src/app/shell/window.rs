@@ -189,7 +189,9 @@ impl SceneloomApp {
         if !self.views.dock.is_shown(PaneId::CHECKS) {
             self.state.shown.finding_marks = None;
         }
-        if !self.views.dock.is_shown(PaneId::named("perception")) {
+        // (a view that is maximized keeps what the list behind it shows)
+        let dock = &self.views.dock;
+        if dock.maximized.is_none() && !dock.is_shown(PaneId::named("perception")) {
             self.state.shown.detection_marks = None;
         }
         self.generation.live.named = self.state.named;

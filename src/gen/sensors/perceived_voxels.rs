@@ -21,7 +21,7 @@ use scene::{BoxId, BoxLabel, Camera, Class, Extent, LidarSweep, Pose, Scene, Sce
 /// A box of fewer voxels is too small to be missed.
 pub const LEAST_VOXELS: usize = 2;
 /// Voxels that stand together where no thing is count as one from so many on.
-pub const LEAST_GHOST: usize = 3;
+pub const LEAST_GHOST: usize = 6;
 /// What a camera shows nearer than this it does not see, m.
 const NEAR_M: f64 = 0.5;
 /// A thing that is told beside a box within so many columns belongs to it.
@@ -122,7 +122,7 @@ impl Heard {
         let shown: Vec<Shown<'_>> = shown
             .map(|(camera, seen)| Shown {
                 camera,
-                size_px: [seen.image.width, seen.image.height].map(|n| n as usize),
+                size_px: [seen.image.width, seen.image.height],
                 classes: &seen.classes,
             })
             .collect();
@@ -229,7 +229,7 @@ pub fn report_of(scene: &Scene, heard: &Heard, hears: Hears) -> Result<VoxelRepo
         iou: share(both, either),
         right: share(right, both),
         boxes,
-        ghosts: ghosts(&truth, &voxels, &map_from_vehicle),
+        ghosts: ghosts(&truth, &voxels, scene),
         voxels,
         map_from_vehicle,
     })
@@ -278,8 +278,16 @@ fn seen(b: &SceneBox, scene: &Scene, heard: &Heard, [truth, told]: [&VoxelGrid; 
     }
 }
 
-/// Voxels of things that stand together, farther than 0.8 m from any thing that is there.
-fn ghosts(truth: &VoxelGrid, told: &VoxelGrid, map_from_vehicle: &Pose) -> Vec<Ghost> {
+/// Voxels of things that stand together, farther than 0.8 m from any thing that is there and from the own vehicle.
+fn ghosts(truth: &VoxelGrid, told: &VoxelGrid, scene: &Scene) -> Vec<Ghost> {
+    let (map_from_vehicle, vehicle) = (&scene.frame().world_from_ego, &scene.rig);
+    let own = |x: usize, y: usize| {
+        let at = Window::center(x, y, 0);
+        let [length, width, _] = vehicle.ego_size_m;
+        let beside_m = BESIDE as f64 * Window::VOXEL_M;
+        (at.x - vehicle.ego_center_m[0]).abs() < length / 2.0 + beside_m
+            && at.y.abs() < width / 2.0 + beside_m
+    };
     let things =
         |grid: &VoxelGrid, x: usize, y: usize| grid.column(x, y).iter().filter(|l| is_thing(**l)).count();
     let reach = |v: usize, side: usize, by: usize| v.saturating_sub(by)..(v + by + 1).min(side);
@@ -287,7 +295,7 @@ fn ghosts(truth: &VoxelGrid, told: &VoxelGrid, map_from_vehicle: &Pose) -> Vec<G
         reach(x, Window::NX, by).flat_map(move |x| reach(y, Window::NY, by).map(move |y| (x, y)))
     };
     let stray = |x: usize, y: usize| {
-        things(told, x, y) > 0 && around(x, y, BESIDE).all(|(x, y)| things(truth, x, y) == 0)
+        things(told, x, y) > 0 && !own(x, y) && around(x, y, BESIDE).all(|(x, y)| things(truth, x, y) == 0)
     };
     let columns = (0..Window::COLUMNS).into_par_iter();
     let mut open: Vec<bool> = columns.map(|i| stray(i / Window::NY, i % Window::NY)).collect();
@@ -451,18 +459,21 @@ mod tests {
     #[test]
     fn what_stands_where_nothing_is_counts_as_one() {
         let (truth, mut told) = (VoxelGrid::new(), VoxelGrid::new());
-        for (x, y, z) in [(10, 10, 1), (11, 11, 1), (11, 11, 2), (60, 60, 1)] {
-            told.set(x, y, z, Class::Car.id());
+        for (x, y) in [(10, 10), (11, 11), (101, 100), (102, 100)] {
+            (1..4).for_each(|z| told.set(x, y, z, Class::Car.id()));
         }
+        told.set(60, 60, 1, Class::Car.id());
         told.set(12, 12, 1, Class::Truck.id());
         told.set(90, 90, 1, Class::Manmade.id());
-        let map = Pose::planar(100.0, 0.0, 0.0);
+        let mut map = scene();
+        map.change_canvas(|canvas| canvas.world_from_ego = Pose::planar(100.0, 0.0, 0.0));
+        // One is the own vehicle, another too small.
         let found = ghosts(&truth, &told, &map);
         assert_eq!(found.len(), 1, "{found:?}");
-        assert_eq!((found[0].thing.class, found[0].voxels), (Class::Car, 4));
+        assert_eq!((found[0].thing.class, found[0].voxels), (Class::Car, 7));
         let thing = found[0].thing;
         assert!((thing.center_m.x - (100.0 + Window::center(11, 0, 0).x)).abs() < 1e-9);
-        assert!(thing.size_m.distance(DVec3::new(1.2, 1.2, 0.8)) < 1e-9);
+        assert!(thing.size_m.distance(DVec3::new(1.2, 1.2, 1.2)) < 1e-9);
         let mut near = truth.clone();
         near.set(12, 10, 0, Class::Pedestrian.id());
         assert_eq!(ghosts(&near, &told, &map), []);

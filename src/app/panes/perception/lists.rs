@@ -40,6 +40,18 @@ fn missed_and_seen<B>(
     }
 }
 
+/// How many boxes of the scene are on no list.
+fn left_out(ui: &mut Ui, listed: usize, cx: &PaneContext<'_>) {
+    let n = cx.document.scene().frame().boxes.len().saturating_sub(listed);
+    if n > 0 {
+        let text = tf!(
+            "{n} more are hidden, too small or too far away to be judged",
+            n = n
+        );
+        ui.label(RichText::new(text).small().color(theme::text_weak()));
+    }
+}
+
 /// What the LiDAR's network misses and what it sees where there is nothing, or what it sees, or both.
 pub(super) fn sweep_ui(
     ui: &mut Ui,
@@ -53,6 +65,9 @@ pub(super) fn sweep_ui(
     missed_and_seen(ui, boxes, SeenBySweep::is_missed, [wrong, right], |ui, b| {
         swept_row(ui, b, cx, commands);
     });
+    if let Some(report) = report.filter(|_| right) {
+        left_out(ui, report.boxes.len(), cx);
+    }
     let Some(report) = report.filter(|_| wrong) else {
         return;
     };
@@ -100,6 +115,9 @@ pub(super) fn told_ui(
             commands.push(Command::Select(Some(b.id)));
         }
     });
+    if let Some(report) = report.filter(|_| right) {
+        left_out(ui, report.boxes.len(), cx);
+    }
     let Some(report) = report.filter(|r| wrong && !r.ghosts.is_empty()) else {
         return;
     };
@@ -153,6 +171,9 @@ pub(super) fn report_ui(
     missed_and_seen(ui, boxes, is_missed, [wrong, right], |ui, b| {
         row(ui, b, cx, commands)
     });
+    if let Some(report) = report.filter(|_| right) {
+        left_out(ui, report.boxes.len(), cx);
+    }
     let Some(report) = report.filter(|_| wrong) else {
         return;
     };

@@ -39,6 +39,8 @@ pub struct Perception {
     /// The voxels that are told are shown in the 3D view.
     told: bool,
     marks: Kept,
+    /// As [`UiState::opened`](crate::state::UiState::opened) counted the scenes last.
+    opened: u64,
 }
 
 impl Default for Perception {
@@ -49,6 +51,7 @@ impl Default for Perception {
             by: Sensor::Cameras,
             stands: false,
             told: true,
+            opened: 0,
             marks: None,
         }
     }
@@ -140,11 +143,15 @@ impl Pane for Perception {
         if !cx.document.is_dragging() {
             perceiving.update(cx.document.scene(), self.by);
         }
-        let now = cx.document.scene().rev;
+        // What was seen of a state before stays until the network has looked again, but not that of another scene.
+        let opened = cx.state.opened;
+        if std::mem::replace(&mut self.opened, opened) != opened {
+            (perceiving.swept, perceiving.told) = (None, None);
+        }
         let shown = match self.by {
             Sensor::Cameras => None,
-            Sensor::Lidar => of_now(&perceiving.swept, now).map(Shown::Swept),
-            Sensor::Both => of_now(&perceiving.told, now).map(Shown::Told),
+            Sensor::Lidar => perceiving.swept.clone().map(|(of, r)| (of, Shown::Swept(r))),
+            Sensor::Both => perceiving.told.clone().map(|(of, r)| (of, Shown::Told(r))),
         };
         show_marks(ui, &mut self.marks, shown, [self.stands, self.told], cx);
         let (vary, by) = (&mut self.vary, self.by);
@@ -178,12 +185,6 @@ impl Pane for Perception {
     }
 }
 
-/// A report if it is of the present state.
-fn of_now<R>(report: &Option<(SceneRev, Arc<R>)>, now: SceneRev) -> Option<Arc<R>> {
-    let of = report.as_ref().filter(|(rev, _)| *rev == now);
-    of.map(|(_, report)| report.clone())
-}
-
 /// What is shown in the large views.
 #[derive(Clone)]
 enum Shown {
@@ -208,18 +209,18 @@ type Kept = Option<(Shown, [bool; 2], Arc<DetectionMarks>)>;
 fn show_marks(
     ui: &Ui,
     kept: &mut Kept,
-    report: Option<Shown>,
+    report: Option<(SceneRev, Shown)>,
     with @ [stands, told]: [bool; 2],
     cx: &mut PaneContext<'_>,
 ) {
     let known = |(of, with_, _): &(Shown, [bool; 2], _)| {
-        *with_ == with && report.as_ref().is_some_and(|report| report.is(of))
+        *with_ == with && report.as_ref().is_some_and(|(_, report)| report.is(of))
     };
     if !kept.as_ref().is_some_and(known) {
-        *kept = report.map(|report| {
+        *kept = report.map(|(of, report)| {
             let mut marks = match &report {
-                Shown::Swept(report) => of_sweep(report),
-                Shown::Told(report) => of_voxels(report),
+                Shown::Swept(report) => of_sweep(of, report),
+                Shown::Told(report) => of_voxels(of, report, cx.document.scene()),
             };
             marks.stands = stands.then(|| {
                 let image = match &report {
@@ -240,10 +241,11 @@ fn show_marks(
     cx.state.shown.detection_marks = kept.as_ref().map(|(.., marks)| marks.clone());
 }
 
-fn of_sweep(report: &SweepReport) -> DetectionMarks {
+fn of_sweep(of: SceneRev, report: &SweepReport) -> DetectionMarks {
     let detections = report.detections.iter().map(|d| (d.thing, d.of.is_none()));
     let missed = report.boxes.iter().filter(|b| b.is_missed()).map(|b| b.id);
     DetectionMarks {
+        of,
         detections: detections.collect(),
         missed: missed.collect(),
         stands: None,
@@ -253,10 +255,14 @@ fn of_sweep(report: &SweepReport) -> DetectionMarks {
     }
 }
 
-fn of_voxels(report: &VoxelReport) -> DetectionMarks {
+fn of_voxels(of: SceneRev, report: &VoxelReport, scene: &Scene) -> DetectionMarks {
     let missed = report.boxes.iter().filter(|b| b.is_missed()).map(|b| b.id);
+    let seen = report.boxes.iter().filter(|b| !b.is_missed());
+    let seen = seen.filter_map(|b| Some((*scene.frame().boxes.get(&b.id)?, false)));
+    let ghosts = report.ghosts.iter().map(|g| (g.thing, true));
     DetectionMarks {
-        detections: report.ghosts.iter().map(|g| (g.thing, true)).collect(),
+        of,
+        detections: seen.chain(ghosts).collect(),
         missed: missed.collect(),
         stands: None,
         told: None,

@@ -106,8 +106,9 @@ fn found_ui(ui: &mut Ui, found: &mut Found, cx: &mut PaneContext<'_>, commands: 
         }
         let n = tried.len();
         ui.label(tf!(
-            "Not missed in {n} tries. In the last that can be judged: {sight}",
+            "Not missed in {n} tries. In the last that can be judged, {change}: {sight}",
             n = n,
+            change = words(last.change),
             sight = sight(last)
         ));
         return;

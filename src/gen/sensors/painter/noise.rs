@@ -11,9 +11,9 @@ use stable::noise::{carried, fresh};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NoisePrior {
     /// It belongs to the places of the pictures, whatever they show.
-    #[default]
     Places,
     /// It belongs to the surfaces that are seen: it goes along with them from frame to frame, and cameras that see one share it.
+    #[default]
     Surfaces,
     /// Each frame has its own.
     Frames,
