@@ -69,10 +69,13 @@ impl DetectionMarks {
 
     /// The same where its voxels are shown in place of the scene's.
     pub(crate) fn told_legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
-        let mut entries = self.legend(now);
-        let text = t("voxels as the network tells them, to look at alone");
-        entries.insert(0, (Color32::WHITE, text.to_owned()));
-        entries
+        let text = match self.of == now {
+            true => t("the network's voxels, to look at alone"),
+            false => t("of the state before: the network is looking"),
+        };
+        let all = self.legend(self.of).into_iter().skip(1);
+        let first = (Color32::WHITE, text.to_owned());
+        std::iter::once(first).chain(all).collect()
     }
 
     /// Each box with its colour.

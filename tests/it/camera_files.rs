@@ -148,7 +148,11 @@ fn a_run_takes_the_memory_that_its_source_states() {
                 source.about().title
             );
             // The sheet of pictures in colours has one camera here.
-            assert!(taken <= stated + 8.0, "{}: {taken} of {stated}", source.about().title);
+            assert!(
+                taken <= stated + 8.0,
+                "{}: {taken} of {stated}",
+                source.about().title
+            );
             // What is kept of a camera is its place in the sheet, 4 bytes, and what the allocator does not give back; all
             // maps of five cameras would be 85.
             assert!(more <= 60.0, "{}: {more} for five cameras", source.about().title);

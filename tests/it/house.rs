@@ -93,13 +93,14 @@ fn rooms_know_only_whom_they_may() {
 
 /// Files of the rooms that work on maps of any extent which may name the networks' window: they talk to the networks, or
 /// show what those did.
-const MAY_NAME_THE_WINDOW: [&str; 6] = [
+const MAY_NAME_THE_WINDOW: [&str; 7] = [
     "src/app/canvas.rs",
     "src/app/cli/region_arg.rs",
     "src/app/marks.rs",
     "src/app/panes/modelled.rs",
     "src/gen/sensors/learned.rs",
     "src/gen/sensors/perceived_sweep.rs",
+    "src/gen/sensors/perceived_voxels.rs",
 ];
 
 #[test]

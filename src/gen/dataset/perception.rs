@@ -175,9 +175,7 @@ impl PerceptionFrame {
         }
     }
 
-    /// Arrays of frames: u8 `source` `[N]`; i32 `returns` `[N]`: how many of the points are used; i16 `points` `[N,P,3]` (5 mm,
-    /// ego frame) and u8 `intensity` `[N,P]`; i32 `box_count` `[N]`; f32 `boxes` `[N,128,9]`: centre, length, width, height (m), yaw (rad), class
-    /// and number of returns on it; u8 `standing` `[N,200,200]`.
+    /// Arrays of frames, as the trait describes them.
     pub(super) fn columns(frames: &[&Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         let most = frames.iter().map(|f| f.points.len()).max().unwrap_or(0);
         let step = |v: f64| ((v / POINT_STEP_M).round() as i16).to_le_bytes();
@@ -229,7 +227,9 @@ impl Shard for PerceptionFrame {
         "standing",
     ];
 
-    /// See [`Self::columns`].
+    /// u8 `source` `[N]`; i32 `returns` `[N]`: how many of the points are used; i16 `points` `[N,P,3]` (5 mm,
+    /// ego frame) and u8 `intensity` `[N,P]`; i32 `box_count` `[N]`; f32 `boxes` `[N,128,9]`: centre, length, width, height (m), yaw (rad), class
+    /// and number of returns on it; u8 `standing` `[N,200,200]`.
     fn arrays(frames: &[Self]) -> Vec<(Dtype, Vec<usize>, Vec<u8>)> {
         Self::columns(&frames.iter().collect::<Vec<_>>())
     }

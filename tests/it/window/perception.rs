@@ -85,8 +85,7 @@ fn what_both_sensors_tell_is_shown_in_place_of_the_scene() {
     lowest.expect("the choice").click();
     bench.steps(3);
     bench.wait_until("what both tell", |b| {
-        b.app().state.shown.detection_marks.is_some()
-            && shows(b, "voxels as the network tells them, to look at alone")
+        b.app().state.shown.detection_marks.is_some() && shows(b, "the network's voxels, to look at alone")
     });
     let told = |b: &mut Bench| {
         let marks = b.app().state.shown.detection_marks.clone();
@@ -98,7 +97,5 @@ fn what_both_sensors_tell_is_shown_in_place_of_the_scene() {
     assert!(shown.frame().occupancy.count_different(&of.frame().occupancy) > 0);
     assert!(Arc::ptr_eq(&of, bench.app().document.scene()), "the scene stays");
     bench.click("Its voxels in the 3D view");
-    assert!(
-        told(&mut bench).is_none() && !shows(&bench, "voxels as the network tells them, to look at alone")
-    );
+    assert!(told(&mut bench).is_none() && !shows(&bench, "the network's voxels, to look at alone"));
 }

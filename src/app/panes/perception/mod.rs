@@ -224,8 +224,8 @@ fn show_marks(
             };
             marks.stands = stands.then(|| {
                 let image = match &report {
-                    Shown::Swept(report) => from_above(&report.stands),
-                    Shown::Told(report) => from_above(&standing_of(report)),
+                    Shown::Swept(report) => from_above(&report.stands, report.window),
+                    Shown::Told(report) => from_above(&standing_of(report), report.voxels.extent()),
                 };
                 let options = egui::TextureOptions::NEAREST;
                 ui.ctx().load_texture("what stands", image, options)
@@ -267,7 +267,7 @@ fn of_voxels(of: SceneRev, report: &VoxelReport, scene: &Scene) -> DetectionMark
         stands: None,
         told: None,
         map_from_vehicle: report.map_from_vehicle,
-        window: Extent::WINDOW,
+        window: report.voxels.extent(),
     }
 }
 
@@ -288,8 +288,8 @@ fn with_told(scene: &Scene, report: &VoxelReport) -> Arc<Scene> {
 }
 
 /// What stands in each column of the window, ahead is up.
-fn from_above(stands: &[Stands]) -> egui::ColorImage {
-    let [nx, ny] = [Extent::WINDOW.nx(), Extent::WINDOW.ny()];
+fn from_above(stands: &[Stands], window: Extent) -> egui::ColorImage {
+    let [nx, ny] = [window.nx(), window.ny()];
     let at = |x: usize, y: usize| theme::class_color(stands[x * ny + y].class());
     let pixels = (0..nx * ny).map(|i| at(nx - 1 - i / ny, ny - 1 - i % ny));
     egui::ColorImage::new([ny, nx], pixels.collect())

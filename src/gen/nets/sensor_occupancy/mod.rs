@@ -117,7 +117,7 @@ impl<B: Ops> SensorOccupancy<B> {
         PILLAR + WAY + HEIGHT * self.paint.len() / (SHOWN + 1)
     }
 
-    /// Of a map of columns as [`columns`](Self::columns) makes them, how likely each voxel is what, as logits `[x][y][16][18]`. Errors if the sides
+    /// Of a map of columns as `columns` makes them, how likely each voxel is what, as logits `[x][y][16][18]`. Errors if the sides
     /// are not multiples of 8 columns, the numbers of a column do not fit, or one is not finite.
     pub fn forward(&self, columns: Map) -> Result<Map, ModelError> {
         for (what, side) in [("rows", columns.rows), ("columns", columns.columns)] {
