@@ -59,8 +59,9 @@ struct Figures {
     /// Each frame alone, and told the frame before: with noise of the frame, of the places and of the surfaces.
     priors: [Vec<f64>; 6],
     sides: Vec<f64>,
-    sides_shared: Vec<f64>,
-    learned_shared: Vec<f64>,
+    /// Between cameras, and told rightly, each camera with noise of its own.
+    sides_own: Vec<f64>,
+    learned_own: Vec<f64>,
     rendered_sides: Vec<f64>,
     painted_share: Vec<f64>,
     elsewhere_px: usize,
@@ -262,10 +263,10 @@ impl Figures {
             let start = painter.paint(&input, go_on)?;
             let then = painter.paint(&ahead, go_on)?;
             values.push(now.since(&rendered, [&refs(&then), &refs(&start)]));
-            if (hears_before, noise) == (false, NoisePrior::Surfaces) {
-                self.sides_shared.push(rendered.between(&refs(&start)));
-                let shared = agreement(segmenter, &rendered, &refs(&start))?;
-                self.learned_shared.push(shared);
+            if !hears_before && noise == NoisePrior::Places {
+                self.sides_own.push(rendered.between(&refs(&start)));
+                let own = agreement(segmenter, &rendered, &refs(&start))?;
+                self.learned_own.push(own);
             }
         }
         self.rendered_after
@@ -348,9 +349,9 @@ impl Options {
             "between_cameras": {
                 "rendered": with_interval(&found.rendered_sides),
                 "learned": with_interval(&found.sides),
-                "learned_noise_shared": with_interval(&found.sides_shared),
-                "gain_by_sharing": less(&found.sides, &found.sides_shared),
-                "agreement_noise_shared": with_interval(&found.learned_shared),
+                "learned_noise_of_its_own": with_interval(&found.sides_own),
+                "gain_by_sharing": less(&found.sides_own, &found.sides),
+                "agreement_noise_of_its_own": with_interval(&found.learned_own),
             },
             "likeness": found.likeness.report()?,
             "edit": {
