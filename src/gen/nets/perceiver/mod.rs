@@ -16,6 +16,7 @@ use glam::Vec3;
 use serde::Deserialize;
 
 use crate::encoder::{Level, PIECE};
+use crate::picture::check_kind;
 use crate::unet::UNet;
 use crate::{ModelError, check_finite};
 use detection::{BOX, Detection, Group, decode};
@@ -107,13 +108,7 @@ impl LidarPerceiver {
 impl<B: Ops> LidarPerceiver<B> {
     /// Takes all tensors of a file; refuses one that is missing, misshapen, not finite or unknown.
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
-        match file.metadata("kind") {
-            Some("lidar_perceiver") => {}
-            found => {
-                let reason = format!("expected lidar_perceiver, found {}", found.unwrap_or("none"));
-                return Err(file.config_error("kind", reason));
-            }
-        }
+        check_kind(&file, "lidar_perceiver")?;
         let config: PerceiverConfig = file.config("config")?;
         config
             .check()

@@ -159,7 +159,7 @@ fn check_sides([height, width]: [usize; 2], unit: usize, expected: &'static str)
 }
 
 /// Fails unless the metadata of a file call it this kind of network.
-fn check_kind(file: &WeightFile<'_>, expected: &str) -> Result<(), WeightsError> {
+pub(crate) fn check_kind(file: &WeightFile<'_>, expected: &str) -> Result<(), WeightsError> {
     match file.metadata("kind") {
         Some(found) if found == expected => Ok(()),
         found => {

@@ -13,7 +13,7 @@ use serde::Deserialize;
 
 use crate::encoder::{HEIGHT, PIECE};
 use crate::perceiver::pillars::{PILLAR, pillars};
-use crate::picture::SHOWN;
+use crate::picture::{SHOWN, check_kind};
 use crate::unet::UNet;
 use crate::{ModelError, check_finite, check_length};
 use nn::map::Map;
@@ -88,13 +88,7 @@ impl SensorOccupancy {
 impl<B: Ops> SensorOccupancy<B> {
     /// Takes all tensors of a file; refuses one that is missing, misshapen, not finite or unknown.
     pub fn on(ops: B, mut file: WeightFile<'_>) -> Result<Self, WeightsError> {
-        match file.metadata("kind") {
-            Some("sensor_occupancy") => {}
-            found => {
-                let reason = format!("expected sensor_occupancy, found {}", found.unwrap_or("none"));
-                return Err(file.config_error("kind", reason));
-            }
-        }
+        check_kind(&file, "sensor_occupancy")?;
         let config: SensorOccupancyConfig = file.config("config")?;
         config
             .check()
