@@ -6,10 +6,12 @@ Arrays of a shard: rgb u8 [N,2,6,h,w,3], class u8 [N,2,6,h,w] (what the picture 
 """
 import functools
 import json
+import os
 import queue
 import shlex
 import subprocess
 import threading
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -43,13 +45,31 @@ def shard_arrays(data):
     return found
 
 
-class Streams:
-    """The shards that some commands write to their outputs."""
+def read_folder(folder, ready):
+    """Puts the shards of a folder into a queue; None at the end."""
+    try:
+        for path in sorted(folder.glob("shard_*.safetensors")):
+            ready.put(shard_arrays(path.read_bytes()))
+    finally:
+        ready.put(None)
 
-    def __init__(self, commands, ahead=64):
+
+class Streams:
+    """The shards that some commands write to their outputs, or that lie in folders: each of these is read once."""
+
+    def __init__(self, sources, ahead=64):
         self.ready = queue.Queue(ahead)
-        self.processes = [subprocess.Popen(shlex.split(c), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for c in commands]
-        self.running = len(self.processes)
+        folders = [Path(s) for s in dict.fromkeys(sources) if os.path.isdir(s)]
+        for folder in folders:
+            if not any(folder.glob("shard_*.safetensors")):
+                raise SystemExit(f"{folder}: expected shard_*.safetensors, found none")
+            threading.Thread(target=read_folder, args=(folder, self.ready), daemon=True).start()
+        commands = [s for s in sources if not os.path.isdir(s)]
+        try:
+            self.processes = [subprocess.Popen(shlex.split(c), stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for c in commands]
+        except OSError as error:
+            raise SystemExit(f"{commands[0]}: neither a folder of shards nor a command that runs: {error}") from None
+        self.running = len(self.processes) + len(folders)
         for process in self.processes:
             threading.Thread(target=listen, args=(process.stdout, self.ready, shard_arrays), daemon=True).start()
 

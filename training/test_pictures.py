@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from safetensors.torch import save_file
 
 import train_pictures
 from models.picture_dit import PictureDit, PictureDitConfig, Told, rows, seen_then, warp
 from models.picture_vae import Critic, PictureVae, PictureVaeConfig
 from models.segmenter import Segmenter, SegmenterConfig
-from picture_data import MIRRORED, Pool, as_bytes, as_pictures, camera_numbers, mirrored_facing, planes_of, ways
+from picture_data import MIRRORED, Pool, Streams, as_bytes, as_pictures, camera_numbers, mirrored_facing, planes_of, ways
 
 SIZE = (64, 32)
 POSE = np.array([[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 1.5], [0, 0, 0, 1]], np.float32)  # looks along x
@@ -116,6 +117,23 @@ def a_mirror_is_a_mirror():
     assert planes.shape == (2, 6, 4, 16, 32) and (planes <= 17).all()
 
 
+def a_folder_of_shards_is_a_stream():
+    with tempfile.TemporaryDirectory() as folder:
+        for source in (folder, f"{folder}/nothing"):
+            try:
+                Streams([source])
+                raise AssertionError(source)
+            except SystemExit:
+                pass
+        for i in range(2):
+            tensors = {name: torch.from_numpy(values) for name, values in shard(i + 1).items()}
+            save_file(tensors, Path(folder) / f"shard_{i:05}.safetensors")
+        streams, pool = Streams([folder, folder]), Pool(8, SIZE, "cpu")
+        while streams.running:
+            pool.take_all(streams)
+        assert pool.seen == 3
+
+
 def toy_run(worlds):
     """All parts of a training, at toy size, on frames of the program."""
     stream = f"{shlex.quote(worlds)} --kind pictures --size 64x32 --stream --threads 1 --per-shard 1 --preview"
@@ -137,6 +155,7 @@ if __name__ == "__main__":
     a_surface_is_found_where_it_was()
     neighbours_hear_each_other()
     a_mirror_is_a_mirror()
+    a_folder_of_shards_is_a_stream()
     if len(sys.argv) > 1:
         toy_run(sys.argv[1])
     print("ok")

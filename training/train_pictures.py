@@ -554,8 +554,8 @@ class Trainer:
 
 def arguments():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    p.add_argument("--stream", required=True, help="command that streams training frames; {i} is the number of the stream, {start} its first frame")
-    p.add_argument("--held-stream", required=True, help="command that streams held-out frames")
+    p.add_argument("--stream", required=True, help="folder of shards, or command that streams training frames; {i} is the number of the stream, {start} its first frame")
+    p.add_argument("--held-stream", required=True, help="the same of held-out frames")
     p.add_argument("--streams", type=int, default=15, help="how many of the first command run side by side")
     p.add_argument("--minutes", type=float, required=True, help="wall clock of all training; figures come after it")
     p.add_argument("--vae-share", type=float, default=0.3, help="of that time")

@@ -1,6 +1,7 @@
 //! What the network of the LiDAR or of both sensors sees, over the large views: its boxes, those of the scene that it misses, and
 //! what it takes the ground for.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::epaint::{Mesh, Vertex};
@@ -10,8 +11,10 @@ use glam::{DVec2, DVec3};
 use super::canvas::ScreenMap;
 use super::state::UiState;
 use language::t;
+use nets::perceiver::stands::Stands;
 use scene::{BoxId, Extent, Frame, Pose, Scene, SceneBox, SceneRev};
 use sensors::perceived::{GHOST, MISSED};
+use widgets::theme;
 
 /// Colour of a box of the network that belongs to one of the scene.
 const SEEN: Color32 = Color32::from_rgb(80, 230, 230);
@@ -27,8 +30,8 @@ pub struct DetectionMarks {
     pub detections: Vec<(SceneBox, bool)>,
     /// Boxes of the scene that are missed.
     pub missed: Vec<BoxId>,
-    /// What stands in each column of the window around the vehicle, seen from above, ahead is up.
-    pub stands: Option<TextureHandle>,
+    /// What stands in each column of the window around the vehicle, seen from above, ahead is up; and all that stands anywhere.
+    pub stands: Option<(TextureHandle, BTreeSet<Stands>)>,
     /// The scene with the voxels that the network tells in place of its own.
     pub told: Option<Arc<Scene>>,
     /// Map from the vehicle.
@@ -53,12 +56,22 @@ impl std::fmt::Debug for DetectionMarks {
 }
 
 impl DetectionMarks {
-    /// What the colours mean; `now` is the state on screen.
-    pub(crate) fn legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
+    /// What the colours of the map mean.
+    pub(crate) fn map_legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
+        let standing = self.stands.iter().flat_map(|(_, standing)| standing);
+        let named = standing.map(|s| {
+            let class = s.class();
+            (theme::class_color(class), t(&class.label()).to_owned())
+        });
+        self.legend(now).into_iter().chain(named).collect()
+    }
+
+    /// What the colours of boxes mean; `now` is the state on screen.
+    fn legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
         let mut entries = vec![
             (SEEN, t("seen by the network").to_owned()),
-            (color(MISSED), t("missed").to_owned()),
-            (color(GHOST), t("a thing where there is none").to_owned()),
+            (color(MISSED), t("missed: crossed").to_owned()),
+            (color(GHOST), t("a thing where there is none: dashed").to_owned()),
         ];
         if self.of != now {
             let text = t("of the state before: the network is looking");
@@ -78,17 +91,19 @@ impl DetectionMarks {
         std::iter::once(first).chain(all).collect()
     }
 
-    /// Each box with its colour.
-    fn boxes<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (&'a SceneBox, Color32)> {
+    /// Each box with what became of it.
+    fn boxes<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (&'a SceneBox, Mark)> {
         let detections = self.detections.iter();
-        let detections = detections.map(|(b, ghost)| (b, if *ghost { color(GHOST) } else { SEEN }));
+        let detections = detections.map(|(b, ghost)| (b, if *ghost { Mark::Ghost } else { Mark::Seen }));
         let missed = self.missed.iter().filter_map(|id| frame.boxes.get(id));
-        detections.chain(missed.map(|b| (b, color(MISSED))))
+        detections
+            .chain(missed.map(|b| (b, Mark::Missed)))
+            .filter(|(b, _)| b.problem().is_none())
     }
 
     /// Draws them on the bird's-eye view.
     pub(super) fn on_map(&self, painter: &Painter, map: &ScreenMap, frame: &Frame) {
-        if let Some(texture) = &self.stands {
+        if let Some((texture, _)) = &self.stands {
             let (min, max) = (self.window.min_m().truncate(), self.window.max_m().truncate());
             let on_map = |p: DVec2| map.to_screen(self.map_from_vehicle.apply(p.extend(0.0)).truncate());
             // Ahead is up and left is left: the picture's upper left corner is the window's farthest left one.
@@ -100,29 +115,32 @@ impl DetectionMarks {
             ];
             painter.add(Shape::mesh(quad(texture, corners)));
         }
-        for (b, color) in self.boxes(frame).filter(|(b, _)| b.problem().is_none()) {
-            let mut outline: Vec<Pos2> = b.footprint().iter().map(|p| map.to_screen(*p)).collect();
-            outline.push(outline[0]);
+        for (b, mark) in self.boxes(frame) {
             // No nose: which end of a vehicle is its front the network does not know.
-            stroke(painter, &outline, color);
+            let corners = b.footprint().map(|p| map.to_screen(p));
+            let [first, second, third, fourth] = corners;
+            mark.stroke(painter, &[first, second, third, fourth, first]);
+            if mark == Mark::Missed {
+                mark.stroke(painter, &[first, third]);
+                mark.stroke(painter, &[second, fourth]);
+            }
         }
     }
 
     fn in_3d(&self, painter: &Painter, project: &dyn Fn(DVec3) -> Option<Pos2>, frame: &Frame) {
-        for (b, color) in self.boxes(frame).filter(|(b, _)| b.problem().is_none()) {
+        for (b, mark) in self.boxes(frame) {
             let half = b.size_m.z / 2.0;
             let ring = |z: f64| b.footprint().map(|p| project(p.extend(b.center_m.z + z)));
             let (low, high) = (ring(-half), ring(half));
-            for i in 0..4 {
-                let edges = [
-                    (low[i], low[(i + 1) % 4]),
-                    (high[i], high[(i + 1) % 4]),
-                    (low[i], high[i]),
-                ];
-                for (a, b) in edges {
-                    if let (Some(a), Some(b)) = (a, b) {
-                        stroke(painter, &[a, b], color);
-                    }
+            let sides = (0..4).flat_map(|i| {
+                let next = (i + 1) % 4;
+                [(low[i], low[next]), (high[i], high[next]), (low[i], high[i])]
+            });
+            let cross = [(high[0], high[2]), (high[1], high[3])];
+            let cross = cross.into_iter().filter(|_| mark == Mark::Missed);
+            for edge in sides.chain(cross) {
+                if let (Some(a), Some(b)) = edge {
+                    mark.stroke(painter, &[a, b]);
                 }
             }
         }
@@ -141,10 +159,32 @@ pub(super) fn in_3d(
     }
 }
 
-/// A line that is seen on bright and on dark.
-fn stroke(painter: &Painter, line: &[Pos2], color: Color32) {
-    painter.line(line.to_vec(), Stroke::new(3.5, Color32::from_black_alpha(130)));
-    painter.line(line.to_vec(), Stroke::new(1.8, color));
+/// What became of a box. No mark is told by its colour alone: classes have colours, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mark {
+    Seen,
+    Missed,
+    Ghost,
+}
+
+impl Mark {
+    fn color(self) -> Color32 {
+        match self {
+            Self::Seen => SEEN,
+            Self::Missed => color(MISSED),
+            Self::Ghost => color(GHOST),
+        }
+    }
+
+    /// A line that is seen on bright and on dark; dashed for a thing where there is none.
+    fn stroke(self, painter: &Painter, line: &[Pos2]) {
+        painter.line(line.to_vec(), Stroke::new(3.5, Color32::from_black_alpha(130)));
+        let stroke = Stroke::new(1.8, self.color());
+        match self {
+            Self::Ghost => drop(painter.extend(Shape::dashed_line(line, stroke, 5.0, 4.0))),
+            _ => drop(painter.line(line.to_vec(), stroke)),
+        }
+    }
 }
 
 /// A texture between four corners, each with its place in the texture.
@@ -162,7 +202,7 @@ mod tests {
     use scene::Class;
 
     #[test]
-    fn every_box_has_the_colour_of_what_became_of_it() {
+    fn every_box_is_marked_by_what_became_of_it() {
         let mut frame = Frame::new(Default::default(), Default::default(), Default::default());
         let b = |id: u32| SceneBox {
             id: BoxId(id),
@@ -184,7 +224,7 @@ mod tests {
             map_from_vehicle: Pose::IDENTITY,
             window: Extent::WINDOW,
         };
-        let colors: Vec<Color32> = marks.boxes(&frame).map(|(_, c)| c).collect();
-        assert_eq!(colors, [SEEN, color(GHOST), color(MISSED)]);
+        let found: Vec<Mark> = marks.boxes(&frame).map(|(_, mark)| mark).collect();
+        assert_eq!(found, [Mark::Seen, Mark::Ghost, Mark::Missed]);
     }
 }

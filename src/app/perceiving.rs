@@ -161,9 +161,17 @@ impl Perceiving {
         }
     }
 
-    /// Searches for a change of a scene after which a box is missed.
+    /// Forgets what was seen and found: another scene was opened.
+    pub fn forget(&mut self) {
+        (self.seen, self.swept, self.told) = (None, None, None);
+        (self.found, self.problem) = (None, None);
+        if self.searching.is_some() {
+            self.stop();
+        }
+    }
+
+    /// Searches for a change of a scene after which a box is missed. What was found before stays until this is over.
     pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary, by: Sensor) {
-        self.found = None;
         self.searching = Some((Change::None, [0, 1]));
         self.worker.submit(Request::Search(scene.clone(), id, vary, by));
     }

@@ -262,6 +262,16 @@ fn bad_arguments_are_named() {
         &["shot", &scene, "--view", "behind", "-o", &dir.path("x.png")],
         &["behind", "CAM_FRONT"],
     );
+    let from_above = ["--eye", "0,0,40", "--look", "0,0,0", "-o", &dir.path("x.png")];
+    refused(
+        &[&["shot", &scene, "--what", "map"], &from_above[..]].concat(),
+        &["--eye", "map"],
+    );
+    // Of a scene of one moment, too.
+    refused(
+        &["clip", &scene, "--what", "smell", "-o", &dir.path("x.gif")],
+        &["smell", "turntable"],
+    );
     for (text, needles) in [
         (r#"[{"remove_box": {"id": 99999}}]"#, ["99999", "edits.json"]),
         (r#"[{"remove_box": {"id": 1, "why": 2}}]"#, ["why", "edits.json"]),

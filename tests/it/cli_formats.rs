@@ -182,3 +182,86 @@ fn a_megabyte_in_a_file_is_a_line_of_300_characters() {
         );
     }
 }
+
+/// A drive with pictures in tables of nuScenes becomes what the networks that draw pictures learn from.
+#[test]
+fn drives_become_pictures_to_train_on() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let run = |args: &[&str]| {
+        let (code, said, error) = sceneloom(args);
+        assert_eq!(code, 0, "{args:?}: {error}");
+        said
+    };
+    let [edits, still, drive, tables, shards] =
+        ["edits.json", "still.loom", "drive.loom", "tables", "shards"].map(path);
+    let moves = r#"[{"set_length": {"length_s": 1.0, "rate_hz": 2.0}}, {"let_move": {"template": "follow", "mps": 4.0}}]"#;
+    std::fs::write(&edits, moves).expect("written");
+    run(&["new", "--template", "t-junction", "--seed", "1", "-o", &still]);
+    run(&["edit", &still, "--edits", &edits, "-o", &drive]);
+    let export = [
+        "export", "--format", "nuscenes", "--size", "160x90", "-o", &tables,
+    ];
+    run(&[&export[..1], &[&drive], &export[1..]].concat());
+    let pictures = |more: &[&str]| {
+        let args = [
+            "dataset", "pictures", "--from", &tables, "-o", &shards, "--size", "160x90",
+        ];
+        sceneloom(&[&args[..], more].concat())
+    };
+    let (code, said, error) = pictures(&["--json"]);
+    assert_eq!(code, 0, "{error}");
+    let report: Value = serde_json::from_str(&said).expect("JSON");
+    assert_eq!(report["frames"], 2, "three key frames: {report}");
+    let bytes = std::fs::read(Path::new(&shards).join("shard_00000.safetensors")).expect("a shard");
+    let file = safetensors::SafeTensors::deserialize(&bytes).expect("safetensors");
+    let tensor = |name: &str| file.tensor(name).expect("an array");
+    assert_eq!(tensor("rgb").shape(), [2, 2, 6, 90, 160, 3]);
+    // The second moment of a pair is the first of the next.
+    let rgb = tensor("rgb").data().to_vec();
+    let moment = rgb.len() / 4;
+    assert!(rgb[moment..2 * moment] == rgb[2 * moment..3 * moment]);
+    // The pictures that were written show, at their places, what the voxels that were read tell: they are those of the program's
+    // renderer, drawn again from the tables alone.
+    let (class, told) = (
+        tensor("class").data().to_vec(),
+        tensor("told_class").data().to_vec(),
+    );
+    let depth = tensor("told_depth").data().to_vec();
+    let known = |i: &usize| depth[2 * i] != 0 || depth[2 * i + 1] != 0;
+    let all: Vec<usize> = (0..class.len()).filter(known).collect();
+    let same = all.iter().filter(|i| class[**i] == told[**i]).count();
+    assert!(
+        all.len() * 3 > class.len() && same * 10 > all.len() * 7,
+        "{same} of {}",
+        all.len()
+    );
+    let floats = |name: &str| -> Vec<f32> {
+        let (quads, _) = tensor(name).data().as_chunks::<4>();
+        quads.iter().map(|q| f32::from_le_bytes(*q)).collect()
+    };
+    let poses = floats("map_from_camera");
+    let front = |moment: usize| [3, 7].map(|axis| poses[(moment * 6 + 1) * 16 + axis]);
+    let [a, b] = [front(0), front(1)];
+    let way_m = (a[0] - b[0]).hypot(a[1] - b[1]);
+    assert!(
+        (1.5..2.5).contains(&way_m) && a[0].hypot(a[1]) < 3.0,
+        "{a:?} {b:?}"
+    );
+    for (more, needle) in [
+        (&["--frames", "3"][..], "--frames is 3, expected 1 to 2"),
+        (&["--drives", "1..2"], "--drives is 1..2"),
+        (&["--drives", "x"], "0..8"),
+    ] {
+        let (code, _, error) = pictures(more);
+        assert!(
+            code == 2 && error.contains(needle) && error.lines().count() <= 2,
+            "{code} {error}"
+        );
+    }
+    let (code, _, error) = sceneloom(&["dataset", "pictures", "--from", &shards, "-o", &path("x")]);
+    assert!(
+        code == 2 && error.contains("expected a folder of nuScenes tables"),
+        "{error}"
+    );
+}

@@ -115,6 +115,8 @@ impl ClipCommand {
     }
 
     fn options(&self, scene: &Scene) -> anyhow::Result<ClipOptions> {
+        let view = self.shown(scene)?;
+        self.viewpoint.is_for(self.what == "view", &self.what)?;
         let length_s = scene.clip().length_s;
         if length_s == 0.0 {
             bail!(
@@ -123,7 +125,7 @@ impl ClipCommand {
             );
         }
         let mut options = ClipOptions {
-            view: self.shown(scene)?,
+            view,
             size: self.size,
             span_s: [self.from, self.to.unwrap_or(length_s)],
             rate_hz: self.rate.unwrap_or(scene.clip().rate_hz),

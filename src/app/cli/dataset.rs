@@ -1,13 +1,15 @@
 //! `sceneloom dataset`: training and evaluation data from procedural worlds or a folder of labels.
 
+use std::ops::Range;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use anyhow::{Context, bail};
 
-use super::dataset_occ3d;
 use super::progress::Progress;
 use super::render::size;
 use super::{Common, Outcome, output};
+use super::{dataset_occ3d, dataset_recorded};
 use app::memory;
 use app::open;
 use authoring::drives::{drive_scene, frames_of};
@@ -29,16 +31,20 @@ pub struct Dataset {
     /// Number of frames; of a folder, all by default.
     #[arg(long, value_name = "N", required_unless_present = "from")]
     frames: Option<usize>,
-    /// Folder of Occ3D frames (`labels.npz`, at any depth) to take instead of procedural worlds.
+    /// Folder to take instead of procedural worlds: of Occ3D frames (`labels.npz`, at any depth; kind `occupancy`), or of nuScenes
+    /// tables with pictures of six cameras (kind `pictures`: two key frames each, as `train_pictures.py` learns from).
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
     /// Folder of OpenDRIVE files (`.xodr`, at any depth): a third of the worlds stand on their roads, the
     /// rest on templates.
     #[arg(long, value_name = "DIR", conflicts_with = "from")]
     roads: Option<PathBuf>,
-    /// Size of camera pictures (kind `pictures`).
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "400x225")]
-    size: [u32; 2],
+    /// Of the drives of --from, by name, those from A on, before B: to hold some out.
+    #[arg(long, value_name = "A..B", value_parser = drives, requires = "from")]
+    drives: Option<Range<usize>>,
+    /// Size of camera pictures (kind `pictures`): 400x225 if left out, 256x144 with --from.
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
     /// Fixes the worlds; use different seeds for training, validation and test.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -52,15 +58,19 @@ pub struct Dataset {
 impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
-        let start = std::time::Instant::now();
-        if self.kind != "occupancy" && self.from.is_some() {
-            (|| -> anyhow::Result<()> {
-                bail!(
-                    "--from gives labels, kind {} needs more: expected procedural worlds",
-                    self.kind
-                )
-            })()?;
+        let start = Instant::now();
+        if let (Some(from), "pictures") = (&self.from, self.kind.as_str()) {
+            let step = |done, frames| {
+                progress.at(&self.kind, done, frames);
+                true
+            };
+            let which = (self.drives.clone(), self.frames);
+            let size = self.size.unwrap_or([256, 144]);
+            let report = dataset_recorded::write(from, which, size, &self.output, step)?;
+            progress.done();
+            return self.report(&report, start);
         }
+        self.check_from()?;
         let files = match &self.from {
             Some(dir) => open::files_below(dir, "npz", "Occ3D frames")?,
             None => Vec::new(),
@@ -106,7 +116,7 @@ impl Dataset {
                 dataset::write(&self.output, frames, make, step)
             }
             "pictures" => {
-                let size = self.size;
+                let size = self.size.unwrap_or([400, 225]);
                 let make = |i: usize| {
                     anyhow::Ok(picture_frame(self.seed, i as u64, size, |seed| {
                         roads.layout(seed)
@@ -133,8 +143,23 @@ impl Dataset {
         }
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();
-        let mut json = serde_json::to_value(&report)?;
-        json["frames_per_s"] = (frames as f64 / start.elapsed().as_secs_f64()).into();
+        self.report(&report, start)
+    }
+
+    /// Errors: what is named by --from or --drives is nothing for this kind.
+    fn check_from(&self) -> anyhow::Result<()> {
+        match (self.kind.as_str(), &self.from, &self.drives) {
+            ("occupancy", _, None) | (_, None, _) => Ok(()),
+            ("occupancy", ..) => bail!("--drives is of kind pictures alone"),
+            (kind, ..) => bail!(
+                "--from gives labels or pictures, kind {kind} needs more: expected occupancy, pictures or procedural worlds"
+            ),
+        }
+    }
+
+    fn report(&self, report: &DatasetReport, start: Instant) -> Outcome {
+        let mut json = serde_json::to_value(report)?;
+        json["frames_per_s"] = (report.frames as f64 / start.elapsed().as_secs_f64()).into();
         output::report(&self.common, &json, || {
             format!(
                 "{}: {} frames, {} bytes written",
@@ -145,6 +170,7 @@ impl Dataset {
         });
         Ok(())
     }
+
     /// `bank.json` of that many remembered scenes on templates and the project's own roads.
     fn memory(&self, frames: usize) -> anyhow::Result<DatasetReport> {
         let bank = memory::make_bank(frames, self.seed)?;
@@ -157,4 +183,11 @@ impl Dataset {
             resumed_shards: 0,
         })
     }
+}
+
+/// `A..B`.
+fn drives(text: &str) -> anyhow::Result<Range<usize>> {
+    let expected = || format!("{text:?}, expected two numbers as in 0..8");
+    let (from, to) = text.split_once("..").with_context(expected)?;
+    Ok(from.parse().with_context(expected)?..to.parse().with_context(expected)?)
 }

@@ -7,6 +7,7 @@ mod clip;
 mod common;
 mod dataset;
 mod dataset_occ3d;
+mod dataset_recorded;
 mod demo;
 mod diff;
 mod doctor;

@@ -94,6 +94,7 @@ impl Shot {
         let Some(subject) = subject else {
             bail!("--what is {:?}, expected {}", self.what, names.join(", "));
         };
+        self.viewpoint.is_for(subject == Subject::View, &self.what)?;
         let views = cameras::views();
         let Some(view) = views.iter().find(|v| v.id.name() == self.show) else {
             let names: Vec<&str> = views.iter().map(|v| v.id.name()).collect();

@@ -50,6 +50,14 @@ impl Viewpoint {
         Ok(camera)
     }
 
+    /// Errors: a place to see from is named, but what is shown is no 3D view.
+    pub(super) fn is_for(&self, view_3d: bool, what: &str) -> anyhow::Result<()> {
+        match self.eye {
+            Some(_) if !view_3d => bail!("--eye is of the 3D view alone, but --what is {what}"),
+            _ => Ok(()),
+        }
+    }
+
     /// True if boxes are drawn.
     pub(super) fn boxes(&self) -> bool {
         !self.no_boxes

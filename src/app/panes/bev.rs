@@ -94,7 +94,7 @@ impl Pane for Bev {
             super::modelled::draw(ui, rect, map, last, cx.sensing.sampled());
         }
         if let (CompareMode::Off, Some(marks)) = (mode, &cx.state.shown.detection_marks) {
-            let entries = marks.legend(scene.rev);
+            let entries = marks.map_legend(scene.rev);
             legend(ui, area.left_top() + egui::vec2(8.0, 8.0), &entries);
         }
         let (Some(before), Some(map)) = (cx.compare.before.clone(), cx.canvas.map) else {

@@ -205,7 +205,7 @@ pub(crate) fn wipe_line(ui: &Ui, rect: Rect, how: &mut Comparing) {
     tag(ui, rect.right_top() + vec2(-8.0, 8.0), now, true);
 }
 
-/// What the colours of a view mean, in its upper left corner.
+/// What the colours of a view mean, in its upper left corner, in as many rows as the view is narrow.
 pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
     const SWATCH: f32 = 10.0;
     if entries.is_empty() {
@@ -217,21 +217,27 @@ pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
         .iter()
         .map(|(_, text)| painter.layout_no_wrap(text.clone(), font.clone(), theme::ON_CANVAS))
         .collect();
-    let width: f32 = galleys.iter().map(|g| g.size().x + SWATCH + 16.0).sum();
     let height = galleys.iter().map(|g| g.size().y).fold(SWATCH, f32::max) + 6.0;
-    let rect = Rect::from_min_size(at, vec2(width + 4.0, height));
+    let (mut places, mut next, mut width) = (Vec::new(), at + vec2(8.0, 0.0), 0.0_f32);
+    for galley in &galleys {
+        let size = vec2(SWATCH + 5.0 + galley.size().x, height);
+        if next.x + size.x > ui.clip_rect().right() && next.x > at.x + 8.0 {
+            next = pos2(at.x + 8.0, next.y + height);
+        }
+        places.push(Rect::from_min_size(next, size));
+        next.x += size.x + 12.0;
+        width = width.max(next.x - at.x - 4.0);
+    }
+    let rect = Rect::from_min_size(at, vec2(width, next.y + height - at.y));
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
-    let mut x = rect.left() + 8.0;
-    for (galley, (color, text)) in galleys.into_iter().zip(entries) {
-        let swatch = Rect::from_center_size(pos2(x + SWATCH / 2.0, rect.center().y), vec2(SWATCH, SWATCH));
+    for ((galley, (color, text)), place) in galleys.into_iter().zip(entries).zip(places) {
+        let middle = place.left_center();
+        let swatch = Rect::from_center_size(middle + vec2(SWATCH / 2.0, 0.0), vec2(SWATCH, SWATCH));
         painter.rect_filled(swatch, 2.0, *color);
-        let size = galley.size();
-        let left = pos2(swatch.right() + 5.0, rect.center().y - size.y / 2.0);
+        let left = middle + vec2(SWATCH + 5.0, -galley.size().y / 2.0);
         painter.galley(left, galley, theme::ON_CANVAS);
-        let entry = Rect::from_min_max(pos2(x, rect.top()), pos2(left.x + size.x, rect.bottom()));
-        let response = ui.interact(entry, ui.scope_id().with(text), Sense::hover());
+        let response = ui.interact(place, ui.scope_id().with(text), Sense::hover());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Label, true, text));
-        x = left.x + size.x + 12.0;
     }
 }
 

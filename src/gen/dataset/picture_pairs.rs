@@ -6,8 +6,8 @@ use safetensors::tensor::Dtype;
 use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera, place_of};
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
-    BevLayout, Camera, CameraTruth, Conditions, Frame, PolylineKind, Pose, SensorRig, TimeOfDay, VoxelGrid,
-    Weather,
+    BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay,
+    VoxelGrid, Weather,
 };
 pub use sensors::appearance::Quality;
 use sensors::appearance::{Appearance, light_direction};
@@ -69,9 +69,57 @@ pub fn picture_pair(
     let conditions = conditions_of(&mut draw, seed);
     let poses = poses(&frame, &mut draw);
     PicturePair {
-        moments: poses.map(|pose| moment(&frame, &teller, &conditions, &pose, look)),
+        moments: poses.map(|pose| {
+            let rig = SensorRig::default().placed(&pose);
+            seen(&frame, &teller, &conditions, &rig, look)
+        }),
         dense: frame.occupancy,
         conditions,
+    }
+}
+
+/// What six cameras took at a moment.
+pub struct Recorded<'a> {
+    /// What was measured around them.
+    pub frame: &'a Frame,
+    /// The cameras in the frame of the map, clockwise, the front one second.
+    pub rig: &'a SensorRig,
+    /// Their pictures at the size that is looked for, sRGB, three bytes a pixel.
+    pub rgb: Vec<Vec<u8>>,
+}
+
+/// Two moments of a drive that was recorded. What pixels show is not known there: it is what the program's own renderer shows at their
+/// places. All is given in the window around the vehicle at the first moment.
+pub fn recorded_pair(
+    taken: [Recorded<'_>; MOMENTS],
+    conditions: Conditions,
+    size_px: [u32; 2],
+) -> PicturePair {
+    let look = Look {
+        size_px,
+        quality: Quality::Preview,
+    };
+    let first = taken[0].frame;
+    let at_m = first.world_from_ego.translation_m;
+    let half = Extent::WINDOW.nx() as i32 / 2;
+    let around = [at_m.x, at_m.y].map(|v| (v / Extent::VOXEL_M).round() as i32 - half);
+    let window = Extent::new(around, [Extent::WINDOW.nx(), Extent::WINDOW.ny()]).unwrap_or(Extent::WINDOW);
+    let middle_m = (window.min_m() + window.max_m()).truncate() / 2.0;
+    let dense = first.occupancy.crop(window);
+    let moments = taken.map(|taken| {
+        let teller = HintedFrame::new(taken.frame);
+        let mut seen = seen(taken.frame, &teller, &conditions, taken.rig, look);
+        seen.rgb = taken.rgb;
+        for truth in &mut seen.truth {
+            truth.camera.translation_m[0] -= middle_m.x;
+            truth.camera.translation_m[1] -= middle_m.y;
+        }
+        seen
+    });
+    PicturePair {
+        dense,
+        conditions,
+        moments,
     }
 }
 
@@ -90,25 +138,30 @@ pub(super) fn conditions_of(draw: &mut Draw, seed: u64) -> Conditions {
     Conditions::usual(time, weather, seed)
 }
 
-fn moment(
+/// What each camera of a rig shows, sRGB, three bytes a pixel, and what each of its pixels is.
+pub(super) fn rendered(
+    frame: &Frame,
+    rig: &SensorRig,
+    conditions: &Conditions,
+    look: Look,
+) -> (Vec<Vec<u8>>, Vec<CameraTruth>) {
+    let appearance = Appearance::new(frame, rig, conditions);
+    let of = |camera: &Camera| {
+        let (image, truth) = appearance.render_truth(camera, look.size_px, look.quality, &frame.boxes, None);
+        let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
+        (rgb.collect(), truth)
+    };
+    rig.cameras.iter().map(of).unzip()
+}
+
+fn seen(
     frame: &Frame,
     teller: &HintedFrame<'_>,
     conditions: &Conditions,
-    pose: &Pose,
+    rig: &SensorRig,
     look: Look,
 ) -> PictureMoment {
-    let rig = SensorRig::default().placed(pose);
-    let appearance = Appearance::new(frame, &rig, conditions);
-    let seen = rig
-        .cameras
-        .iter()
-        .map(|camera| appearance.render_truth(camera, look.size_px, look.quality, &frame.boxes, None));
-    let (rgb, truth) = seen
-        .map(|(image, truth)| {
-            let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
-            (rgb.collect(), truth)
-        })
-        .unzip();
+    let (rgb, truth) = rendered(frame, rig, conditions, look);
     let to_sun = light_direction(conditions).as_dvec3();
     let sun = |camera: &Camera| {
         let local = camera.ego_from_camera().rotation.inverse() * to_sun;

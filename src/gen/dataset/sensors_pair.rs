@@ -3,11 +3,10 @@
 use safetensors::tensor::Dtype;
 
 use super::perception::{PerceptionFrame, swept};
-use super::picture_pairs::{Look, conditions_of};
+use super::picture_pairs::{Look, conditions_of, rendered};
 use super::pictures::{floats, intrinsic, map_from_camera};
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{BevLayout, CameraTruth, Frame, SensorRig, VoxelGrid};
-use sensors::appearance::Appearance;
 use world::draw::Draw;
 use world::voxelize::{Vertical, complete};
 
@@ -35,18 +34,7 @@ pub fn sensors_pair(
     let sweep = swept(&world, &dense, seed);
     let conditions = conditions_of(&mut Draw::new(seed, "sensors pair"), seed);
     let frame = Frame::new(world.layout, world.boxes, dense);
-    let rig = SensorRig::default();
-    let appearance = Appearance::new(&frame, &rig, &conditions);
-    let seen = rig
-        .cameras
-        .iter()
-        .map(|camera| appearance.render_truth(camera, look.size_px, look.quality, &frame.boxes, None));
-    let (rgb, truth) = seen
-        .map(|(image, truth)| {
-            let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
-            (rgb.collect(), truth)
-        })
-        .unzip();
+    let (rgb, truth) = rendered(&frame, &SensorRig::default(), &conditions, look);
     SensorsPair {
         sweep,
         rgb,

@@ -23,6 +23,8 @@ pub mod unet;
 #[cfg(test)]
 #[path = "../nn/golden.rs"]
 mod golden;
+#[cfg(test)]
+mod twin;
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

@@ -140,13 +140,13 @@ impl Pane for Perception {
             ui.label(t("The system gives no thread for it"));
             return;
         };
-        if !cx.document.is_dragging() {
-            perceiving.update(cx.document.scene(), self.by);
-        }
         // What was seen of a state before stays until the network has looked again, but not that of another scene.
         let opened = cx.state.opened;
         if std::mem::replace(&mut self.opened, opened) != opened {
-            (perceiving.swept, perceiving.told) = (None, None);
+            perceiving.forget();
+        }
+        if !cx.document.is_dragging() {
+            perceiving.update(cx.document.scene(), self.by);
         }
         let shown = match self.by {
             Sensor::Cameras => None,
@@ -223,12 +223,14 @@ fn show_marks(
                 Shown::Told(report) => of_voxels(of, report, cx.document.scene()),
             };
             marks.stands = stands.then(|| {
-                let image = match &report {
-                    Shown::Swept(report) => from_above(&report.stands, report.window),
-                    Shown::Told(report) => from_above(&standing_of(report), report.voxels.extent()),
+                let (standing, window) = match &report {
+                    Shown::Swept(report) => (report.stands.clone(), report.window),
+                    Shown::Told(report) => (standing_of(report), report.voxels.extent()),
                 };
+                let image = from_above(&standing, window);
                 let options = egui::TextureOptions::NEAREST;
-                ui.ctx().load_texture("what stands", image, options)
+                let texture = ui.ctx().load_texture("what stands", image, options);
+                (texture, standing.into_iter().collect())
             });
             if let (Shown::Told(report), true) = (&report, told) {
                 marks.told = Some(with_told(cx.document.scene(), report));

@@ -7,7 +7,9 @@ use egui::{RichText, Ui};
 use authoring::corner_case::{Change, Sensor, Tried, Vary, speed_matters};
 use editor::Document;
 use language::{t, tf};
+use nets::perceiver::SCORE;
 use scene::{BoxId, Scene};
+use sensors::perceived::MISSED_BELOW;
 use widgets::icons::section;
 use widgets::theme;
 
@@ -33,24 +35,43 @@ pub(super) fn search_ui(
                 perceiving.stop();
             }
         });
-        return;
     }
     let chosen = cx
         .state
         .selected
         .and_then(|id| cx.document.scene().frame().boxes.get(&id));
     let Some(b) = chosen else {
+        if perceiving.searching.is_some() {
+            return;
+        }
         let text =
             t("Choose a box, and a change of the scene is searched after which the network misses it.");
         ui.label(RichText::new(text).color(theme::text_weak()));
         return;
     };
+    if perceiving.searching.is_none() {
+        wish_ui(ui, perceiving, (vary, by), b.id, cx.document.scene());
+    }
+    let found = perceiving.found.as_mut().filter(|f| f.id == b.id && f.by() == by);
+    if let Some(found) = found {
+        found_ui(ui, found, cx, commands);
+    }
+}
+
+/// What is to be varied, and the button that starts the search.
+fn wish_ui(
+    ui: &mut Ui,
+    perceiving: &mut Perceiving,
+    (vary, by): (&mut Vary, Sensor),
+    id: BoxId,
+    scene: &Arc<Scene>,
+) {
     ui.horizontal(|ui| {
         ui.label(t("Vary"));
         egui::ComboBox::from_id_salt("vary")
             .selected_text(t(vary.title()))
             .show_ui(ui, |ui| {
-                let matters = |v: &&Vary| **v != Vary::Speed || speed_matters(cx.document.scene());
+                let matters = |v: &&Vary| **v != Vary::Speed || speed_matters(scene);
                 for value in by.varies().iter().filter(matters) {
                     ui.selectable_value(vary, *value, t(value.title()));
                 }
@@ -58,14 +79,21 @@ pub(super) fn search_ui(
             .response
             .on_hover_text(t("What is changed step by step until the box is missed"))
             .accessible_name(t("Vary"));
-        if ui.button(t("Search")).clicked() {
-            perceiving.search(cx.document.scene(), b.id, *vary, by);
+        let search = ui.button(t("Search"));
+        let hint = match by {
+            Sensor::Cameras | Sensor::Both => tf!(
+                "Until the network takes less than {percent} % of the box for a thing",
+                percent = format!("{:.0}", MISSED_BELOW * 100.0)
+            ),
+            Sensor::Lidar => tf!(
+                "Until the network is less than {percent} % sure of the box",
+                percent = format!("{:.0}", SCORE * 100.0)
+            ),
+        };
+        if search.on_hover_text(hint).clicked() {
+            perceiving.search(scene, id, *vary, by);
         }
     });
-    let found = perceiving.found.as_mut().filter(|f| f.id == b.id && f.by() == by);
-    if let Some(found) = found {
-        found_ui(ui, found, cx, commands);
-    }
 }
 
 /// What a search found.

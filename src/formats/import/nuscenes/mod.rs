@@ -1,6 +1,6 @@
 //! nuScenes tables: a scene of a folder becomes a scene with a clip. See [`crate::nuscenes`].
 //!
-//! Read is the first scene by name. The vehicle moves through its poses at the key frames, objects through their annotations,
+//! Read is the first scene by name; [`pictures`] reads all, for training. The vehicle moves through its poses at the key frames, objects through their annotations,
 //! and both go straight on beyond the first and the last. What is parked, or stays within 5 cm in all key frames, stands
 //! still. Sensors become the rig. Voxels come from Occ3D's `gts/SCENE/SAMPLE/labels.npz` if they lie beside, else from the
 //! LiDAR sweeps of the key frames with their lidarseg labels; there, points in boxes are left out and boxes drawn as drafts.
@@ -11,6 +11,7 @@
 
 mod objects;
 mod occupancy;
+pub mod pictures;
 mod read;
 mod rig;
 mod rows;
@@ -81,8 +82,13 @@ fn in_folder(folder: &Path) -> Option<PathBuf> {
 }
 
 fn read_scene(source: &Source<'_>) -> Result<Loaded, FormatError> {
+    Ok(read_drive(source, 0)?.0)
+}
+
+/// A scene by its place in the list of their names, and what it was made of.
+fn read_drive(source: &Source<'_>, which: usize) -> Result<(Loaded, read::Recording), FormatError> {
     let mut skipped = Skipped::new();
-    let recording = read::recording(source, &mut skipped)?;
+    let recording = read::recording(source, which, &mut skipped)?;
     let frames = &recording.frames;
     let poses: Vec<Pose> = frames.iter().map(|f| f.world_from_ego).collect();
     let extent = extent(&poses).map_err(FormatError::new)?;
@@ -135,11 +141,12 @@ fn read_scene(source: &Source<'_>) -> Result<Loaded, FormatError> {
     scene.prompt = shortened(&description, LONGEST_DESCRIPTION).into();
     scene.background = Arc::new(background);
     scene.change_clip(|still| *still = clip);
-    Ok(Loaded {
+    let loaded = Loaded {
         scene,
         inferred,
         skipped,
-    })
+    };
+    Ok((loaded, recording))
 }
 
 /// What is guessed from the voxels.

@@ -73,7 +73,7 @@ fn is_plain(name: &str) -> bool {
 }
 
 /// Where a file of the data set is from the folder of its tables; `None` for a path that leads out of it.
-fn in_data_set(filename: &str) -> Option<String> {
+pub(super) fn in_data_set(filename: &str) -> Option<String> {
     filename
         .split('/')
         .all(is_plain)

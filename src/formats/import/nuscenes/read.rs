@@ -32,6 +32,8 @@ pub(super) struct Recording {
     pub(super) objects: Vec<Object>,
     /// Sensors.
     pub(super) rig: SensorRig,
+    /// The frame that all of this is in, from that of the tables.
+    pub(super) world_from_global: Pose,
     /// Class of each number in lidarseg files; `None` for what is left out.
     pub(super) labels: Vec<Option<Class>>,
 }
@@ -81,13 +83,25 @@ pub(super) struct Annotation {
     pub(super) yaw_rad: f64,
 }
 
-/// The first scene by name.
-pub(super) fn recording(source: &Source<'_>, skipped: &mut Skipped) -> Result<Recording, FormatError> {
+/// All scenes, by name.
+pub(super) fn listed(source: &Source<'_>) -> Result<Vec<SceneRow>, FormatError> {
     let mut scenes: Vec<SceneRow> = rows::parse(source.bytes, |_| true).map_err(FormatError::new)?;
     scenes.sort_by(|a, b| (&a.name, &a.token).cmp(&(&b.name, &b.token)));
-    count(skipped, "scenes", scenes.len().saturating_sub(1));
-    let scene = scenes.into_iter().next();
-    let scene = scene.ok_or_else(|| FormatError::new("0 scenes, expected at least one"))?;
+    Ok(scenes)
+}
+
+/// A scene by its place in the list.
+pub(super) fn recording(
+    source: &Source<'_>,
+    which: usize,
+    skipped: &mut Skipped,
+) -> Result<Recording, FormatError> {
+    let scenes = listed(source)?;
+    let found = scenes.len();
+    count(skipped, "scenes", found.saturating_sub(1));
+    let scene = scenes.into_iter().nth(which);
+    let scene =
+        scene.ok_or_else(|| FormatError::new(format!("{found} scenes, expected at least {}", which + 1)))?;
     let samples = samples(source, &scene, skipped)?;
     let place: HashMap<&str, usize> = samples.iter().enumerate().map(|(i, s)| (&*s.token, i)).collect();
 
@@ -129,6 +143,7 @@ pub(super) fn recording(source: &Source<'_>, skipped: &mut Skipped) -> Result<Re
         description: scene.description,
         frames,
         rig,
+        world_from_global,
     })
 }
 

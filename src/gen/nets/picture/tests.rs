@@ -3,19 +3,14 @@
 mod refusals;
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::Instant;
 
-use safetensors::{Dtype, SafeTensors};
-
 use super::*;
+use crate::twin::{TOLERANCE, Twin, uniform};
 
-/// The numbers of the twin.
-const GOLDEN: &str = "../../../training/weights/pictures/golden.safetensors";
+const TWIN: Twin = Twin("pictures");
 const PIXELS: [usize; 2] = [32, 64];
 const VIEWS: usize = 6;
-/// Largest difference, as a share of the largest number of the twin.
-const TOLERANCE: f64 = 1e-4;
 
 /// The bytes of a shipped file.
 fn file(name: &str) -> Vec<u8> {
@@ -27,41 +22,6 @@ fn file(name: &str) -> Vec<u8> {
 
 fn nets() -> Arc<PictureNets> {
     PictureNets::bundled().expect("the shipped weights")
-}
-
-/// Numbers from -1.75 to 1.75 as training/export.py makes them.
-fn uniform(count: usize, stream: u64) -> Vec<f32> {
-    let number = |i: u64| {
-        let h = (i * 2_654_435_761 + stream * 40_503 + 12_345) % (1 << 32);
-        let h = (h ^ (h >> 15)) * 2_246_822_519 % (1 << 32);
-        (h as f64 / 4_294_967_296.0 * 3.5 - 1.75) as f32
-    };
-    (0..count as u64).map(number).collect()
-}
-
-/// Expected outputs by name.
-struct Golden(Vec<u8>);
-
-impl Golden {
-    fn open() -> Self {
-        let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(GOLDEN);
-        Self(std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())))
-    }
-
-    fn f64(&self, name: &str) -> Vec<f64> {
-        let file = SafeTensors::deserialize(&self.0).expect("a safetensors file");
-        let tensor = file.tensor(name).expect("a tensor of the golden");
-        assert_eq!(tensor.dtype(), Dtype::F32, "{name}");
-        let (quads, _) = tensor.data().as_chunks::<4>();
-        quads.iter().map(|q| f64::from(f32::from_le_bytes(*q))).collect()
-    }
-
-    /// Prints the largest difference and fails if it is too large.
-    fn compare(&self, name: &str, found: &[f32]) {
-        let gap = crate::golden::gap(found, &self.f64(name));
-        println!("{name}: {gap:.1e} of the largest number");
-        assert!(gap <= TOLERANCE, "{name}: {gap}, expected at most {TOLERANCE}");
-    }
 }
 
 /// Inputs as `golden` of training/export_pictures.py makes them.
@@ -111,18 +71,18 @@ fn go_on(_: diffusion::solver::StepView<'_>) -> ControlFlow<()> {
 
 #[test]
 fn vae_against_the_twin() {
-    let (golden, nets, size) = (Golden::open(), nets(), size());
+    let (nets, size) = (nets(), size());
     let pictures: Vec<f32> = uniform(VIEWS * size.view_pixels() * 3, 3)
         .iter()
         .map(|v| v / 1.75)
         .collect();
-    golden.compare("latent", &nets.vae.encode(&pictures, PIXELS).expect("finite"));
+    TWIN.compare("latent", &nets.vae.encode(&pictures, PIXELS).expect("finite"));
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
-    golden.compare("picture", &nets.vae.decode(&x, size.cells()).expect("finite"));
+    TWIN.compare("picture", &nets.vae.decode(&x, size.cells()).expect("finite"));
     let segmenter = PictureSegmenter::bundled().expect("the shipped weights");
     let first = &pictures[..size.view_pixels() * 3];
     let logits = segmenter.logits(first, PIXELS).expect("finite");
-    golden.compare("segmented", &logits);
+    TWIN.compare("segmented", &logits);
     let classes = segmenter.classes(first, PIXELS).expect("finite");
     let of_pixel = &logits[77 * SHOWN..78 * SHOWN];
     assert!(of_pixel.iter().all(|l| *l <= of_pixel[usize::from(classes[77])]));
@@ -153,23 +113,23 @@ fn windows_are_told_apart_by_what_they_show() {
 
 #[test]
 fn transformer_against_the_twin() {
-    let (golden, nets, size) = (Golden::open(), nets(), size());
+    let (nets, size) = (nets(), size());
     let dit = &nets.dit;
     let condition = condition(size);
     let told = dit.tell(&condition).expect("a condition");
     let cells: Vec<f32> = told.cells.iter().flat_map(|map| map.data.clone()).collect();
-    golden.compare("told", &cells);
+    TWIN.compare("told", &cells);
     let before = before(size, &condition.depth_m);
-    golden.compare("before", before.numbers());
+    TWIN.compare("before", before.numbers());
     let seen = before.numbers().chunks_exact(35).filter(|c| c[34] == 1.0).count();
     assert!(seen > 0 && seen < VIEWS * size.view_cells(), "{seen} cells seen");
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
     for (name, before) in [("v_alone", None), ("v_after", Some(&before))] {
         let each = [0.0, 437.5, 999.0].map(|t| dit.v(&x, t, &told, before).expect("finite"));
-        golden.compare(name, &each.concat());
+        TWIN.compare(name, &each.concat());
     }
     let silent = dit.silent(&told).expect("finite");
-    golden.compare("v_silent", &dit.v(&x, 437.5, &silent, None).expect("finite"));
+    TWIN.compare("v_silent", &dit.v(&x, 437.5, &silent, None).expect("finite"));
 
     let mut sampling = Sampling {
         told: &told,
@@ -179,7 +139,7 @@ fn transformer_against_the_twin() {
         guidance: 1.0,
     };
     let made = dit.sample(&x, &sampling, go_on).expect("finite");
-    golden.compare("sampled", &made.latent_f32());
+    TWIN.compare("sampled", &made.latent_f32());
     (sampling.steps, sampling.guidance) = (4, 2.0);
     let mut seen = Vec::new();
     let made = dit.sample(&x, &sampling, |view| {
@@ -188,7 +148,7 @@ fn transformer_against_the_twin() {
     });
     assert_eq!(seen, [1, 2, 3, 4]);
     let made = made.expect("finite");
-    golden.compare("sampled_guided", &made.latent_f32());
+    TWIN.compare("sampled_guided", &made.latent_f32());
     sampling.silent = Some(&silent);
     assert_eq!(dit.sample(&x, &sampling, go_on).expect("finite"), made);
     let stopped = dit.sample(&x, &sampling, |_| ControlFlow::Break(()));
@@ -238,18 +198,18 @@ fn some_cells_are_painted_again() {
 /// The comparison can fail: views that are confused, or left and right exchanged, differ by more than it allows.
 #[test]
 fn neighbours_and_the_frame_before_are_heard() {
-    let (golden, nets, size) = (Golden::open(), nets(), size());
+    let (nets, size) = (nets(), size());
     let dit = &nets.dit;
     let mut told = dit.tell(&condition(size)).expect("a condition");
     let x = uniform(VIEWS * size.view_cells() * 8, 1);
     let gap = |told: &Told| {
         let v = dit.v(&x, 437.5, told, None).expect("finite");
-        let all = golden.f64("v_alone");
+        let all = TWIN.numbers("v_alone");
         crate::golden::gap(&v, &all[v.len()..2 * v.len()])
     };
     assert!(gap(&told) <= TOLERANCE);
-    let alone = golden.f64("v_alone");
-    let after = golden.f64("v_after");
+    let alone = TWIN.numbers("v_alone");
+    let after = TWIN.numbers("v_after");
     let differing = alone.iter().zip(&after).filter(|(a, b)| a != b).count();
     assert!(differing * 2 > alone.len(), "{differing}");
     told.cells.swap(0, 3);
@@ -262,7 +222,7 @@ fn neighbours_and_the_frame_before_are_heard() {
     let reversed: Vec<f32> = x.chunks_exact(numbers).rev().flatten().copied().collect();
     let v = dit.v(&reversed, 437.5, &told, None).expect("finite");
     let v: Vec<f32> = v.chunks_exact(numbers).rev().flatten().copied().collect();
-    let all = golden.f64("v_alone");
+    let all = TWIN.numbers("v_alone");
     let gap = crate::golden::gap(&v, &all[v.len()..2 * v.len()]);
     assert!(gap > 10.0 * TOLERANCE, "left and right are the same: {gap}");
 }

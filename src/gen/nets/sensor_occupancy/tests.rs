@@ -1,64 +1,15 @@
 //! Against the numbers of the twin, and what happens at the edges.
 
-use std::path::PathBuf;
-
-use safetensors::SafeTensors;
-
 use super::*;
+use crate::twin::{Twin, returns, uniform};
 
-/// Largest difference, as a share of the largest number of the twin.
-const TOLERANCE: f64 = 1e-4;
-
-fn path(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join(format!("../../../training/weights/sensor_occupancy/{name}"))
-}
-
-/// Expected numbers by name, as training/export_sensor_occupancy.py makes them.
-fn golden(name: &str) -> Vec<f64> {
-    let bytes = std::fs::read(path("golden.safetensors")).expect("the golden");
-    let file = SafeTensors::deserialize(&bytes).expect("a safetensors file");
-    let tensor = file.tensor(name).expect("a tensor of the golden");
-    let (quads, _) = tensor.data().as_chunks::<4>();
-    quads.iter().map(|q| f64::from(f32::from_le_bytes(*q))).collect()
-}
-
-fn compare(name: &str, found: &[f32]) {
-    let gap = crate::golden::gap(found, &golden(name));
-    println!("{name}: {gap:.1e} of the largest number");
-    assert!(gap <= TOLERANCE, "{name}: {gap}, expected at most {TOLERANCE}");
-}
-
-/// Numbers from -1.75 to 1.75 as training/export.py makes them.
-fn uniform(count: usize, stream: u64) -> Vec<f32> {
-    let number = |i: u64| {
-        let h = (i * 2_654_435_761 + stream * 40_503 + 12_345) % (1 << 32);
-        let h = (h ^ (h >> 15)) * 2_246_822_519 % (1 << 32);
-        (h as f64 / 4_294_967_296.0 * 3.5 - 1.75) as f32
-    };
-    (0..count as u64).map(number).collect()
-}
+const TWIN: Twin = Twin("sensor_occupancy");
 
 /// Classes from 0 to 22 as the twin makes them.
 fn painted() -> Vec<u8> {
     let numbers = uniform(Window::VOXELS, 5);
     let class = |u: &f32| ((u + 1.75) / 3.5 * (SHOWN + 1) as f32).floor() as u8;
     numbers.iter().map(|u| class(u).min(UNSEEN)).collect()
-}
-
-/// Returns around the origin; two are outside the window, two are not finite.
-fn returns() -> Vec<[f32; 4]> {
-    let numbers = uniform(400 * 4, 1);
-    let (numbers, _) = numbers.as_chunks::<4>();
-    let mut points: Vec<[f32; 4]> = numbers
-        .iter()
-        .map(|[x, y, z, strength]| [x * 1.25, y * 1.25, z * 3.0 + 1.0, strength * 64.0 + 120.0])
-        .collect();
-    points[0][0] = 40.0;
-    points[1][1] = -41.0;
-    points[2][2] = f32::NAN;
-    points[3][3] = f32::INFINITY;
-    points
 }
 
 fn shipped() -> Arc<SensorOccupancy> {
@@ -76,16 +27,16 @@ fn square(side: usize, width: usize) -> Map {
 
 #[test]
 fn networks_say_what_the_twin_says() {
-    let tiny = SensorOccupancy::load(&path("tiny.safetensors")).expect("the tiny network");
+    let tiny = SensorOccupancy::load(&TWIN.path("tiny.safetensors")).expect("the tiny network");
     for (name, net) in [("shipped", &*shipped()), ("tiny", &tiny)] {
         let said = net.forward(square(16, net.inputs())).expect("finite");
-        compare(&format!("{name}_logits"), &said.data);
+        TWIN.compare(&format!("{name}_logits"), &said.data);
         let columns = net.columns(&pillars(returns()), &painted());
         let rows = (94..106).flat_map(|x| (94..106).map(move |y| (x * Window::NY + y) * columns.width));
         let found: Vec<f32> = rows
             .flat_map(|at| columns.data[at..at + columns.width].iter().copied())
             .collect();
-        compare(&format!("{name}_columns"), &found);
+        TWIN.compare(&format!("{name}_columns"), &found);
     }
 }
 

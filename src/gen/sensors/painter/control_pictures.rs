@@ -1,10 +1,12 @@
-//! What public networks are shown of a view: classes in their colours, depths, and planes of classes.
+//! What public networks are shown of a view: classes in their colours, depths, boxes and lanes in perspective, and planes of classes.
 
 use super::seen::Seen;
+use crate::color::perspective_rgba;
 use crate::mpi::{self, RenderIds};
+use crate::perspective;
 use crate::picture_hints::PictureHints;
 use scene::sensor_data::Planes;
-use scene::{Frame, truth};
+use scene::{Camera, Frame, truth};
 use stable::StableError;
 use stable::planes::{Run, of_runs};
 
@@ -38,6 +40,20 @@ pub(super) fn depths(hints: &PictureHints, channels: usize) -> Vec<f32> {
     };
     let plane: Vec<f32> = hints.depth_m.iter().map(near).collect();
     plane.repeat(channels)
+}
+
+/// `[channel][row][column]` from 0 to 1: road, lanes, crossings and boxes in perspective, hidden or not, in their colours.
+pub(super) fn boxes_and_lanes(frame: &Frame, camera: &Camera, channels: usize) -> Vec<f32> {
+    let map = perspective::render(
+        &frame.layout,
+        frame.boxes.values(),
+        camera,
+        camera.width,
+        camera.height,
+    );
+    let rgba = perspective_rgba(&map);
+    let plane = |c: usize| rgba.chunks_exact(4).map(move |p| f32::from(p[c % 3]) / 255.0);
+    (0..channels).flat_map(plane).collect()
 }
 
 /// What [`stable::Planes`] takes of some views: the label on each plane, at the size of latents.
@@ -74,6 +90,8 @@ pub(super) fn planes(
 
 #[cfg(test)]
 mod tests {
+    use scene::{BoxId, Class, SceneBox, SensorRig};
+
     use super::*;
 
     #[test]
@@ -88,5 +106,34 @@ mod tests {
         assert!(shown.iter().all(|v| (0.0..=1.0).contains(v)) && shown[0] == 0.0 && shown[4] == 0.0);
         assert!([1, 5, 9].iter().any(|i| shown[*i] > 0.0));
         assert_eq!(depths(&hints, 2), [0.0, 1.0, 0.5, 0.025, 0.0, 1.0, 0.5, 0.025]);
+    }
+
+    #[test]
+    fn a_box_is_shown_where_it_stands_and_nowhere_else() {
+        let camera = SensorRig::default().cameras[1].resized(64, 36);
+        let mut frame = Frame::new(Default::default(), Default::default(), Default::default());
+        let empty = boxes_and_lanes(&frame, &camera, 3);
+        let car = SceneBox {
+            id: BoxId(1),
+            class: Class::Car,
+            center_m: glam::DVec3::new(12.0, 0.0, 0.8),
+            size_m: glam::DVec3::new(4.5, 1.9, 1.6),
+            yaw_rad: 0.0,
+            velocity_mps: glam::DVec2::ZERO,
+            label: Default::default(),
+        };
+        frame.boxes.insert(car.id, car);
+        let shown = boxes_and_lanes(&frame, &camera, 3);
+        assert_eq!(shown.len(), 3 * 64 * 36);
+        assert!(shown.iter().all(|v| (0.0..=1.0).contains(v)));
+        let differs: Vec<usize> = (0..64 * 36)
+            .filter(|i| (0..3).any(|c| shown[c * 64 * 36 + i] != empty[c * 64 * 36 + i]))
+            .collect();
+        let middle = differs.iter().all(|i| (20..44).contains(&(i % 64)));
+        assert!(
+            (10..400).contains(&differs.len()) && middle,
+            "{} pixels",
+            differs.len()
+        );
     }
 }

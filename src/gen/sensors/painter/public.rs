@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use super::control_pictures::{classes, depths, planes};
+use super::control_pictures::{boxes_and_lanes, classes, depths, planes};
 use super::ring::Ring;
 use super::seen::Seen;
 use super::surfaces::{cells_of, pixels_before, shared_cells};
@@ -189,19 +189,25 @@ impl PublicPainter {
         Ok(images.collect())
     }
 
-    /// What each ControlNet that is shown pictures sees: classes, or depths if its folder is named for them.
+    /// What each ControlNet that is shown pictures sees: classes, or depths, or boxes and lanes, if its folder is named for them.
     fn shown(&self, told: &Told<'_>, views: &[usize]) -> Vec<(usize, Vec<f32>)> {
         let nets = self.pipeline.controls().iter().enumerate();
         let pictures = nets.filter(|(_, net)| !net.takes_planes());
         pictures
             .map(|(i, net)| {
                 let channels = net.config().conditioning_channels;
-                let hints = views.iter().map(|view| told.seen.pixels(*view).0);
-                let picture = match self.pipeline.control_name(i).contains("depth") {
-                    true => hints.flat_map(|h| depths(h, channels)).collect(),
-                    false => hints.flat_map(|h| classes(h, channels)).collect(),
+                let name = self.pipeline.control_name(i);
+                let of_view = |view: &usize| {
+                    let hints = told.seen.pixels(*view).0;
+                    match name {
+                        name if name.contains("depth") => depths(hints, channels),
+                        name if name.contains("box") => {
+                            boxes_and_lanes(told.input.frame, told.seen.camera(*view), channels)
+                        }
+                        _ => classes(hints, channels),
+                    }
                 };
-                (i, picture)
+                (i, views.iter().flat_map(of_view).collect())
             })
             .collect()
     }

@@ -1,6 +1,6 @@
 //! Public weights paint through the same door as the program's own; a tiny model with random weights stands for a real one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::surfaces::{pixels_before, shared_cells};
 use super::tests::{input, with_and_without_a_car};
@@ -14,8 +14,12 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn painter(name: &str, strength: f64) -> Box<dyn Paint> {
+    painter_of(&folder(name), strength)
+}
+
+fn painter_of(folder: &Path, strength: f64) -> Box<dyn Paint> {
     let with = PaintWith {
-        model: PaintModel::open(&folder(name)).expect("tiny weights"),
+        model: PaintModel::open(folder).expect("tiny weights"),
         options: PaintOptions {
             steps: 3,
             width_px: 64,
@@ -81,6 +85,43 @@ fn pictures_are_painted_and_after_an_edit_only_what_it_touches() {
         .paint(&input(&with, &rig), &mut go_on)
         .expect("pictures");
     assert!(old.iter().zip(&other).all(|(a, b)| a.rgba == b.rgba));
+}
+
+/// A ControlNet is shown what the name of its folder says.
+#[test]
+fn a_folder_says_what_its_network_is_shown() {
+    let (with, ..) = with_and_without_a_car();
+    let mut rig = SensorRig::default();
+    rig.cameras.truncate(2);
+    let place = std::env::temp_dir().join(format!("sceneloom-controls-{}", std::process::id()));
+    let mut pictures = Vec::new();
+    for name in ["controlnet", "controlnet_depth", "controlnet_boxes"] {
+        let to = place.join(name);
+        copy(&folder("sd15"), &to);
+        std::fs::rename(to.join("controlnet"), to.join(name)).expect("renamed");
+        let images = painter_of(&to, 0.6).paint(&input(&with, &rig), &mut go_on);
+        pictures.push(
+            images
+                .expect("pictures")
+                .iter()
+                .map(|i| i.rgba.clone())
+                .collect::<Vec<_>>(),
+        );
+    }
+    std::fs::remove_dir_all(&place).expect("removed");
+    assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2] && pictures[0] != pictures[2]);
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let there = to.join(path.file_name().expect("a name"));
+        match path.is_dir() {
+            true => copy(&path, &there),
+            false => drop(std::fs::copy(&path, &there).expect("copied")),
+        }
+    }
 }
 
 #[test]
