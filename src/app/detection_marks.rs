@@ -178,11 +178,12 @@ impl Mark {
 
     /// A line that is seen on bright and on dark; dashed for a thing where there is none.
     fn stroke(self, painter: &Painter, line: &[Pos2]) {
-        painter.line(line.to_vec(), Stroke::new(3.5, Color32::from_black_alpha(130)));
-        let stroke = Stroke::new(1.8, self.color());
-        match self {
-            Self::Ghost => drop(painter.extend(Shape::dashed_line(line, stroke, 5.0, 4.0))),
-            _ => drop(painter.line(line.to_vec(), stroke)),
+        for (width, color) in [(3.5, Color32::from_black_alpha(130)), (1.8, self.color())] {
+            let stroke = Stroke::new(width, color);
+            match self {
+                Self::Ghost => painter.extend(Shape::dashed_line(line, stroke, 5.0, 4.0)),
+                _ => drop(painter.line(line.to_vec(), stroke)),
+            }
         }
     }
 }

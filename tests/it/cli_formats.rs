@@ -213,6 +213,7 @@ fn drives_become_pictures_to_train_on() {
     assert_eq!(code, 0, "{error}");
     let report: Value = serde_json::from_str(&said).expect("JSON");
     assert_eq!(report["frames"], 2, "three key frames: {report}");
+    assert_eq!(report["key_frames_without_pictures"], 0);
     let bytes = std::fs::read(Path::new(&shards).join("shard_00000.safetensors")).expect("a shard");
     let file = safetensors::SafeTensors::deserialize(&bytes).expect("safetensors");
     let tensor = |name: &str| file.tensor(name).expect("an array");

@@ -66,9 +66,9 @@ impl Dataset {
             };
             let which = (self.drives.clone(), self.frames);
             let size = self.size.unwrap_or([256, 144]);
-            let report = dataset_recorded::write(from, which, size, &self.output, step)?;
+            let (report, incomplete) = dataset_recorded::write(from, which, size, &self.output, step)?;
             progress.done();
-            return self.report(&report, start);
+            return self.report(&report, Some(incomplete), start);
         }
         self.check_from()?;
         let files = match &self.from {
@@ -143,7 +143,7 @@ impl Dataset {
         }
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();
-        self.report(&report, start)
+        self.report(&report, None, start)
     }
 
     /// Errors: what is named by --from or --drives is nothing for this kind.
@@ -157,12 +157,20 @@ impl Dataset {
         }
     }
 
-    fn report(&self, report: &DatasetReport, start: Instant) -> Outcome {
+    /// `incomplete`: key frames of a folder that were left out, since they lack pictures.
+    fn report(&self, report: &DatasetReport, incomplete: Option<usize>, start: Instant) -> Outcome {
         let mut json = serde_json::to_value(report)?;
+        if let Some(n) = incomplete {
+            json["key_frames_without_pictures"] = n.into();
+        }
         json["frames_per_s"] = (report.frames as f64 / start.elapsed().as_secs_f64()).into();
         output::report(&self.common, &json, || {
+            let left_out = match incomplete {
+                None | Some(0) => String::new(),
+                Some(n) => format!("; {n} key frames lack pictures of six cameras"),
+            };
             format!(
-                "{}: {} frames, {} bytes written",
+                "{}: {} frames, {} bytes written{left_out}",
                 self.output.display(),
                 report.frames,
                 report.bytes

@@ -83,14 +83,14 @@ impl Pairs {
     }
 }
 
-/// Writes shards of two moments each, all or the first so many.
+/// Writes shards of two moments each, all or the first so many; and how many key frames of the folder lack pictures.
 pub(super) fn write(
     from: &Path,
     (drives, frames): (Option<Range<usize>>, Option<usize>),
     size_px: [u32; 2],
     output: &Path,
     step: impl Fn(usize, usize) -> bool + Sync,
-) -> anyhow::Result<DatasetReport> {
+) -> anyhow::Result<(DatasetReport, usize)> {
     let pairs = Pairs::open(from, drives, size_px)?;
     let found = pairs.places.len();
     if found == 0 {
@@ -103,5 +103,6 @@ pub(super) fn write(
     if frames > found || frames == 0 {
         bail!("--frames is {frames}, expected 1 to {found}, the pairs of key frames that follow each other");
     }
-    dataset::write(output, frames, |i| pairs.make(i), |done| step(done, frames))
+    let report = dataset::write(output, frames, |i| pairs.make(i), |done| step(done, frames))?;
+    Ok((report, pairs.folder.incomplete))
 }

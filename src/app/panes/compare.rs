@@ -221,7 +221,7 @@ pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
     let (mut places, mut next, mut width) = (Vec::new(), at + vec2(8.0, 0.0), 0.0_f32);
     for galley in &galleys {
         let size = vec2(SWATCH + 5.0 + galley.size().x, height);
-        if next.x + size.x > ui.clip_rect().right() && next.x > at.x + 8.0 {
+        if next.x + size.x + 12.0 > ui.clip_rect().right() && next.x > at.x + 8.0 {
             next = pos2(at.x + 8.0, next.y + height);
         }
         places.push(Rect::from_min_size(next, size));

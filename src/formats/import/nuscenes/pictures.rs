@@ -42,6 +42,20 @@ struct Picture {
     global_from_ego: Pose,
 }
 
+impl Picture {
+    /// Place in the ring of the camera that took it, that camera in the world frame, and the file. `None` if its intrinsics are not sound.
+    fn placed(&self, cameras: &[Camera], world_from_global: &Pose) -> Option<(usize, Camera, PathBuf)> {
+        let camera = cameras.iter().find(|c| c.name == self.channel)?;
+        let alone = SensorRig {
+            cameras: vec![camera.clone()],
+            ..SensorRig::default()
+        };
+        let world_from_ego = *world_from_global * self.global_from_ego;
+        let camera = alone.placed(&world_from_ego).cameras.pop()?;
+        Some((clockwise(cameras, &self.channel)?, camera, self.file.clone()))
+    }
+}
+
 /// A drive: the scene that was measured, and its key frames in order of time.
 pub struct PictureDrive {
     /// The scene, at its first moment.
@@ -105,23 +119,9 @@ impl PictureFolder {
         };
         let (loaded, recording) = read_drive(&source, which).map_err(|e| e.at(&self.tables.display()))?;
         let scene = loaded.scene;
-        let time_of = |sample: &str| recording.frames.iter().find(|f| f.token == sample);
         let of_key = |key: &KeyPictures| {
-            let frame = time_of(&key.sample)?;
-            let placed = |picture: &Picture| {
-                let camera = scene.rig.cameras.iter().find(|c| c.name == picture.channel)?;
-                let alone = SensorRig {
-                    cameras: vec![camera.clone()],
-                    ..SensorRig::default()
-                };
-                let world_from_ego = recording.world_from_global * picture.global_from_ego;
-                let camera = alone.placed(&world_from_ego).cameras.pop()?;
-                Some((
-                    clockwise(&scene.rig.cameras, &picture.channel)?,
-                    camera,
-                    picture.file.clone(),
-                ))
-            };
+            let frame = recording.frames.iter().find(|f| f.token == key.sample)?;
+            let placed = |p: &Picture| p.placed(&scene.rig.cameras, &recording.world_from_global);
             let mut seen: Vec<(usize, Camera, PathBuf)> = key.pictures.iter().filter_map(placed).collect();
             seen.sort_by_key(|(place, ..)| *place);
             let (cameras, files) = seen.into_iter().map(|(_, camera, file)| (camera, file)).unzip();
