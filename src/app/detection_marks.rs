@@ -59,15 +59,12 @@ impl DetectionMarks {
     /// What the colours of the map mean.
     pub(crate) fn map_legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
         let standing = self.stands.iter().flat_map(|(_, standing)| standing);
-        let named = standing.map(|s| {
-            let class = s.class();
-            (theme::class_color(class), t(&class.label()).to_owned())
-        });
+        let named = standing.map(|s| (theme::class_color(s.class()), t(&s.label()).to_owned()));
         self.legend(now).into_iter().chain(named).collect()
     }
 
     /// What the colours of boxes mean; `now` is the state on screen.
-    fn legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
+    pub(crate) fn legend(&self, now: SceneRev) -> Vec<(Color32, String)> {
         let mut entries = vec![
             (SEEN, t("seen by the network").to_owned()),
             (color(MISSED), t("missed: crossed").to_owned()),
@@ -86,7 +83,7 @@ impl DetectionMarks {
             true => t("the network's voxels, to look at alone"),
             false => t("of the state before: the network is looking"),
         };
-        let all = self.legend(self.of).into_iter().skip(1);
+        let all = self.legend(self.of);
         let first = (Color32::WHITE, text.to_owned());
         std::iter::once(first).chain(all).collect()
     }

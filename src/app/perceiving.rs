@@ -118,8 +118,8 @@ pub struct Perceiving {
     pub told: Option<(SceneRev, Arc<VoxelReport>)>,
     /// A search that runs: what was tried last, its number and how many there are at most.
     pub searching: Option<(Change, [usize; 2])>,
-    /// The last search.
-    pub found: Option<Found>,
+    /// The last search, and before it the last one that found a change.
+    pub found: Vec<Found>,
     /// Why there is no news.
     pub problem: Option<String>,
 }
@@ -134,7 +134,7 @@ impl Perceiving {
             swept: None,
             told: None,
             searching: None,
-            found: None,
+            found: Vec::new(),
             problem: None,
         })
     }
@@ -149,7 +149,12 @@ impl Perceiving {
                 }
                 News::Told(rev, report) => (self.told, self.problem) = (Some((rev, Arc::new(report))), None),
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
-                News::Searched(found) => (self.searching, self.found) = (None, Some(found)),
+                News::Searched(found) => {
+                    self.searching = None;
+                    self.found.retain(|f| f.search.found.is_some());
+                    self.found.insert(0, found);
+                    self.found.truncate(2);
+                }
                 News::Failed(problem) => (self.searching, self.problem) = (None, Some(problem)),
                 News::GivenUp => self.searching = None,
             }
@@ -164,7 +169,8 @@ impl Perceiving {
     /// Forgets what was seen and found: another scene was opened.
     pub fn forget(&mut self) {
         (self.seen, self.swept, self.told) = (None, None, None);
-        (self.found, self.problem) = (None, None);
+        self.found.clear();
+        self.problem = None;
         if self.searching.is_some() {
             self.stop();
         }
@@ -233,8 +239,8 @@ mod tests {
         assert!(!report.boxes.is_empty() && report.right > 0.5);
         let id = report.boxes.last().expect("a box").thing.id;
         perceiving.search(&scene, id, Vary::Time, Sensor::Cameras);
-        wait(&mut perceiving, by, |p| p.found.is_some());
-        let found = perceiving.found.take().expect("a search");
+        wait(&mut perceiving, by, |p| !p.found.is_empty());
+        let found = perceiving.found.pop().expect("a search");
         assert_eq!((found.id, found.of), (id, scene.rev));
         assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
         // A box that is not there is told, and the thread goes on.

@@ -184,7 +184,8 @@ impl View3d {
         let steps = pointer::steps(ui, &response);
         let moved = self.navigate(ui, &response, &steps, input, &mut state.tools);
         let pointer = response.hover_pos().and_then(|p| self.pointer(p));
-        if !input.is_told || state.tool == select::ID {
+        let is_blocked = input.is_told && state.tool != select::ID;
+        if !is_blocked {
             let mut driver = self.driver;
             driver.drive(
                 ui,
@@ -207,9 +208,11 @@ impl View3d {
         if moved || (input.dragging || brushes) && !self.is_software() {
             self.last_motion_s = now_s;
         }
-        let (marks, cursor) = self
-            .driver
-            .sight(ui, response.hover_pos(), &self.seen(input), &state.tools);
+        let over = response.hover_pos().filter(|_| !is_blocked);
+        let (marks, mut cursor) = self.driver.sight(ui, over, &self.seen(input), &state.tools);
+        if is_blocked {
+            cursor = egui::CursorIcon::NotAllowed;
+        }
         if response.hovered() && !self.driver.is_held() {
             ui.ctx().set_cursor_icon(cursor);
         }

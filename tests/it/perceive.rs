@@ -73,6 +73,7 @@ fn what_is_missed_is_told_and_a_corner_case_is_written() {
         (vec!["perceive", &scene, "--box", "1"], "--vary"),
         (vec!["perceive", &scene, "--box", "1", "--vary", "mood"], "mood"),
         (vec!["perceive", &scene, "-o", &out], "--vary"),
+        (vec!["perceive", &scene, "--by", "lidar"], "--by is of a search"),
         (vec!["perceive", "nowhere.loom"], "nowhere.loom"),
     ] {
         let output = sceneloom(&args);

@@ -165,12 +165,16 @@ impl Dataset {
         }
         json["frames_per_s"] = (report.frames as f64 / start.elapsed().as_secs_f64()).into();
         output::report(&self.common, &json, || {
+            let kept = match report.resumed_shards {
+                0 => String::new(),
+                n => format!("; {n} shards were there and stay as they are"),
+            };
             let left_out = match incomplete {
                 None | Some(0) => String::new(),
                 Some(n) => format!("; {n} key frames lack pictures of six cameras"),
             };
             format!(
-                "{}: {} frames, {} bytes written{left_out}",
+                "{}: {} frames, {} bytes written{kept}{left_out}",
                 self.output.display(),
                 report.frames,
                 report.bytes
@@ -195,7 +199,7 @@ impl Dataset {
 
 /// `A..B`.
 fn drives(text: &str) -> anyhow::Result<Range<usize>> {
-    let expected = || format!("{text:?}, expected two numbers as in 0..8");
+    let expected = || "expected two numbers as in 0..8";
     let (from, to) = text.split_once("..").with_context(expected)?;
     Ok(from.parse().with_context(expected)?..to.parse().with_context(expected)?)
 }

@@ -28,9 +28,9 @@ pub struct Perceive {
     /// What is varied until the box is missed.
     #[arg(long, requires = "of")]
     vary: Option<Vary>,
-    /// Whose network is to miss it.
-    #[arg(long, requires = "of", default_value = "cameras")]
-    by: Sensor,
+    /// Whose network is to miss it: that of the cameras if left out. Without a search all look.
+    #[arg(long)]
+    by: Option<Sensor>,
     /// Scene to write in which it is missed.
     #[arg(short, long, value_name = "S.loom", requires = "vary")]
     output: Option<PathBuf>,
@@ -44,7 +44,11 @@ impl Perceive {
     pub(super) fn run(self) -> Outcome {
         let scene = self.moment.of(open::scene(&self.scene)?)?;
         match (self.of, self.vary) {
-            (Some(id), Some(vary)) => self.search(&scene, BoxId(id), vary),
+            (Some(id), Some(vary)) => self.search(&scene, BoxId(id), vary, self.by.unwrap_or_default()),
+            _ if self.by.is_some() => {
+                let problem = "--by is of a search: add --box ID and --vary WHAT, or leave it out and all networks look";
+                Err(anyhow!(problem).into())
+            }
             _ => self.look(&scene),
         }
     }
@@ -141,9 +145,9 @@ impl Perceive {
         Ok(())
     }
 
-    fn search(&self, scene: &Scene, id: BoxId, vary: Vary) -> Outcome {
-        if !self.by.varies().contains(&vary) {
-            let problem = match self.by {
+    fn search(&self, scene: &Scene, id: BoxId, vary: Vary, by: Sensor) -> Outcome {
+        if !by.varies().contains(&vary) {
+            let problem = match by {
                 Sensor::Cameras => {
                     "speed means nothing to cameras that take pictures in a moment: vary distance, offset, fog, time or weather"
                 }
@@ -152,7 +156,7 @@ impl Perceive {
             return Err(anyhow!(problem).into());
         }
         let progress = Progress::new(&self.common);
-        let search = corner_case::search(scene, id, vary, self.by, |_, [k, most]| {
+        let search = corner_case::search(scene, id, vary, by, |_, [k, most]| {
             progress.at("search", k, most);
             ControlFlow::Continue(())
         })?;
@@ -165,7 +169,10 @@ impl Perceive {
             loom::save(path, document.scene())?;
         }
         let tried = search.tried.iter().map(|t| {
-            json!({ "what": t.change.to_string(), (visible(self.by)): t.sight.visible, "share_seen": round(t.sight.share) })
+            json!({
+                "what": t.change.to_string(), (visible(by)): t.sight.visible, "share_seen": round(t.sight.share),
+                "judged": t.sight.is_judged(),
+            })
         });
         let report = json!({
             "box": id.0,
@@ -179,7 +186,7 @@ impl Perceive {
         output::report(&self.common, &report, || {
             let lines = search.tried.iter().map(|t| {
                 let (n, percent) = (t.sight.visible, t.sight.share * 100.0);
-                match self.by {
+                match by {
                     Sensor::Cameras => {
                         format!("{}: {n} px, {percent:.0} % of them taken for a thing", t.change)
                     }

@@ -213,9 +213,10 @@ pub(crate) fn legend(ui: &Ui, at: egui::Pos2, entries: &[(Color32, String)]) {
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let painter = ui.painter();
+    let widest = (ui.clip_rect().right() - at.x - SWATCH - 30.0).max(40.0);
     let galleys: Vec<_> = entries
         .iter()
-        .map(|(_, text)| painter.layout_no_wrap(text.clone(), font.clone(), theme::ON_CANVAS))
+        .map(|(_, text)| painter.layout(text.clone(), font.clone(), theme::ON_CANVAS, widest))
         .collect();
     let height = galleys.iter().map(|g| g.size().y).fold(SWATCH, f32::max) + 6.0;
     let (mut places, mut next, mut width) = (Vec::new(), at + vec2(8.0, 0.0), 0.0_f32);

@@ -1,5 +1,7 @@
 //! The 3D view, with the state before on it or beside it.
 
+use std::sync::Arc;
+
 use egui::Ui;
 
 use super::areas::{clipped, halves, in_rect, left_part, sides};
@@ -9,6 +11,7 @@ use super::id::PaneId;
 use super::pane::{Pane, PaneContext};
 use crate::camera_views::{LidarModel, LidarShown};
 use crate::command::{Command, FileCommand, ViewCommand};
+use crate::detection_marks::DetectionMarks;
 use crate::state::UiState;
 use crate::view3d::{View3d, View3dInput};
 use crate::views_shown::ViewsShown;
@@ -81,7 +84,7 @@ impl Pane for View3dPane {
         let entries = difference.map(|d| d.legend());
         let marked = difference.map(|d| d.marked());
         let marks = cx.state.shown.detection_marks.clone();
-        let marks = marks.filter(|m| m.told.is_some() && mode == CompareMode::Off);
+        let marks = marks.filter(|_| mode == CompareMode::Off);
         let told = marks.as_ref().and_then(|m| m.told.clone());
         let input = View3dInput {
             scene: told.as_ref().unwrap_or(&cx.seen.scene),
@@ -107,7 +110,11 @@ impl Pane for View3dPane {
                 under(view, input.scene, at)
             });
         });
-        let entries = entries.or_else(|| marks.map(|m| m.told_legend(scene.rev)));
+        let of_marks = |m: Arc<DetectionMarks>| match m.told {
+            Some(_) => m.told_legend(scene.rev),
+            None => m.legend(scene.rev),
+        };
+        let entries = entries.or_else(|| marks.map(of_marks));
         if let Some(entries) = entries {
             legend(ui, rect.left_top() + egui::vec2(8.0, 8.0), &entries);
         }

@@ -1,6 +1,6 @@
 //! What the pointer does with the tool in hand, for the status bar.
 
-use editor::tools::{ViewKind, hint_of};
+use editor::tools::{ViewKind, hint_of, select};
 use language::t;
 
 use crate::panes::id::PaneId;
@@ -10,6 +10,14 @@ use crate::state::UiState;
 pub fn hint(state: &UiState) -> String {
     if state.compare.holding_before {
         return t("The state before; nothing can be changed while the key is held").into();
+    }
+    let told = state
+        .shown
+        .detection_marks
+        .as_ref()
+        .is_some_and(|m| m.told.is_some());
+    if told && state.pointed.pane == Some(PaneId::VIEW3D) && state.tool != select::ID {
+        return t("These voxels are what the network tells: no tool changes them. The pane Perception shows the scene's again").into();
     }
     let view = match state.pointed.pane {
         Some(PaneId::VIEW3D) => Some(ViewKind::Space),

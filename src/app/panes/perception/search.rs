@@ -52,9 +52,15 @@ pub(super) fn search_ui(
     if perceiving.searching.is_none() {
         wish_ui(ui, perceiving, (vary, by), b.id, cx.document.scene());
     }
-    let found = perceiving.found.as_mut().filter(|f| f.id == b.id && f.by() == by);
-    if let Some(found) = found {
-        found_ui(ui, found, cx, commands);
+    let found = perceiving
+        .found
+        .iter_mut()
+        .filter(|f| f.id == b.id && f.by() == by);
+    for (i, found) in found.enumerate() {
+        if i > 0 {
+            ui.separator();
+        }
+        ui.push_id(i, |ui| found_ui(ui, found, cx, commands));
     }
 }
 

@@ -74,6 +74,15 @@ impl Stands {
         }
     }
 
+    /// What it is called, in English.
+    pub fn label(self) -> String {
+        match self {
+            Self::Vehicle => "any vehicle".to_owned(),
+            Self::Cycle => "any cycle".to_owned(),
+            other => other.class().label(),
+        }
+    }
+
     /// That of the largest logit; the first one keeps a tie.
     pub fn likeliest(logits: &[f32; Self::ALL.len()]) -> Self {
         let mut best = 0;
