@@ -20,7 +20,7 @@ from torch.nn import functional as F
 
 import train_pictures
 from downstream import interval
-from picture_data import shard_arrays
+from picture_data import shard_arrays, silence
 from picture_eval import Agreement, across_views, drawn, moment_of, noise_for, over_time, sample
 from train_pictures import SMALL, Learner, Trainer
 from models.picture_dit import PictureDit, PictureDitConfig
@@ -79,8 +79,7 @@ class Ablation(Trainer):
             part = self.pool.moments(frames, torch.randint(2, (batch,)), mirrored)
             told, after = (torch.rand(batch) for _ in range(2))
             told = told >= self.args.silent
-            for key in ("classes", "facing", "depth_m"):
-                part[key] = part[key] * told.view(batch, 1, 1, 1)
+            silence(part, told)
             noise = torch.Generator().manual_seed(seed * 10**6 + step)
             loss, v = self.v_loss(model, part, noise, before=(after < self.args.before) & told, how=HOW.get(name, "objects"), done=done)
             learner.update(loss, {"v": v})

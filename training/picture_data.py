@@ -17,6 +17,7 @@ import numpy as np
 import torch
 
 from data import listen
+from models.picture_dit import NOTHING
 from models.picture_vae import CELL
 
 DTYPES = {"U8": np.uint8, "U16": np.uint16, "F32": np.float32}
@@ -208,6 +209,14 @@ class Pool:
         return out
 
 
+def silence(part, told):
+    """Tells of some frames nothing (`told` bool [B] is False): a network learns what pictures are without being told, and is guided by the difference."""
+    for key in ("classes", "facing", "depth_m"):
+        part[key] = part[key] * told.view(-1, 1, 1, 1)
+    if "dense" in part:
+        part["dense"] = part["dense"].masked_fill(~told.view(-1, 1, 1, 1), NOTHING)
+
+
 def as_pictures(rgb):
     """u8 [...,h,w,3] -> f32 [...,3,h,w], -1 to 1, channels_last."""
     return (rgb.float() / 127.5 - 1).movedim(-1, -3)
@@ -238,12 +247,13 @@ def planes_of(dense, pose, intrinsic, size, planes):
     v, u = torch.meshgrid(torch.arange(h, device=device) * 2 + 1.0, torch.arange(w, device=device) * 2 + 1.0, indexing="ij")
     fx, fy, cx, cy = (intrinsic[..., i, j, None, None] for i, j in ((0, 0), (1, 1), (0, 2), (1, 2)))
     ray = ((u - cx) / fx, (v - cy) / fy, torch.ones_like(u))
-    turned = torch.stack([sum(pose[..., i, j, None, None] * ray[j] for j in range(3)) for i in range(3)], -1)
     depth = torch.exp(torch.linspace(0, float(np.log(50)), planes, device=device))
-    p = turned[:, :, None] * depth[:, None, None, None] + pose[:, :, None, None, None, :3, 3]
-    cell = ((p - constant((-40.0, -40.0, -1.0), device)) / 0.4).floor().long()
-    inside = ((cell >= 0) & (cell < constant((200, 200, 16), device))).all(-1)
-    cell = cell.clamp(min=0).minimum(constant((199, 199, 15), device))
-    index = (cell[..., 0] * 200 + cell[..., 1]) * 16 + cell[..., 2]
-    labels = dense.flatten(1).gather(1, index.flatten(1)).view(index.shape)
-    return labels.masked_fill(~inside, 17)
+    index, inside = 0, True
+    for axis, (low_m, count) in enumerate(((-40.0, 200), (-40.0, 200), (-1.0, 16))):
+        turned = sum(pose[..., axis, j, None, None] * ray[j] for j in range(3))
+        p = turned[:, :, None] * depth[:, None, None] + pose[:, :, None, None, None, axis, 3]
+        cell = p.sub_(low_m).div_(0.4).floor_()
+        inside = inside & (cell >= 0) & (cell < count)
+        index = index * count + cell.clamp_(0, count - 1).int()
+    labels = dense.flatten(1).gather(1, index.flatten(1).long()).view(index.shape)
+    return labels.masked_fill(~inside, NOTHING)

@@ -14,7 +14,7 @@ import train_pictures
 from models.picture_dit import PictureDit, PictureDitConfig, Told, rows, seen_then, warp
 from models.picture_vae import Critic, PictureVae, PictureVaeConfig
 from models.segmenter import Segmenter, SegmenterConfig
-from picture_data import MIRRORED, Pool, Streams, as_bytes, as_pictures, camera_numbers, mirrored_facing, planes_of, ways
+from picture_data import MIRRORED, Pool, Streams, as_bytes, as_pictures, camera_numbers, mirrored_facing, planes_of, silence, ways
 
 SIZE = (64, 32)
 POSE = np.array([[0, 0, 1, 0], [-1, 0, 0, 0], [0, -1, 0, 1.5], [0, 0, 0, 1]], np.float32)  # looks along x
@@ -114,7 +114,11 @@ def a_mirror_is_a_mirror():
     numbers = camera_numbers(made["map_from_camera"], made["intrinsic"], made["sun"], SIZE[0])
     assert np.allclose(numbers[..., 3:6], [0, -1, 0], atol=1e-6)  # the camera's y axis points down
     planes = planes_of(plain["dense"], plain["pose"], plain["intrinsic"], SIZE, 4)
-    assert planes.shape == (2, 6, 4, 16, 32) and (planes <= 17).all()
+    assert planes.shape == (2, 6, 4, 16, 32) and (planes <= 17).all() and (planes < 17).any()
+    silence(plain, torch.tensor([True, False]))
+    assert plain["classes"][0].any() and not plain["classes"][1].any() and not plain["depth_m"][1].any()
+    silent = planes_of(plain["dense"], plain["pose"], plain["intrinsic"], SIZE, 4)
+    assert torch.equal(silent[0], planes[0]) and (silent[1] == 17).all()
 
 
 def a_folder_of_shards_is_a_stream():

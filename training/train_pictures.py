@@ -21,10 +21,10 @@ from torch.nn import functional as F
 
 from loop import pick_device
 from muon import orthogonalised
-from models.picture_dit import PictureDit, PictureDitConfig, cell_depth, warp
+from models.picture_dit import NOTHING, PictureDit, PictureDitConfig, cell_depth, warp
 from models.picture_vae import CELL, Critic, PictureVae, PictureVaeConfig
 from models.segmenter import OUTSIDE, Segmenter, SegmenterConfig
-from picture_data import Pool, Streams, constant, planes_of
+from picture_data import Pool, Streams, constant, planes_of, silence
 from picture_eval import figures_of, write_sheets
 from schedule import STEPS, alpha_bar
 
@@ -332,7 +332,8 @@ class Trainer:
         c = model.config
         planes = None
         if c.planes:
-            planes = planes_of(part["dense"], part["pose"], part["intrinsic"], self.pool.size, c.planes)
+            dense = part["dense"] if hears else torch.full_like(part["dense"], NOTHING)
+            planes = planes_of(dense, part["pose"], part["intrinsic"], self.pool.size, c.planes)
         time_of_day, weather, depth = part["time"], part["weather"], part["depth_m"]
         classes, facing = part["classes"], part["facing"]
         if not hears:
@@ -388,8 +389,7 @@ class Trainer:
         u, told, after = (torch.rand(n, device=self.device) for _ in range(3))
         part["time"], part["weather"] = part["time"].masked_fill(u < 0.05, 4), part["weather"].masked_fill((u > 0.03) & (u < 0.08), 6)
         told = told >= self.args.silent
-        for key in ("classes", "facing", "depth_m"):
-            part[key] = part[key] * told.view(n, 1, 1, 1)
+        silence(part, told)
         loss, v = self.v_loss(learner.model, part, None, before=(after < self.args.before) & told)
         learner.update(loss, {"v": v})
 
