@@ -148,6 +148,8 @@ impl Perceiving {
                     (self.swept, self.problem) = (Some((rev, Arc::new(report))), None)
                 }
                 News::Told(rev, report) => (self.told, self.problem) = (Some((rev, Arc::new(report))), None),
+                // What was forgotten may still be searched.
+                News::Tried(..) | News::Searched(_) if self.searching.is_none() => {}
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
                 News::Searched(found) => {
                     self.searching = None;
@@ -170,8 +172,8 @@ impl Perceiving {
     pub fn forget(&mut self) {
         (self.seen, self.swept, self.told) = (None, None, None);
         self.found.clear();
-        self.problem = None;
-        if self.searching.is_some() {
+        (self.asked, self.problem) = (None, None);
+        if self.searching.take().is_some() {
             self.stop();
         }
     }
@@ -243,6 +245,12 @@ mod tests {
         let found = perceiving.found.pop().expect("a search");
         assert_eq!((found.id, found.of), (id, scene.rev));
         assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
+        // A scene that is forgotten leaves nothing of its search, and is looked at anew.
+        perceiving.search(&scene, id, Vary::Distance, Sensor::Cameras);
+        perceiving.forget();
+        assert!(perceiving.seen.is_none() && perceiving.searching.is_none());
+        wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
+        assert!(perceiving.found.is_empty() && perceiving.searching.is_none());
         // A box that is not there is told, and the thread goes on.
         perceiving.search(&scene, BoxId(9999), Vary::Fog, Sensor::Cameras);
         wait(&mut perceiving, by, |p| p.problem.is_some());

@@ -222,8 +222,28 @@ fn drives_become_pictures_to_train_on() {
     let rgb = tensor("rgb").data().to_vec();
     let moment = rgb.len() / 4;
     assert!(rgb[moment..2 * moment] == rgb[2 * moment..3 * moment]);
-    // The pictures that were written show, at their places, what the voxels that were read tell: they are those of the program's
-    // renderer, drawn again from the tables alone.
+    // Clockwise, each camera's own pictures, in order of time.
+    let ring = [
+        "FRONT_LEFT",
+        "FRONT",
+        "FRONT_RIGHT",
+        "BACK_RIGHT",
+        "BACK",
+        "BACK_LEFT",
+    ];
+    for (view, name) in ring.iter().enumerate() {
+        let folder = Path::new(&tables).join(format!("samples/CAM_{name}"));
+        let mut files: Vec<_> = std::fs::read_dir(folder).expect("pictures").collect();
+        files.sort_by_key(|f| f.as_ref().expect("a file").file_name());
+        for (i, file) in files.iter().take(2).enumerate() {
+            let picture = image::open(file.as_ref().expect("a file").path())
+                .expect("a JPEG")
+                .to_rgb8();
+            let at = i * moment + view * moment / 6;
+            assert!(picture.as_raw()[..] == rgb[at..at + moment / 6], "{name} {i}");
+        }
+    }
+    // What the voxels tell is what the renderer shows at the places of the cameras.
     let (class, told) = (
         tensor("class").data().to_vec(),
         tensor("told_class").data().to_vec(),

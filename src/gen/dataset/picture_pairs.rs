@@ -3,14 +3,14 @@
 use glam::DVec2;
 use safetensors::tensor::Dtype;
 
-use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera, place_of};
+use super::pictures::{DEPTH_STEP_M, floats, intrinsic, is_free, map_from_camera, place_of, rendered};
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
     BevLayout, Camera, CameraTruth, Conditions, Extent, Frame, PolylineKind, Pose, SensorRig, TimeOfDay,
     VoxelGrid, Weather,
 };
 pub use sensors::appearance::Quality;
-use sensors::appearance::{Appearance, light_direction};
+use sensors::appearance::light_direction;
 use sensors::picture_hints::{HintedFrame, PictureHints};
 use world::World;
 use world::draw::Draw;
@@ -138,22 +138,6 @@ pub(super) fn conditions_of(draw: &mut Draw, seed: u64) -> Conditions {
     Conditions::usual(time, weather, seed)
 }
 
-/// What each camera of a rig shows, sRGB, three bytes a pixel, and what each of its pixels is.
-pub(super) fn rendered(
-    frame: &Frame,
-    rig: &SensorRig,
-    conditions: &Conditions,
-    look: Look,
-) -> (Vec<Vec<u8>>, Vec<CameraTruth>) {
-    let appearance = Appearance::new(frame, rig, conditions);
-    let of = |camera: &Camera| {
-        let (image, truth) = appearance.render_truth(camera, look.size_px, look.quality, &frame.boxes, None);
-        let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
-        (rgb.collect(), truth)
-    };
-    rig.cameras.iter().map(of).unzip()
-}
-
 fn seen(
     frame: &Frame,
     teller: &HintedFrame<'_>,
@@ -161,7 +145,7 @@ fn seen(
     rig: &SensorRig,
     look: Look,
 ) -> PictureMoment {
-    let (rgb, truth) = rendered(frame, rig, conditions, look);
+    let (rgb, truth) = rendered(frame, rig, conditions, (look.size_px, look.quality));
     let to_sun = light_direction(conditions).as_dvec3();
     let sun = |camera: &Camera| {
         let local = camera.ego_from_camera().rotation.inverse() * to_sun;

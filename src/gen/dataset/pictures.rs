@@ -5,8 +5,8 @@ use safetensors::tensor::Dtype;
 
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{
-    BevLayout, CameraTruth, Class, Conditions, Extent, Frame, PolylineKind, Pose, SceneBox, SensorRig,
-    TimeOfDay, VoxelGrid, Weather, raster,
+    BevLayout, Camera, CameraTruth, Class, Conditions, Extent, Frame, PolylineKind, Pose, SceneBox,
+    SensorRig, TimeOfDay, VoxelGrid, Weather, raster,
 };
 use sensors::appearance::{Appearance, Quality};
 use world::draw::Draw;
@@ -52,17 +52,7 @@ pub fn picture_frame(
     let time = TimeOfDay::ALL[draw.weighted(&[0.15, 0.5, 0.15, 0.2])];
     let weather = Weather::ALL[draw.weighted(&[0.4, 0.2, 0.2, 0.08, 0.08, 0.04])];
     let conditions = Conditions::usual(time, weather, seed);
-    let appearance = Appearance::new(&frame, &rig, &conditions);
-    let seen = rig
-        .cameras
-        .iter()
-        .map(|camera| appearance.render_truth(camera, size_px, Quality::Full, &frame.boxes, None));
-    let (rgb, truth) = seen
-        .map(|(image, truth)| {
-            let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
-            (rgb.collect(), truth)
-        })
-        .unzip();
+    let (rgb, truth) = rendered(&frame, &rig, &conditions, (size_px, Quality::Full));
     PictureFrame {
         bev: raster::bev_channels(&frame.layout, frame.boxes.values()),
         dense: frame.occupancy,
@@ -70,6 +60,22 @@ pub fn picture_frame(
         rgb,
         truth,
     }
+}
+
+/// What each camera of a rig shows, sRGB, three bytes a pixel, and what each of its pixels is, at a size in pixels.
+pub(super) fn rendered(
+    frame: &Frame,
+    rig: &SensorRig,
+    conditions: &Conditions,
+    (size_px, quality): ([u32; 2], Quality),
+) -> (Vec<Vec<u8>>, Vec<CameraTruth>) {
+    let appearance = Appearance::new(frame, rig, conditions);
+    let of = |camera: &Camera| {
+        let (image, truth) = appearance.render_truth(camera, size_px, quality, &frame.boxes, None);
+        let rgb = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
+        (rgb.collect(), truth)
+    };
+    rig.cameras.iter().map(of).unzip()
 }
 
 /// The place on a lane, nearest to the middle of the map, where nothing is in the vehicle's way; the middle if there is none.

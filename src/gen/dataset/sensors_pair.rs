@@ -3,8 +3,8 @@
 use safetensors::tensor::Dtype;
 
 use super::perception::{PerceptionFrame, swept};
-use super::picture_pairs::{Look, conditions_of, rendered};
-use super::pictures::{floats, intrinsic, map_from_camera};
+use super::picture_pairs::{Look, conditions_of};
+use super::pictures::{floats, intrinsic, map_from_camera, rendered};
 use super::{Shard, VOXELS, voxels, world_of};
 use scene::{BevLayout, CameraTruth, Frame, SensorRig, VoxelGrid};
 use world::draw::Draw;
@@ -34,7 +34,12 @@ pub fn sensors_pair(
     let sweep = swept(&world, &dense, seed);
     let conditions = conditions_of(&mut Draw::new(seed, "sensors pair"), seed);
     let frame = Frame::new(world.layout, world.boxes, dense);
-    let (rgb, truth) = rendered(&frame, &SensorRig::default(), &conditions, look);
+    let (rgb, truth) = rendered(
+        &frame,
+        &SensorRig::default(),
+        &conditions,
+        (look.size_px, look.quality),
+    );
     SensorsPair {
         sweep,
         rgb,
