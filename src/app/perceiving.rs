@@ -247,6 +247,9 @@ mod tests {
         assert!(perceiving.searching.is_none() && !found.search.tried.is_empty());
         // A scene that is forgotten leaves nothing of its search, and is looked at anew.
         perceiving.search(&scene, id, Vary::Distance, Sensor::Cameras);
+        wait(&mut perceiving, by, |p| {
+            p.searching.is_some_and(|(_, [tried, _])| tried > 0)
+        });
         perceiving.forget();
         assert!(perceiving.seen.is_none() && perceiving.searching.is_none());
         wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
