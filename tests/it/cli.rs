@@ -456,6 +456,10 @@ fn occ3d_frames_are_scenes_and_training_data() {
     ];
     assert_eq!(json(&sceneloom(&args))["frames"], 2);
     assert_eq!(json(&sceneloom(&args))["bytes"], 0);
+    refused(
+        &["dataset", "occ3d", "--frames", "3", "--seed", "9", "-o", &made],
+        &["made with seed 8, found 9"],
+    );
     let frame = occ3d::load(&Path::new(&made).join("00001/labels.npz")).expect("a frame");
     let [lidar, camera] = [frame.lidar_observed, frame.camera_observed].map(|m| m.expect("a mask"));
     let count = |mask: &[bool]| mask.iter().filter(|seen| **seen).count();

@@ -162,6 +162,13 @@ impl Queue {
         }
     }
 
+    /// The batch that runs when the one at hand is over: of those that wait the first of the most urgent.
+    pub fn next_up(&self) -> Option<u64> {
+        let waiting = self.items.iter().filter(|i| i.state == State::Waiting);
+        // Of equals the last one is taken: from the back that is the first one.
+        waiting.rev().max_by_key(|i| i.priority).map(|i| i.id)
+    }
+
     /// Puts a batch that waits before all others that do. The one that runs goes on.
     pub fn run_next(&mut self, id: u64) {
         let waits = |i: &&Item| i.state == State::Waiting;
@@ -270,18 +277,11 @@ impl Queue {
     }
 
     fn start_next(&mut self, wake: impl Fn() + Clone + Send + 'static) {
-        let waits = |i: &&mut Item| i.state == State::Waiting;
-        // (of equals the last one is taken: from the back that is the first one)
-        let next = self
-            .items
-            .iter_mut()
-            .rev()
-            .filter(waits)
-            .max_by_key(|i| i.priority);
+        let next = self.next_up();
         let is_index = next.is_none();
         let old = |i: &&mut Item| i.is_index_old && matches!(i.state, State::Done(_));
         let Some(item) = (match next {
-            Some(item) => Some(item),
+            Some(id) => self.item_mut(id),
             None => self.items.iter_mut().find(old),
         }) else {
             return;
@@ -401,7 +401,9 @@ mod tests {
         until(&mut queue, "begins", |q| {
             q.item(first).is_some_and(|i| i.done > 0)
         });
+        assert_eq!(queue.next_up(), Some(second));
         queue.run_next(third);
+        assert_eq!(queue.next_up(), Some(third));
         assert_eq!(queue.item(third).map(|i| i.priority), Some(Priority::Normal));
         // One that runs cannot come next.
         queue.run_next(first);

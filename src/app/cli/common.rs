@@ -18,9 +18,14 @@ pub(crate) struct Common {
     /// Show progress on stderr even when it is not a terminal.
     #[arg(long)]
     pub(super) progress: bool,
+}
+
+/// Which networks a command that generates takes.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct Weights {
     /// Folder of weights (occ_vae.safetensors, occ_dit.safetensors) instead of the bundled ones.
-    #[arg(long, value_name = "DIR", global = true)]
-    pub(super) weights: Option<PathBuf>,
+    #[arg(long = "weights", value_name = "DIR")]
+    pub(super) folder: Option<PathBuf>,
 }
 
 /// Knobs of a generation.

@@ -1,15 +1,17 @@
 //! `sceneloom dataset`: training and evaluation data from procedural worlds or a folder of labels.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, bail};
+use serde_json::{Map, Value, json};
 
+use super::dataset_recorded::Pairs;
 use super::progress::Progress;
 use super::render::size;
 use super::{Common, Outcome, output};
-use super::{dataset_occ3d, dataset_recorded};
+use super::{dataset_occ3d, dataset_recipe};
 use app::memory;
 use app::open;
 use authoring::drives::{drive_scene, frames_of};
@@ -48,7 +50,7 @@ pub struct Dataset {
     /// Fixes the worlds; use different seeds for training, validation and test.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Folder to write shards into; shards that are there already are kept.
+    /// Folder to write shards into; those that are there already are kept, if they were made with the same arguments.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
     #[command(flatten)]
@@ -59,14 +61,15 @@ impl Dataset {
     pub(super) fn run(self) -> Outcome {
         let progress = Progress::new(&self.common);
         let start = Instant::now();
+        let recipe = self.recipe();
         if let (Some(from), "pictures") = (&self.from, self.kind.as_str()) {
-            let step = |done, frames| {
-                progress.at(&self.kind, done, frames);
+            let pairs = Pairs::open(from, (self.drives.clone(), self.frames), self.size_px())?;
+            dataset_recipe::claim(&self.output, &recipe)?;
+            let step = |done| {
+                progress.at(&self.kind, done, pairs.count());
                 true
             };
-            let which = (self.drives.clone(), self.frames);
-            let size = self.size.unwrap_or([256, 144]);
-            let (report, incomplete) = dataset_recorded::write(from, which, size, &self.output, step)?;
+            let (report, incomplete) = pairs.write(&self.output, step)?;
             progress.done();
             return self.report(&report, Some(incomplete), start);
         }
@@ -88,6 +91,9 @@ impl Dataset {
             Some(dir) => Roads::open(dir)?,
             None => Roads::default(),
         };
+        if self.kind != "memory" {
+            dataset_recipe::claim(&self.output, &recipe)?;
+        }
         let make = |i: usize| -> anyhow::Result<OccupancyFrame> {
             Ok(match files.get(i) {
                 Some(path) => {
@@ -116,7 +122,7 @@ impl Dataset {
                 dataset::write(&self.output, frames, make, step)
             }
             "pictures" => {
-                let size = self.size.unwrap_or([400, 225]);
+                let size = self.size_px();
                 let make = |i: usize| {
                     anyhow::Ok(picture_frame(self.seed, i as u64, size, |seed| {
                         roads.layout(seed)
@@ -144,6 +150,33 @@ impl Dataset {
         .with_context(|| format!("write {}", self.output.display()))?;
         progress.done();
         self.report(&report, None, start)
+    }
+
+    /// Of camera pictures.
+    fn size_px(&self) -> [u32; 2] {
+        let usual = match self.from {
+            Some(_) => [256, 144],
+            None => [400, 225],
+        };
+        self.size.unwrap_or(usual)
+    }
+
+    /// All arguments that its data depend on; more frames of the same are no others.
+    fn recipe(&self) -> Map<String, Value> {
+        let size = (self.kind == "pictures").then(|| self.size_px());
+        let drives = self.drives.as_ref().map(|d| [d.start, d.end]);
+        let recipe = [
+            ("kind", json!(self.kind)),
+            ("seed", json!(self.seed)),
+            ("from", json!(whole(self.from.as_deref()))),
+            ("roads", json!(whole(self.roads.as_deref()))),
+            ("drives", json!(drives)),
+            ("size", json!(size)),
+        ];
+        recipe
+            .map(|(what, value)| (what.to_owned(), value))
+            .into_iter()
+            .collect()
     }
 
     /// Errors: what is named by --from or --drives is nothing for this kind.
@@ -195,6 +228,11 @@ impl Dataset {
             resumed_shards: 0,
         })
     }
+}
+
+/// A folder's whole path, where there is one.
+fn whole(dir: Option<&Path>) -> Option<PathBuf> {
+    dir.map(|d| d.canonicalize().unwrap_or_else(|_| d.into()))
 }
 
 /// `A..B`.

@@ -15,7 +15,7 @@ use formats::import::nuscenes::pictures::{PictureDrive, PictureFolder, pixels};
 const KEPT: usize = 2;
 
 /// Pairs of key frames that follow each other, of some drives of a folder.
-struct Pairs {
+pub(super) struct Pairs {
     folder: PictureFolder,
     /// Drive and first moment of each.
     places: Vec<[usize; 2]>,
@@ -24,7 +24,12 @@ struct Pairs {
 }
 
 impl Pairs {
-    fn open(from: &Path, drives: Option<Range<usize>>, size_px: [u32; 2]) -> anyhow::Result<Self> {
+    /// Those of some drives, or all; the first so many, or all. Errors if the folder has fewer, or none.
+    pub(super) fn open(
+        from: &Path,
+        (drives, frames): (Option<Range<usize>>, Option<usize>),
+        size_px: [u32; 2],
+    ) -> anyhow::Result<Self> {
         let folder = PictureFolder::open(from)?;
         let counts: Vec<usize> = folder.drives().collect();
         let range = drives.unwrap_or(0..counts.len());
@@ -37,8 +42,23 @@ impl Pairs {
             );
         }
         let of_drive = |drive: usize| (0..counts[drive].saturating_sub(1)).map(move |first| [drive, first]);
+        let mut places: Vec<[usize; 2]> = range.flat_map(of_drive).collect();
+        if places.is_empty() {
+            bail!(
+                "{}: no key frame with pictures follows another, expected drives",
+                from.display()
+            );
+        }
+        let found = places.len();
+        let frames = frames.unwrap_or(found);
+        if frames > found || frames == 0 {
+            bail!(
+                "--frames is {frames}, expected 1 to {found}, the pairs of key frames that follow each other"
+            );
+        }
+        places.truncate(frames);
         Ok(Self {
-            places: range.flat_map(of_drive).collect(),
+            places,
             folder,
             size_px,
             kept: Mutex::default(),
@@ -81,28 +101,19 @@ impl Pairs {
             self.size_px,
         ))
     }
-}
 
-/// Writes shards of two moments each, all or the first so many; and how many key frames of the folder lack pictures.
-pub(super) fn write(
-    from: &Path,
-    (drives, frames): (Option<Range<usize>>, Option<usize>),
-    size_px: [u32; 2],
-    output: &Path,
-    step: impl Fn(usize, usize) -> bool + Sync,
-) -> anyhow::Result<(DatasetReport, usize)> {
-    let pairs = Pairs::open(from, drives, size_px)?;
-    let found = pairs.places.len();
-    if found == 0 {
-        bail!(
-            "{}: no key frame with pictures follows another, expected drives",
-            from.display()
-        );
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.places.len()
     }
-    let frames = frames.unwrap_or(found);
-    if frames > found || frames == 0 {
-        bail!("--frames is {frames}, expected 1 to {found}, the pairs of key frames that follow each other");
+
+    /// Writes shards of all; and how many key frames of the folder lack pictures.
+    pub(super) fn write(
+        &self,
+        output: &Path,
+        step: impl Fn(usize) -> bool + Sync,
+    ) -> anyhow::Result<(DatasetReport, usize)> {
+        let report = dataset::write(output, self.count(), |i| self.make(i), step)?;
+        Ok((report, self.folder.incomplete))
     }
-    let report = dataset::write(output, frames, |i| pairs.make(i), |done| step(done, frames))?;
-    Ok((report, pairs.folder.incomplete))
 }

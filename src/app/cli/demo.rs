@@ -10,7 +10,7 @@ use serde_json::json;
 use super::generate::run_and_adopt;
 use super::progress::Progress;
 use super::render::sense;
-use super::{Common, Outcome, output};
+use super::{Common, Outcome, Weights, output};
 use app::open;
 use app::picture::{self, Picture, View3d};
 use app::text::with_conditions;
@@ -28,6 +28,8 @@ pub struct Demo {
     /// Folder to write into.
     #[arg(short, long, value_name = "DIR", default_value = "sceneloom-demo")]
     output: PathBuf,
+    #[command(flatten)]
+    weights: Weights,
     #[command(flatten)]
     common: Common,
 }
@@ -166,7 +168,7 @@ impl Demo {
         std::fs::create_dir_all(&dir).with_context(|| format!("create {}", dir.display()))?;
         let progress = Progress::new(&self.common);
         let start = Instant::now();
-        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
         let mut document = Document::new(open::bundled()?);
         let mut sink = Sink {
             dir: &dir,

@@ -2,13 +2,15 @@
 
 use serde_json::json;
 
-use super::{Common, Outcome, output};
+use super::{Common, Outcome, Weights, output};
 use nets::OccModels;
 use viewport::headless_device;
 
 /// Arguments.
 #[derive(clap::Args)]
 pub struct Doctor {
+    #[command(flatten)]
+    weights: Weights,
     #[command(flatten)]
     common: Common,
 }
@@ -47,7 +49,7 @@ impl Doctor {
             }
             Err(error) => json!({ "error": error.to_string() }),
         };
-        let weights = match OccModels::of(self.common.weights.as_deref()) {
+        let weights = match OccModels::of(self.weights.folder.as_deref()) {
             Ok(models) => json!({ "name": models.card.name, "ok": true }),
             Err(error) => json!({ "ok": false, "error": output::one_line(&error.into()) }),
         };

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::generate::run_and_adopt;
 use super::progress::Progress;
-use super::{Common, Gen, Outcome, Stop, output};
+use super::{Common, Gen, Outcome, Stop, Weights, output};
 use app::open;
 use app::text::with_conditions;
 use editor::{Document, Edit};
@@ -35,6 +35,8 @@ pub struct EditCommand {
     #[command(flatten)]
     generation: Gen,
     #[command(flatten)]
+    weights: Weights,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -57,7 +59,7 @@ impl EditCommand {
         document
             .apply_all("Edit", &with_conditions(&edits, seed))
             .with_context(|| self.edits.display().to_string())?;
-        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
         let round_trip = if self.verify {
             let job = Job {
                 scene: before,

@@ -7,7 +7,7 @@ use anyhow::Context;
 use serde_json::{Value, json};
 
 use crate::progress::Progress;
-use crate::{Common, Gen, Outcome, Stop, output};
+use crate::{Common, Gen, Outcome, Stop, Weights, output};
 use job::GenParams;
 use judge::markdown::{Table, markdown, measure_all};
 use judge::options::Options;
@@ -81,6 +81,8 @@ pub struct Eval {
     #[command(flatten)]
     generation: Gen,
     #[command(flatten)]
+    weights: Weights,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -113,7 +115,7 @@ impl Eval {
             rows_only: self.rows_only || options.rows_only,
             scene_params,
             edit_params,
-            weights: self.common.weights.clone(),
+            weights: self.weights.folder.clone(),
         }
     }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::progress::Progress;
-use super::{Common, Gen, Outcome, output};
+use super::{Common, Gen, Outcome, Weights, output};
 use app::open;
 use app::scenery::SceneryWish;
 use editor::Document;
@@ -33,6 +33,8 @@ pub struct Generate {
     bare: bool,
     #[command(flatten)]
     generation: Gen,
+    #[command(flatten)]
+    weights: Weights,
     #[command(flatten)]
     common: Common,
 }
@@ -81,7 +83,7 @@ fn draw_scenery(document: &mut Document, params: &GenParams) -> anyhow::Result<b
 impl Generate {
     pub(super) fn run(self) -> Outcome {
         let scene = open::scene(&self.scene)?;
-        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
         let progress = Progress::new(&self.common);
         let params = self.generation.params(GenParams::whole_scene())?;
         let mut document = Document::new(scene);

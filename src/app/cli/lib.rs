@@ -7,6 +7,7 @@ mod clip;
 mod common;
 mod dataset;
 mod dataset_occ3d;
+mod dataset_recipe;
 mod dataset_recorded;
 mod demo;
 mod diff;
@@ -41,7 +42,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-pub(crate) use common::Common;
+pub(crate) use common::{Common, Weights};
 use common::{Gen, Moment, Outcome, Stop};
 
 use app::open;

@@ -1,11 +1,17 @@
 //! Arguments for learned pictures: with which weights, and how.
 
+use std::path::PathBuf;
+
 use app::painting::PaintWish;
 
 /// How learned pictures are painted.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(super) struct Painting {
-    /// What learned pictures show, in words, for public weights (a folder with model_index.json as --weights); time, weather and
+    /// Folder of weights that paint learned pictures instead of the bundled ones: of the same training, or public ones with
+    /// model_index.json.
+    #[arg(long, value_name = "DIR")]
+    weights: Option<PathBuf>,
+    /// What learned pictures show, in words, for public weights; time, weather and
     /// camera are added.
     #[arg(long = "paint-prompt", value_name = "WORDS")]
     prompt: Option<String>,
@@ -24,10 +30,10 @@ pub(super) struct Painting {
 }
 
 impl Painting {
-    /// With the weights of a folder, or those that ship.
-    pub fn wish(&self, weights: Option<&std::path::Path>) -> PaintWish {
+    /// What the arguments ask for.
+    pub fn wish(&self) -> PaintWish {
         PaintWish {
-            weights: weights.map(Into::into),
+            weights: self.weights.clone(),
             steps: self.steps,
             guidance: self.guidance,
             strength: self.strength,

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::generate::run_and_adopt;
 use super::new::class_counts;
 use super::progress::Progress;
-use super::{Common, Outcome, Stop, output};
+use super::{Common, Outcome, Stop, Weights, output};
 use crate::endpoint::{self, Endpoint};
 use app::open;
 use app::prompting::{How, Keep, Placer};
@@ -74,6 +74,8 @@ pub struct Prompt {
     #[arg(long, value_name = "S", default_value_t = 60.0)]
     timeout_s: f64,
     #[command(flatten)]
+    weights: Weights,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -115,7 +117,7 @@ impl Prompt {
         mut document: Document,
         params: GenParams,
     ) -> anyhow::Result<(Scene, serde_json::Value)> {
-        let mut pipeline = OccPipeline::new(OccModels::of(self.common.weights.as_deref())?);
+        let mut pipeline = OccPipeline::new(OccModels::of(self.weights.folder.as_deref())?);
         let params = GenParams {
             seed: self.seed,
             ..params
@@ -160,7 +162,7 @@ impl Prompt {
             placer: self.placer,
             memory: self.memory && !self.no_memory,
             own_scenes: self.memory_scenes.clone(),
-            weights: self.common.weights.clone(),
+            weights: self.weights.folder.clone(),
             keep: self.kept()?,
             ..How::default()
         };

@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use serde_json::json;
 
 use super::progress::Progress;
-use super::{Common, Outcome, Stop, output};
+use super::{Common, Outcome, Stop, Weights, output};
 use app::trade_plot;
 use judge::held_out::TEST_SEED;
 use judge::machine::{Load, machine};
@@ -69,6 +69,8 @@ pub struct Trade {
     #[arg(long, hide = true, default_value_t = 0)]
     process: u64,
     #[command(flatten)]
+    weights: Weights,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -109,7 +111,7 @@ impl Trade {
         let plan = self.plan();
         plan.check()?;
         let load = self.look_at_load()?;
-        let models = OccModels::of(self.common.weights.as_deref())?;
+        let models = OccModels::of(self.weights.folder.as_deref())?;
         let progress = Progress::new(&self.common);
         let processes = self.processes.unwrap_or(if self.suite == "full" { 3 } else { 1 });
         let raw = if processes > 1 && !self.raw {
@@ -192,7 +194,7 @@ impl Trade {
                 .arg(&references)
                 .arg("-o")
                 .arg(&file);
-            if let Some(weights) = &self.common.weights {
+            if let Some(weights) = &self.weights.folder {
                 command.arg("--weights").arg(weights);
             }
             let ended = command

@@ -130,7 +130,7 @@ impl BatchesWindow {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for item in queue.items() {
                 let is_chosen = !self.is_new && self.chosen == Some(item.id);
-                let (color, right) = told(item);
+                let (color, right) = told(item, queue.next_up() == Some(item.id));
                 if icons::row(ui, color, &item.name, &right, is_chosen, &item.name).clicked() {
                     (self.chosen, self.is_new) = (Some(item.id), false);
                 }
@@ -231,9 +231,10 @@ fn cell_size() -> egui::Vec2 {
 }
 
 /// State in a colour and a word.
-fn told(item: &Item) -> (Color32, String) {
+fn told(item: &Item, is_next: bool) -> (Color32, String) {
     let of = item.plan.count();
     match &item.state {
+        State::Waiting if is_next => (theme::text_weak(), t("is next").into()),
         State::Waiting => (theme::text_weak(), t("waits").into()),
         State::Running => (
             theme::accent(),
@@ -269,11 +270,10 @@ fn header(ui: &mut Ui, queue: &mut Queue, id: u64) {
         if icons::segments(ui, &mut chosen, &names) {
             queue.set_priority(id, chosen);
         }
-        if state == State::Waiting {
-            let next = ui.button(t("Run next"));
-            if next.on_hover_text(t("before all others that wait")).clicked() {
-                queue.run_next(id);
-            }
+        let can_be_next = state == State::Waiting && queue.next_up() != Some(id);
+        let next = ui.add_enabled(can_be_next, egui::Button::new(t("Run next")));
+        if next.on_hover_text(t("before all others that wait")).clicked() {
+            queue.run_next(id);
         }
         match &state {
             State::Running | State::Waiting => {

@@ -76,7 +76,7 @@ impl Render {
             scene.rig = open::rig(path)?.into();
         }
         let paints = self.what.iter().any(|w| w == learned::VIEW.id.name());
-        let wish = self.painting.wish(self.common.weights.as_deref());
+        let wish = self.painting.wish();
         let paint = paints
             .then(|| wish.open())
             .transpose()

@@ -7,6 +7,7 @@ use crate::command::{Command, ViewCommand};
 use crate::panes::pane::PaneContext;
 use crate::perceiving::Perceiving;
 use language::{t, tf};
+use scene::SceneBox;
 use sensors::cameras::perceived;
 use sensors::perceived::SeenByRig;
 use sensors::perceived_sweep::SeenBySweep;
@@ -111,9 +112,8 @@ pub(super) fn told_ui(
             percent = format!("{:.0}", b.share * 100.0)
         );
         let chosen = cx.state.selected == Some(b.id);
-        if ui.selectable_label(chosen, text).clicked() {
-            commands.push(Command::Select(Some(b.id)));
-        }
+        let response = ui.selectable_label(chosen, text);
+        choose_on_click(&response, of, commands);
     });
     if let Some(report) = report.filter(|_| right) {
         left_out(ui, report.boxes.len(), cx);
@@ -152,9 +152,8 @@ fn swept_row(ui: &mut Ui, seen: &SeenBySweep, cx: &PaneContext<'_>, commands: &m
         None => tf!("{name}: {n} returns", name = name, n = seen.returns),
     };
     let chosen = cx.state.selected == Some(seen.id);
-    if ui.selectable_label(chosen, text).clicked() {
-        commands.push(Command::Select(Some(seen.id)));
-    }
+    let response = ui.selectable_label(chosen, text);
+    choose_on_click(&response, b, commands);
 }
 
 /// What is missed and things where there are none, or what is seen, or both.
@@ -220,7 +219,14 @@ fn row(ui: &mut Ui, seen: &SeenByRig, cx: &PaneContext<'_>, commands: &mut Vec<C
         percent = format!("{:.0}", seen.thing.share * 100.0)
     );
     let chosen = cx.state.selected == Some(id);
-    if ui.selectable_label(chosen, text).on_hover_text(hint).clicked() {
-        commands.push(Command::Select(Some(id)));
+    let response = ui.selectable_label(chosen, text).on_hover_text(hint);
+    choose_on_click(&response, b, commands);
+}
+
+/// A click on the line of a box chooses it and moves the views there, as in the list of checks.
+fn choose_on_click(response: &egui::Response, b: &SceneBox, commands: &mut Vec<Command>) {
+    if response.clicked() {
+        commands.push(Command::Select(Some(b.id)));
+        commands.push(Command::View(ViewCommand::FrameAt(b.center_m)));
     }
 }

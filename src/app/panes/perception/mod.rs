@@ -159,30 +159,44 @@ impl Pane for Perception {
             *vary = Vary::Distance;
         }
         let wide = ui.available_width() > WIDE;
+        let report = match by {
+            Sensor::Cameras => report_ui,
+            Sensor::Lidar => sweep_ui,
+            Sensor::Both => told_ui,
+        };
         theme::panel_frame().show(ui, |ui| {
-            let area = egui::ScrollArea::vertical()
-                .id_salt("perception")
-                .auto_shrink(false);
-            area.show(ui, |ui| {
-                ui.spacing_mut().item_spacing.y = 3.0;
-                let report = match by {
-                    Sensor::Cameras => report_ui,
-                    Sensor::Lidar => sweep_ui,
-                    Sensor::Both => told_ui,
-                };
-                if !wide {
+            if !wide {
+                scrolled(ui, "all", |ui| {
                     report(ui, perceiving, cx, [true, true], commands);
                     search_ui(ui, perceiving, (vary, by), cx, commands);
+                });
+                return;
+            }
+            ui.columns(3, |columns| {
+                let [wrong, right, corner_case] = columns else {
                     return;
-                }
-                ui.columns(3, |columns| {
-                    report(&mut columns[0], perceiving, cx, [true, false], commands);
-                    report(&mut columns[1], perceiving, cx, [false, true], commands);
-                    search_ui(&mut columns[2], perceiving, (vary, by), cx, commands);
+                };
+                scrolled(wrong, "wrong", |ui| {
+                    report(ui, perceiving, cx, [true, false], commands)
+                });
+                scrolled(right, "right", |ui| {
+                    report(ui, perceiving, cx, [false, true], commands)
+                });
+                scrolled(corner_case, "corner case", |ui| {
+                    search_ui(ui, perceiving, (vary, by), cx, commands);
                 });
             });
         });
     }
+}
+
+/// A column that is scrolled by itself.
+fn scrolled(ui: &mut Ui, name: &str, show: impl FnOnce(&mut Ui)) {
+    let area = egui::ScrollArea::vertical().id_salt(name).auto_shrink(false);
+    area.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 3.0;
+        show(ui);
+    });
 }
 
 /// What is shown in the large views.

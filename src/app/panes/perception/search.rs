@@ -230,6 +230,6 @@ fn words(change: Change) -> String {
         Change::Visibility(far_m) => tf!("visibility {distance} m", distance = format!("{far_m:.0}")),
         Change::Time(time) => t(time.name()).to_owned(),
         Change::Weather(weather) => t(weather.name()).to_owned(),
-        Change::Speed(mps) => tf!("{speed} m/s", speed = m(mps)),
+        Change::Speed(mps) => tf!("{speed} km/h", speed = format!("{:.0}", mps * 3.6)),
     }
 }
