@@ -44,7 +44,7 @@ fi
 
 # The PyTorch twins of the networks, where PyTorch is there (pip install -r training/requirements.txt).
 if python3 -c 'import torch, numpy, safetensors' 2>/dev/null; then
-  (cd training && python3 test_training.py ../tests/reference && python3 test_lidar.py ../tests/reference && python3 test_perception.py && python3 test_sensors.py)
+  (cd training && python3 test_training.py ../tests/reference && python3 test_lidar.py ../tests/reference && python3 test_perception.py && python3 test_sensors.py && python3 test_pictures.py)
 else
   echo "training tests: not run, no PyTorch here"
 fi

@@ -69,14 +69,27 @@ impl PaintWish {
 
     /// Opens its weights. Errors in one line if they are missing, damaged or foreign.
     pub fn open(&self) -> Result<PaintWith, PaintError> {
+        Ok(self.with(self.model()?))
+    }
+
+    /// Its weights alone. Errors as [`PaintWish::open`].
+    pub fn model(&self) -> Result<PaintModel, PaintError> {
         let model = match &self.weights {
             Some(folder) => PaintModel::open(folder)?,
             None => PaintModel::bundled()?,
         };
-        Ok(PaintWith {
+        if let Some(reason) = model.without_card() {
+            tracing::warn!("pictures are painted on the processor: {reason}");
+        }
+        Ok(model)
+    }
+
+    /// Its numbers and words, with weights that are open already.
+    pub fn with(&self, model: PaintModel) -> PaintWith {
+        PaintWith {
             model,
             options: self.options(),
-        })
+        }
     }
 }
 

@@ -113,3 +113,69 @@ fn learned_pictures_are_written() {
     let colors: std::collections::BTreeSet<_> = image.pixels().map(|p| p.0).collect();
     assert!(colors.len() > 1000, "{} colours", colors.len());
 }
+
+/// Public weights of either kind paint by command; tiny ones with random numbers stand for them. Damaged ones are one line.
+#[test]
+fn public_weights_paint_by_command() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let scene = path("s.loom");
+    json(&["new", "--template", "straight", "--seed", "2", "-o", &scene]);
+    let paint = |weights: &str, more: &[&str]| {
+        let out = path("out");
+        let args = [
+            "render",
+            &scene,
+            "--what",
+            "learned",
+            "--size",
+            "64x64",
+            "-o",
+            &out,
+            "--weights",
+            weights,
+            "--paint-steps",
+            "2",
+        ];
+        sceneloom(&[&args[..], more].concat())
+    };
+    let reference = |name: &str| format!("{}/tests/reference/stable/{name}", env!("CARGO_MANIFEST_DIR"));
+    let mut pictures = std::collections::BTreeSet::new();
+    for name in ["sd15", "sd21", "ring"] {
+        let output = paint(&reference(name), &["--paint-width", "64"]);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{name}: {error}");
+        let picture = std::fs::read(dir.path().join("out/CAM_FRONT_learned.png")).expect("a picture");
+        assert!(pictures.insert(picture), "{name} paints as another does");
+    }
+    let damaged = dir.path().join("damaged");
+    let copied = std::process::Command::new("cp")
+        .arg("-r")
+        .arg(reference("sd15"))
+        .arg(&damaged)
+        .status();
+    assert!(copied.expect("cp").success());
+    let file = damaged.join("unet/diffusion_pytorch_model.safetensors");
+    let bytes = std::fs::read(&file).expect("weights");
+    std::fs::write(&file, &bytes[..bytes.len() / 2]).expect("written");
+    let damaged = damaged.display().to_string();
+    for (weights, more, needle) in [
+        (&*damaged, &[][..], "not a usable safetensors file"),
+        (&path("nowhere"), &[], "no folder of weights"),
+        (
+            &reference("sd15"),
+            &["--paint-strength", "nan"],
+            "expected 0.1 to 1",
+        ),
+        (
+            &reference("sd15"),
+            &["--paint-guidance", "99"],
+            "expected 1 to 15",
+        ),
+    ] {
+        let output = paint(weights, more);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{weights}: {error}");
+        assert!(error.contains(needle) && error.lines().count() <= 2, "{error}");
+    }
+}

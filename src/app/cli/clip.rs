@@ -132,7 +132,7 @@ impl ClipCommand {
             paint: None,
         };
         if options.paints() {
-            options.paint = Some(self.painting.wish().open()?);
+            options.paint = Some(self.painting.open()?);
         }
         Ok(options)
     }

@@ -97,7 +97,10 @@ impl Eval {
         let [scene_params, edit_params] = params;
         Options {
             frames: self.frames.unwrap_or(options.frames),
-            data: self.data.clone(),
+            data: self
+                .data
+                .clone()
+                .filter(|_| suite.takes_data || self.suite != ALL),
             vehicles: self.vehicles.unwrap_or(options.vehicles),
             presets: if self.presets.is_empty() {
                 presets

@@ -11,7 +11,7 @@ use job::product::{Ctx, Product};
 use scene::{Scene, SceneRev};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
-use sensors::painter::{Paint, PaintError, Progress};
+use sensors::painter::{Paint, PaintError, PaintModel, Progress};
 
 /// A scene to paint.
 pub(super) struct Request {
@@ -41,6 +41,8 @@ pub(super) enum News {
 /// Paints scenes, with what its painter was made for.
 pub(super) struct Painting {
     settings: Arc<PaintWish>,
+    /// The weights of the settings, which take long to open.
+    model: Option<PaintModel>,
     painter: Option<Box<dyn Paint>>,
     /// The user has enough of it.
     stop: Arc<AtomicBool>,
@@ -51,12 +53,16 @@ impl Painting {
     pub fn new(stop: Arc<AtomicBool>) -> Self {
         Self {
             settings: Arc::default(),
+            model: None,
             painter: None,
             stop,
         }
     }
 
     fn painter(&mut self, settings: &Arc<PaintWish>) -> Result<&mut dyn Paint, String> {
+        if self.settings.weights != settings.weights {
+            self.model = None;
+        }
         if *self.settings != **settings {
             self.settings = settings.clone();
             self.painter = None;
@@ -64,11 +70,14 @@ impl Painting {
         let painter = match self.painter.take() {
             Some(painter) => painter,
             None => {
-                let with = settings.open().map_err(|e| match e {
-                    PaintError::Network(problem) => problem,
-                    e => e.to_string(),
-                });
-                with?.painter(true)
+                let model = match self.model.take() {
+                    Some(model) => model,
+                    None => settings.model().map_err(|e| match e {
+                        PaintError::Network(problem) => problem,
+                        e => e.to_string(),
+                    })?,
+                };
+                settings.with(self.model.insert(model).clone()).painter(true)
             }
         };
         Ok(&mut **self.painter.insert(painter))
@@ -111,7 +120,7 @@ impl Product for Painting {
     }
 
     fn reset(&mut self) {
-        self.painter = None;
+        (self.painter, self.model) = (None, None);
     }
 
     fn given_up() -> News {

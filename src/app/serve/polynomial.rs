@@ -1,5 +1,7 @@
 //! Polynomials of f-theta lenses, and the one that goes the other way.
 
+use numeric::linear::solve;
+
 /// Powers of a fit, without the constant one.
 const TERMS: usize = 6;
 /// Points of a fit.
@@ -26,14 +28,15 @@ pub fn inverse(function: impl Fn(f64) -> f64, most: f64) -> Fit {
     let scale = ys[SAMPLES - 1];
     // Written so that NaN fails too.
     let grows = ys.windows(2).all(|w| w[1] > w[0]) && ys[0] > 0.0 && scale.is_finite();
+    let none = || Fit {
+        coefficients: vec![0.0; TERMS + 1],
+        error: f64::INFINITY,
+    };
     if !grows {
-        return Fit {
-            coefficients: vec![0.0; TERMS + 1],
-            error: f64::INFINITY,
-        };
+        return none();
     }
     // Householder would be finer; with y scaled to 1 and 6 powers, normal equations leave 8 digits.
-    let mut rows = [[0.0; TERMS + 1]; TERMS];
+    let mut rows = vec![vec![0.0; TERMS + 1]; TERMS];
     for (x, y) in xs.iter().zip(&ys) {
         let t = y / scale;
         let powers: [f64; TERMS] = std::array::from_fn(|i| t.powi(i as i32 + 1));
@@ -43,31 +46,14 @@ pub fn inverse(function: impl Fn(f64) -> f64, most: f64) -> Fit {
             }
         }
     }
-    let solved = solve(rows);
+    let Some(solved) = solve(rows) else {
+        return none();
+    };
     let mut coefficients = vec![0.0];
     coefficients.extend((0..TERMS).map(|i| solved[i] / scale.powi(i as i32 + 1)));
     let off = |(x, y): (&f64, &f64)| (value(&coefficients, *y) - x).abs();
     let error = xs.iter().zip(&ys).map(off).fold(0.0, f64::max);
     Fit { coefficients, error }
-}
-
-/// Gauss with pivots.
-fn solve(mut rows: [[f64; TERMS + 1]; TERMS]) -> [f64; TERMS] {
-    for i in 0..TERMS {
-        let pivot = (i..TERMS).max_by(|a, b| rows[*a][i].abs().total_cmp(&rows[*b][i].abs()));
-        rows.swap(i, pivot.unwrap_or(i));
-        let own = rows[i];
-        for row in &mut rows[i + 1..] {
-            let share = row[i] / own[i];
-            row.iter_mut().zip(own).for_each(|(k, own)| *k -= share * own);
-        }
-    }
-    let mut out = [0.0; TERMS];
-    for i in (0..TERMS).rev() {
-        let known: f64 = (i + 1..TERMS).map(|j| rows[i][j] * out[j]).sum();
-        out[i] = (rows[i][TERMS] - known) / rows[i][i];
-    }
-    out
 }
 
 #[cfg(test)]

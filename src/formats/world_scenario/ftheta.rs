@@ -4,6 +4,7 @@
 //! tenth of a pixel up to a view 105 degrees wide (of 1600 pixels), .45 pixels at 120 degrees.
 
 use glam::{DVec2, DVec3};
+use numeric::linear::solve;
 use scene::{Camera, Lens, Optics};
 
 /// Coefficients above the constant one, which is 0.
@@ -216,9 +217,9 @@ fn fitted(
         })
         .collect();
     let mut weights = vec![1.0; SAMPLES];
-    let (mut best, mut least_px) = ([0.0; TERMS], f64::INFINITY);
+    let (mut best, mut least_px) = (vec![0.0; TERMS], f64::INFINITY);
     for _ in 0..ROUNDS {
-        let mut normal = [[0.0; TERMS + 1]; TERMS];
+        let mut normal = vec![vec![0.0; TERMS + 1]; TERMS];
         for ((powers, angle, scale), weight) in rows.iter().zip(&weights) {
             let weight = weight * scale * scale;
             for (row, p) in normal.iter_mut().zip(powers) {
@@ -227,7 +228,7 @@ fn fitted(
                 }
             }
         }
-        let Some(solution) = solved(normal) else {
+        let Some(solution) = solve(normal) else {
             break;
         };
         let off_px = |(powers, angle, scale): &([f64; TERMS], f64, f64)| {
@@ -235,45 +236,20 @@ fn fitted(
             (found - angle).abs() * scale
         };
         let worst_px = rows.iter().map(off_px).fold(0.0, f64::max);
-        if worst_px < least_px {
-            (best, least_px) = (solution, worst_px);
-        }
         for (weight, row) in weights.iter_mut().zip(&rows) {
             *weight *= off_px(row) / worst_px.max(1e-300) + 1e-3;
         }
         let most = weights.iter().copied().fold(0.0, f64::max);
         weights.iter_mut().for_each(|w| *w /= most);
+        if worst_px < least_px {
+            (best, least_px) = (solution, worst_px);
+        }
     }
     let mut out = [0.0; TERMS + 1];
     for (k, coefficient) in best.iter().enumerate() {
         out[k + 1] = coefficient / farthest_px.powi(k as i32 + 1);
     }
     out
-}
-
-/// Solves a system of equations (Gauss, with the largest pivot); `None` if it has no single solution.
-fn solved(mut rows: [[f64; TERMS + 1]; TERMS]) -> Option<[f64; TERMS]> {
-    for k in 0..TERMS {
-        let pivot = (k..TERMS).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs()))?;
-        rows.swap(k, pivot);
-        let row = rows[k];
-        if row[k] == 0.0 || !row[k].is_finite() {
-            return None;
-        }
-        for other in rows.iter_mut().skip(k + 1) {
-            let share = other[k] / row[k];
-            other
-                .iter_mut()
-                .zip(row)
-                .for_each(|(cell, value)| *cell -= share * value);
-        }
-    }
-    let mut out = [0.0; TERMS];
-    for k in (0..TERMS).rev() {
-        let known: f64 = (k + 1..TERMS).map(|j| rows[k][j] * out[j]).sum();
-        out[k] = (rows[k][TERMS] - known) / rows[k][k];
-    }
-    Some(out)
 }
 
 #[cfg(test)]

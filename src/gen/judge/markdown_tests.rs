@@ -15,6 +15,7 @@ static QUICK: [Suite; 2] = [
             ("nothing", "/absent"),
             ("the mean of nothing", "/none"),
         ],
+        takes_data: false,
         quick: |options| options.frames = 3,
         table: None,
         run: |options, progress| {
@@ -39,6 +40,7 @@ static QUICK: [Suite; 2] = [
         name: "two",
         title: "One that cannot run",
         figures: &[],
+        takes_data: false,
         quick: |_| {},
         table: None,
         run: |_, _| anyhow::bail!("no files\nthere"),

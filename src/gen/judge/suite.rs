@@ -1,5 +1,6 @@
 //! The table of suites: what each measures, on how much data, and which figures of its report are shown.
 
+use anyhow::bail;
 use serde_json::{Value, json};
 
 pub use crate::options::Options;
@@ -30,6 +31,8 @@ pub struct Suite {
     /// Figures of the report that are shown: name with unit, and JSON pointer to a number, to `mean` with `ci95`, or to `share`
     /// with `low` and `high`.
     pub figures: &'static [(&'static str, &'static str)],
+    /// It judges the files of `--data`, where they are given.
+    pub takes_data: bool,
     /// Makes options small, so that all suites together take about five minutes on two cores.
     pub quick: fn(&mut Options),
     /// The report as a table for a person, where JSON is hard to read.
@@ -64,6 +67,15 @@ impl Report {
 impl Suite {
     /// Runs it. Errors are one line: weights, files or options that will not do.
     pub fn measure(&self, options: &Options, progress: &dyn Progress) -> anyhow::Result<Report> {
+        if options.frames == 0 {
+            bail!("--frames is 0, expected at least 1");
+        }
+        if options.data.is_some() && !self.takes_data {
+            bail!(
+                "--data is given, but {} makes its own: expected no --data",
+                self.name
+            );
+        }
         let (mut json, bars) = (self.run)(options, progress)?;
         json["seeds"] = json!({ "test": TEST_SEED });
         let n = json.get("files").or(json.get("prompts")).cloned();

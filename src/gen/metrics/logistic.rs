@@ -1,6 +1,8 @@
 //! Logistic regression by Newton's method, and the area under the ROC curve: how much of an outcome a trivial predictor
 //! can tell.
 
+use numeric::linear::solve;
+
 /// Weight of the penalty on coefficients: keeps a class that was never lost finite.
 const RIDGE: f64 = 1e-2;
 const STEPS: usize = 25;
@@ -36,7 +38,10 @@ impl Logistic {
             for (i, row) in curvature.iter_mut().enumerate() {
                 row[i] += RIDGE;
             }
-            let step = solve(curvature, gradient)?;
+            for (row, g) in curvature.iter_mut().zip(&gradient) {
+                row.push(*g);
+            }
+            let step = solve(curvature)?;
             // Far from the optimum a whole step may overshoot.
             let largest = step.iter().fold(0.0f64, |m, s| m.max(s.abs()));
             let scale = (4.0 / largest.max(4.0)).min(1.0);
@@ -78,32 +83,6 @@ fn sigmoid(v: f64) -> f64 {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Gaussian elimination with pivots.
-fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Option<Vec<f64>> {
-    let n = b.len();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|i, j| a[*i][k].abs().total_cmp(&a[*j][k].abs()))?;
-        a.swap(k, pivot);
-        b.swap(k, pivot);
-        if a[k][k].is_nan() || a[k][k].abs() < 1e-300 {
-            return None;
-        }
-        for i in k + 1..n {
-            let factor = a[i][k] / a[k][k];
-            let (above, below) = a.split_at_mut(i);
-            for (to, from) in below[0][k..].iter_mut().zip(&above[k][k..]) {
-                *to -= factor * from;
-            }
-            b[i] -= factor * b[k];
-        }
-    }
-    for k in (0..n).rev() {
-        let known: f64 = (k + 1..n).map(|j| a[k][j] * b[j]).sum();
-        b[k] = (b[k] - known) / a[k][k];
-    }
-    Some(b)
 }
 
 #[cfg(test)]

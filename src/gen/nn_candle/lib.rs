@@ -1,6 +1,6 @@
 //! Candle 0.11 as a backend of the networks, in f32: the plain reference that the fused kernels are compared with, and
-//! the way to CUDA (feature `cuda`) and Metal (feature `metal`). It is its own crate, so that builds of the program do not
-//! contain candle.
+//! the way to CUDA (feature `cuda`) and Metal (feature `metal`). It is its own crate, so that the networks are
+//! built without candle.
 
 mod block;
 mod graph;

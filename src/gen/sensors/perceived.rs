@@ -52,18 +52,28 @@ impl SeenThing {
 impl Perceived {
     /// Looks at a camera's picture of some 256x144 px. Errors if the network cannot be read.
     pub fn of(appearance: &Appearance, frame: &Frame, camera: &Camera) -> Result<Self, PaintError> {
-        let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
-        let net = PictureSegmenter::bundled().map_err(|e| network(&e))?;
         let sides = native_px(camera);
         let size = [sides[1] as u32, sides[0] as u32];
         let (image, truth) = appearance.render_truth(camera, size, Quality::Preview, &frame.boxes, None);
-        let colors = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
-        let colors: Vec<f32> = colors.map(|c| f32::from(c) / 127.5 - 1.0).collect();
-        let classes = net.classes(&colors, sides).map_err(|e| network(&e))?;
         Ok(Self {
+            classes: classes(&image)?,
             image,
             truth,
-            classes,
+        })
+    }
+
+    /// The same of another picture that shows the same at the same size, such as a learned one. Errors if it is of another size, or
+    /// the network cannot be read.
+    pub fn with_picture(self, image: CameraImage) -> Result<Self, PaintError> {
+        let sizes = [&self.image, &image].map(|i| [i.width, i.height]);
+        if sizes[0] != sizes[1] {
+            let reason = format!("a picture of {:?} px, expected {:?}", sizes[1], sizes[0]);
+            return Err(PaintError::Network(reason));
+        }
+        Ok(Self {
+            classes: classes(&image)?,
+            image,
+            truth: self.truth,
         })
     }
 
@@ -150,6 +160,16 @@ impl Perceived {
         }
         image
     }
+}
+
+/// Class of each pixel of a picture.
+fn classes(image: &CameraImage) -> Result<Vec<TruthClass>, PaintError> {
+    let network = |e: &dyn std::fmt::Display| PaintError::Network(e.to_string());
+    let net = PictureSegmenter::bundled().map_err(|e| network(&e))?;
+    let colors = image.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]);
+    let colors: Vec<f32> = colors.map(|c| f32::from(c) / 127.5 - 1.0).collect();
+    net.classes(&colors, [image.height, image.width])
+        .map_err(|e| network(&e))
 }
 
 /// What the network makes of all cameras of a rig.

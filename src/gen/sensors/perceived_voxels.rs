@@ -2,11 +2,12 @@
 //! boxes that it misses, and things that it sees where there are none.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::appearance::Appearance;
+use crate::appearance::{Appearance, CameraImage};
 use crate::painter::PaintError;
 use crate::perceived::{LEAST_PX, MISSED_BELOW, Perceived};
 use crate::perceived_sweep::{LEAST_RETURNS, near};
@@ -96,11 +97,23 @@ pub struct Heard {
     sweep: LidarSweep,
     /// Pixels of the boxes in the camera that shows most of each.
     pixels: BTreeMap<BoxId, usize>,
+    /// Share of the pixels whose class the segmenter says rightly, mean over the cameras.
+    pub pixels_right: f64,
 }
 
 impl Heard {
     /// Sweeps and draws a scene. Errors if the segmenter cannot be read.
     pub fn of(scene: &Scene) -> Result<Self, PaintError> {
+        Self::seeing(scene, None)
+    }
+
+    /// The same where the cameras see learned pictures, in the order of the rig, by [`Painter`](crate::painter::Painter). Errors also if they are
+    /// of another size.
+    pub fn of_pictures(scene: &Scene, pictures: &[Arc<CameraImage>]) -> Result<Self, PaintError> {
+        Self::seeing(scene, Some(pictures))
+    }
+
+    fn seeing(scene: &Scene, pictures: Option<&[Arc<CameraImage>]>) -> Result<Self, PaintError> {
         let placed = scene.with_rig_in_world();
         let sweep = rolling::exact(&placed);
         let to_vehicle = scene.frame().world_from_ego.inverse();
@@ -110,8 +123,15 @@ impl Heard {
             [x, y, z, point.intensity]
         });
         let appearance = Appearance::new(placed.frame(), &placed.rig, &placed.conditions);
-        let look = |camera: &Camera| Perceived::of(&appearance, placed.frame(), camera);
-        let seen: Result<Vec<Perceived>, PaintError> = placed.rig.cameras.par_iter().map(look).collect();
+        let look = |(i, camera): (usize, &Camera)| {
+            let seen = Perceived::of(&appearance, placed.frame(), camera)?;
+            match pictures.and_then(|pictures| pictures.get(i)) {
+                Some(picture) => seen.with_picture(CameraImage::clone(picture)),
+                None => Ok(seen),
+            }
+        };
+        let cameras = placed.rig.cameras.par_iter().enumerate();
+        let seen: Result<Vec<Perceived>, PaintError> = cameras.map(look).collect();
         let seen = seen?;
         let mut pixels: BTreeMap<BoxId, usize> = BTreeMap::new();
         for thing in seen.iter().flat_map(Perceived::boxes) {
@@ -131,6 +151,7 @@ impl Heard {
             painted: painted(&shown),
             sweep,
             pixels,
+            pixels_right: seen.iter().map(Perceived::right).sum::<f64>() / seen.len().max(1) as f64,
         })
     }
 

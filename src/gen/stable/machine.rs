@@ -11,6 +11,8 @@ pub struct Machine {
     pub(crate) device: Device,
     /// Type of weights and activations. Norms and softmax are always computed in 32 bits.
     pub(crate) dtype: DType,
+    /// Why this is the processor, though the build has a feature for a card.
+    pub(crate) without_card: Option<String>,
 }
 
 impl Machine {
@@ -19,27 +21,60 @@ impl Machine {
         Self {
             device: Device::Cpu,
             dtype: DType::F32,
+            without_card: None,
         }
     }
 
     /// The first card that this build has a feature for, in 16 bits (bfloat16 on CUDA, whose range no activation leaves; half
-    /// precision on Metal); the processor where there is none. Errors if the card cannot be opened.
-    pub fn best() -> Result<Self, StableError> {
-        let (device, dtype) = if cfg!(feature = "cuda") {
-            (Device::new_cuda(0)?, DType::BF16)
+    /// precision on Metal); the processor where there is none.
+    pub fn best() -> Self {
+        if cfg!(feature = "cuda") {
+            Self::on_card(Device::new_cuda(0), DType::BF16)
         } else if cfg!(feature = "metal") {
-            (Device::new_metal(0)?, DType::F16)
+            Self::on_card(Device::new_metal(0), DType::F16)
         } else {
-            (Device::Cpu, DType::F32)
-        };
-        Ok(Self { device, dtype })
+            Self::cpu()
+        }
+    }
+
+    /// A card, or the processor with the reason.
+    fn on_card(card: candle_core::Result<Device>, dtype: DType) -> Self {
+        match card {
+            Ok(device) => Self {
+                device,
+                dtype,
+                without_card: None,
+            },
+            Err(error) => Self {
+                without_card: Some(StableError::from(error).to_string()),
+                ..Self::cpu()
+            },
+        }
+    }
+
+    /// Why this is the processor, though the build has a feature for a card.
+    pub fn without_card(&self) -> Option<&str> {
+        self.without_card.as_deref()
     }
 
     /// The same place, in 32 bits: the reference.
     pub fn exact(&self) -> Self {
         Self {
-            device: self.device.clone(),
             dtype: DType::F32,
+            ..self.clone()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_card_the_processor_computes() {
+        let card = Err(candle_core::Error::Msg("no CUDA device".into()));
+        let machine = Machine::on_card(card, DType::BF16);
+        assert!(machine.device.is_cpu() && machine.dtype == DType::F32);
+        assert_eq!(machine.without_card(), Some("candle: no CUDA device"));
     }
 }

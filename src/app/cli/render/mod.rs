@@ -76,11 +76,7 @@ impl Render {
             scene.rig = open::rig(path)?.into();
         }
         let paints = self.what.iter().any(|w| w == learned::VIEW.id.name());
-        let wish = self.painting.wish();
-        let paint = paints
-            .then(|| wish.open())
-            .transpose()
-            .map_err(anyhow::Error::new)?;
+        let paint = paints.then(|| self.painting.open()).transpose()?;
         let rendering = Rendering {
             what: self.what,
             size: self.size,

@@ -89,8 +89,7 @@ impl PaintModel {
     pub fn open(folder: &Path) -> Result<Self, PaintError> {
         let network = |e: String| PaintError::Network(e);
         if Self::is_public(folder) {
-            let machine = Machine::best().map_err(|e| network(e.to_string()))?;
-            let pipeline = Pipeline::open(&Folders::of(folder), &machine);
+            let pipeline = Pipeline::open(&Folders::of(folder), &Machine::best());
             return Ok(Self::Public(Arc::new(
                 pipeline.map_err(|e| network(e.to_string()))?,
             )));
@@ -103,6 +102,14 @@ impl PaintModel {
         }
         let nets = PictureNets::from_dir(folder).map_err(|e| network(e.to_string()))?;
         Ok(Self::Own(Arc::new(nets)))
+    }
+
+    /// Why the processor paints, though this build could use a card.
+    pub fn without_card(&self) -> Option<&str> {
+        match self {
+            Self::Own(_) => None,
+            Self::Public(pipeline) => pipeline.machine().without_card(),
+        }
     }
 
     /// True if a folder looks like one of public weights.
@@ -121,7 +128,7 @@ impl PaintModel {
                     painter.without_previews()
                 })
             }
-            Self::Public(pipeline) => Box::new(PublicPainter::new(pipeline.clone(), options)),
+            Self::Public(pipeline) => Box::new(PublicPainter::new(pipeline.clone(), options, previews)),
         }
     }
 }

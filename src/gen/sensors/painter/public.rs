@@ -5,6 +5,8 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use image::imageops::FilterType;
+
 use super::control_pictures::{boxes_and_lanes, classes, depths, planes};
 use super::ring::Ring;
 use super::seen::Seen;
@@ -14,12 +16,14 @@ use crate::appearance::CameraImage;
 use crate::painter::model::Paint;
 use diffusion::solver::Guidance;
 use stable::noise::{carried, fresh};
-use stable::{Control, Pictures, Pipeline, Planes, Request, StableError, Start};
+use stable::{Control, Pictures, Pipeline, Planes, Request, StableError, Start, Step};
 
 /// Paints with public weights.
 pub(super) struct PublicPainter {
     pipeline: Arc<Pipeline>,
     options: PaintOptions,
+    /// Pictures are made of the steps too.
+    previews: bool,
     /// The newest last.
     kept: VecDeque<Painted>,
 }
@@ -82,13 +86,42 @@ impl Told<'_> {
         }
         picture
     }
+
+    /// The picture of a view of new colours, those from before where nothing is new.
+    fn image(&self, view: usize, rgb: &[u8]) -> CameraImage {
+        let [height, width] = self.ring.size.pixels();
+        let pixels = rgb.chunks_exact(3);
+        let mut image = CameraImage {
+            camera: self.seen.camera_name(view).to_owned(),
+            width,
+            height,
+            rgba: pixels.flat_map(|p| [p[0], p[1], p[2], 255]).collect(),
+        };
+        if let Some((images, shares)) = &self.before {
+            mask::blend(&images[view].rgba, &mut image.rgba, &shares[view]);
+        }
+        image
+    }
+
+    /// How the first of some views looks by now: a pixel a cell, enlarged.
+    fn preview(&self, step: &Step<'_>, view: usize) -> Option<CameraImage> {
+        let seen = step.preview()?;
+        let [rows, columns] = seen.size().map(|side| side as u32);
+        let mut rgb = seen.to_bytes();
+        rgb.truncate((rows * columns * 3) as usize);
+        let small = image::RgbImage::from_raw(columns, rows, rgb)?;
+        let [height, width] = self.ring.size.pixels().map(|side| side as u32);
+        let large = image::imageops::resize(&small, width, height, FilterType::Triangle);
+        Some(self.image(view, &large))
+    }
 }
 
 impl PublicPainter {
-    pub fn new(pipeline: Arc<Pipeline>, options: PaintOptions) -> Self {
+    pub fn new(pipeline: Arc<Pipeline>, options: PaintOptions, previews: bool) -> Self {
         Self {
             pipeline,
             options,
+            previews,
             kept: VecDeque::new(),
         }
     }
@@ -109,7 +142,7 @@ impl PublicPainter {
         &self,
         told: &Told<'_>,
         views: &[usize],
-        watch: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
+        watch: &mut dyn FnMut(&Step<'_>) -> ControlFlow<()>,
     ) -> Result<Vec<CameraImage>, PaintError> {
         let [height, width] = told.ring.size.pixels();
         let start: Vec<u8> = views.iter().flat_map(|view| told.start(*view)).collect();
@@ -163,30 +196,10 @@ impl PublicPainter {
                 .collect(),
             planes: planes.as_deref().map(|ids| Planes { ids, scale: 1.0 }),
         };
-        let drawn = self
-            .pipeline
-            .draw(&request, |step| watch(step.step, step.steps))
-            .map_err(public)?;
+        let drawn = self.pipeline.draw(&request, |step| watch(step)).map_err(public)?;
         let rgb = drawn.pictures.to_bytes();
-        let images = views
-            .iter()
-            .zip(rgb.chunks_exact(height * width * 3))
-            .map(|(view, rgb)| {
-                let mut image = CameraImage {
-                    camera: told.seen.camera_name(*view).to_owned(),
-                    width,
-                    height,
-                    rgba: rgb
-                        .chunks_exact(3)
-                        .flat_map(|p| [p[0], p[1], p[2], 255])
-                        .collect(),
-                };
-                if let Some((images, shares)) = &told.before {
-                    mask::blend(&images[*view].rgba, &mut image.rgba, &shares[*view]);
-                }
-                image
-            });
-        Ok(images.collect())
+        let of_views = views.iter().zip(rgb.chunks_exact(height * width * 3));
+        Ok(of_views.map(|(view, rgb)| told.image(*view, rgb)).collect())
     }
 
     /// What each ControlNet that is shown pictures sees: classes, or depths, or boxes and lanes, if its folder is named for them.
@@ -304,12 +317,15 @@ impl PublicPainter {
         };
         for (k, group) in groups.iter().enumerate() {
             let mut last = (0, 0);
-            let drawn = self.draw(&told, group, &mut |step, steps| {
-                last = (k * steps + step, groups.len() * steps);
+            let drawn = self.draw(&told, group, &mut |step| {
+                last = (k * step.steps + step.step, groups.len() * step.steps);
+                // After the last step comes the picture itself.
+                let shown = self.previews && step.step < step.steps;
+                let preview = shown.then(|| told.preview(step, group[0])).flatten();
                 watch(Progress {
                     step: last.0,
                     steps: last.1,
-                    news: None,
+                    news: preview.as_ref().map(|image| (ring.camera(group[0]), image)),
                 })
             })?;
             for (view, image) in group.iter().zip(drawn) {

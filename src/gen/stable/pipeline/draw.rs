@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use candle_core::{Device, Tensor};
 use diffusion::solver::{Guidance, Prediction, check_finite as check_state, clean_estimate};
 
+use super::preview::Colours;
 use super::{Control, Pipeline, Request, checks, numbers};
 use crate::noise::{self, LatentSize};
 use crate::pictures::Pictures;
@@ -24,9 +25,15 @@ pub struct Step<'a> {
     predicted: &'a [f64],
     prediction: Prediction,
     level: diffusion::schedule::Level,
+    colours: Option<&'a Colours>,
 }
 
 impl Step<'_> {
+    /// The pictures as they look by now, a pixel a cell, without the decoder. `None` for a run that starts from no picture.
+    pub fn preview(&self) -> Option<Pictures> {
+        self.colours?.of(&self.clean_estimate(), self.size).ok()
+    }
+
     /// The clean latents that this call implies: [`Pipeline::decode`] makes a preview of them.
     pub fn clean_estimate(&self) -> Vec<f32> {
         let pairs = self.x.iter().zip(self.predicted);
@@ -94,6 +101,8 @@ impl Pipeline {
                 calls: 0,
             });
         }
+        let start = request.start.zip(clean.as_ref());
+        let colours = start.and_then(|(start, clean)| Colours::fit(clean, size, start.pictures));
         let mut x: Vec<f64> = match &clean {
             Some(clean) => noise::noised(clean, &noise, &plan.calls[0].at),
             None => noise.iter().map(|n| f64::from(*n) * plan.spread).collect(),
@@ -120,6 +129,7 @@ impl Pipeline {
                 predicted: &predicted,
                 prediction: plan.prediction,
                 level: call.at,
+                colours: colours.as_ref(),
             };
             if on_step(&seen).is_break() && k + 1 < steps {
                 return Err(StableError::Stopped { step: k + 1, steps });

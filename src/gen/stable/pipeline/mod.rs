@@ -3,6 +3,7 @@
 mod checks;
 mod draw;
 mod open;
+mod preview;
 mod request;
 
 use candle_core::{DType, Device, Tensor};
@@ -37,6 +38,11 @@ impl Pipeline {
     /// What the folder says of its scheduler.
     pub fn scheduler(&self) -> &SchedulerConfig {
         &self.scheduler
+    }
+
+    /// Where it computes.
+    pub fn machine(&self) -> &Machine {
+        &self.machine
     }
 
     /// The UNet: what it draws together (views), and its sizes.

@@ -308,8 +308,8 @@ fn bytes_come_back_as_they_were() {
 #[test]
 fn sixteen_bits_stay_near_thirty_two() {
     let half = crate::Machine {
-        device: candle_core::Device::Cpu,
         dtype: candle_core::DType::F16,
+        ..crate::Machine::cpu()
     };
     for (model, size, views) in [("sd15", [16, 24], 1), ("ring", [8, 14], 6)] {
         let folders = crate::Folders::of(&super::folder(model));

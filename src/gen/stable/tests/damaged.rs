@@ -46,8 +46,8 @@ fn changed(change: impl Fn(&mut HashMap<String, (Dtype, Vec<usize>, Vec<u8>)>)) 
 #[test]
 fn row_62_names_and_shapes() {
     let told = changed(|a| a.retain(|name, _| !name.starts_with("mid_block.attentions")));
-    let begins = "26 tensors (mid_block.attentions.0.norm.bias of shape [32], mid_block.attentions.0.norm.weight of shape [32], \
-                  mid_block.attentions.0.proj_in.bias of shape [32] and 23 more) missing";
+    let begins = "tensors: 26 missing: mid_block.attentions.0.norm.bias of shape [32], mid_block.attentions.0.norm.weight of shape [32], \
+                  mid_block.attentions.0.proj_in.bias of shape [32] and 23 more";
     assert_eq!(told, begins);
     let told = changed(|a| {
         a.insert("foreign.weight".into(), (Dtype::F16, vec![2], vec![0; 4]));
@@ -55,14 +55,14 @@ fn row_62_names_and_shapes() {
     });
     assert_eq!(
         told,
-        "1 tensor (conv_in.bias is [2, 8], expected [16]) misshapen; 1 tensor (foreign.weight) not part of this network"
+        "tensors: 1 misshapen, 1 not part of this network: conv_in.bias is [2, 8], expected [16]; foreign.weight"
     );
     let told = changed(|a| {
         a.insert("conv_in.bias".into(), (Dtype::I64, vec![16], vec![0; 128]));
     });
     assert_eq!(
         told,
-        "1 tensor (conv_in.bias is I64) neither f16 nor bf16 nor f32"
+        "tensors: 1 neither f16 nor bf16 nor f32: conv_in.bias is I64"
     );
     for (dtype, size, infinity) in [
         (Dtype::F16, 2, &[0, 0x7c][..]),
@@ -129,7 +129,7 @@ fn row_62_shards() {
         (
             "conv_in.weight",
             "conv_in.heavy",
-            "1 tensor (conv_in.heavy) not in the shards it names",
+            "tensors: 1 not in the shards it names: conv_in.heavy",
         ),
         (
             "diffusion_pytorch_model-00001-of",

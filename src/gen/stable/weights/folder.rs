@@ -108,9 +108,10 @@ impl Weights {
             }
             files.push(file);
         }
-        let absent: Vec<&String> = map.keys().filter(|n| !places.contains_key(*n)).collect();
+        let absent: Vec<String> = map.keys().filter(|n| !places.contains_key(*n)).cloned().collect();
         if !absent.is_empty() {
-            let reason = format!("{} not in the shards it names", counted(&absent, "tensor"));
+            let (n, names) = (absent.len(), first_of(&absent));
+            let reason = format!("tensors: {n} not in the shards it names: {names}");
             return Err(refuse(reason));
         }
         Ok(Self {
@@ -178,29 +179,26 @@ impl Weights {
         }
         let is_foreign = |n: &&String| !taken.contains(*n) && !ignored.iter().any(|end| n.ends_with(end));
         let foreign: Vec<&String> = self.places.keys().filter(is_foreign).collect();
-        let mut reasons = Vec::new();
-        if !missing.is_empty() {
-            reasons.push(format!("{} missing", counted(&missing, "tensor")));
-        }
-        if !misshapen.is_empty() {
-            reasons.push(format!("{} misshapen", counted(&misshapen, "tensor")));
-        }
-        if !mistyped.is_empty() {
-            let names = counted(&mistyped, "tensor");
-            reasons.push(format!("{names} neither f16 nor bf16 nor f32"));
-        }
-        if !foreign.is_empty() {
-            reasons.push(format!(
-                "{} not part of this network",
-                counted(&foreign, "tensor")
-            ));
-        }
-        if reasons.is_empty() {
+        let foreign: Vec<String> = foreign.into_iter().cloned().collect();
+        let kinds = [
+            (missing, "missing"),
+            (misshapen, "misshapen"),
+            (mistyped, "neither f16 nor bf16 nor f32"),
+            (foreign, "not part of this network"),
+        ];
+        let wrong: Vec<_> = kinds.iter().filter(|(names, _)| !names.is_empty()).collect();
+        if wrong.is_empty() {
             return Ok(());
         }
+        // What is wrong comes before the names: where the line is too long, its middle is left out.
+        let counts = wrong
+            .iter()
+            .map(|(names, what)| format!("{} {what}", names.len()));
+        let counts = counts.collect::<Vec<_>>().join(", ");
+        let names = wrong.iter().map(|(names, _)| first_of(names));
         Err(StableError::Tensors {
             path: self.path.clone(),
-            reason: reasons.join("; "),
+            reason: format!("tensors: {counts}: {}", names.collect::<Vec<_>>().join("; ")),
         })
     }
 
@@ -255,13 +253,11 @@ fn first_not_finite(bytes: &[u8], dtype: Dtype) -> Option<usize> {
     }
 }
 
-/// "12 tensors (a, b, c and 9 more)".
-fn counted(names: &[impl AsRef<str>], what: &str) -> String {
-    let listed: Vec<&str> = names.iter().take(LISTED).map(AsRef::as_ref).collect();
-    let more = match names.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
-    let plural = if names.len() == 1 { "" } else { "s" };
-    format!("{} {what}{plural} ({}{more})", names.len(), listed.join(", "))
+/// "a, b, c and 9 more".
+fn first_of(names: &[String]) -> String {
+    let listed = names[..names.len().min(LISTED)].join(", ");
+    match names.len().saturating_sub(LISTED) {
+        0 => listed,
+        n => format!("{listed} and {n} more"),
+    }
 }

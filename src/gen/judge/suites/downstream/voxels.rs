@@ -1,10 +1,16 @@
 //! Which voxels the network of LiDAR and cameras tells in worlds and in what is generated from their layouts, from both and from either
 //! alone; and from the cameras alone in other light and weather.
 
+use std::sync::Arc;
+
 use serde_json::{Map, Value, json};
 
 use crate::suite::with_interval;
+use crate::suites::pictures::go_on;
+use nets::picture::PictureNets;
 use scene::{Conditions, Scene, TimeOfDay, Weather};
+use sensors::appearance::CameraImage;
+use sensors::painter::{PaintInput, PaintOptions, Painter};
 use sensors::perceived_voxels::{Heard, Hears, VoxelReport, report, report_of};
 
 /// What is heard, by name.
@@ -68,13 +74,35 @@ pub(super) struct Voxels {
     worlds: [Told; 3],
     generated: [Told; 3],
     air: [Told; AIR.len()],
+    /// By the cameras alone, which see learned pictures of worlds and generated scenes.
+    learned: [Told; 2],
+    /// Share of the pixels whose class the segmenter says rightly: of rendered pictures of both, of learned ones.
+    pixels_right: [[Vec<f64>; 2]; 2],
+}
+
+/// What the shipped picture network makes of a scene, in the order of its rig.
+fn learned_pictures(scene: &Scene) -> anyhow::Result<Vec<Arc<CameraImage>>> {
+    let placed = scene.with_rig_in_world();
+    let input = PaintInput {
+        frame: placed.frame(),
+        rig: &placed.rig,
+        conditions: placed.conditions,
+    };
+    let mut painter = Painter::new(PictureNets::bundled()?, PaintOptions::default());
+    Ok(painter.paint(&input, &mut go_on)?)
 }
 
 impl Voxels {
     /// Looks at a world, also under other light and weather, and at what was generated from its layout.
     pub fn add(&mut self, world: &Scene, generated: &Scene) -> anyhow::Result<()> {
-        for (scene, told) in [(world, &mut self.worlds), (generated, &mut self.generated)] {
+        let scenes = [(world, &mut self.worlds), (generated, &mut self.generated)];
+        for (which, (scene, told)) in scenes.into_iter().enumerate() {
             let heard = Heard::of(scene)?;
+            let learned = Heard::of_pictures(scene, &learned_pictures(scene)?)?;
+            self.learned[which].add(&report_of(scene, &learned, Hears::Cameras)?);
+            for (right, heard) in self.pixels_right.iter_mut().zip([&heard, &learned]) {
+                right[which].push(heard.pixels_right);
+            }
             for ((_, hears), told) in ARMS.iter().zip(told) {
                 told.add(&report_of(scene, &heard, *hears)?);
             }
@@ -105,7 +133,21 @@ impl Voxels {
                 ((*name).to_owned(), report)
             })
             .collect();
+        let cameras = [&self.worlds[2], &self.generated[2]];
+        let names = ["worlds", "generated"];
+        let learned: Map<String, Value> = (0..2)
+            .map(|i| {
+                let report = json!({
+                    "told": self.learned[i].report(),
+                    "more_than_rendered": self.learned[i].more_than(cameras[i]),
+                    "pixels_right": with_interval(&self.pixels_right[1][i]),
+                    "pixels_right_rendered": with_interval(&self.pixels_right[0][i]),
+                });
+                (names[i].to_owned(), report)
+            })
+            .collect();
         json!({
+            "learned_pictures": learned,
             "worlds": arms(&self.worlds),
             "generated": arms(&self.generated),
             "generated_more_than_worlds": more,

@@ -30,10 +30,8 @@ impl Options {
         pipeline: &mut OccPipeline,
         progress: &dyn Progress,
     ) -> anyhow::Result<Found> {
-        for (name, number) in [("--frames", self.frames), ("--vehicles", self.vehicles)] {
-            if number == 0 {
-                bail!("{name} is 0, expected at least 1");
-            }
+        if self.vehicles == 0 {
+            bail!("--vehicles is 0, expected at least 1");
         }
         let presets = self.presets()?;
         if let Some(dir) = &self.data {

@@ -200,7 +200,8 @@ fn changes(before: &Rendered, after: &Rendered, [old, new]: [&[Arc<CameraImage>]
     [touched, elsewhere, all]
 }
 
-fn go_on(_: sensors::painter::Progress<'_>) -> ControlFlow<()> {
+/// Watches a painting without stopping it.
+pub(super) fn go_on(_: sensors::painter::Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -361,9 +362,17 @@ impl Options {
             },
             "six_pictures_s_median": median(&found.first_s),
         });
+        let [own, _, surfaces, ..] = &found.priors;
+        let each: Vec<f64> = own.iter().zip(surfaces).map(|(a, b)| a - b).collect();
+        let (by_noise, by_noise_half) = mean_ci95(&each);
         let bars = vec![
             ("agreement as a share of the renderer's", share, AGREEMENT),
             ("gain by the frame before, beyond its interval", gain - half, 0.0),
+            (
+                "gain by noise that moves with surfaces, beyond its interval",
+                by_noise - by_noise_half,
+                0.0,
+            ),
             (
                 "longest time wanted / time of six pictures",
                 LONGEST_S / median(&found.first_s),
