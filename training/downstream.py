@@ -121,7 +121,7 @@ def run(args):
     device, dtype = pick_device(args.threads)
     judges, out = judges_of(args), args.folder / "results"
     out.mkdir(exist_ok=True)
-    for seed in range(args.seeds):
+    for seed in range(args.first_seed, args.first_seed + args.seeds):
         for arm, parts in ARMS.items():
             path = out / f"{arm.replace(' + ', '_')}_{args.steps}_{seed}.json"
             found = json.loads(path.read_text()) if path.exists() else None
@@ -188,6 +188,7 @@ def main():
     p.add_argument("--held-out", type=int, default=64)
     p.add_argument("--quality", default="draft", help="of generation: draft, balanced, accurate")
     p.add_argument("--seeds", type=int, default=5)
+    p.add_argument("--first-seed", type=int, default=0, help="so that several processes can share the seeds")
     p.add_argument("--steps", type=int, default=3000)
     p.add_argument("--batch", type=int, default=4)
     p.add_argument("--side", type=int, default=120, help="columns of the squares that are trained on")
