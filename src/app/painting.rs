@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use sensors::painter::{PaintError, PaintModel, PaintOptions, PaintWith};
+use sensors::painter::{PaintError, PaintModel, PaintOptions, PaintWith, SchedulerKind};
 
 /// A wish; what is none is as usual with the weights.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,6 +22,10 @@ pub struct PaintWish {
     pub width_px: Option<usize>,
     /// Public weights alone: what the pictures show, in words.
     pub prompt: String,
+    /// Public weights alone: what they do not show, in words.
+    pub negative: String,
+    /// Public weights alone: how a step is made of what the network says; as their folder has it if none.
+    pub scheduler: Option<SchedulerKind>,
 }
 
 impl PaintWish {
@@ -63,6 +67,8 @@ impl PaintWish {
             strength: within(self.strength, Self::STRENGTH, usual.strength),
             width_px: whole(self.width_px, Self::WIDTH_PX, usual.width_px),
             prompt: self.prompt.clone(),
+            negative: self.negative.clone(),
+            scheduler: self.scheduler,
             ..usual
         }
     }

@@ -28,6 +28,7 @@ use sensors::lidar::EgoBox;
 use sensors::rolling;
 use sensors::splat::{PREVIEW_SIZE, VIEW_SIZE};
 
+pub use painting::PaintStage;
 use painting::Painting;
 
 /// Rays whose samples are shown at most: more would cover the map.
@@ -65,7 +66,7 @@ pub struct Sensing {
     paint: Arc<PaintWish>,
     /// The learned pictures of all cameras, and of which state.
     painted: Option<(SceneRev, Arc<Vec<CameraView>>)>,
-    step: Option<(usize, usize)>,
+    stage: Option<PaintStage>,
     stop: Arc<AtomicBool>,
     /// The painting was stopped, or failed, and nothing has changed since.
     stopped: bool,
@@ -100,7 +101,7 @@ impl Sensing {
             problem: None,
             paint: Arc::default(),
             painted: None,
-            step: None,
+            stage: None,
             stop,
             stopped: false,
         })
@@ -114,9 +115,11 @@ impl Sensing {
         }
     }
 
-    /// Steps done and all steps of the pictures that are being painted.
-    pub fn step(&self) -> Option<(usize, usize)> {
-        self.step
+    /// How far the pictures are that are being painted.
+    pub fn paint_stage(&self) -> Option<PaintStage> {
+        let ends = self.stop.load(Ordering::Relaxed);
+        self.stage
+            .map(|stage| if ends { PaintStage::Stopping } else { stage })
     }
 
     /// Ends the painting after its present step; the pictures stay as they are by then until something changes.
@@ -193,8 +196,8 @@ impl Sensing {
         for news in news.into_iter().map(|event| event.update) {
             let wanted = self.asked.map(|(_, wanted, _)| wanted);
             match news {
-                painting::News::Step(step, view) => {
-                    self.step = Some(step);
+                painting::News::Stage(stage, view) => {
+                    self.stage = Some(stage);
                     // A state that no scene has: the pictures stay out of date while one of them changes.
                     let shown = self.painted.as_ref().map(|(_, views)| views);
                     if let Some(view) = view {
@@ -204,15 +207,15 @@ impl Sensing {
                     }
                 }
                 painting::News::Painted(rev, views) => {
-                    self.step = None;
+                    self.stage = None;
                     let views = Arc::new(views);
                     self.painted = Some((rev, views.clone()));
                     self.show_painted(rev, &views, wanted);
                 }
-                painting::News::Stopped => (self.step, self.stopped) = (None, true),
-                painting::News::GivenUp => self.step = None,
+                painting::News::Stopped => (self.stage, self.stopped) = (None, true),
+                painting::News::GivenUp => self.stage = None,
                 painting::News::Problem(problem) => {
-                    (self.step, self.stopped) = (None, true);
+                    (self.stage, self.stopped) = (None, true);
                     self.problem = Some(tf!("No learned pictures: {problem}", problem = problem));
                 }
             }

@@ -172,6 +172,11 @@ fn public_weights_paint_by_command() {
             &["--paint-guidance", "99"],
             "expected 1 to 15",
         ),
+        (
+            &reference("sd15"),
+            &["--paint-scheduler", "heun"],
+            "expected ddim, pndm, dpmpp2m, euler, unipc",
+        ),
     ] {
         let output = paint(weights, more);
         let error = String::from_utf8_lossy(&output.stderr);

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use app::painting::PaintWish;
-use sensors::painter::PaintWith;
+use sensors::painter::{PaintWith, SchedulerKind};
 
 /// How learned pictures are painted.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -19,6 +19,12 @@ pub(super) struct Painting {
     /// camera are added.
     #[arg(long = "paint-prompt", value_name = "WORDS")]
     prompt: Option<String>,
+    /// What they do not show, in words.
+    #[arg(long = "paint-negative", value_name = "WORDS")]
+    negative: Option<String>,
+    /// How public weights make a step: ddim, pndm, dpmpp2m, euler or unipc [default: as their folder has it].
+    #[arg(long = "paint-scheduler", value_name = "NAME", value_parser = scheduler)]
+    scheduler: Option<SchedulerKind>,
     /// How much of the rendered picture public weights paint anew, 0.1 to 1.
     #[arg(long = "paint-strength", value_name = "S", value_parser = within(PaintWish::STRENGTH))]
     strength: Option<f64>,
@@ -44,6 +50,14 @@ where
     }
 }
 
+/// Reads the name of a scheduler.
+fn scheduler(name: &str) -> Result<SchedulerKind, String> {
+    let mut all = SchedulerKind::ALL.into_iter();
+    let names = SchedulerKind::ALL.map(SchedulerKind::name);
+    all.find(|kind| kind.name() == name)
+        .ok_or_else(|| format!("expected {}", names.join(", ")))
+}
+
 impl Painting {
     /// The networks that the arguments ask for. Errors in one line if they are missing, damaged or foreign.
     pub fn open(&self) -> anyhow::Result<PaintWith> {
@@ -63,6 +77,8 @@ impl Painting {
             strength: self.strength,
             width_px: self.width,
             prompt: self.prompt.clone().unwrap_or_default(),
+            negative: self.negative.clone().unwrap_or_default(),
+            scheduler: self.scheduler,
         }
     }
 }

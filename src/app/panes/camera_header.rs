@@ -4,6 +4,7 @@ use egui::Ui;
 
 use crate::camera_views::CamerasShown;
 use crate::command::{Command, ViewCommand, Window};
+use crate::sensing::PaintStage;
 use language::{t, tf};
 use sensors::cameras::{self, Knob, learned};
 use widgets::icons;
@@ -20,6 +21,11 @@ const LIDAR_TEXT: f32 = 130.0;
 /// Width of the row of sources, and of the list that takes its place, points.
 const SOURCES: f32 = 270.0;
 const FOLDED: f32 = 130.0;
+/// Width that light and weather take, points.
+const CONDITIONS: f32 = 310.0;
+/// Width that how far pictures are takes, of those that are painted with the button that stops it, points.
+const UPDATING: f32 = 90.0;
+const PAINTING: f32 = 200.0;
 
 /// That newer pictures are on their way, and how far those are that are painted, which can be stopped.
 pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
@@ -32,14 +38,16 @@ pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec
         }
         return;
     }
-    let step = input.step.filter(|_| paints);
-    let text = match step {
-        Some((step, steps)) => tf!("painting, {step} of {steps}", step = step, steps = steps),
+    let stage = input.paint_stage.filter(|_| paints);
+    let text = match stage {
+        Some(PaintStage::Opening) => t("opening the weights").to_owned(),
+        Some(PaintStage::Step(step, steps)) => tf!("painting, {step} of {steps}", step = step, steps = steps),
+        Some(PaintStage::Stopping) => t("stopping after this step").to_owned(),
         None => t("updating").to_owned(),
     };
     ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
     ui.label(weak(text));
-    if step.is_some() {
+    if stage.is_some_and(|stage| stage != PaintStage::Stopping) {
         let stop = ui.small_button(t("Stop"));
         let hint = t("The pictures stay as they are by now until something changes");
         if stop.on_hover_text(hint).clicked() {
@@ -60,15 +68,23 @@ pub fn header(
         let views = cameras::views();
         let choices: Vec<_> = views.iter().map(|v| (v.id, t(v.title), t(v.hint))).collect();
         let sources = cameras::sources_of(shown.view);
-        // Room is left for the sources beside them.
+        // Room is left for what stands beside them.
         ui.scope(|ui| {
-            let all = icons::segments_width(ui, &choices) + SOURCES;
-            let beside = match sources.len() {
+            let air = match shown.shown_source().about().needs.conditions {
+                true => CONDITIONS,
+                false => 0.0,
+            };
+            let news = match shown.view == learned::VIEW.id {
+                true => PAINTING,
+                false => UPDATING,
+            };
+            let all = icons::segments_width(ui, &choices) + SOURCES + air + news;
+            let from = match sources.len() {
                 ..=1 => 0.0,
                 _ if ui.available_width() >= all => SOURCES,
                 _ => FOLDED,
             };
-            ui.set_max_width(ui.available_width() - beside);
+            ui.set_max_width((ui.available_width() - from - air - news).max(0.0));
             icons::choice(ui, &mut shown.view, &choices, t("Cameras"));
         });
         ui.add_space(8.0);

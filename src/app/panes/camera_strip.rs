@@ -17,7 +17,7 @@ use super::id::PaneId;
 use crate::camera_views::{CameraView, CamerasShown, camera_label, march};
 use crate::command::{Command, ViewCommand};
 use crate::place_marks;
-use crate::sensing::Sensing;
+use crate::sensing::{PaintStage, Sensing};
 use crate::state::UiState;
 use language::{t, tf};
 use scene::{Camera, Class, Scene, SceneRev, SensorRig};
@@ -53,8 +53,8 @@ pub struct CamerasInput<'a> {
     pub views: Option<&'a Arc<Vec<CameraView>>>,
     /// The pictures belong to an earlier state.
     pub stale: bool,
-    /// Steps done and all steps of pictures that are being painted.
-    pub step: Option<(usize, usize)>,
+    /// How far pictures are that are being painted.
+    pub paint_stage: Option<PaintStage>,
     /// That painting was stopped, or failed.
     pub stopped: bool,
     /// Returns of the newest sweep.
@@ -73,7 +73,7 @@ impl<'a> CamerasInput<'a> {
             rig: scene.with_rig_in_world().rig.clone(),
             views: sensing.cameras(),
             stale: sensing.cameras_stale(rev),
-            step: sensing.step(),
+            paint_stage: sensing.paint_stage(),
             stopped: sensing.is_stopped(),
             lidar_points: sensing.lidar().map(|l| l.points.len()),
             view: shown.view,

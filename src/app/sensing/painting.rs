@@ -24,10 +24,21 @@ pub(super) struct Request {
     pub moving: bool,
 }
 
+/// How far a painting has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PaintStage {
+    /// The weights are being opened.
+    Opening,
+    /// Steps done, and all steps.
+    Step(usize, usize),
+    /// It ends after its present step.
+    Stopping,
+}
+
 /// News from the thread.
 pub(super) enum News {
-    /// Steps done and all steps, and how a picture looks by now.
-    Step((usize, usize), Option<CameraView>),
+    /// How far it has come, and how a picture looks by now.
+    Stage(PaintStage, Option<CameraView>),
     /// The pictures of all cameras.
     Painted(SceneRev, Vec<CameraView>),
     /// The user stopped it.
@@ -59,7 +70,8 @@ impl Painting {
         }
     }
 
-    fn painter(&mut self, settings: &Arc<PaintWish>) -> Result<&mut dyn Paint, String> {
+    /// A painter for such settings; `opens` is called if weights must be opened for it.
+    fn painter(&mut self, settings: &Arc<PaintWish>, opens: impl FnOnce()) -> Result<&mut dyn Paint, String> {
         if self.settings.weights != settings.weights {
             self.model = None;
         }
@@ -72,10 +84,13 @@ impl Painting {
             None => {
                 let model = match self.model.take() {
                     Some(model) => model,
-                    None => settings.model().map_err(|e| match e {
-                        PaintError::Network(problem) => problem,
-                        e => e.to_string(),
-                    })?,
+                    None => {
+                        opens();
+                        settings.model().map_err(|e| match e {
+                            PaintError::Network(problem) => problem,
+                            e => e.to_string(),
+                        })?
+                    }
                 };
                 settings.with(self.model.insert(model).clone()).painter(true)
             }
@@ -90,14 +105,15 @@ impl Product for Painting {
 
     fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
         let stop = self.stop.clone();
-        let painter = match self.painter(&request.settings) {
+        let opens = || ctx.tell(News::Stage(PaintStage::Opening, None));
+        let painter = match self.painter(&request.settings, opens) {
             Ok(painter) => painter,
             Err(problem) => return News::Problem(problem),
         };
         let painted = painter.paint(&paint_input(&request.scene), &mut |progress| {
             let Progress { step, steps, news } = progress;
-            ctx.tell(News::Step(
-                (step, steps),
+            ctx.tell(News::Stage(
+                PaintStage::Step(step, steps),
                 news.map(|(camera, image)| view(camera, image)),
             ));
             match stop.load(Ordering::Relaxed) || (ctx.should_stop() && !request.moving) {
@@ -132,7 +148,7 @@ impl Product for Painting {
     }
 
     fn is_terminal(news: &News) -> bool {
-        !matches!(news, News::Step(..))
+        !matches!(news, News::Stage(..))
     }
 }
 
@@ -148,4 +164,32 @@ pub(super) fn with(views: &[CameraView], view: CameraView) -> Vec<CameraView> {
         Err(at) => views.insert(at, view),
     }
     views
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn weights_are_opened_once_whatever_else_changes() {
+        let mut painting = Painting::new(Arc::default());
+        let mut opens = |weights: &str, steps: usize| {
+            let all = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference/stable");
+            let wish = PaintWish {
+                weights: Some(all.join(weights)),
+                steps: Some(steps),
+                ..PaintWish::default()
+            };
+            let opened = Cell::new(false);
+            let painter = painting.painter(&Arc::new(wish), || opened.set(true));
+            assert!(painter.is_ok(), "{weights}");
+            opened.get()
+        };
+        assert!(opens("sd15", 3));
+        assert!(!opens("sd15", 3) && !opens("sd15", 5));
+        assert!(opens("sd21", 5) && opens("sd15", 5));
+    }
 }

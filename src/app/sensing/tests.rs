@@ -128,13 +128,14 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
             sensing.drain();
         }
     };
-    wait(&mut sensing, &|s| {
-        s.step().is_some_and(|(step, steps)| step >= 1 && steps == 30)
-    });
+    wait(
+        &mut sensing,
+        &|s| matches!(s.paint_stage(), Some(PaintStage::Step(step, 30)) if step >= 1),
+    );
     assert!(sensing.cameras_stale(scene.rev));
     sensing.stop_painting();
     wait(&mut sensing, &|s| s.is_stopped());
-    assert!(sensing.step().is_none() && sensing.cameras_stale(scene.rev));
+    assert!(sensing.paint_stage().is_none() && sensing.cameras_stale(scene.rev));
     // Fewer steps are asked for: it paints again, to the end.
     sensing.paint_with(&PaintWish {
         steps: Some(1),

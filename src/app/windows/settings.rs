@@ -10,7 +10,7 @@ use crate::shell::settings::Settings;
 use crate::windows::open::OpenWindows;
 use language::t;
 use scene::classes::Palette;
-use sensors::painter::PaintOptions;
+use sensors::painter::{PaintOptions, SchedulerKind};
 use widgets::icons::section;
 use widgets::theme::{self, Theme};
 
@@ -276,6 +276,31 @@ fn public_weights(ui: &mut Ui, painting: &mut PaintWish, options: &PaintOptions)
     ui.label(t("Words"));
     ui.add(egui::TextEdit::singleline(&mut painting.prompt).hint_text(t("a photograph of a street")))
         .on_hover_text(t("What the pictures show; time, weather and camera are added"));
+    ui.end_row();
+    ui.label(t("Without"));
+    ui.add(egui::TextEdit::singleline(&mut painting.negative))
+        .on_hover_text(t("What the pictures do not show, in words"));
+    ui.end_row();
+    ui.label(t("Scheduler"));
+    let name = |kind: Option<SchedulerKind>| match kind {
+        None => t("that of the folder"),
+        Some(SchedulerKind::Ddim) => "DDIM",
+        Some(SchedulerKind::Pndm) => "PNDM",
+        Some(SchedulerKind::DpmPp) => "DPM++ 2M",
+        Some(SchedulerKind::Euler) => "Euler",
+        Some(SchedulerKind::UniPc) => "UniPC",
+    };
+    let all = SchedulerKind::ALL.into_iter().map(Some);
+    egui::ComboBox::from_id_salt("scheduler")
+        .selected_text(name(painting.scheduler))
+        .show_ui(ui, |ui| {
+            for kind in std::iter::once(None).chain(all) {
+                ui.selectable_value(&mut painting.scheduler, kind, name(kind));
+            }
+        })
+        .response
+        .on_hover_text(t("How a step is made of what the network says"))
+        .accessible_name(t("Scheduler"));
     ui.end_row();
 }
 

@@ -85,49 +85,26 @@ impl Pane for Perception {
         }
         match self.by {
             Sensor::Cameras => {
-                if let Some((_, report)) = &perceiving.seen {
-                    let percent = format!("{:.1}", report.right * 100.0);
-                    let text = tf!("Classes right: {percent} % of the pixels", percent = percent);
-                    let what =
-                        t("A small camera network that learned from the pictures looks at all cameras.");
-                    ui.label(RichText::new(text).small().color(theme::text_weak()))
-                        .on_hover_text(what);
-                }
                 if ui.button(t("Show what it sees in the cameras")).clicked() {
                     commands.push(Command::View(ViewCommand::Cameras(perceived::VIEW.id)));
                 }
             }
             Sensor::Lidar => {
-                if let Some((_, report)) = &perceiving.swept {
-                    let percent = format!("{:.1}", report.right * 100.0);
-                    let text = tf!("Right where the LiDAR sees: {percent} %", percent = percent);
-                    let what = t(
-                        "A small network that learned from the sweeps of procedural worlds looks at the exact sweep of the first LiDAR.",
-                    );
-                    ui.label(RichText::new(text).small().color(theme::text_weak()))
-                        .on_hover_text(what);
-                }
                 ui.checkbox(&mut self.stands, t("What stands where, over the map"));
             }
             Sensor::Both => {
-                if let Some((_, report)) = &perceiving.told {
-                    let text = tf!(
-                        "Voxels where the LiDAR sees: IoU {iou}, classes right {percent} %",
-                        iou = format!("{:.2}", report.iou),
-                        percent = format!("{:.1}", report.right * 100.0)
-                    );
-                    let what = t(
-                        "A small network that learned from procedural worlds tells voxels from the exact sweep of the first LiDAR and from what the camera network sees.",
-                    );
-                    ui.label(RichText::new(text).small().color(theme::text_weak()))
-                        .on_hover_text(what);
-                }
                 ui.checkbox(&mut self.told, t("Its voxels in the 3D view"));
                 ui.checkbox(&mut self.stands, t("What stands where, over the map"));
             }
         }
         if perceiving.is_stale(cx.document.scene().rev, self.by) {
             ui.add(egui::Spinner::new().size(12.0).color(theme::text_weak()));
+        }
+        if let Some((text, what)) = summary(perceiving, self.by) {
+            // It takes what room the controls leave.
+            ui.add_space(4.0);
+            let text = RichText::new(text).small().color(theme::text_weak());
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(what);
         }
     }
 
@@ -188,6 +165,45 @@ impl Pane for Perception {
             });
         });
     }
+}
+
+/// How much a network says rightly, and what it is.
+fn summary(perceiving: &Perceiving, by: Sensor) -> Option<(String, &'static str)> {
+    let percent = |right: f64| format!("{:.1}", right * 100.0);
+    Some(match by {
+        Sensor::Cameras => {
+            let (_, report) = perceiving.seen.as_ref()?;
+            let text = tf!(
+                "Classes right: {percent} % of the pixels",
+                percent = percent(report.right)
+            );
+            let what = t("A small camera network that learned from the pictures looks at all cameras.");
+            (text, what)
+        }
+        Sensor::Lidar => {
+            let (_, report) = perceiving.swept.as_ref()?;
+            let text = tf!(
+                "Right where the LiDAR sees: {percent} %",
+                percent = percent(report.right)
+            );
+            let what = t(
+                "A small network that learned from the sweeps of procedural worlds looks at the exact sweep of the first LiDAR.",
+            );
+            (text, what)
+        }
+        Sensor::Both => {
+            let (_, report) = perceiving.told.as_ref()?;
+            let text = tf!(
+                "Voxels where the LiDAR sees: IoU {iou}, classes right {percent} %",
+                iou = format!("{:.2}", report.iou),
+                percent = percent(report.right)
+            );
+            let what = t(
+                "A small network that learned from procedural worlds tells voxels from the exact sweep of the first LiDAR and from what the camera network sees.",
+            );
+            (text, what)
+        }
+    })
 }
 
 /// A column that is scrolled by itself.

@@ -29,6 +29,7 @@ use ring::Ring;
 pub use ring::native_px;
 use scene::{Conditions, Frame, SensorRig};
 use seen::Seen;
+pub use stable::config::SchedulerKind;
 
 /// Pictures of so many states are kept: what was painted before is there again at once.
 const KEPT: usize = 6;
@@ -50,6 +51,10 @@ pub struct PaintOptions {
     pub width_px: usize,
     /// Public weights alone: what the pictures show, in words. Time, weather and camera are added.
     pub prompt: String,
+    /// Public weights alone: what they do not show, in words.
+    pub negative: String,
+    /// Public weights alone: how a step is made of what the network says; as their folder has it if none.
+    pub scheduler: Option<SchedulerKind>,
 }
 
 impl PaintOptions {
@@ -74,6 +79,8 @@ impl Default for PaintOptions {
             strength: 0.6,
             width_px: 512,
             prompt: String::new(),
+            negative: String::new(),
+            scheduler: None,
         }
     }
 }
@@ -103,7 +110,7 @@ pub enum PaintError {
 /// How far a painting has come.
 #[derive(Debug)]
 pub struct Progress<'a> {
-    /// Steps done.
+    /// Steps done; 0 before the first.
     pub step: usize,
     /// All steps.
     pub steps: usize,
@@ -202,6 +209,7 @@ impl Painter {
         };
         let order = ring.order(&brush);
         let condition = seen.condition(ring.size);
+        begins(watch, self.options.steps)?;
         let told = self.nets.dit.tell(&condition).map_err(network)?;
         let earlier = match source {
             None => self.earlier(&seen, ring.size),
@@ -351,6 +359,19 @@ impl Brush<'_> {
             mask::blend(&base.images[view].rgba, &mut image.rgba, &shares);
         }
         Ok(image)
+    }
+}
+
+/// Tells whoever watches that there will be so many steps. Errors if that is too much for them.
+fn begins(watch: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>, steps: usize) -> Result<(), PaintError> {
+    let progress = Progress {
+        step: 0,
+        steps,
+        news: None,
+    };
+    match watch(progress) {
+        ControlFlow::Break(()) => Err(PaintError::Stopped),
+        ControlFlow::Continue(()) => Ok(()),
     }
 }
 

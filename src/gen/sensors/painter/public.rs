@@ -11,7 +11,7 @@ use super::control_pictures::{boxes_and_lanes, classes, depths, planes};
 use super::ring::Ring;
 use super::seen::Seen;
 use super::surfaces::{cells_of, pixels_before, shared_cells};
-use super::{KEPT, PaintError, PaintInput, PaintOptions, Progress, mask};
+use super::{KEPT, PaintError, PaintInput, PaintOptions, Progress, begins, mask};
 use crate::appearance::CameraImage;
 use crate::painter::model::Paint;
 use diffusion::solver::Guidance;
@@ -62,6 +62,14 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
+    /// How much of the pictures is drawn anew.
+    fn strength(&self, options: &PaintOptions) -> f64 {
+        match self.onward {
+            Some(_) => options.strength.min(ONWARD),
+            None => options.strength,
+        }
+    }
+
     /// The picture that a view is drawn over: the rendered one, and what is known of it from before.
     fn start(&self, view: usize) -> Vec<u8> {
         let plain = self.seen.pixels(view).1.iter().flatten().copied();
@@ -150,10 +158,6 @@ impl PublicPainter {
         let noise = views
             .iter()
             .flat_map(|view| &told.noise[view * of_view..][..of_view]);
-        let strength = match told.onward {
-            Some(_) => self.options.strength.min(ONWARD),
-            None => self.options.strength,
-        };
         let start = Pictures::from_bytes(views.len(), [height, width], &start).map_err(public)?;
         let mask: Option<Vec<bool>> = told.before.as_ref().map(|(_, shares)| {
             let all = views.iter().flat_map(|view| &shares[*view]);
@@ -173,7 +177,7 @@ impl PublicPainter {
         let planes = planes.transpose().map_err(public)?;
         let request = Request {
             prompts: views.iter().map(|view| self.prompt(told, *view)).collect(),
-            negative: String::new(),
+            negative: self.options.negative.clone(),
             size: [height, width],
             views: views.len(),
             frames: 1,
@@ -182,12 +186,12 @@ impl PublicPainter {
                 weight: self.options.guidance,
                 rescale: 0.0,
             },
-            scheduler: None,
+            scheduler: self.options.scheduler,
             seed: told.seen.seed(),
             noise: Some(noise.copied().collect()),
             start: Some(Start {
                 pictures: &start,
-                strength,
+                strength: told.strength(&self.options),
                 mask: mask.as_deref(),
             }),
             controls: shown
@@ -311,6 +315,13 @@ impl PublicPainter {
             true => vec![(0..count).collect()],
             false => views.into_iter().map(|view| vec![view]).collect(),
         };
+        if !groups.is_empty() {
+            let PaintOptions { scheduler, steps, .. } = self.options;
+            let calls = self
+                .pipeline
+                .calls(scheduler, steps, told.strength(&self.options));
+            begins(watch, groups.len() * calls.map_err(public)?)?;
+        }
         let mut images: Vec<Option<Arc<CameraImage>>> = match &told.before {
             Some((images, _)) => images.iter().cloned().map(Some).collect(),
             None => vec![None; count],

@@ -39,9 +39,9 @@ fn pictures_are_painted_and_after_an_edit_only_what_it_touches() {
     let (with, without, _) = with_and_without_a_car();
     let rig = SensorRig::default();
     let mut painter = painter("sd15", 0.9);
-    let (mut news, mut last) = (Vec::new(), None);
+    let (mut news, mut last, mut steps) = (Vec::new(), None, Vec::new());
     let old = painter.paint(&input(&with, &rig), &mut |progress| {
-        assert!(progress.step <= progress.steps);
+        steps.push((progress.step, progress.steps));
         if let Some((camera, image)) = progress.news {
             news.push(camera);
             last = Some((camera, image.rgba.clone()));
@@ -49,6 +49,9 @@ fn pictures_are_painted_and_after_an_edit_only_what_it_touches() {
         ControlFlow::Continue(())
     });
     let old = old.expect("pictures");
+    // How many steps there will be is known before the first: three calls for each of six pictures.
+    assert_eq!((steps[0], steps[1]), ((0, 18), (1, 18)));
+    assert_eq!(steps.last(), Some(&(18, 18)));
     let last = last.expect("news");
     assert!(
         old[last.0].rgba == last.1,
@@ -152,6 +155,50 @@ fn copy(from: &Path, to: &Path) {
             true => copy(&path, &there),
             false => drop(std::fs::copy(&path, &there).expect("copied")),
         }
+    }
+}
+
+#[test]
+fn schedulers_and_words_change_the_pictures() {
+    let (frame, ..) = with_and_without_a_car();
+    let mut rig = SensorRig::default();
+    rig.cameras.truncate(1);
+    let model = PaintModel::open(&folder("sd15")).expect("tiny weights");
+    let paint = |scheduler, negative: &str| {
+        let options = PaintOptions {
+            steps: 4,
+            strength: 0.9,
+            width_px: 64,
+            negative: negative.to_owned(),
+            scheduler,
+            ..PaintOptions::public()
+        };
+        let with = PaintWith {
+            model: model.clone(),
+            options,
+        };
+        let mut all = 0;
+        let images = with.painter(false).paint(&input(&frame, &rig), &mut |progress| {
+            all = progress.steps;
+            go_on(progress)
+        });
+        (all, images.expect("pictures")[0].rgba.clone())
+    };
+    let usual = paint(None, "");
+    // The folder's is PNDM, which takes a call more than it has steps. Of four steps a share of .9 is done, three.
+    assert_eq!(usual, paint(Some(SchedulerKind::Pndm), ""));
+    let mut seen = vec![usual.1];
+    for kind in SchedulerKind::ALL
+        .into_iter()
+        .filter(|k| *k != SchedulerKind::Pndm)
+    {
+        let (calls, image) = paint(Some(kind), "");
+        assert_eq!((calls, usual.0), (3, 4), "{kind:?}");
+        seen.push(image);
+    }
+    seen.push(paint(None, "rain, people").1);
+    for (i, image) in seen.iter().enumerate() {
+        assert!(!seen[..i].contains(image), "the same as another: {i}");
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{check_plain, check_range, read_config};
 use crate::StableError;
 
 /// How a prediction becomes the next state. All are deterministic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, Serialize)]
 pub enum SchedulerKind {
     /// First order.
     #[serde(rename = "DDIMScheduler")]

@@ -8,10 +8,11 @@ mod request;
 
 use candle_core::{DType, Device, Tensor};
 
-use crate::config::SchedulerConfig;
+use crate::config::{SchedulerConfig, SchedulerKind};
 use crate::control::{ControlNet, MpiEncoder};
 use crate::noise::LatentSize;
 use crate::pictures::Pictures;
+use crate::sampling::Plan;
 use crate::text::{TextEncoder, Words};
 use crate::unet::Unet;
 use crate::vae::Vae;
@@ -65,6 +66,19 @@ impl Pipeline {
         let shown = || self.controls.iter().find(|c| c.takes_planes());
         let encoder = self.mpi.as_ref().map(MpiEncoder::channels);
         encoder.or_else(|| shown().map(|c| c.config().conditioning_channels))
+    }
+
+    /// Network calls of a run of so many steps, of which the last `strength` (0 to 1) are done, by `scheduler` or that of the
+    /// folder. Errors if there are no steps or more than the schedule has.
+    pub fn calls(
+        &self,
+        scheduler: Option<SchedulerKind>,
+        steps: usize,
+        strength: f64,
+    ) -> Result<usize, StableError> {
+        let kind = scheduler.unwrap_or(self.scheduler.kind);
+        let plan = Plan::new(&self.scheduler, kind, steps, strength)?;
+        Ok(plan.calls.len())
     }
 
     /// Pixels of a latent cell along a side: 8 in all public models.

@@ -1,5 +1,5 @@
 //! Which voxels the network of LiDAR and cameras tells in worlds and in what is generated from their layouts, from both and from either
-//! alone; and from the cameras alone in other light and weather.
+//! alone; from the cameras alone in other light and weather; and from the cameras alone where they see learned pictures.
 
 use std::sync::Arc;
 
