@@ -6,7 +6,7 @@ use crate::camera_views::CamerasShown;
 use crate::command::{Command, ViewCommand, Window};
 use crate::sensing::PaintStage;
 use language::{t, tf};
-use sensors::cameras::{self, Knob, learned};
+use sensors::cameras::{self, Knob, ViewId, learned};
 use widgets::icons;
 use widgets::theme;
 
@@ -21,11 +21,11 @@ const LIDAR_TEXT: f32 = 130.0;
 /// Width of the row of sources, and of the list that takes its place, points.
 const SOURCES: f32 = 270.0;
 const FOLDED: f32 = 130.0;
-/// Width that light and weather take, points.
-const CONDITIONS: f32 = 310.0;
+/// Widths of the fields for light and weather, of a menu with them, and of a short one, points.
+const LIGHT: [f32; 3] = [310.0, 76.0, 36.0];
 /// Width that how far pictures are takes, of those that are painted with the button that stops it, points.
 const UPDATING: f32 = 90.0;
-const PAINTING: f32 = 200.0;
+const PAINTING: f32 = 170.0;
 
 /// That newer pictures are on their way, and how far those are that are painted, which can be stopped.
 pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec<Command>) {
@@ -56,6 +56,39 @@ pub(super) fn progress(ui: &mut Ui, input: &CamerasInput<'_>, commands: &mut Vec
     }
 }
 
+/// How the row is shared.
+struct Room {
+    /// Width of the views, points; they fold into a list where it is too small for them.
+    views: f32,
+    /// Which of [`LIGHT`].
+    light: usize,
+}
+
+impl Room {
+    fn of<T>(ui: &Ui, choices: &[(T, &str, &str)], sources: usize, lit: bool, view: ViewId) -> Self {
+        let news = match view == learned::VIEW.id {
+            true => PAINTING,
+            false => UPDATING,
+        };
+        let all = ui.available_width() - news;
+        let side_by_side = icons::segments_width(ui, choices);
+        let from = match sources {
+            ..=1 => 0.0,
+            _ if all >= side_by_side + SOURCES => SOURCES,
+            _ => FOLDED,
+        };
+        let left = |light: usize| all - from - if lit { LIGHT[light] } else { 0.0 };
+        // Views side by side come before fields for the light, and those before their menu.
+        let fits = |views: f32| (0..LIGHT.len()).find(|light| left(*light) >= views);
+        let light = fits(side_by_side).or_else(|| fits(FOLDED));
+        let light = light.unwrap_or(LIGHT.len() - 1);
+        Self {
+            views: left(light).max(0.0),
+            light,
+        }
+    }
+}
+
 /// Draws the row.
 pub fn header(
     ui: &mut Ui,
@@ -68,23 +101,10 @@ pub fn header(
         let views = cameras::views();
         let choices: Vec<_> = views.iter().map(|v| (v.id, t(v.title), t(v.hint))).collect();
         let sources = cameras::sources_of(shown.view);
-        // Room is left for what stands beside them.
+        let lit = shown.shown_source().about().needs.conditions;
+        let room = Room::of(ui, &choices, sources.len(), lit, shown.view);
         ui.scope(|ui| {
-            let air = match shown.shown_source().about().needs.conditions {
-                true => CONDITIONS,
-                false => 0.0,
-            };
-            let news = match shown.view == learned::VIEW.id {
-                true => PAINTING,
-                false => UPDATING,
-            };
-            let all = icons::segments_width(ui, &choices) + SOURCES + air + news;
-            let from = match sources.len() {
-                ..=1 => 0.0,
-                _ if ui.available_width() >= all => SOURCES,
-                _ => FOLDED,
-            };
-            ui.set_max_width((ui.available_width() - from - air - news).max(0.0));
+            ui.set_max_width(room.views);
             icons::choice(ui, &mut shown.view, &choices, t("Cameras"));
         });
         ui.add_space(8.0);
@@ -95,8 +115,17 @@ pub fn header(
                 .collect();
             icons::choice(ui, &mut shown.source, &choices, t("From"));
         }
-        if shown.shown_source().about().needs.conditions {
-            conditions(ui, input.scene, commands);
+        if lit {
+            let menu = |name: &str, ui: &mut Ui, commands: &mut Vec<Command>| {
+                widgets::menu::with_fields(ui, name, |ui| conditions(ui, input.scene, commands))
+                    .on_hover_text(t("Time of day and weather of the scene"))
+                    .accessible_name(t("Light…"));
+            };
+            match room.light {
+                0 => conditions(ui, input.scene, commands),
+                1 => menu(t("Light…"), ui, commands),
+                _ => menu("☀", ui, commands),
+            }
         }
         match views.iter().find(|v| v.id == shown.view).and_then(|v| v.knob) {
             Some(Knob::PlaneDepth) => {
