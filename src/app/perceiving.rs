@@ -4,8 +4,9 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use authoring::corner_case::{self, Change, Search, Sensor, Tried, Vary};
+use job::JobId;
 use job::guard::Panicked;
-use job::product::{Ctx, Product, Wake, Worker};
+use job::product::{Ctx, Event, Product, Wake, Worker};
 use scene::{BoxId, Scene, SceneRev};
 use sensors::perceived::{self, Report};
 use sensors::perceived_sweep::{self, SweepReport};
@@ -110,6 +111,9 @@ impl Product for Perceiver {
 pub struct Perceiving {
     worker: Worker<Request, News>,
     asked: Option<(SceneRev, Sensor)>,
+    /// The newest job of each kind; news of others is old.
+    look: Option<JobId>,
+    search: Option<JobId>,
     /// What is seen in the cameras, and of which state.
     pub seen: Option<(SceneRev, Report)>,
     /// What is seen in the LiDAR's sweep, and of which state.
@@ -130,6 +134,8 @@ impl Perceiving {
         Ok(Self {
             worker: Worker::start("perception", || Perceiver, wake)?,
             asked: None,
+            look: None,
+            search: None,
             seen: None,
             swept: None,
             told: None,
@@ -141,31 +147,44 @@ impl Perceiving {
 
     /// Takes in what has arrived, and has a scene looked at by a sensor that did not yet, unless a search runs.
     pub fn update(&mut self, scene: &Arc<Scene>, by: Sensor) {
-        for news in self.worker.updates().try_iter().map(|event| event.update) {
-            match news {
+        let news: Vec<_> = self.worker.updates().try_iter().collect();
+        for Event { id, update } in news {
+            let (of_look, of_search) = (self.look == Some(id), self.search == Some(id));
+            match update {
                 News::Looked(rev, report) => (self.seen, self.problem) = (Some((rev, report)), None),
                 News::Swept(rev, report) => {
                     (self.swept, self.problem) = (Some((rev, Arc::new(report))), None)
                 }
                 News::Told(rev, report) => (self.told, self.problem) = (Some((rev, Arc::new(report))), None),
                 // What was forgotten may still be searched.
-                News::Tried(..) | News::Searched(_) if self.searching.is_none() => {}
+                News::Tried(..) | News::Searched(_) if !of_search => {}
                 News::Tried(tried, at) => self.searching = Some((tried.change, at)),
                 News::Searched(found) => {
-                    self.searching = None;
+                    self.end_search();
                     self.found.retain(|f| f.search.found.is_some());
                     self.found.insert(0, found);
                     self.found.truncate(2);
                 }
-                News::Failed(problem) => (self.searching, self.problem) = (None, Some(problem)),
-                News::GivenUp => self.searching = None,
+                News::Failed(problem) if of_look => self.problem = Some(problem),
+                News::Failed(problem) if of_search => {
+                    self.end_search();
+                    self.problem = Some(problem);
+                }
+                // A search came before it: it is asked for again afterwards.
+                News::GivenUp if of_look => self.asked = None,
+                News::GivenUp if of_search => self.end_search(),
+                News::Failed(_) | News::GivenUp => {}
             }
         }
         let wanted = Some((scene.rev, by));
         if self.searching.is_none() && self.asked != wanted && self.is_stale(scene.rev, by) {
             self.asked = wanted;
-            self.worker.submit(Request::Look(scene.clone(), by));
+            self.look = Some(self.worker.submit(Request::Look(scene.clone(), by)));
         }
+    }
+
+    fn end_search(&mut self) {
+        (self.searching, self.search) = (None, None);
     }
 
     /// Forgets what was seen and found: another scene was opened.
@@ -173,7 +192,9 @@ impl Perceiving {
         (self.seen, self.swept, self.told) = (None, None, None);
         self.found.clear();
         (self.asked, self.problem) = (None, None);
-        if self.searching.take().is_some() {
+        self.look = None;
+        if self.searching.is_some() {
+            self.end_search();
             self.stop();
         }
     }
@@ -181,7 +202,7 @@ impl Perceiving {
     /// Searches for a change of a scene after which a box is missed. What was found before stays until this is over.
     pub fn search(&mut self, scene: &Arc<Scene>, id: BoxId, vary: Vary, by: Sensor) {
         self.searching = Some((Change::None, [0, 1]));
-        self.worker.submit(Request::Search(scene.clone(), id, vary, by));
+        self.search = Some(self.worker.submit(Request::Search(scene.clone(), id, vary, by)));
     }
 
     /// Ends a search after what it tries now.
@@ -254,6 +275,18 @@ mod tests {
         assert!(perceiving.seen.is_none() && perceiving.searching.is_none());
         wait(&mut perceiving, by, |p| !p.is_stale(scene.rev, Sensor::Cameras));
         assert!(perceiving.found.is_empty() && perceiving.searching.is_none());
+        // A search comes before a look that waits for another; afterwards that is made, and both are there.
+        let mut other = (*scene).clone();
+        other.rev = SceneRev::fresh();
+        let other = Arc::new(other);
+        perceiving.update(&scene, Sensor::Both);
+        perceiving.update(&other, Sensor::Both);
+        perceiving.search(&other, id, Vary::Time, Sensor::Cameras);
+        wait(&mut perceiving, (&other, Sensor::Both), |p| !p.found.is_empty());
+        assert_eq!(perceiving.found[0].of, other.rev);
+        wait(&mut perceiving, (&other, Sensor::Both), |p| {
+            !p.is_stale(other.rev, Sensor::Both)
+        });
         // A box that is not there is told, and the thread goes on.
         perceiving.search(&scene, BoxId(9999), Vary::Fog, Sensor::Cameras);
         wait(&mut perceiving, by, |p| p.problem.is_some());

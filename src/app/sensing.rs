@@ -112,6 +112,10 @@ impl Sensing {
         if *self.paint != *settings {
             self.paint = Arc::new(settings.clone());
             self.asked = None;
+            // Those that are there were painted otherwise.
+            if let Some((rev, _)) = &mut self.painted {
+                *rev = SceneRev::fresh();
+            }
         }
     }
 
@@ -125,6 +129,14 @@ impl Sensing {
     /// Ends the painting after its present step; the pictures stay as they are by then until something changes.
     pub fn stop_painting(&self) {
         self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Ends a painting that nobody looks at; it begins again when it is asked for.
+    pub fn rest(&mut self) {
+        if self.stage.is_some() {
+            self.stop_painting();
+            self.asked = None;
+        }
     }
 
     /// True if the painting was stopped, or failed, and nothing has changed since.
@@ -232,6 +244,8 @@ impl Sensing {
                     self.sampled = sampled;
                     self.version += 1;
                 }
+                // Another kind of picture was asked for since.
+                News::Cameras(_, of, _) if self.asked.is_some_and(|(_, now, _)| now.source != of.source) => {}
                 News::Cameras(rev, wanted, views) => {
                     self.cameras = Some((rev, wanted, Arc::new(views)));
                     self.version += 1;

@@ -183,4 +183,26 @@ fn public_weights_paint_by_command() {
         assert_eq!(output.status.code(), Some(2), "{weights}: {error}");
         assert!(error.contains(needle) && error.lines().count() <= 2, "{error}");
     }
+    // Options that nothing would come of are refused.
+    for (what, option, value, needle) in [
+        (
+            "semantic",
+            "--paint-steps",
+            "8",
+            "of learned pictures alone, but --what is semantic",
+        ),
+        (
+            "learned",
+            "--paint-width",
+            "64",
+            "--paint-width is of public weights alone",
+        ),
+    ] {
+        let out = path("none");
+        let output = sceneloom(&["render", &scene, "--what", what, "-o", &out, option, value][..]);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{what}: {error}");
+        assert!(error.contains(needle) && error.lines().count() == 1, "{error}");
+        assert!(!std::path::Path::new(&out).exists(), "{what}");
+    }
 }

@@ -17,7 +17,7 @@ use app::open;
 use app::picture::ShotOptions;
 use formats::video::VideoKind;
 use scene::Scene;
-use sensors::cameras;
+use sensors::cameras::{self, learned};
 
 /// Arguments.
 #[derive(clap::Args)]
@@ -63,6 +63,8 @@ pub struct ClipCommand {
 impl ClipCommand {
     pub(super) fn run(self) -> Outcome {
         let kind = VideoKind::of_path(&self.output).map_err(anyhow::Error::new)?;
+        let paints = self.what == learned::VIEW.id.name();
+        self.painting.is_for(paints, &self.what)?;
         let scene = open::scene(&self.scene)?;
         let start = Instant::now();
         let progress = Progress::new(&self.common);

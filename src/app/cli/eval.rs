@@ -72,7 +72,7 @@ pub struct Eval {
     /// Fail (exit 1) if a bar of the suite is missed.
     #[arg(long)]
     bar: bool,
-    /// Small numbers: all suites together in about five minutes on two cores. Options beside it go first.
+    /// Small numbers: all suites together in a few minutes on two cores. Options beside it go first.
     #[arg(long)]
     quick: bool,
     /// Print the figures as Markdown, with commit, date and machine.

@@ -8,7 +8,7 @@ use anyhow::{Context, anyhow};
 use serde_json::json;
 
 use super::progress::Progress;
-use super::{Common, Moment, Outcome, output};
+use super::{Common, Moment, Outcome, Stop, output};
 use app::open;
 use authoring::corner_case::{self, Sensor, Vary};
 use editor::Document;
@@ -206,9 +206,10 @@ impl Perceive {
         });
         match edits {
             Some(_) => Ok(()),
-            None if self.output.is_some() => {
-                Err(anyhow!("box {} is never missed: no scene was written", id.0).into())
-            }
+            None if self.output.is_some() => Err(Stop::Short(format!(
+                "box {} is never missed: no scene was written",
+                id.0
+            ))),
             None => Ok(()),
         }
     }

@@ -127,10 +127,16 @@ impl Compare {
         wake: impl Fn() + Send + Sync + 'static,
     ) {
         self.before = before;
-        let Some(scene) = &self.before else { return };
-        if !senses {
-            return;
-        }
+        let scene = match &self.before {
+            Some(scene) if senses => scene,
+            _ => {
+                if let Some(sensing) = &mut self.sensing {
+                    sensing.drain();
+                    sensing.rest();
+                }
+                return;
+            }
+        };
         if self.sensing.is_none() {
             // Without a thread the cameras of the other state stay empty; the views do not need it.
             self.sensing = Sensing::spawn(std::time::Duration::ZERO, wake).ok();

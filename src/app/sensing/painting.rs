@@ -19,8 +19,8 @@ pub(super) struct Request {
     pub scene: Arc<Scene>,
     /// How.
     pub settings: Arc<PaintWish>,
-    /// The scene still changes. Such a painting goes on when a newer scene comes: giving way would leave the strip without
-    /// any news for as long as the user drags.
+    /// The scene still changes. Such a painting by the program's own weights goes on when a newer scene comes: giving way would leave
+    /// the strip without any news for as long as the user drags. Public weights take too long for that.
     pub moving: bool,
 }
 
@@ -105,6 +105,7 @@ impl Product for Painting {
 
     fn make(&mut self, request: &Request, ctx: &Ctx<'_, News>) -> News {
         let stop = self.stop.clone();
+        let goes_on = request.moving && !request.settings.is_public();
         let opens = || ctx.tell(News::Stage(PaintStage::Opening, None));
         let painter = match self.painter(&request.settings, opens) {
             Ok(painter) => painter,
@@ -116,7 +117,7 @@ impl Product for Painting {
                 PaintStage::Step(step, steps),
                 news.map(|(camera, image)| view(camera, image)),
             ));
-            match stop.load(Ordering::Relaxed) || (ctx.should_stop() && !request.moving) {
+            match stop.load(Ordering::Relaxed) || (ctx.should_stop() && !goes_on) {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             }

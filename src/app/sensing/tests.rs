@@ -149,7 +149,11 @@ fn a_painting_is_told_step_by_step_and_can_be_stopped() {
         weights: Some("nowhere".into()),
         ..PaintWish::default()
     });
+    sensing.ask(&scene, wanted, false);
+    // What was painted by others is no picture by these.
+    assert!(sensing.cameras_stale(scene.rev));
     wait(&mut sensing, &|s| s.is_stopped());
+    assert!(sensing.cameras_stale(scene.rev));
     let problem = sensing.take_problem().expect("a problem");
     assert!(
         problem.starts_with("No learned pictures: nowhere") && problem.lines().count() == 1,

@@ -187,7 +187,7 @@ pub struct Search {
 }
 
 /// Varies a scene until a network does not see a box that is plain to see. `watch` hears of each try and how many there
-/// are at most, and may end the search. Errors if there is no such box, or an edit or the network fails.
+/// are at most, and may end the search. Errors if there is no such box, every change is refused, or the network fails.
 pub fn search(
     scene: &Scene,
     id: BoxId,
@@ -212,11 +212,13 @@ pub fn search(
         found: None,
         stopped: false,
     };
+    let mut refused = None;
     let as_it_is = std::iter::once((Change::None, Vec::new()));
     for (change, edits) in as_it_is.chain(steps) {
         let mut document = Document::new(scene.clone());
         // A place where the box cannot stand is left out.
-        if document.apply_all("vary", &edits).is_err() {
+        if let Err(error) = document.apply_all("vary", &edits) {
+            refused = refused.or(Some(error));
             continue;
         }
         let tried = Tried {
@@ -236,14 +238,17 @@ pub fn search(
         let small = !tried.sight.is_judged();
         let gone = small && (vary == Vary::Distance || out.tried.len() == 1);
         if missed || gone {
-            break;
+            return Ok(out);
         }
         if ends {
             out.stopped = true;
-            break;
+            return Ok(out);
         }
     }
-    Ok(out)
+    match refused {
+        Some(error) if out.tried.len() == 1 => bail!("no change can be made: {error}"),
+        _ => Ok(out),
+    }
 }
 
 /// How a scene's cameras, its LiDAR or both see a box. Errors if the network fails.
@@ -395,18 +400,20 @@ fn driving(scene: &Scene, b: &SceneBox, mps: f64) -> Vec<Edit> {
         speeds: vec![Speed { time_s: 0.0, mps }],
         rear_first: false,
     };
-    vec![
-        Edit::SetLength {
-            length_s: scene.clip().length_s.max(2.0 * at_s),
-            rate_hz: None,
-        },
-        Edit::SetMotion {
-            id: Some(b.id),
-            motion: Some(Motion::Path(path)),
-            from_s: None,
-            to_s: None,
-        },
-    ]
+    let drives = Edit::SetMotion {
+        id: Some(b.id),
+        motion: Some(Motion::Path(path)),
+        from_s: None,
+        to_s: None,
+    };
+    let longer = Edit::SetLength {
+        length_s: 2.0 * at_s,
+        rate_hz: None,
+    };
+    match scene.clip().length_s {
+        length_s if length_s > 0.0 && length_s >= at_s => vec![drives],
+        _ => vec![longer, drives],
+    }
 }
 
 #[cfg(test)]
@@ -454,6 +461,21 @@ mod tests {
         });
         let ended = ended.expect("the shipped network");
         assert!(ended.tried.len() == 1 && ended.found.is_none() && ended.stopped);
+        // Nothing moves a locked box: that is said, not that it is always seen.
+        let mut document = Document::new(scene.clone());
+        let lock = Edit::Arrange {
+            boxes: vec![id],
+            things: Vec::new(),
+            how: scene::Arrangement::Lock,
+        };
+        document.apply("lock", &lock).expect("a box");
+        let go_on = |_: &Tried, _: [usize; 2]| ControlFlow::Continue(());
+        let error = search(document.scene(), id, Vary::Distance, Sensor::Cameras, go_on);
+        let error = error.expect_err("locked").to_string();
+        assert!(
+            error.starts_with("no change can be made: ") && error.contains("locked"),
+            "{error}"
+        );
         let error = search(&scene, BoxId(9999), Vary::Time, Sensor::Cameras, |_, _| {
             ControlFlow::Continue(())
         });
@@ -513,6 +535,16 @@ mod tests {
         rig.lidars[0].spin_hz = 10.0;
         scene.rig = rig.into();
         let speed = steps(&scene, b, Vary::Speed);
+        // A clip that is long enough keeps its length.
+        let sets_length = |edits: &[Edit]| edits.iter().any(|e| matches!(e, Edit::SetLength { .. }));
+        let mut long = Document::new(scene.clone());
+        let edit = Edit::SetLength {
+            length_s: 20.0,
+            rate_hz: None,
+        };
+        long.apply("length", &edit).expect("a length");
+        assert!(sets_length(&speed[0].1));
+        assert!(!sets_length(&steps(&long.scene().at(15.0), b, Vary::Speed)[0].1));
         assert!(speed.len() > 5 && speed.windows(2).all(|p| p[0].0 != p[1].0));
         let mut document = Document::new(scene.clone());
         let (change, edits) = speed.last().expect("faster");

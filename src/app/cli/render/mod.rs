@@ -76,6 +76,7 @@ impl Render {
             scene.rig = open::rig(path)?.into();
         }
         let paints = self.what.iter().any(|w| w == learned::VIEW.id.name());
+        self.painting.is_for(paints, &self.what.join(","))?;
         let paint = paints.then(|| self.painting.open()).transpose()?;
         let rendering = Rendering {
             what: self.what,

@@ -221,7 +221,11 @@ impl Painter {
             }
             _ => None,
         };
-        let number = earlier.as_ref().map_or(0, |(painted, _)| painted.number + 1);
+        let number = match (source, &earlier) {
+            (Some(source), _) => source.number,
+            (None, Some((painted, _))) => painted.number + 1,
+            (None, None) => 0,
+        };
         let noise = match source {
             Some(source) => source.noise.clone(),
             None => {

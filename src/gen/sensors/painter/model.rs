@@ -1,8 +1,8 @@
 //! Which networks paint: those that ship, a folder of one's own from the same training, or a public Stable Diffusion.
 
 use std::ops::ControlFlow;
-use std::path::Path;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::public::PublicPainter;
 use super::{PaintError, PaintInput, PaintOptions, Painter, Progress};
@@ -76,6 +76,23 @@ impl PartialEq for PaintModel {
     }
 }
 
+/// Public weights that somebody in this process holds, by their folder.
+static HELD: Mutex<Vec<(PathBuf, Weak<Pipeline>)>> = Mutex::new(Vec::new());
+
+/// The networks of a folder; they have gigabytes, so those that somebody holds are not read again.
+fn open_once(folder: &Path) -> Result<Arc<Pipeline>, String> {
+    let mut held = HELD.lock().unwrap_or_else(PoisonError::into_inner);
+    held.retain(|(_, pipeline)| pipeline.strong_count() > 0);
+    let known = held.iter().find(|(at, _)| at == folder);
+    if let Some(pipeline) = known.and_then(|(_, pipeline)| pipeline.upgrade()) {
+        return Ok(pipeline);
+    }
+    let pipeline = Pipeline::open(&Folders::of(folder), &Machine::best());
+    let pipeline = Arc::new(pipeline.map_err(|e| e.to_string())?);
+    held.push((folder.to_owned(), Arc::downgrade(&pipeline)));
+    Ok(pipeline)
+}
+
 impl PaintModel {
     /// The weights that ship with the program. Errors if they cannot be read.
     pub fn bundled() -> Result<Self, PaintError> {
@@ -89,10 +106,7 @@ impl PaintModel {
     pub fn open(folder: &Path) -> Result<Self, PaintError> {
         let network = |e: String| PaintError::Network(e);
         if Self::is_public(folder) {
-            let pipeline = Pipeline::open(&Folders::of(folder), &Machine::best());
-            return Ok(Self::Public(Arc::new(
-                pipeline.map_err(|e| network(e.to_string()))?,
-            )));
+            return open_once(folder).map(Self::Public).map_err(network);
         }
         if !folder.join("vae.safetensors").is_file() {
             return Err(network(format!(

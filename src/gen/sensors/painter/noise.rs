@@ -41,7 +41,7 @@ impl NoisePrior {
                 (cells, noise.to_vec(), of_frame(number))
             }
             (Self::Surfaces, None) => {
-                let cells = shared_cells(seen, &ring.front_first(), CELL);
+                let cells = shared_cells(seen, &ring.places(), CELL);
                 (cells, of_frame(0), of_frame(0))
             }
         };

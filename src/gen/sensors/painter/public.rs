@@ -62,11 +62,18 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    /// How much of the pictures is drawn anew.
+    /// How much of the pictures is drawn anew: one step at least, unless none is asked for.
     fn strength(&self, options: &PaintOptions) -> f64 {
-        match self.onward {
+        let strength = match self.onward {
             Some(_) => options.strength.min(ONWARD),
             None => options.strength,
+        };
+        // A little more than a step, so that it is not rounded to none.
+        let least = (1.0 + 1e-9) / options.steps.max(1) as f64;
+        if strength > 0.0 {
+            strength.max(least).min(1.0)
+        } else {
+            0.0
         }
     }
 
@@ -276,7 +283,11 @@ impl PublicPainter {
             images: &earlier.images,
             pixels: pixels_before(&seen, &earlier.seen, count),
         });
-        let frame = earlier.map_or(0, |e| e.frame + 1);
+        let frame = match (source, earlier) {
+            (Some(source), _) => source.frame,
+            (None, Some(earlier)) => earlier.frame + 1,
+            (None, None) => 0,
+        };
         let noise = match source {
             Some(source) => source.noise.clone(),
             None => {
@@ -287,7 +298,7 @@ impl PublicPainter {
                         let cells = cells_of(&onward.pixels, ring.size.pixels(), cell);
                         carried(&earlier.noise, &cells, &new, size)
                     }
-                    _ => carried(&new, &shared_cells(&seen, &ring.front_first(), cell), &new, size),
+                    _ => carried(&new, &shared_cells(&seen, &ring.places(), cell), &new, size),
                 };
                 noise.map_err(public)?
             }
@@ -309,7 +320,7 @@ impl PublicPainter {
             Some((_, shares)) => shares[*view].iter().any(|share| *share > 0.0),
             None => true,
         };
-        let views: Vec<usize> = ring.front_first().into_iter().filter(touched).collect();
+        let views: Vec<usize> = ring.places().into_iter().filter(touched).collect();
         let groups: Vec<Vec<usize>> = match together > 1 {
             true if views.is_empty() => Vec::new(),
             true => vec![(0..count).collect()],

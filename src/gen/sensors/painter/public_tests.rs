@@ -164,6 +164,8 @@ fn schedulers_and_words_change_the_pictures() {
     let mut rig = SensorRig::default();
     rig.cameras.truncate(1);
     let model = PaintModel::open(&folder("sd15")).expect("tiny weights");
+    let again = PaintModel::open(&folder("sd15")).expect("tiny weights");
+    assert_eq!(model, again, "the same in memory");
     let paint = |scheduler, negative: &str| {
         let options = PaintOptions {
             steps: 4,
@@ -197,6 +199,28 @@ fn schedulers_and_words_change_the_pictures() {
         seen.push(image);
     }
     seen.push(paint(None, "rain, people").1);
+    // However few steps there are, one is done.
+    let strength = |steps, strength| {
+        let options = PaintOptions {
+            steps,
+            strength,
+            width_px: 64,
+            ..PaintOptions::public()
+        };
+        let with = PaintWith {
+            model: model.clone(),
+            options,
+        };
+        let mut all = 0;
+        let images = with.painter(false).paint(&input(&frame, &rig), &mut |progress| {
+            all = progress.steps;
+            go_on(progress)
+        });
+        assert!(images.is_ok());
+        all
+    };
+    assert_eq!(strength(1, 0.6), strength(9, 0.1));
+    assert!(strength(1, 0.6) > 0 && strength(49, 0.01) > 0 && strength(4, 0.0) == 0);
     for (i, image) in seen.iter().enumerate() {
         assert!(!seen[..i].contains(image), "the same as another: {i}");
     }
@@ -289,11 +313,11 @@ fn surfaces_are_found_again_in_the_frame_before_and_in_the_camera_beside() {
     assert!(a < b * 0.6, "{a} {b}");
 
     // Cameras overlap: their cells share noise, and within one view no noise comes twice.
-    let shared = shared_cells(&then, &ring.front_first(), 8);
+    let shared = shared_cells(&then, &ring.places(), 8);
     assert_eq!(shared.len(), 6 * 10 * 16);
     let found = shared.iter().flatten().count();
     assert!(found > 20, "{found}");
-    let first = ring.front_first()[0];
+    let first = ring.places()[0];
     assert!(shared[first * 160..][..160].iter().all(Option::is_none));
     for (to, from) in shared.iter().enumerate() {
         let other = from.map_or(usize::MAX, |from| from as usize / 160);

@@ -16,14 +16,13 @@ const UNIT_PX: usize = 16;
 /// Shortest and longest side, px.
 const SIDE_PX: [usize; 2] = [64, 512];
 
-/// A rig's cameras in the order in which they stand around the vehicle, clockwise from above.
+/// A rig's cameras in the order in which they stand around the vehicle, clockwise from above, from that in front on (the rig's first, if
+/// none is called so): a place does not depend on where the vehicle heads.
 pub(super) struct Ring {
     /// How many, and the size of their pictures.
     pub size: RingSize,
     /// Of each place in the ring, the index in the rig.
     cameras: Vec<usize>,
-    /// Place of the camera that is painted first.
-    first: usize,
 }
 
 impl Ring {
@@ -47,10 +46,14 @@ impl Ring {
             -ahead.y.atan2(ahead.x)
         };
         order.sort_by(|a, b| clockwise(a).total_cmp(&clockwise(b)));
-        let front = |i: &usize| cameras[*i].name.ends_with("FRONT");
+        let front = cameras
+            .iter()
+            .position(|c| c.name.ends_with("FRONT"))
+            .unwrap_or(0);
+        let first = order.iter().position(|i| *i == front).unwrap_or(0);
+        order.rotate_left(first);
         Ok(Some(Self {
             size: RingSize::new(cameras.len(), size).map_err(network)?,
-            first: order.iter().position(front).unwrap_or(0),
             cameras: order,
         }))
     }
@@ -61,14 +64,13 @@ impl Ring {
     }
 
     /// All places, that of the front camera first.
-    pub fn front_first(&self) -> Vec<usize> {
-        let views = self.size.views();
-        (0..views).map(|i| (self.first + i) % views).collect()
+    pub fn places(&self) -> Vec<usize> {
+        (0..self.size.views()).collect()
     }
 
     /// Places that a brush touches, that of the front camera first.
     pub fn order(&self, brush: &Brush<'_>) -> Vec<usize> {
-        let mut places = self.front_first();
+        let mut places = self.places();
         places.retain(|place| brush.touches(*place));
         places
     }

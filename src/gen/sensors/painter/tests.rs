@@ -209,23 +209,28 @@ fn odd_rigs_are_painted_or_refused() {
 
 #[test]
 fn the_ring_runs_clockwise_and_begins_in_front() {
-    let rig = SensorRig::default();
-    let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
-    assert_eq!(ring.size.pixels(), [144, 256]);
-    let names: Vec<&str> = (0..6).map(|p| &rig.cameras[ring.camera(p)].name[4..]).collect();
-    let front = names.iter().position(|n| *n == "FRONT").expect("a front camera");
-    let around: Vec<&str> = (0..6).map(|i| names[(front + i) % 6]).collect();
-    assert_eq!(
-        around,
-        [
-            "FRONT",
-            "FRONT_RIGHT",
-            "BACK_RIGHT",
-            "BACK",
-            "BACK_LEFT",
-            "FRONT_LEFT"
-        ]
-    );
+    // Wherever the vehicle heads: a camera keeps its place while it turns.
+    for yaw_rad in [0.0, 0.003, 1.5, 3.14, -3.14, -0.003] {
+        let rig = SensorRig::default().placed(&Pose::planar(20.0, -5.0, yaw_rad));
+        let ring = Ring::of(&rig.cameras).expect("a ring").expect("cameras");
+        assert_eq!(ring.size.pixels(), [144, 256]);
+        let names = ring
+            .places()
+            .into_iter()
+            .map(|p| &rig.cameras[ring.camera(p)].name[4..]);
+        assert_eq!(
+            names.collect::<Vec<_>>(),
+            [
+                "FRONT",
+                "FRONT_RIGHT",
+                "BACK_RIGHT",
+                "BACK",
+                "BACK_LEFT",
+                "FRONT_LEFT"
+            ],
+            "{yaw_rad}"
+        );
+    }
 }
 
 #[test]

@@ -89,9 +89,36 @@ fn read_config<T: DeserializeOwned>(
     path: &Path,
     check: impl FnOnce(&T) -> Result<(), String>,
 ) -> Result<T, StableError> {
-    let config = read_json(path, MOST_BYTES)?;
+    let text = plain_numbers(&read_bounded(path, MOST_BYTES)?);
+    let config = serde_json::from_slice(&text).map_err(|e| refused(path, e.to_string()))?;
     check(&config).map_err(|reason| refused(path, reason))?;
     Ok(config)
+}
+
+/// JSON as Python writes it, in which numbers may be `Infinity`, `-Infinity` and `NaN`: those become `null`.
+fn plain_numbers(text: &[u8]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(text.len());
+    let (mut rest, mut quoted) = (text, false);
+    while let Some((first, more)) = rest.split_first() {
+        let names: [&[u8]; 3] = [b"-Infinity", b"Infinity", b"NaN"];
+        let name = names.into_iter().find(|n| !quoted && rest.starts_with(n));
+        match (name, first, more.first()) {
+            (Some(name), ..) => {
+                out.extend(b"null");
+                rest = &rest[name.len()..];
+            }
+            (None, b'\\', Some(next)) if quoted => {
+                out.extend([*first, *next]);
+                rest = &rest[2..];
+            }
+            _ => {
+                quoted ^= *first == b'"';
+                out.push(*first);
+                rest = more;
+            }
+        }
+    }
+    out
 }
 
 fn refused(path: &Path, reason: String) -> StableError {
@@ -99,6 +126,14 @@ fn refused(path: &Path, reason: String) -> StableError {
         path: path.to_owned(),
         reason: reason.replace('\n', " "),
     }
+}
+
+#[cfg(test)]
+#[test]
+fn numbers_that_json_has_not_are_none() {
+    let text = br#"{"a": -Infinity, "b": [NaN,1], "NaN\" Infinity": Infinity, "c": "-Infinity"}"#;
+    let plain = br#"{"a": null, "b": [null,1], "NaN\" Infinity": null, "c": "-Infinity"}"#;
+    assert_eq!(plain_numbers(text), plain);
 }
 
 /// Fails at a field that has another value than those listed, written as in JSON.
