@@ -173,67 +173,6 @@ impl Sensing {
         });
     }
 
-    fn paint(&mut self, scene: Arc<Scene>, wanted: Wanted, moving: bool) {
-        self.stop.store(false, Ordering::Relaxed);
-        self.stopped = false;
-        // What is there already is shown at once; whether it is out of date shows by its state.
-        if let Some((rev, views)) = self.painted.clone() {
-            self.show_painted(rev, &views, Some(wanted));
-        }
-        self.painting.submit(painting::Request {
-            scene,
-            settings: self.paint.clone(),
-            moving,
-        });
-    }
-
-    /// Shows learned pictures where the strip or panes want them.
-    fn show_painted(&mut self, rev: SceneRev, views: &Arc<Vec<CameraView>>, wanted: Option<Wanted>) {
-        self.version += 1;
-        match wanted {
-            Some(wanted) if wanted.source == learned::ID => {
-                let shown = |v: &&CameraView| v.camera >= 32 || wanted.hidden >> v.camera & 1 == 0;
-                let shown = views.iter().filter(shown).cloned().collect();
-                self.cameras = Some((rev, wanted, Arc::new(shown)));
-            }
-            _ => {
-                self.others.retain(|(_, of, _)| *of != learned::ID);
-                self.others.push((rev, learned::ID, views.clone()));
-            }
-        }
-    }
-
-    fn drain_painting(&mut self) {
-        let news: Vec<_> = self.painting.updates().try_iter().collect();
-        for news in news.into_iter().map(|event| event.update) {
-            let wanted = self.asked.map(|(_, wanted, _)| wanted);
-            match news {
-                painting::News::Stage(stage, view) => {
-                    self.stage = Some(stage);
-                    // A state that no scene has: the pictures stay out of date while one of them changes.
-                    let shown = self.painted.as_ref().map(|(_, views)| views);
-                    if let Some(view) = view {
-                        let shown = shown.or(self.cameras()).map_or(&[][..], |views| views);
-                        let views = Arc::new(painting::with(shown, view));
-                        self.show_painted(SceneRev::fresh(), &views, wanted);
-                    }
-                }
-                painting::News::Painted(rev, views) => {
-                    self.stage = None;
-                    let views = Arc::new(views);
-                    self.painted = Some((rev, views.clone()));
-                    self.show_painted(rev, &views, wanted);
-                }
-                painting::News::Stopped => (self.stage, self.stopped) = (None, true),
-                painting::News::GivenUp => self.stage = None,
-                painting::News::Problem(problem) => {
-                    (self.stage, self.stopped) = (None, true);
-                    self.problem = Some(tf!("No learned pictures: {problem}", problem = problem));
-                }
-            }
-        }
-    }
-
     /// Takes in what has arrived.
     pub fn drain(&mut self) {
         self.drain_painting();

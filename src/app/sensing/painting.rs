@@ -4,10 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::camera_views::{CameraView, paint_input};
+use super::Sensing;
+use crate::camera_views::{CameraView, Wanted, paint_input};
 use crate::painting::PaintWish;
 use job::guard::Panicked;
 use job::product::{Ctx, Product};
+use language::tf;
 use scene::{Scene, SceneRev};
 use sensors::appearance::CameraImage;
 use sensors::cameras::{CameraPicture, learned};
@@ -47,6 +49,71 @@ pub(super) enum News {
     Problem(String),
     /// A newer scene waits.
     GivenUp,
+}
+
+impl Sensing {
+    /// Asks for learned pictures of a scene.
+    pub(super) fn paint(&mut self, scene: Arc<Scene>, wanted: Wanted, moving: bool) {
+        self.stop.store(false, Ordering::Relaxed);
+        self.stopped = false;
+        // What is there already is shown at once; whether it is out of date shows by its state.
+        if let Some((rev, views)) = self.painted.clone() {
+            self.show_painted(rev, &views, Some(wanted));
+        }
+        self.painting.submit(Request {
+            scene,
+            settings: self.paint.clone(),
+            moving,
+        });
+    }
+
+    /// Shows learned pictures where the strip or panes want them.
+    fn show_painted(&mut self, rev: SceneRev, views: &Arc<Vec<CameraView>>, wanted: Option<Wanted>) {
+        self.version += 1;
+        match wanted {
+            Some(wanted) if wanted.source == learned::ID => {
+                let shown = |v: &&CameraView| v.camera >= 32 || wanted.hidden >> v.camera & 1 == 0;
+                let shown = views.iter().filter(shown).cloned().collect();
+                self.cameras = Some((rev, wanted, Arc::new(shown)));
+            }
+            _ => {
+                self.others.retain(|(_, of, _)| *of != learned::ID);
+                self.others.push((rev, learned::ID, views.clone()));
+            }
+        }
+    }
+
+    /// Takes in what has been painted.
+    pub(super) fn drain_painting(&mut self) {
+        let news: Vec<_> = self.painting.updates().try_iter().collect();
+        for news in news.into_iter().map(|event| event.update) {
+            let wanted = self.asked.map(|(_, wanted, _)| wanted);
+            match news {
+                News::Stage(stage, view) => {
+                    self.stage = Some(stage);
+                    // A state that no scene has: the pictures stay out of date while one of them changes.
+                    let shown = self.painted.as_ref().map(|(_, views)| views);
+                    if let Some(view) = view {
+                        let shown = shown.or(self.cameras()).map_or(&[][..], |views| views);
+                        let views = Arc::new(with(shown, view));
+                        self.show_painted(SceneRev::fresh(), &views, wanted);
+                    }
+                }
+                News::Painted(rev, views) => {
+                    self.stage = None;
+                    let views = Arc::new(views);
+                    self.painted = Some((rev, views.clone()));
+                    self.show_painted(rev, &views, wanted);
+                }
+                News::Stopped => (self.stage, self.stopped) = (None, true),
+                News::GivenUp => self.stage = None,
+                News::Problem(problem) => {
+                    (self.stage, self.stopped) = (None, true);
+                    self.problem = Some(tf!("No learned pictures: {problem}", problem = problem));
+                }
+            }
+        }
+    }
 }
 
 /// Paints scenes, with what its painter was made for.
