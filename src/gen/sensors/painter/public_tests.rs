@@ -166,15 +166,13 @@ fn schedulers_and_words_change_the_pictures() {
     let model = PaintModel::open(&folder("sd15")).expect("tiny weights");
     let again = PaintModel::open(&folder("sd15")).expect("tiny weights");
     assert_eq!(model, again, "the same in memory");
-    let paint = |scheduler, negative: &str| {
-        let options = PaintOptions {
-            steps: 4,
-            strength: 0.9,
-            width_px: 64,
-            negative: negative.to_owned(),
-            scheduler,
-            ..PaintOptions::public()
-        };
+    let usual = PaintOptions {
+        steps: 4,
+        strength: 0.9,
+        width_px: 64,
+        ..PaintOptions::public()
+    };
+    let paint = |options| {
         let with = PaintWith {
             model: model.clone(),
             options,
@@ -186,41 +184,41 @@ fn schedulers_and_words_change_the_pictures() {
         });
         (all, images.expect("pictures")[0].rgba.clone())
     };
-    let usual = paint(None, "");
+    let by = |scheduler| {
+        paint(PaintOptions {
+            scheduler: Some(scheduler),
+            ..usual.clone()
+        })
+    };
+    let (calls, image) = paint(usual.clone());
     // The folder's is PNDM, which takes a call more than it has steps. Of four steps a share of .9 is done, three.
-    assert_eq!(usual, paint(Some(SchedulerKind::Pndm), ""));
-    let mut seen = vec![usual.1];
+    assert_eq!((calls, &image), (4, &by(SchedulerKind::Pndm).1));
+    let mut seen = vec![image];
     for kind in SchedulerKind::ALL
         .into_iter()
         .filter(|k| *k != SchedulerKind::Pndm)
     {
-        let (calls, image) = paint(Some(kind), "");
-        assert_eq!((calls, usual.0), (3, 4), "{kind:?}");
+        let (calls, image) = by(kind);
+        assert_eq!(calls, 3, "{kind:?}");
         seen.push(image);
     }
-    seen.push(paint(None, "rain, people").1);
+    let negative = "rain, people".to_owned();
+    let without = PaintOptions {
+        negative,
+        ..usual.clone()
+    };
+    seen.push(paint(without).1);
     // However few steps there are, one is done.
-    let strength = |steps, strength| {
-        let options = PaintOptions {
+    let calls = |steps, strength| {
+        paint(PaintOptions {
             steps,
             strength,
-            width_px: 64,
-            ..PaintOptions::public()
-        };
-        let with = PaintWith {
-            model: model.clone(),
-            options,
-        };
-        let mut all = 0;
-        let images = with.painter(false).paint(&input(&frame, &rig), &mut |progress| {
-            all = progress.steps;
-            go_on(progress)
-        });
-        assert!(images.is_ok());
-        all
+            ..usual.clone()
+        })
+        .0
     };
-    assert_eq!(strength(1, 0.6), strength(9, 0.1));
-    assert!(strength(1, 0.6) > 0 && strength(49, 0.01) > 0 && strength(4, 0.0) == 0);
+    assert_eq!(calls(1, 0.6), calls(9, 0.1));
+    assert!(calls(1, 0.6) > 0 && calls(49, 0.01) > 0 && calls(4, 0.0) == 0);
     for (i, image) in seen.iter().enumerate() {
         assert!(!seen[..i].contains(image), "the same as another: {i}");
     }
