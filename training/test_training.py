@@ -313,6 +313,28 @@ def a_temporal_decoder_begins_as_nothing():
     assert (small[0, 0, 1] == torch.arange(64)).all() and (index[0, 0, 1, 14 * 50 + 3] == 4 * 50 + 3)
 
 
+def the_comparison_of_networks_begins():
+    """benches/peers/networks.py on the shipped weights and a bare road, without our side of it."""
+    root = Path(__file__).resolve().parents[1]
+    sys.path.insert(0, str(root / "benches/peers"))
+    import networks
+
+    torch.manual_seed(7)
+    vae = networks.network("occ_vae", networks.OccVae, networks.VaeConfig)
+    dit = networks.network("occ_dit", networks.OccDit, networks.DitConfig)
+    labels = torch.full((200, 200, 16), 17, dtype=torch.uint8)
+    labels[..., 2] = 11
+    bev, heading = torch.ones(200, 200, dtype=torch.int32), torch.zeros(200, 200, dtype=torch.uint8)
+    with torch.inference_mode():
+        latent = vae.encode(labels[None])[0]
+        told = networks.condition(dit, bev, heading, latent)
+        v = dit(latent[None], torch.tensor([500.0]), told)[0]
+        other = dit(latent[None], torch.tensor([500.0]), networks.condition(dit, bev * 0, heading, latent))[0]
+        same = (vae.decode(latent[None])[0] == labels).float().mean()
+    assert v.shape == latent.shape == (50, 50, 8) and torch.isfinite(v).all() and (v != other).any()
+    assert same > 0.95, same
+
+
 if __name__ == "__main__":
     reference = Path(sys.argv[1] if len(sys.argv) > 1 else "../../shared/reference")
     lovasz_against_reference(reference)
@@ -320,6 +342,7 @@ if __name__ == "__main__":
     print("references ok")
     for test in (row_31_kl, row_32_losses, shapes_and_schedule, networks_learn, a_window_hears_what_its_part_of_the_frame_says,
                  columns_of_the_background, muon_treats_matrices_of_one_shape_alike, headings_turn_with_their_frames, named_numbers, leaning_moves_whole_columns, a_given_background_stands_in_the_draft, a_stream_is_read_in_order, calibration_undoes_a_bias, a_refiner_sees_one_place_in_all_its_latents,
-                 temporal_blocks_begin_as_nothing, a_temporal_decoder_begins_as_nothing, three_planes_hold_as_much):
+                 temporal_blocks_begin_as_nothing, a_temporal_decoder_begins_as_nothing, three_planes_hold_as_much,
+                 the_comparison_of_networks_begins):
         test()
         print(test.__name__, "ok")

@@ -10,7 +10,7 @@ import torch
 from safetensors import safe_open
 
 sys.path.insert(0, str(ROOT / "training"))
-from models.occ_dit import DitConfig, OccDit, cell_headings, unshuffle_layout
+from models.occ_dit import COLUMN, GROUPS, NAMED, DitConfig, OccDit, condition_of
 from models.occ_vae import OccVae, VaeConfig
 
 
@@ -19,6 +19,18 @@ def network(kind, make, config):
         net = make(config(**json.loads(f.metadata()["config"])))
         net.load_state_dict({k: f.get_tensor(k).float() for k in f.keys()})
     return net.eval()
+
+
+def condition(dit, bev, heading, draft):
+    """What the transformer is told in benches/peers.rs: layout i32 [200,200], headings u8 [200,200] and the draft's latent [50,50,8];
+    everything is to be generated, no background, no ground and no number by name is given."""
+    cells, columns = draft.shape[:2], bev.shape
+    told = condition_of(mask=torch.ones(1, *cells), context=torch.zeros(1, *draft.shape), draft=draft[None], bev=bev[None],
+                        heading=heading[None], given=torch.zeros(1, *cells, GROUPS),
+                        columns=torch.zeros(1, *columns, COLUMN, dtype=torch.uint8), ground=torch.zeros(1, *cells))
+    named = torch.zeros(1, 2 * NAMED + 1)
+    named[0, -1] = (draft != 0).any()
+    return dit.condition(told, named)
 
 
 def main():
@@ -35,18 +47,17 @@ def main():
         print(f"decode                     {100 * other:.4f} % of the voxels differ (allowed 0.01)")
         if other > 1e-4:
             sys.exit("decode: the two sides compute different things")
-        named = torch.zeros(1, 8)
-        condition = dit.condition(torch.ones(1, 50, 50), torch.zeros(1, 50, 50, 8), x["draft"][None],
-                                  unshuffle_layout(x["bev"][None]), cell_headings(x["heading"][None]), named)
+        told = condition(dit, x["bev"], x["heading"], x["draft"])
         t = torch.tensor([500.0])
-        agrees("DiT step", x["v"], dit(latent, t, condition)[0], 1e-4)
+        agrees("DiT step", x["v"], dit(latent, t, told)[0], 1e-4)
         peer = f"torch {torch.__version__} f32"
         beside("VAE encode", lambda: ours("encode"), lambda: vae.encode(labels), args.runs, peer)
         beside("VAE decode", lambda: ours("decode"), lambda: vae.decode(latent), args.runs, peer)
-        beside("DiT step", lambda: ours("dit"), lambda: dit(latent, t, condition), args.runs, peer)
+        beside("DiT step", lambda: ours("dit"), lambda: dit(latent, t, told), args.runs, peer)
         block, c = dit.blocks[0], torch.randn(1, dit.config.width)
-        tokens = torch.randn(1, 625, dit.config.width)
+        tokens = torch.randn(1, 25, 25, dit.config.width)
         beside("DiT block (ours: step / 8)", lambda: ours("dit") / len(dit.blocks), lambda: block(tokens, c), args.runs, peer)
 
 
-main()
+if __name__ == "__main__":
+    main()
