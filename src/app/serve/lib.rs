@@ -2,8 +2,9 @@
 //! which AlpaSim's runtime asks its sensor simulation; `docs/serve.md` says which of it is served, `docs/sensorsim.proto` what its
 //! fields mean.
 //!
-//! A request is let in by a gate before it is read, rendered on a thread that may block, and keeps its place until the
-//! answer is sent. Nothing is remembered between requests but scenes and prepared moments: the same request gives the same bytes.
+//! A request is read, let in by a gate, and rendered on a thread that may block. What is waited for (a first request, the rest of a
+//! body, a client that takes its answer) has a deadline and a bound of its own (`limits::CALLERS`), so that nobody who only waits
+//! takes the place of who asks. Nothing is remembered between requests but scenes and prepared moments: the same request gives the same bytes.
 
 mod encode;
 #[cfg(test)]

@@ -1,5 +1,9 @@
 //! What bounds the memory and the work of a server.
 
+use std::time::Duration;
+
+use callers::{Limits, Wait};
+
 /// Pixels of a picture at most: 4096 x 4096.
 pub const MOST_PIXELS: u64 = 1 << 24;
 /// Pixels of all pictures of one request at most.
@@ -14,8 +18,26 @@ pub const MOST_REQUEST_BYTES: usize = 4 << 20;
 pub const MOST_ANSWER_BYTES: usize = 64 << 20;
 /// Requests of one connection at the same time.
 pub const MOST_STREAMS: u32 = 64;
-/// Connections at the same time; more wait to be accepted.
-pub const MOST_CONNECTIONS: usize = 256;
+/// Connections, bodies and answers: how many of each wait, and for how long. Clients that hold a channel open between two
+/// simulations are idle; others make a new one by themselves.
+pub const CALLERS: Limits = Limits {
+    strangers: Wait {
+        most: 256,
+        within: Duration::from_secs(10),
+    },
+    idle: Wait {
+        most: 256,
+        within: Duration::from_secs(3600),
+    },
+    reading: Wait {
+        most: 64,
+        within: Duration::from_secs(30),
+    },
+    sending: Wait {
+        most: 64,
+        within: Duration::from_secs(120),
+    },
+};
 /// Scenes that a server lists at most.
 pub const MOST_SCENES: usize = 100_000;
 /// Longest frame of a camera and longest spin of a LiDAR, us.

@@ -9,14 +9,14 @@ use std::task::{Context, Poll};
 use std::time::Duration;
 
 use anyhow::Context as _;
+use callers::{Caller, Callers, Connection};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::TcpStream;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, mpsc};
+use tokio::sync::mpsc;
 use tokio_stream::wrappers::ReceiverStream;
 use tonic::transport::server::Connected;
 
 use crate::gate::Gate;
-use crate::limits::{MOST_CONNECTIONS, MOST_STREAMS};
+use crate::limits::{CALLERS, MOST_STREAMS};
 use crate::renderer::{LidarModel, Renderer};
 use crate::service::Service;
 
@@ -72,13 +72,9 @@ impl Server {
         // One prepared moment per job: the cameras of a session ask for the same one after another.
         let renderer = Renderer::new(&options.scenes, options.kept, jobs, options.lidar)?;
         let scenes = renderer.scenes.len();
-        let listen = || {
-            let listener = TcpListener::bind(options.listen)?;
-            listener.set_nonblocking(true)?;
-            io::Result::Ok(listener)
-        };
         Ok(Self {
-            listener: listen().with_context(|| format!("listen on {}", options.listen))?,
+            listener: callers::listen(options.listen)
+                .with_context(|| format!("listen on {}", options.listen))?,
             service: Service::new(renderer, Gate::new(jobs, options.waiting)),
             jobs,
             scenes,
@@ -135,7 +131,9 @@ async fn signal() {
 async fn serve(listener: TcpListener, service: Service, end: impl Future<Output = ()>) -> anyhow::Result<()> {
     let listener = tokio::net::TcpListener::from_std(listener).context("listen")?;
     let (send, incoming) = mpsc::channel(1);
-    let accepting = tokio::spawn(accept(listener, send));
+    let callers = Callers::new(CALLERS);
+    let accepting = tokio::spawn(accept(listener, callers.clone(), send));
+    let deadlines = tokio::spawn(async move { callers.keep_deadlines().await });
     let (ended, told) = tokio::sync::oneshot::channel::<()>();
     let serving = tonic::transport::Server::builder()
         .max_concurrent_streams(MOST_STREAMS)
@@ -153,61 +151,52 @@ async fn serve(listener: TcpListener, service: Service, end: impl Future<Output 
     let _ = ended.send(());
     // Whoever takes longer is left.
     let _ = tokio::time::timeout(END_WITHIN, serving).await;
+    deadlines.abort();
     Ok(())
 }
 
-/// Takes connections, as long as there is room.
-async fn accept(listener: tokio::net::TcpListener, send: mpsc::Sender<io::Result<Connection>>) {
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+/// Takes connections. Whoever is silent gives way to whoever comes.
+async fn accept(
+    listener: tokio::net::TcpListener,
+    callers: Callers,
+    send: mpsc::Sender<io::Result<Incoming>>,
+) {
     loop {
-        let Ok(place) = places.clone().acquire_owned().await else {
-            return;
-        };
-        let Ok((stream, _)) = listener.accept().await else {
-            // (no file handle is left, or the client went: others may do better a little later)
-            tokio::time::sleep(Duration::from_millis(50)).await;
-            continue;
-        };
-        let _ = stream.set_nodelay(true);
-        let connection = Connection {
-            stream,
-            _place: place,
-        };
-        if send.send(Ok(connection)).await.is_err() {
+        let connection = callers.accept(&listener).await;
+        if send.send(Ok(Incoming(connection))).await.is_err() {
             return;
         }
     }
 }
 
-/// A connection and its place among those there may be.
-struct Connection {
-    stream: TcpStream,
-    _place: OwnedSemaphorePermit,
-}
+/// A connection that tells its requests whose they are.
+struct Incoming(Connection);
 
-impl Connected for Connection {
-    type ConnectInfo = ();
+impl Connected for Incoming {
+    type ConnectInfo = Arc<Caller>;
 
-    fn connect_info(&self) {}
-}
-
-impl AsyncRead for Connection {
-    fn poll_read(self: Pin<&mut Self>, c: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.get_mut().stream).poll_read(c, into)
+    fn connect_info(&self) -> Arc<Caller> {
+        self.0.caller().clone()
     }
 }
 
-impl AsyncWrite for Connection {
+impl AsyncRead for Incoming {
+    fn poll_read(self: Pin<&mut Self>, c: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.get_mut().0).poll_read(c, into)
+    }
+}
+
+impl AsyncWrite for Incoming {
     fn poll_write(self: Pin<&mut Self>, c: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.get_mut().stream).poll_write(c, bytes)
+        Pin::new(&mut self.get_mut().0).poll_write(c, bytes)
     }
 
     fn poll_flush(self: Pin<&mut Self>, c: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.get_mut().stream).poll_flush(c)
+        Pin::new(&mut self.get_mut().0).poll_flush(c)
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, c: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.get_mut().stream).poll_shutdown(c)
+        Pin::new(&mut self.get_mut().0).poll_shutdown(c)
     }
 
     fn poll_write_vectored(
@@ -215,10 +204,10 @@ impl AsyncWrite for Connection {
         c: &mut Context<'_>,
         bytes: &[io::IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.get_mut().stream).poll_write_vectored(c, bytes)
+        Pin::new(&mut self.get_mut().0).poll_write_vectored(c, bytes)
     }
 
     fn is_write_vectored(&self) -> bool {
-        self.stream.is_write_vectored()
+        self.0.is_write_vectored()
     }
 }

@@ -1,12 +1,12 @@
-//! The service as HTTP/2 hands it requests: each method by its path, with a place inside for all that is rendered.
+//! The service as HTTP/2 hands it requests: each method by its path, with a place inside for all that is rendered. Places are taken
+//! by requests that were read whole, never by those that are still to come.
 
 use std::convert::Infallible;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 
-use http_body::{Body, Frame, SizeHint};
-use tokio::sync::OwnedSemaphorePermit;
+use callers::{Asking, Caller, Place, Sending};
 use tonic::server::UnaryService;
 use tonic::{Request, Response, Status};
 use tonic_prost::ProstCodec;
@@ -20,8 +20,13 @@ use crate::{lidar, offers, picture, several};
 /// A request that says nothing but a name, bytes at most.
 const SHORT_REQUEST_BYTES: usize = 64 << 10;
 
+/// Why a request whose body does not come is refused.
+const LATE: &str =
+    "the request did not come whole in time, expected all of it within 30 s, or sooner where many others ask";
+
 type Later<T> = Pin<Box<dyn Future<Output = T> + Send>>;
-type Answer = http::Response<Held>;
+type Asked = http::Request<tonic::body::Body>;
+type Answer = http::Response<Sending<tonic::body::Body>>;
 
 /// Answers requests.
 #[derive(Clone)]
@@ -30,38 +35,15 @@ pub struct Service {
     gate: Gate,
 }
 
-/// The body of an answer, and its place inside until it is sent.
-pub struct Held {
-    body: tonic::body::Body,
-    _place: Option<OwnedSemaphorePermit>,
-}
-
-impl Body for Held {
-    type Data = <tonic::body::Body as Body>::Data;
-    type Error = Status;
-
-    fn poll_frame(
-        self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Self::Data>, Self::Error>>> {
-        Pin::new(&mut self.get_mut().body).poll_frame(context)
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
-    }
-}
-
 /// What a method does, on a thread that may block.
 type Work<Q, A> = fn(&Renderer, &Q) -> Result<A, Status>;
 
 /// A method with what it needs.
 struct Method<Q, A> {
     renderer: Arc<Renderer>,
+    /// Until the request is read.
+    reading: Option<Place>,
+    asking: Arc<Asking>,
     /// None for what is answered at once.
     gate: Option<Gate>,
     work: Work<Q, A>,
@@ -72,11 +54,16 @@ impl<Q: Send + Sync + 'static, A: Send + 'static> UnaryService<Q> for Method<Q, 
     type Future = Later<Result<Response<A>, Status>>;
 
     fn call(&mut self, request: Request<Q>) -> Self::Future {
+        self.reading = None;
+        self.asking.is_read();
         let (renderer, gate, work) = (self.renderer.clone(), self.gate.clone(), self.work);
         let asked = request.into_inner();
         Box::pin(async move {
             let made = match gate {
-                Some(gate) => gate.run(move || work(&renderer, &asked)).await?,
+                Some(gate) => {
+                    let _place = gate.enter()?;
+                    gate.run(move || work(&renderer, &asked)).await?
+                }
                 None => work(&renderer, &asked)?,
             };
             Ok(Response::new(made))
@@ -94,65 +81,73 @@ impl Service {
     }
 
     /// Answers at once.
-    fn told<Q, A>(&self, request: http::Request<tonic::body::Body>, work: Work<Q, A>) -> Later<Answer>
+    fn told<Q, A>(&self, request: Asked, work: Work<Q, A>) -> Later<Answer>
     where
         Q: prost::Message + Default + 'static,
         A: prost::Message + Default + 'static,
     {
-        let method = Method {
-            renderer: self.renderer.clone(),
-            gate: None,
+        Box::pin(answer(
+            self.renderer.clone(),
+            None,
             work,
-        };
-        Box::pin(answer(method, request, SHORT_REQUEST_BYTES, None))
+            request,
+            SHORT_REQUEST_BYTES,
+        ))
     }
 
     /// Answers when it is its turn; refuses before the request is read where there is no place.
-    fn made<Q, A>(
-        &self,
-        request: http::Request<tonic::body::Body>,
-        longest: usize,
-        work: Work<Q, A>,
-    ) -> Later<Answer>
+    fn made<Q, A>(&self, request: Asked, longest: usize, work: Work<Q, A>) -> Later<Answer>
     where
         Q: prost::Message + Default + 'static,
         A: prost::Message + Default + 'static,
     {
-        let place = match self.gate.enter() {
-            Ok(place) => place,
-            Err(full) => return Box::pin(async move { refused(full) }),
-        };
-        let method = Method {
-            renderer: self.renderer.clone(),
-            gate: Some(self.gate.clone()),
-            work,
-        };
-        Box::pin(answer(method, request, longest, Some(place)))
+        if let Err(full) = self.gate.enter() {
+            return Box::pin(async move { refused(full) });
+        }
+        let gate = Some(self.gate.clone());
+        Box::pin(answer(self.renderer.clone(), gate, work, request, longest))
     }
 }
 
 async fn answer<Q, A>(
-    method: Method<Q, A>,
-    request: http::Request<tonic::body::Body>,
+    renderer: Arc<Renderer>,
+    gate: Option<Gate>,
+    work: Work<Q, A>,
+    request: Asked,
     longest: usize,
-    place: Option<OwnedSemaphorePermit>,
 ) -> Answer
 where
     Q: prost::Message + Default + 'static,
     A: prost::Message + Default + 'static,
 {
+    let Some(caller) = request.extensions().get::<Arc<Caller>>() else {
+        return refused(Status::internal(
+            "the request came over no connection of this server",
+        ));
+    };
+    let asking = Arc::new(caller.asks());
+    let (late, reading) = caller.callers().reading();
+    let method = Method {
+        renderer,
+        reading: Some(reading),
+        asking: asking.clone(),
+        gate,
+        work,
+    };
     let codec = ProstCodec::<A, Q>::default();
     let mut grpc = tonic::server::Grpc::new(codec)
         .max_decoding_message_size(longest)
         .max_encoding_message_size(MOST_ANSWER_BYTES);
-    let response = grpc.unary(method, request).await;
-    response.map(|body| Held { body, _place: place })
+    let response = tokio::select! {
+        biased;
+        response = grpc.unary(method, request) => response,
+        () = late.told() => return refused(Status::deadline_exceeded(LATE)),
+    };
+    response.map(|body| Sending::new(body, asking))
 }
 
 fn refused(status: Status) -> Answer {
-    status
-        .into_http::<tonic::body::Body>()
-        .map(|body| Held { body, _place: None })
+    status.into_http::<tonic::body::Body>().map(Sending::short)
 }
 
 impl tower_service::Service<http::Request<tonic::body::Body>> for Service {
@@ -164,7 +159,7 @@ impl tower_service::Service<http::Request<tonic::body::Body>> for Service {
         Poll::Ready(Ok(()))
     }
 
-    fn call(&mut self, request: http::Request<tonic::body::Body>) -> Self::Future {
+    fn call(&mut self, request: Asked) -> Self::Future {
         let path = request.uri().path();
         let method = path.strip_prefix('/').and_then(|p| p.strip_prefix(SERVICE));
         let answer = match method.unwrap_or_default() {

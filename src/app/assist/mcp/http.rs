@@ -8,16 +8,17 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
+use callers::{Caller, Callers, Limits, Sending, Wait};
 use http_body_util::combinators::BoxBody;
-use http_body_util::{BodyExt, Full};
-use hyper::body::{Bytes, Incoming};
-use hyper::header::{AUTHORIZATION, CONTENT_TYPE, HeaderValue, WWW_AUTHENTICATE};
+use http_body_util::{BodyExt, Full, LengthLimitError, Limited};
+use hyper::body::{Body, Bytes, Incoming};
+use hyper::header::{AUTHORIZATION, CONNECTION, CONTENT_TYPE, HeaderValue, WWW_AUTHENTICATE};
 use hyper::service::service_fn;
 use hyper::{Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use rmcp::transport::streamable_http_server::session::local::LocalSessionManager;
 use rmcp::transport::{StreamableHttpServerConfig, StreamableHttpService};
-use tokio::sync::{Semaphore, oneshot};
+use tokio::sync::oneshot;
 
 use super::server::Server;
 use crate::LONGEST_CALL;
@@ -27,12 +28,27 @@ use crate::service::Service;
 const PATH: &str = "/mcp";
 /// Shortest token, bytes.
 const SHORTEST_TOKEN: usize = 16;
-/// Connections at the same time; more wait.
-const MOST_CONNECTIONS: usize = 64;
-/// How long a client may take to say what it wants.
-const HEADERS_WITHIN: Duration = Duration::from_secs(10);
-/// What a message may have around the arguments of its call, bytes.
-const ENVELOPE: usize = 4096;
+/// Longest body, bytes: a call and what a message has around it.
+const LONGEST_BODY: usize = LONGEST_CALL + 4096;
+/// Connections, bodies and answers: how many of each wait, and for how long. A stranger is who has not shown the token.
+const CALLERS: Limits = Limits {
+    strangers: Wait {
+        most: 128,
+        within: Duration::from_secs(10),
+    },
+    idle: Wait {
+        most: 64,
+        within: Duration::from_secs(60),
+    },
+    reading: Wait {
+        most: 64,
+        within: Duration::from_secs(30),
+    },
+    sending: Wait {
+        most: 64,
+        within: Duration::from_secs(120),
+    },
+};
 
 /// A running server. It ends when it is dropped.
 pub struct Http {
@@ -87,8 +103,7 @@ pub fn http(service: Service, listen: SocketAddr, token: String) -> anyhow::Resu
         let found = token.len();
         bail!("the token has {found} bytes, expected at least {SHORTEST_TOKEN} letters, digits or signs");
     }
-    let listener = TcpListener::bind(listen).with_context(|| format!("listen on {listen}"))?;
-    listener.set_nonblocking(true).context("listen")?;
+    let listener = callers::listen(listen).with_context(|| format!("listen on {listen}"))?;
     let address = listener.local_addr().context("listen")?;
     let (stop, stopped) = oneshot::channel();
     let runtime = tokio::runtime::Builder::new_current_thread()
@@ -114,6 +129,15 @@ pub fn http(service: Service, listen: SocketAddr, token: String) -> anyhow::Resu
 }
 
 type Mcp = StreamableHttpService<Server, LocalSessionManager>;
+type Answer = Response<Sending<BoxBody<Bytes, Infallible>>>;
+
+/// What connections share.
+#[derive(Clone)]
+struct Door {
+    mcp: Mcp,
+    /// What the header says that shows the token.
+    expected: Arc<str>,
+}
 
 async fn accept(listener: TcpListener, service: Service, token: &str) {
     let Ok(listener) = tokio::net::TcpListener::from_std(listener) else {
@@ -123,51 +147,85 @@ async fn accept(listener: TcpListener, service: Service, token: &str) {
         .with_legacy_session_mode(false)
         .with_json_response(true)
         .enforce_origin_validation() // no page of a browser
-        .with_max_request_body_bytes(LONGEST_CALL + ENVELOPE);
+        .with_max_request_body_bytes(LONGEST_BODY);
     let server = Server::new(service);
-    let mcp = Mcp::new(move || Ok(server.clone()), Arc::default(), config);
-    let expected: Arc<str> = format!("Bearer {token}").into();
-    let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    let door = Door {
+        mcp: Mcp::new(move || Ok(server.clone()), Arc::default(), config),
+        expected: format!("Bearer {token}").into(),
+    };
+    let callers = Callers::new(CALLERS);
+    let deadlines = callers.clone();
+    tokio::spawn(async move { deadlines.keep_deadlines().await });
     loop {
-        let Ok(place) = places.clone().acquire_owned().await else {
-            return;
-        };
-        let Ok((stream, _)) = listener.accept().await else {
-            // (no file handle is left, or the client went: others may do better a little later)
-            tokio::time::sleep(Duration::from_millis(50)).await;
-            continue;
-        };
-        let (mcp, expected) = (mcp.clone(), expected.clone());
+        let connection = callers.accept(&listener).await;
+        let (door, caller) = (door.clone(), connection.caller().clone());
         tokio::spawn(async move {
-            let answer = service_fn(|request: Request<Incoming>| {
-                let (mcp, expected) = (mcp.clone(), expected.clone());
-                async move {
-                    if request.uri().path() != PATH {
-                        return Ok::<_, Infallible>(refused(StatusCode::NOT_FOUND, "expected the path /mcp"));
-                    }
-                    if !shows(&request, &expected) {
-                        let why = "expected the header Authorization: Bearer with the token of this server";
-                        return Ok(refused(StatusCode::UNAUTHORIZED, why));
-                    }
-                    Ok(mcp.handle(request).await)
-                }
+            let answer = service_fn(|request| {
+                let (door, caller) = (door.clone(), caller.clone());
+                async move { Ok::<_, Infallible>(door.answer(&caller, request).await) }
             });
             let served = hyper::server::conn::http1::Builder::new()
                 .timer(TokioTimer::new())
-                .header_read_timeout(HEADERS_WITHIN)
-                .serve_connection(TokioIo::new(stream), answer)
+                .header_read_timeout(CALLERS.strangers.within)
+                .serve_connection(TokioIo::new(connection), answer)
                 .await;
-            drop((served, place));
+            // (a connection that ends with an error has nobody left to be told)
+            drop(served);
         });
     }
 }
 
-/// A refusal in one line.
-fn refused(status: StatusCode, why: &'static str) -> Response<BoxBody<Bytes, Infallible>> {
-    let mut response = Response::new(Full::new(Bytes::from_static(why.as_bytes())).boxed());
+impl Door {
+    async fn answer(&self, caller: &Arc<Caller>, request: Request<Incoming>) -> Answer {
+        if request.uri().path() != PATH {
+            return refused(StatusCode::NOT_FOUND, "expected the path /mcp");
+        }
+        if !shows(&request, &self.expected) {
+            let why = "expected the header Authorization: Bearer with the token of this server";
+            return refused(StatusCode::UNAUTHORIZED, why);
+        }
+        let asking = Arc::new(caller.asks());
+        let (head, body) = request.into_parts();
+        let body = match read(body, caller.callers()).await {
+            Ok(body) => body,
+            Err((status, why)) => return refused(status, why),
+        };
+        asking.is_read();
+        let answer = self.mcp.handle(Request::from_parts(head, Full::new(body))).await;
+        answer.map(|body| Sending::new(body, asking))
+    }
+}
+
+/// A body, read whole before anything is done with it: one that does not come must not hold what others need.
+async fn read(body: Incoming, callers: &Callers) -> Result<Bytes, (StatusCode, &'static str)> {
+    const TOO_LONG: &str = "the message is too long, expected at most 1 MiB";
+    if body.size_hint().lower() > LONGEST_BODY as u64 {
+        return Err((StatusCode::PAYLOAD_TOO_LARGE, TOO_LONG));
+    }
+    let (late, _place) = callers.reading();
+    let read = tokio::select! {
+        biased;
+        read = Limited::new(body, LONGEST_BODY).collect() => read,
+        () = late.told() => {
+            let why = "the body did not come whole in time, expected all of it within 30 s";
+            return Err((StatusCode::REQUEST_TIMEOUT, why));
+        }
+    };
+    match read {
+        Ok(whole) => Ok(whole.to_bytes()),
+        Err(error) if error.is::<LengthLimitError>() => Err((StatusCode::PAYLOAD_TOO_LARGE, TOO_LONG)),
+        Err(_) => Err((StatusCode::BAD_REQUEST, "the body broke off")),
+    }
+}
+
+/// A refusal in one line, and the end of the connection.
+fn refused(status: StatusCode, why: &'static str) -> Answer {
+    let body = Full::new(Bytes::from_static(why.as_bytes())).boxed();
+    let mut response = Response::new(Sending::short(body));
     *response.status_mut() = status;
     let headers = response.headers_mut();
     headers.insert(CONTENT_TYPE, HeaderValue::from_static("text/plain"));
+    headers.insert(CONNECTION, HeaderValue::from_static("close"));
     if status == StatusCode::UNAUTHORIZED {
         headers.insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
     }
