@@ -160,6 +160,11 @@ impl Document {
         self.steps.iter().map(|s| &*s.label)
     }
 
+    /// All states kept, oldest first, by their content.
+    pub fn contents(&self) -> impl ExactSizeIterator<Item = SceneRev> + '_ {
+        self.steps.iter().map(|s| s.scene.content())
+    }
+
     /// Memory that the history takes beside its oldest state: what each step does not share with the one before.
     pub fn history_bytes(&self) -> usize {
         self.steps.iter().map(|s| s.bytes).sum()

@@ -1,31 +1,95 @@
 //! How much memory one state of a scene takes beside another one: what both share counts once.
 
+use std::collections::BTreeMap;
 use std::mem::size_of;
 use std::sync::Arc;
 
+use super::arranged::{Arranged, Members};
+use super::background::{Background, Thing, ThingId};
+use super::clip::OwnShape;
 use super::grid::{Brick, BrickGrid};
-use super::{BevLayout, BoxId, Clip, Frame, Motion, Polyline, Scene, SceneBox, SourceFrame, Track};
+use super::roads::{Road, RoadNetwork};
+use super::{
+    BevLayout, BoxId, Clip, Frame, Motion, Polyline, Scene, SceneBox, SensorRig, SourceFrame, Track,
+};
 
 /// A map of boxes keeps about this much beside the boxes themselves, each.
 const NODE_BYTES: usize = 32;
+
+type OwnShapes = BTreeMap<BoxId, OwnShape>;
 
 impl Scene {
     /// Bytes that this state holds and `other` does not: copied bricks, layers, boxes and lines. An estimate from below,
     /// good to a few kilobytes a frame.
     pub fn bytes_beside(&self, other: &Scene) -> usize {
-        let mut bytes = size_of::<Scene>();
-        if !Arc::ptr_eq(&self.prompt, &other.prompt) {
-            bytes += self.prompt.len();
-        }
         let (canvas, of) = (self.canvas(), other.canvas());
-        if !Arc::ptr_eq(canvas, of) {
-            bytes += frame_bytes(canvas, Some(of));
-        }
-        if !Arc::ptr_eq(self.clip(), other.clip()) {
-            bytes += clip_bytes(self.clip(), other.clip());
-        }
-        bytes
+        size_of::<Scene>()
+            + beside(&self.prompt, &other.prompt, str::len)
+            + beside(&self.words, &other.words, |words| texts(words))
+            + beside(&self.rig, &other.rig, rig)
+            + beside(&self.background, &other.background, things)
+            + beside(&self.roads, &other.roads, roads)
+            + beside(&self.arranged, &other.arranged, arranged)
+            + beside(canvas, of, |canvas| frame_bytes(canvas, Some(of)))
+            + beside(self.clip(), other.clip(), |clip| clip_bytes(clip, other.clip()))
+            + self.view_bytes(other)
     }
+
+    /// Of the moment that is shown, where that is not the canvas: it shares with the canvas, or with the moment that the other
+    /// state shows.
+    fn view_bytes(&self, other: &Scene) -> usize {
+        let view = self.frame();
+        match Arc::ptr_eq(view, self.canvas()) {
+            true => 0,
+            false => beside(view, other.frame(), |view| {
+                frame_bytes(view, Some(self.canvas())).min(frame_bytes(view, Some(other.frame())))
+            }),
+        }
+    }
+}
+
+/// Nothing where both are one memory, else what it takes.
+fn beside<T: ?Sized>(own: &Arc<T>, other: &Arc<T>, bytes: impl FnOnce(&T) -> usize) -> usize {
+    match Arc::ptr_eq(own, other) {
+        true => 0,
+        false => bytes(own),
+    }
+}
+
+fn texts(texts: &[String]) -> usize {
+    texts.iter().map(|text| size_of::<String>() + text.len()).sum()
+}
+
+fn rig(rig: &SensorRig) -> usize {
+    size_of::<SensorRig>() + size_of_val(&rig.cameras[..]) + size_of_val(&rig.lidars[..])
+}
+
+fn things(background: &Background) -> usize {
+    let of =
+        |thing: &Thing| size_of::<(ThingId, Thing)>() + NODE_BYTES + size_of_val(&thing.form.points_m()[..]);
+    background.iter().map(of).sum()
+}
+
+fn roads(network: &RoadNetwork) -> usize {
+    let road = |road: &Road| {
+        size_of_val(&road.via_m[..])
+            + size_of_val(&road.left[..])
+            + size_of_val(&road.right[..])
+            + size_of_val(&road.crossings[..])
+            + size_of_val(&road.stops[..])
+    };
+    size_of_val(&network.nodes[..])
+        + size_of_val(&network.roads[..])
+        + network.roads.iter().map(road).sum::<usize>()
+}
+
+fn arranged(arranged: &Arranged) -> usize {
+    let members = |m: &Members| (m.boxes.len() + m.things.len()) * (size_of::<BoxId>() + NODE_BYTES);
+    let groups = arranged
+        .groups
+        .iter()
+        .map(|g| size_of_val(g) + members(&g.members));
+    groups.sum::<usize>() + members(&arranged.hidden) + members(&arranged.locked)
 }
 
 fn clip_bytes(clip: &Clip, other: &Clip) -> usize {
@@ -61,7 +125,24 @@ fn frame_bytes(frame: &Frame, other: Option<&Frame>) -> usize {
     if !other.is_some_and(|f| Arc::ptr_eq(&frame.source, &f.source)) {
         bytes += source(&frame.source, frame, other.map(|f| &*f.source));
     }
-    bytes
+    if !other.is_some_and(|f| Arc::ptr_eq(&frame.own_shapes, &f.own_shapes)) {
+        bytes += own_shapes(&frame.own_shapes, other.map(|f| &*f.own_shapes));
+    }
+    bytes + (frame.inferred.boxes.len() + frame.absent.len()) * (size_of::<BoxId>() + NODE_BYTES)
+}
+
+fn own_shapes(shapes: &OwnShapes, other: Option<&OwnShapes>) -> usize {
+    let shape = |(id, own): (&BoxId, &OwnShape)| {
+        let of = other.and_then(|of| of.get(id));
+        let shared = of.is_some_and(|of| Arc::ptr_eq(&of.voxels, &own.voxels));
+        let voxels = if shared {
+            0
+        } else {
+            size_of_val(&own.voxels.columns[..])
+        };
+        size_of::<(BoxId, OwnShape)>() + NODE_BYTES + voxels
+    };
+    shapes.iter().map(shape).sum()
 }
 
 /// A source shares with the one before it, or with its own frame.
@@ -104,7 +185,37 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::{BevLayer, Class, SensorRig, VoxelGrid};
+    use crate::background::{Form, Tree, TreeKind};
+    use crate::{BevLayer, Class, VoxelGrid};
+
+    /// What a history that counted less would keep for nothing: 4096 steps of a street of 1000 trees are 400 MB.
+    #[test]
+    fn whatever_an_edit_copies_counts() {
+        let frame = Frame::new(BevLayout::default(), BTreeMap::new(), VoxelGrid::new());
+        let before = Scene::single("test", frame, Arc::new(SensorRig::default()), 0);
+        let none = before.clone().bytes_beside(&before);
+        let more = |change: &dyn Fn(&mut Scene)| {
+            let mut after = before.clone();
+            change(&mut after);
+            after.bytes_beside(&before) - none
+        };
+        let trees = more(&|scene| {
+            let tree = Tree {
+                position_m: glam::DVec2::ZERO,
+                height_m: 8.0,
+                crown_radius_m: 2.0,
+                kind: TreeKind::Broadleaf,
+            };
+            for _ in 0..1000 {
+                Arc::make_mut(&mut scene.background).add(Form::Tree(tree.clone()));
+            }
+        });
+        assert!(trees > 1000 * size_of::<Thing>(), "{trees}");
+        let words = more(&|scene| scene.words = Arc::new(vec!["w".repeat(1000); 100]));
+        assert!((100_000..110_000).contains(&words), "{words}");
+        let rig = more(&|scene| scene.rig = Arc::new(SensorRig::default()));
+        assert!(rig >= size_of_val(&before.rig.cameras[..]), "{rig}");
+    }
 
     #[test]
     fn only_what_is_not_shared_counts() {

@@ -11,11 +11,14 @@ use super::made_with::MadeWith;
 use editor::checks::Counts;
 use formats::loom;
 use formats::recipe::{self, Recipe};
+use job::guard::Handed;
 use language::{t, tf};
 use scene::{KeptVersion, Scene, SceneRev};
 
 /// What led to a version that the user asked for.
 const KEPT: &str = "Kept";
+/// What panics of packing are told as.
+const THREAD: &str = "versions";
 
 /// A version as a file keeps it; none if it cannot be written.
 type Packed = OnceLock<Option<Arc<Vec<u8>>>>;
@@ -56,6 +59,11 @@ impl Version {
         }
     }
 
+    /// Its scene on the way to where it is packed.
+    fn to_pack(&self) -> Handed<Arc<Scene>> {
+        Handed::new(THREAD, self.scene.clone())
+    }
+
     /// What it is called: its name, else what led here.
     pub fn title(&self) -> &str {
         if self.name.is_empty() {
@@ -66,8 +74,14 @@ impl Version {
     }
 }
 
-fn pack(scene: &Scene) -> Option<Arc<Vec<u8>>> {
-    loom::alone_to_bytes(scene).ok().map(Arc::new)
+/// Packs a version. It is done on threads that all share, where a panic that nobody catches ends the program.
+fn pack(scene: Handed<Arc<Scene>>) -> Option<Arc<Vec<u8>>> {
+    match scene.run(|scene| loom::alone_to_bytes(&scene)) {
+        Ok(Ok(bytes)) => return Some(Arc::new(bytes)),
+        Ok(Err(error)) => tracing::warn!("a version cannot be kept: {error}"),
+        Err(panic) => tracing::error!("a version cannot be kept: {panic}"),
+    }
+    None
 }
 
 /// A scene that was read, with the versions that its file keeps.
@@ -80,6 +94,17 @@ pub struct Opened {
     pub damaged: usize,
     /// What a picture that was opened says its scene was made with.
     pub made: Option<MadeWith>,
+    /// What a person should know of how the file was read, a line each.
+    pub notes: Vec<String>,
+}
+
+impl From<authoring::open::Opened> for Opened {
+    fn from(found: authoring::open::Opened) -> Self {
+        Self {
+            notes: found.notes,
+            ..Self::of(found.scene)
+        }
+    }
 }
 
 impl From<Scene> for Opened {
@@ -115,6 +140,7 @@ impl Opened {
             versions,
             scene,
             made: None,
+            notes: Vec::new(),
         }
     }
 
@@ -205,10 +231,10 @@ impl Versions {
             made,
             ..Version::new(label, note, scene)
         };
-        let (packed, scene) = (version.packed.clone(), version.scene.clone());
+        let (packed, scene) = (version.packed.clone(), version.to_pack());
         // Beforehand, so that saving waits for none.
         rayon::spawn(move || {
-            packed.get_or_init(|| pack(&scene));
+            packed.get_or_init(|| pack(scene));
         });
         self.list.push(version);
         let is_plain = |v: &Version| !v.starred && v.name.is_empty();
@@ -253,7 +279,7 @@ impl Versions {
                     None => v.note.clone(),
                 },
                 starred: v.starred,
-                loom: v.packed.get_or_init(|| pack(&v.scene)).clone()?,
+                loom: v.packed.get_or_init(|| pack(v.to_pack())).clone()?,
             })
         };
         kept.par_iter().filter_map(version).collect()
@@ -407,6 +433,20 @@ mod tests {
         }
         assert_eq!(versions.of(kept.content()), Some(0));
         assert_eq!(versions.kept(kept.content()).len(), Versions::MAX + 1);
+    }
+
+    /// On a thread that all share, a panic that nobody catches aborts the program.
+    #[test]
+    fn a_panic_while_packing_costs_that_version_alone() {
+        let mut versions = Versions::default();
+        versions.push("before".into(), String::new(), scene());
+        job::guard::panic_next(THREAD);
+        versions.push("panics".into(), String::new(), scene());
+        versions.push("after".into(), String::new(), scene());
+        let kept = versions.kept(SceneRev::fresh());
+        let labels: Vec<&str> = kept.iter().map(|v| &*v.label).collect();
+        assert_eq!(labels, ["before", "after"]);
+        assert_eq!(versions.list().len(), 3, "it can still be gone back to");
     }
 
     #[test]

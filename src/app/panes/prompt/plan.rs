@@ -102,7 +102,8 @@ struct Variants {
     of: Ask,
     coming: Receiver<Result<(u64, Laid), Panicked>>,
     found: BTreeMap<u64, Laid>,
-    problem: Option<Panicked>,
+    /// Why there are no more.
+    problem: Option<String>,
 }
 
 /// What is wanted of the words beyond the words.
@@ -404,20 +405,25 @@ impl Plan {
                 wake_last.request_repaint();
             }
         });
-        self.variants = thread.ok().map(|_| Variants {
+        self.variants = Some(Variants {
             of: ask.clone(),
             coming,
             found: BTreeMap::new(),
-            problem: None,
+            problem: thread.err().map(|e| format!("the system gives no thread: {e}")),
         });
     }
 
     /// Seed of the first variant that comes.
     #[cfg(test)]
-    pub(super) fn first_variant(&mut self, ask: &Ask) -> Result<u64, Panicked> {
+    pub(super) fn first_variant(&mut self, ask: &Ask) -> Result<u64, String> {
         self.start_variants(ask, &egui::Context::default());
-        let variants = self.variants.as_ref().expect("a thread");
-        variants.coming.recv().expect("an answer").map(|(seed, _)| seed)
+        let Some(variants) = &self.variants else {
+            return Err("no variants were begun".into());
+        };
+        match variants.coming.recv() {
+            Ok(came) => came.map(|(seed, _)| seed).map_err(|panic| panic.to_string()),
+            Err(_) => Err("the thread ended without an answer".into()),
+        }
     }
 
     /// Variants: the seed that was chosen.
@@ -435,11 +441,11 @@ impl Plan {
         for came in variants.coming.try_iter() {
             match came {
                 Ok((seed, laid)) => drop(variants.found.insert(seed, laid)),
-                Err(panic) => variants.problem = Some(panic),
+                Err(panic) => variants.problem = Some(panic.to_string()),
             }
         }
-        if let Some(panic) = &variants.problem {
-            let text = tf!("No more variants: {problem}", problem = panic);
+        if let Some(problem) = &variants.problem {
+            let text = tf!("No more variants: {problem}", problem = problem);
             ui.label(egui::RichText::new(text).small().color(theme::warn()));
         }
         // Square, as the map is.
